@@ -1,0 +1,3 @@
+//! The `catchment` command: typed arguments → meaning → library → print.
+
+fn main() {}

@@ -1,0 +1,50 @@
+//! The alignment problem: everything but the geometry that the answer depends on.
+
+use crate::pose::{Dof, DofSet, Mount};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+
+/// The alignment problem of a pair of halves. Stored with every result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Alignment {
+    /// Errors that occur, and that contact may correct. The others are locked: rotations at 0, translations
+    /// at the COR.
+    pub free: DofSet,
+    /// Rotations that do not matter (yaw of a round plug): locked in the motion, ignored in the verdict.
+    pub dont_care: DofSet,
+    /// Signed distance of the COR in front of the face centre, in D.
+    pub center_of_rotation: f64,
+    /// ρ: overdamped motion dissipates `|v|² + (ρD)²·|ω|²`, v at the COR. In D.
+    pub rotation_length: f64,
+    /// The half turn that mounts the moving half.
+    pub mount: Mount,
+    /// n-fold symmetry about the approach axis: turned by 2π/n the pair is aligned as well.
+    pub symmetry: u32,
+    /// Half-ranges of the error box in the order of [`Dof::ALL`]: D and radians. Only free ones count.
+    pub half_ranges: [f64; 5],
+}
+
+impl Alignment {
+    /// ±1 D and ±90°.
+    pub const DEFAULT_HALF_RANGES: [f64; 5] = [1.0, 1.0, FRAC_PI_2, FRAC_PI_2, FRAC_PI_2];
+    /// Default ρ, in D.
+    pub const DEFAULT_ROTATION_LENGTH: f64 = 0.5;
+
+    /// All defaults, for the given free degrees of freedom and mount.
+    pub const fn new(free: DofSet, mount: Mount) -> Self {
+        Self {
+            free,
+            dont_care: DofSet::EMPTY,
+            center_of_rotation: 0.0,
+            rotation_length: Self::DEFAULT_ROTATION_LENGTH,
+            mount,
+            symmetry: 1,
+            half_ranges: Self::DEFAULT_HALF_RANGES,
+        }
+    }
+
+    /// Half-range of one degree of freedom: 0 when it is not free.
+    pub const fn half_range(&self, dof: Dof) -> f64 {
+        if self.free.contains(dof) { self.half_ranges[dof.index()] } else { 0.0 }
+    }
+}

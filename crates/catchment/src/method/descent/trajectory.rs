@@ -1,0 +1,36 @@
+//! The path of one pose, for pictures and for people who ask why.
+
+use crate::acceptance::Outcome;
+use crate::pose::PoseError;
+use glam::DVec3;
+
+/// A point where the halves touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Where, in the world frame, in D.
+    pub point: DVec3,
+    /// Unit normal, from the fixed half to the moving one.
+    pub normal: DVec3,
+}
+
+/// One moment of a motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waypoint {
+    /// The pose error.
+    pub error: PoseError,
+    /// z of the COR in the world frame, in D.
+    pub height: f64,
+    /// Path length travelled since first contact, in the ρ-metric, in D.
+    pub travelled: f64,
+    /// What touches.
+    pub touches: Vec<Touch>,
+}
+
+/// The motion of one pose from first contact to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    /// From first contact on; empty when the halves never meet.
+    pub waypoints: Vec<Waypoint>,
+    /// How it ended.
+    pub outcome: Outcome,
+}

@@ -1,0 +1,4 @@
+//! Ways to decide what becomes of a pose error. Every one has the same door, `Settings` + input + `&Exec`,
+//! and returns an [`crate::acceptance::Acceptance`].
+
+pub mod descent;

@@ -1,0 +1,1 @@
+//! What a person or another program receives: JSON, text table, figures, Zarr.

@@ -1,0 +1,1 @@
+//! Many evaluations at once: reproduction of published tables.
