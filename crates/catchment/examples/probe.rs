@@ -39,9 +39,24 @@ fn main() {
             let n: usize = std::env::args().nth(3).map_or(100, |s| s.parse().unwrap());
             let grid = Grid::over(&d.alignment, |_| n); let m = grid.cell_measure();
             let t = Instant::now();
+            if std::env::var("SLOW").is_ok() { let mut all = vec![]; for k in 0..grid.len() { let t = Instant::now(); let e = descent::outcome(&pair, &grid.pose(k), &settings); all.push((t.elapsed().as_secs_f64()*1e3, k, grid.pose(k).to_array(), e)); } all.sort_by(|a,b| b.0.total_cmp(&a.0)); for a in &all[..5] { println!("{a:?}"); } continue; }
             let (a, _) = descent::run(&pair, Domain::Grid(grid), &settings, &Exec::new()).unwrap();
             println!("{} ar {ar} cor {cor}: {:.4} want {want} counts {:?} {:.2}s", f.name(), a.counts()[0] as f64*m, a.counts(), t.elapsed().as_secs_f64());
             if std::env::args().nth(4).is_some() { for r in (0..n).rev() { let s: String = (0..n).map(|k| [' ','A','.','_','?'][a.outcomes[r*n+k] as usize]).collect(); println!("{s}"); } }
         }
+    } else if what == "slow" {
+        let (f, ar, cor, rho) = match std::env::args().nth(3).as_deref() { Some("x3") => (Family::XFace3d, 0.57735, 0.5, 0.5), Some("xf") => (Family::XFace, 1.0, 0.5, 1.0), _ => (Family::VFace, 1.0, 0.0, 1.0) };
+        let free = if f.is_planar() { [Dof::X, Dof::Pitch].into_iter().collect() } else { DofSet::ALL };
+        let d = design(f, ar, cor, rho, free);
+        let c = Connector::build(&d).unwrap(); let pair = Pair::new(&c, &d.alignment);
+        let s = descent::Settings{max_steps: std::env::var("MAXS").map_or(20000,|x|x.parse().unwrap()), ..settings.clone()};
+        let mut seed = 12345u64; let mut r = move || { seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407); ((seed >> 33) as f64) / (1u64<<31) as f64 };
+        let mut all = vec![];
+        for k in 0..300 { let e: [f64;5] = std::array::from_fn(|i| { let dof = Dof::ALL[i]; (2.0*r()-1.0) * d.alignment.half_range(dof) }); let e = PoseError::from_array(e);
+            if let Ok(o) = std::env::var("ONLY") { if o.parse::<usize>().unwrap() != k { continue; } }
+            let t = Instant::now(); let end = descent::outcome(&pair, &e, &s); all.push((t.elapsed().as_secs_f64()*1e3, k, e.to_array(), end.outcome, end.error.to_array())); }
+        all.sort_by(|a,b| b.0.total_cmp(&a.0));
+        for a in &all[..all.len().min(6)] { println!("{a:?}"); }
+        println!("total {:.1} ms for {}", all.iter().map(|a| a.0).sum::<f64>(), all.len());
     }
 }

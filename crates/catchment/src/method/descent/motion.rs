@@ -203,7 +203,7 @@ impl<'a> Motion<'a> {
             let there = -contact.normal.z * rise;
             let here = there - row.iter().zip(u).map(|(a, b)| a * b).sum::<f64>();
             // A contact this step already respects tells nothing new.
-            if there < -OVERLAP && here > -OVERLAP {
+            if there < -OVERLAP && here > 0.25 * there {
                 self.rows.push(row);
                 self.gaps.push(here.max(0.0));
                 added = true;
