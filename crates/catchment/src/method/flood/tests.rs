@@ -1,0 +1,172 @@
+//! The fast path against the judge, and closed forms.
+
+use super::*;
+use crate::design::Alignment;
+use crate::pose::{Dof, DofSet, Mount};
+use proptest::prelude::*;
+
+/// Random landscapes of one to four axes: few levels, so that plateaus, ties and cells without contact abound.
+fn landscapes() -> impl Strategy<Value = (Vec<usize>, Vec<f64>, Vec<usize>, f64)> {
+    let shapes = prop_oneof![
+        prop::collection::vec(1..40usize, 1),
+        prop::collection::vec(1..10usize, 2),
+        prop::collection::vec(1..6usize, 3),
+        prop::collection::vec(1..4usize, 4),
+    ];
+    (shapes, 2..40i32, 0..6i32).prop_flat_map(|(shape, levels, tolerance)| {
+        let cells: usize = shape.iter().product();
+        let heights = prop::collection::vec(0..levels, cells).prop_map(move |levels| {
+            levels.into_iter().map(|l| if l == 0 { f64::NEG_INFINITY } else { f64::from(l) }).collect()
+        });
+        let targets = prop::collection::vec(0..cells, 0..3);
+        (Just(shape), heights, targets, Just(f64::from(tolerance)))
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn the_fast_path_equals_the_judge((shape, heights, targets, tolerance) in landscapes()) {
+        let parts = divide(&heights, &shape, &targets, tolerance, &Exec::new()).unwrap();
+        let fast: Vec<u32> = parts.labels.iter().map(|l| parts.merged.into[*l as usize]).collect();
+        prop_assert_eq!(fast, brute::divide(&shape, &heights, &targets, tolerance));
+    }
+
+    #[test]
+    fn single_and_double_precision_agree((shape, heights, targets, tolerance) in landscapes()) {
+        let single: Vec<f32> = heights.iter().map(|h| *h as f32).collect();
+        let parts = |labels: Parts| (labels.labels, labels.merged);
+        prop_assert_eq!(
+            parts(divide(&heights, &shape, &targets, tolerance, &Exec::new()).unwrap()),
+            parts(divide(&single, &shape, &targets, tolerance, &Exec::new()).unwrap())
+        );
+    }
+
+    /// A higher tolerance never tells more basins apart.
+    #[test]
+    fn merging_is_monotone((shape, heights, targets, tolerance) in landscapes()) {
+        let basins = |tolerance| {
+            let parts = divide(&heights, &shape, &targets, tolerance, &Exec::new()).unwrap();
+            let mut last: Vec<u32> = parts.labels.iter().map(|l| parts.merged.into[*l as usize]).collect();
+            last.sort_unstable();
+            last.dedup();
+            last.len()
+        };
+        prop_assert!(basins(tolerance + 1.0) <= basins(tolerance));
+        prop_assert!(basins(f64::INFINITY) <= 1 + usize::from(heights.contains(&f64::NEG_INFINITY)));
+    }
+}
+
+/// One axis with the given heights.
+fn line(heights: &[f32]) -> (Landscape, Alignment) {
+    let alignment = Alignment::new([Dof::X].into_iter().collect(), Mount::X);
+    let grid = Grid::over(&alignment, |_| heights.len());
+    (Landscape { grid, heights: heights.to_vec() }, alignment)
+}
+
+fn outcomes(heights: &[f32], depth_tolerance: f64) -> String {
+    let (landscape, alignment) = line(heights);
+    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance }, &Exec::new()).unwrap();
+    flooding.acceptance.outcomes.iter().map(|o| o.name().chars().next().unwrap()).collect()
+}
+
+const NONE: f32 = f32::NEG_INFINITY;
+
+#[test]
+fn a_valley_between_two_jams_and_the_outside() {
+    // Dams (3, 5, 4, 4) drain to the steeper side: the outer ones off the edge, 5 → 1 and 4 → 1 to the middle.
+    assert_eq!(outcomes(&[NONE, 3.0, 2.0, 5.0, 1.0, 0.0, 1.0, 4.0, 3.0, 4.0, NONE], 0.5), "mmjaaaaajmm");
+}
+
+#[test]
+fn a_shallow_jam_joins_the_mated_basin_and_a_deep_one_does_not() {
+    let heights = [4.0, 3.5, 4.0, 1.0, 0.0, 1.0, 4.0, 2.0, 4.0];
+    assert_eq!(outcomes(&heights, 0.0), "jjaaaaajj");
+    assert_eq!(outcomes(&heights, 1.0), "aaaaaaajj");
+    assert_eq!(outcomes(&heights, 2.5), "aaaaaaaaa");
+}
+
+#[test]
+fn with_an_even_number_of_cells_both_cells_around_the_mated_pose_are_its_minimum() {
+    // The ridge between the two middle cells is an accident of sampling: nothing lies between them but the mated pose.
+    assert_eq!(outcomes(&[3.0, 2.0, 1.0, 1.1, 2.0, 3.0], 0.0), "aaaaaa");
+    let alignment = Alignment::new([Dof::X, Dof::Pitch].into_iter().collect(), Mount::Y);
+    let grid = Grid::over(&alignment, |_| 4);
+    // A diagonal valley, whose two lowest cells are opposite corners of the mated pose.
+    let heights = vec![
+        9.0, 8.0, 7.0, 6.0, //
+        8.0, 7.0, 1.0, 5.0, //
+        7.0, 1.0, 7.0, 8.0, //
+        6.0, 7.0, 8.0, 9.0,
+    ];
+    let landscape = Landscape { grid, heights };
+    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.0 }, &Exec::new()).unwrap();
+    assert_eq!(flooding.acceptance.counts(), [16, 0, 0, 0]);
+}
+
+#[test]
+fn a_target_that_is_no_minimum_takes_the_basin_of_its_lowest_cell() {
+    let heights = [5.0, 4.0, 2.9, 3.0, 4.0, 3.5, 5.0];
+    assert_eq!(outcomes(&heights, 0.2), "aaaaajj");
+    // Gathering further below the mated pose than the tolerance explains is not aligning.
+    assert_eq!(outcomes(&heights, 0.05), "jjjjjjj");
+}
+
+#[test]
+fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
+    let mut alignment = Alignment::new([Dof::Yaw].into_iter().collect(), Mount::X);
+    let grid = Grid::over(&alignment, |_| 9);
+    let heights = vec![0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 0.0];
+    let landscape = Landscape { grid, heights };
+    let settings = Settings { depth_tolerance: 0.5 };
+    let aligned =
+        |a: &Alignment| flood(&landscape, a, &settings, &Exec::new()).unwrap().acceptance.counts()[0];
+    assert!(aligned(&alignment) < 6);
+    alignment.symmetry = 4;
+    assert_eq!(aligned(&alignment), 9);
+}
+
+#[test]
+fn basins_tell_depth_share_and_outcome() {
+    let (landscape, alignment) = line(&[NONE, 3.0, 2.0, 5.0, 1.0, 0.0, 1.0, 4.0, 3.0, 4.0, NONE]);
+    let settings = Settings { depth_tolerance: 0.5 };
+    let basins = flood(&landscape, &alignment, &settings, &Exec::new()).unwrap().basins;
+    let mated = basins.iter().find(|b| b.outcome == Outcome::Aligned).unwrap();
+    assert_eq!((mated.minimum, mated.height, mated.depth), (5, 0.0, 4.0));
+    assert_eq!(basins.iter().map(|b| b.cells).sum::<usize>(), 11);
+    assert!(basins.iter().any(|b| b.outcome == Outcome::Missed && b.height == f64::NEG_INFINITY));
+}
+
+#[test]
+fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
+    let (landscape, alignment) = line(&[0.0, 1.0, 2.0, 1.5, 2.0, 1.0, 0.0]);
+    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.1 }, &Exec::new()).unwrap();
+    assert_eq!(flooding.acceptance.counts(), [1, 0, 6, 0]);
+    assert!(flooding.acceptance.warnings.iter().any(|w| matches!(w, Warning::Note { .. })));
+    // The mated pose, shallower than the tolerance, joins a basin that gathers far below it.
+    let merged = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.6 }, &Exec::new()).unwrap();
+    assert_eq!(merged.acceptance.counts()[0], 0);
+    assert!(merged.acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
+}
+
+#[test]
+fn what_cannot_be_flooded_is_refused() {
+    let (landscape, alignment) = line(&[1.0, 0.0, 1.0]);
+    let bad = flood(&landscape, &alignment, &Settings { depth_tolerance: -1.0 }, &Exec::new()).unwrap_err();
+    assert_eq!(bad, FloodError::Tolerance { depth: -1.0 });
+    let exec = Exec::new().with_memory_budget(10);
+    let settings = Settings { depth_tolerance: 0.0 };
+    assert!(matches!(flood(&landscape, &alignment, &settings, &exec), Err(FloodError::OutOfBudget(_))));
+    exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    let exec = exec.with_memory_budget(1 << 20);
+    assert_eq!(flood(&landscape, &alignment, &settings, &exec), Err(FloodError::Cancelled(Cancelled)));
+}
+
+#[test]
+fn an_empty_set_of_free_axes_is_one_cell_at_the_mated_pose() {
+    let alignment = Alignment::new(DofSet::EMPTY, Mount::X);
+    let landscape = Landscape { grid: Grid { axes: Vec::new() }, heights: vec![0.0] };
+    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.0 }, &Exec::new()).unwrap();
+    assert_eq!(flooding.acceptance.outcomes, [Outcome::Aligned]);
+}
