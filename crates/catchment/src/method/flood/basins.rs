@@ -23,6 +23,15 @@ pub(super) const fn is_basin(label: u32) -> bool {
     label != UNSEEN && label < LABEL_LIMIT
 }
 
+/// Where flooding may be read in two ways. The default is catchment's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rules {
+    /// Every cell without a lower neighbour is a minimum, even on a plateau that drains elsewhere.
+    pub flat_cells_are_minima: bool,
+    /// The neighbours of a dam cell are reached through it.
+    pub dams_pass_water_on: bool,
+}
+
 /// What the heights are stored as.
 pub(super) trait Height: Copy + PartialOrd + Into<f64> + Send + Sync {}
 impl Height for f32 {}
@@ -41,25 +50,28 @@ pub(super) fn flood<H: Height>(
     heights: &[H],
     around: &Neighbourhood,
     targets: &[usize],
+    rules: Rules,
     exec: &Exec,
 ) -> Result<Flooded, Cancelled> {
     let mut labels: Vec<u32> =
         heights.iter().map(|h| if (*h).into() == f64::NEG_INFINITY { OUTSIDE } else { UNSEEN }).collect();
     let outside = labels.iter().position(|l| *l == OUTSIDE);
     let mut minima = vec![None, outside];
-    label_minima(heights, around, &mut labels, &mut minima, exec)?;
+    label_minima(heights, around, rules, &mut labels, &mut minima, exec)?;
     join(&mut labels, &mut minima, heights, targets);
-    rise(heights, around, &mut labels, exec)?;
+    rise(heights, around, rules, &mut labels, exec)?;
     Ok(Flooded { labels, minima })
 }
 
 /// How many cells are worked on between two looks at the cancel flag.
 const CELLS_PER_CHECK: usize = 1 << 14;
 
-/// A minimum is a connected set of equal cells without a lower neighbour.
+/// A minimum is a connected set of equal cells without a lower neighbour; by the other rule, one of equal cells
+/// that each have none.
 fn label_minima<H: Height>(
     heights: &[H],
     around: &Neighbourhood,
+    rules: Rules,
     labels: &mut [u32],
     minima: &mut Vec<Option<usize>>,
     exec: &Exec,
@@ -95,7 +107,9 @@ fn label_minima<H: Height>(
                 next += 1;
                 for near in around.of(cell) {
                     lowest &= heights[near] >= level;
-                    if heights[near] == level && labels[near] == UNSEEN {
+                    let minimal =
+                        |c| !rules.flat_cells_are_minima || around.of(c).all(|n| heights[n] >= level);
+                    if heights[near] == level && labels[near] == UNSEEN && minimal(near) {
                         labels[near] = number;
                         plateau.push(near);
                     }
@@ -179,6 +193,7 @@ impl<H: Height> Eq for Shore<H> {}
 fn rise<H: Height>(
     heights: &[H],
     around: &Neighbourhood,
+    rules: Rules,
     labels: &mut [u32],
     exec: &Exec,
 ) -> Result<(), Cancelled> {
@@ -211,22 +226,20 @@ fn rise<H: Height>(
             let label = labels[near];
             if label == UNSEEN {
                 unseen.push(near);
-            } else if is_basin(label) {
-                if basin == UNSEEN {
-                    basin = label;
-                } else if basin != label {
-                    basin = DAM;
-                    break;
-                }
+            } else if is_basin(label) && basin != label {
+                basin = if basin == UNSEEN { label } else { DAM };
+            }
+            if basin == DAM && !rules.dams_pass_water_on {
+                unseen.clear();
+                break;
             }
         }
-        labels[cell] = basin;
-        if basin != DAM {
-            for near in &unseen {
-                labels[*near] = QUEUED;
-                queue.push(Shore { height: heights[*near], order, cell: *near as u32 });
-                order += 1;
-            }
+        // Reached through dams alone, a cell is a dam itself.
+        labels[cell] = if basin == UNSEEN { DAM } else { basin };
+        for near in &unseen {
+            labels[*near] = QUEUED;
+            queue.push(Shore { height: heights[*near], order, cell: *near as u32 });
+            order += 1;
         }
     }
     exec.report(1.0, STAGE);

@@ -1,6 +1,7 @@
 //! Flooding as it is defined, in plain loops: the judge of the fast path. For small grids only, since every step
 //! looks at every cell.
 
+use super::Rules;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The basin of every cell after merging: 1 is the outside (height −∞), minima are numbered from 2 in the order of
@@ -8,9 +9,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// has 0, which no landscape without NaN holds.
 ///
 /// `shape` has the first axis fastest; minima that hold one of `targets` are one minimum.
-pub fn divide(shape: &[usize], heights: &[f64], targets: &[usize], tolerance: f64) -> Vec<u32> {
+pub fn divide(shape: &[usize], heights: &[f64], targets: &[usize], tolerance: f64, rules: Rules) -> Vec<u32> {
     let near: Vec<Vec<usize>> = (0..heights.len()).map(|c| neighbours(shape, c)).collect();
-    let (mut basin, mut bottoms) = minima(heights, &near);
+    let (mut basin, mut bottoms) = minima(heights, &near, rules);
     let joined: BTreeSet<u32> = targets.iter().filter_map(|t| basin[*t]).filter(|b| *b > 1).collect();
     if let Some(&first) = joined.first() {
         for b in basin.iter_mut().flatten().filter(|b| joined.contains(b)) {
@@ -20,7 +21,7 @@ pub fn divide(shape: &[usize], heights: &[f64], targets: &[usize], tolerance: f6
         bottoms.retain(|b, _| !joined.contains(b));
         bottoms.insert(first, lowest);
     }
-    let dams = flood(heights, &near, &mut basin);
+    let dams = flood(heights, &near, rules, &mut basin);
     let into = merge(heights, &near, &basin, &dams, bottoms, tolerance);
     drain_dams(shape, heights, &near, &mut basin);
     basin.iter().map(|b| b.map_or(0, |b| into[&b])).collect()
@@ -44,21 +45,20 @@ fn neighbours(shape: &[usize], cell: usize) -> Vec<usize> {
         .collect()
 }
 
-fn minima(heights: &[f64], near: &[Vec<usize>]) -> (Vec<Option<u32>>, BTreeMap<u32, f64>) {
+fn minima(heights: &[f64], near: &[Vec<usize>], rules: Rules) -> (Vec<Option<u32>>, BTreeMap<u32, f64>) {
     let mut basin: Vec<Option<u32>> =
         heights.iter().map(|h| (*h == f64::NEG_INFINITY).then_some(1)).collect();
     let mut bottoms = BTreeMap::from([(1, f64::NEG_INFINITY)]);
+    let low = |c: usize| near[c].iter().all(|n| heights[*n] >= heights[c]);
     for start in 0..heights.len() {
+        let same = |c: usize| heights[c] == heights[start] && (low(c) || !rules.flat_cells_are_minima);
         let mut plateau = BTreeSet::from([start]);
-        while let Some(next) = plateau
-            .iter()
-            .flat_map(|c| &near[*c])
-            .copied()
-            .find(|n| heights[*n] == heights[start] && !plateau.contains(n))
+        while let Some(next) =
+            plateau.iter().flat_map(|c| &near[*c]).copied().find(|n| same(*n) && !plateau.contains(n))
         {
             plateau.insert(next);
         }
-        let lowest = plateau.iter().flat_map(|c| &near[*c]).all(|n| heights[*n] >= heights[start]);
+        let lowest = plateau.iter().all(|c| low(*c));
         if lowest && basin[start].is_none() {
             let number = 1 + bottoms.len() as u32;
             for cell in plateau {
@@ -71,7 +71,7 @@ fn minima(heights: &[f64], near: &[Vec<usize>]) -> (Vec<Option<u32>>, BTreeMap<u
 }
 
 /// Lowest waiting cell first, in order of arrival among equals; returns the dams.
-fn flood(heights: &[f64], near: &[Vec<usize>], basin: &mut [Option<u32>]) -> BTreeSet<usize> {
+fn flood(heights: &[f64], near: &[Vec<usize>], rules: Rules, basin: &mut [Option<u32>]) -> BTreeSet<usize> {
     let mut arrived = BTreeSet::new();
     let mut queue: Vec<usize> = Vec::new();
     let mut dams = BTreeSet::new();
@@ -89,10 +89,13 @@ fn flood(heights: &[f64], near: &[Vec<usize>], basin: &mut [Option<u32>]) -> BTr
         }
         let cell = queue.remove(first);
         let touched: BTreeSet<u32> = near[cell].iter().filter_map(|n| basin[*n]).collect();
-        if touched.len() > 1 {
+        let is_dam = touched.len() != 1;
+        if is_dam {
             dams.insert(cell);
         } else {
             basin[cell] = touched.first().copied();
+        }
+        if !is_dam || rules.dams_pass_water_on {
             queue.extend(near[cell].iter().filter(|n| basin[**n].is_none() && arrived.insert(**n)));
         }
     }

@@ -30,6 +30,7 @@
 mod basins;
 pub mod brute;
 mod dams;
+pub mod dissertation;
 mod merge;
 mod neighbourhood;
 mod target;
@@ -40,6 +41,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, LandscapeError, Resolution};
+pub use basins::Rules;
 use basins::{Height, LABEL_LIMIT, OUTSIDE};
 use merge::Merged;
 use neighbourhood::Neighbourhood;
@@ -151,7 +153,10 @@ pub fn flood(
     }
     reserve(heights.len() as u64, 0, grid.axes.len(), exec)?;
     let targets = target::cells(grid, alignment);
-    let parts = divide(heights, &grid.shape(), &targets, settings.depth_tolerance, exec)?;
+    let around = Neighbourhood::new(&grid.shape());
+    let tolerance = settings.depth_tolerance;
+    let mut parts = divide(heights, &around, &targets, tolerance, Rules::default(), exec)?;
+    dams::assign(heights, &around, &mut parts.labels);
     Ok(verdict(grid, heights, &targets, &parts))
 }
 
@@ -181,21 +186,20 @@ struct Parts {
     tolerance: f64,
 }
 
-/// Minima, flooding, merging and dams.
+/// Minima, flooding and merging; dam cells have no basin yet.
 fn divide<H: Height>(
     heights: &[H],
-    shape: &[usize],
+    around: &Neighbourhood,
     targets: &[usize],
     tolerance: f64,
+    rules: Rules,
     exec: &Exec,
 ) -> Result<Parts, Cancelled> {
-    let around = Neighbourhood::new(shape);
-    let mut flooded = basins::flood(heights, &around, targets, exec)?;
+    let flooded = basins::flood(heights, around, targets, rules, exec)?;
     let bottoms =
         flooded.minima.iter().map(|m| m.map_or(f64::INFINITY, |cell| heights[cell].into())).collect();
-    let passes = merge::passes(heights, &around, &flooded);
+    let passes = merge::passes(heights, around, &flooded);
     let merged = merge::merge(bottoms, passes, tolerance);
-    dams::assign(heights, &around, &mut flooded.labels);
     Ok(Parts { labels: flooded.labels, minima: flooded.minima, merged, tolerance })
 }
 
