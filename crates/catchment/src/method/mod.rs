@@ -3,3 +3,4 @@
 
 pub mod descent;
 pub mod flood;
+pub mod kinematic;
