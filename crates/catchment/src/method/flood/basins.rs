@@ -78,7 +78,7 @@ fn label_minima<H: Height>(
 ) -> Result<(), Cancelled> {
     let mut plateau = Vec::new();
     for start in 0..heights.len() {
-        if start % CELLS_PER_CHECK == 0 {
+        if start.is_multiple_of(CELLS_PER_CHECK) {
             exec.check()?;
         }
         if labels[start] != UNSEEN {
@@ -214,7 +214,7 @@ fn rise<H: Height>(
     let mut unseen = Vec::new();
     let mut done = 0usize;
     while let Some(Shore { cell, .. }) = queue.pop() {
-        if done % CELLS_PER_CHECK == 0 {
+        if done.is_multiple_of(CELLS_PER_CHECK) {
             exec.check()?;
             exec.report(done as f64 / labels.len() as f64, STAGE);
         }

@@ -63,10 +63,16 @@ pub(super) struct Merged {
 }
 
 /// A depth that orders like a number; depths are never NaN.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Depth(f64);
 
 impl Eq for Depth {}
+
+impl PartialOrd for Depth {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
 
 impl Ord for Depth {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {

@@ -34,7 +34,7 @@ impl Neighbourhood {
                     })
                 })
                 .collect();
-            stride *= *cells as isize;
+            stride *= cells.cast_signed();
         }
         steps.retain(|s| s.length > 0.0);
         for step in &mut steps {

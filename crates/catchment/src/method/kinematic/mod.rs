@@ -12,15 +12,15 @@
 //! ```
 //!
 //! Both also need θ₀ below a right angle less the slope of the outer edge (V: 2H/D, S: 3H/(2D)) and
-//! |x₀| < r_p·D + H/2. All bounds are strict; D = 1.
+//! `|x₀| < r_p·D + H/2`. All bounds are strict; D = 1.
 //!
-//! The starts are x₀ = (i − 20)·D/20, i = 0…40, and θ₀ = j·π/80, j = 0…40: 41 values on [0, π/2]. Each counts
+//! The starts are `x₀ = (i − 20)·D/20`, i = 0…40, and θ₀ = j·π/80, j = 0…40: 41 values on [0, π/2]. Each counts
 //! (2/40)(π/40) all the same, so that the one-sided count stands for ±π/2. They are indexed by integers: added-up
 //! floating-point steps would break ties.
 //!
 //! This reproduces the printed tables 3.3 and 3.4 in every entry, and departs from a literal reading of the text in three
 //! places: the range of θ₀, half dimensions in the lever and in the limit on |x₀|, and the outer edge's angle for S. The
-//! coefficient of r_p in that limit cannot be told from the tables: it binds at r_p = 0 only. Nothing here knows
+//! coefficient of `r_p` in that limit cannot be told from the tables: it binds at `r_p` = 0 only. Nothing here knows
 //! about contact beyond these bounds; for that, see [`crate::method::descent`].
 
 use serde::{Deserialize, Serialize};

@@ -1,13 +1,16 @@
 //! A comparison as aligned text.
 
-use super::TableComparison;
+use super::{Entry, TableComparison};
 use std::fmt;
+
+/// How a block shows an entry.
+type Show = fn(&Entry) -> String;
 
 impl fmt::Display for TableComparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "Table {}: {}", self.table, self.title)?;
         writeln!(f, "rows: {}; columns: {}; values in {}", self.row_name, self.column_name, self.unit)?;
-        let blocks: [(&str, fn(&super::Entry) -> String); 3] = [
+        let blocks: [(&str, Show); 3] = [
             ("published", |e| significant(e.published)),
             ("ours", |e| significant(e.ours)),
             ("ours / published", |e| format!("{:.3}{}", e.ratio, if e.matches { " " } else { "*" })),
@@ -54,11 +57,7 @@ impl TableComparison {
 }
 
 /// One matrix, right-aligned under its column heads.
-fn block(
-    f: &mut fmt::Formatter<'_>,
-    table: &TableComparison,
-    show: fn(&super::Entry) -> String,
-) -> fmt::Result {
+fn block(f: &mut fmt::Formatter<'_>, table: &TableComparison, show: Show) -> fmt::Result {
     let mut lines = vec![
         std::iter::once(String::new())
             .chain(table.columns.iter().map(ToString::to_string))
