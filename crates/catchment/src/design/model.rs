@@ -36,6 +36,9 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
+    /// Every unit, small to large but for the inch.
+    pub const ALL: [Self; 5] = [Self::Um, Self::Mm, Self::Cm, Self::M, Self::In];
+
     /// Metres in one of this unit.
     pub const fn metres(self) -> f64 {
         match self {
