@@ -123,6 +123,20 @@ impl Family {
         }
     }
 
+    /// What it is, in a few words.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Self::VFace => "V notch and tip, planar",
+            Self::SFace => "sawtooth of three edges, planar, both halves alike",
+            Self::XFace => "two crossed ramps in two layers, planar, both halves alike",
+            Self::Pyramid => "square pyramid in its socket",
+            Self::Cone => "circular cone in its socket",
+            Self::XFace3d => "saddle of four triangles, both halves alike",
+            Self::XFace3dLocking => "the saddle with a lip along its centre lines, both halves alike",
+            Self::PinHole => "pins and chamfered holes on a circle",
+        }
+    }
+
     /// Whether the family is a profile in the x–z plane, extruded along y.
     pub const fn is_planar(self) -> bool {
         matches!(self, Self::VFace | Self::SFace | Self::XFace)
