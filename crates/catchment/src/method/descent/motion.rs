@@ -9,7 +9,7 @@ use super::projection::{MAX_COORDINATES, Vector, closest_allowed};
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Envelope, Pair};
-use crate::pose::{CorPose, Dof, PoseError, euler_angles, face_from_cor, rotation, rotation_angle};
+use crate::pose::{CorPose, Dof, PoseError, face_from_cor, rotation, rotation_angle};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -29,6 +29,10 @@ const MAX_REACH: f64 = 1e7;
 const REST: f64 = 1e-3;
 /// Steps are halved down to this share of the chosen one.
 const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
+/// Steps that fall off an edge are halved down to this share: where exactly it falls matters little.
+const COARSE_SHARE: f64 = 1.0 / 16.0;
+/// How often one step may discover new contacts before it is halved.
+const MAX_CUTS: usize = 8;
 /// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
 const WALL: f64 = 0.05;
 /// Clearance from walls, in D: above the curvature error of the smallest steps, below any fit that is designed.
@@ -42,6 +46,8 @@ pub(super) struct Motion<'a> {
     settings: &'a Settings,
     envelope: Envelope<'a>,
     contacts: Vec<Contact>,
+    /// Scratch for [`Motion::cut`].
+    carrying: Vec<Contact>,
     rows: Vec<Vector>,
     gaps: Vec<f64>,
     /// Largest distance of a moving corner from the COR.
@@ -59,6 +65,7 @@ impl<'a> Motion<'a> {
             settings,
             envelope: pair.at_rotation(DMat3::IDENTITY),
             contacts: Vec::new(),
+            carrying: Vec::new(),
             rows: Vec::new(),
             gaps: Vec::new(),
             radius,
@@ -98,34 +105,47 @@ impl<'a> Motion<'a> {
             if let Some(waypoints) = record.as_deref_mut() {
                 waypoints.push(self.waypoint(&state, travelled));
             }
-            // Halve the step until the height agrees with the displacement.
+            let mut cuts = 0;
             loop {
-                let (u, length) = self.displacement(&state, step, &mut reach);
+                let (u, length) = self.displacement(step, &mut reach);
                 if length <= REST * step && reach >= MAX_REACH {
                     return (Outcome::Jammed, self.error_of(&state));
                 }
                 let next = self.moved(&state, &u);
                 self.turn(&next.rotation, step);
                 let Some(z) = self.envelope.height(next.cor.truncate()) else {
-                    let last = self.error_of(&next);
-                    return (Outcome::Missed, last);
+                    return (Outcome::Missed, self.error_of(&next));
                 };
-                let smallest = step <= largest * SMALLEST_SHARE;
-                let climbs = z > state.cor.z + OVERLAP;
-                let surprises = (z - next.cor.z).abs() > self.settings.surprise * step;
-                if (climbs || surprises) && !smallest {
+                let landed = State { cor: next.cor.truncate().extend(z), ..next };
+                let rise = z - next.cor.z;
+                let allowed = self.settings.surprise * step;
+                if std::env::var("DBG").is_ok() { eprintln!("step {step:.2e} reach {reach:.1e} len {length:.2e} uz {:.3e} z {:.9} rise {:.3e} n {} cuts {cuts}", u[2], state.cor.z, rise, self.rows.len()); for (c,g) in self.contacts.iter().zip(&self.gaps) { eprintln!("    gap {:.3e} {:.3e} n {:.4} p {:.4}", c.gap, g, c.normal, c.point); } }
+                if rise > allowed || z > state.cor.z + OVERLAP {
+                    // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
+                    if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
+                        cuts += 1;
+                        continue;
+                    }
+                    if step > largest * SMALLEST_SHARE {
+                        step *= 0.5;
+                        self.turn(&state.rotation, step);
+                        self.gather(&state, step);
+                        continue;
+                    }
+                    if z > state.cor.z + largest {
+                        // A wall that no contact announced: the motion cannot be followed further.
+                        return (Outcome::Undecided, self.error_of(&state));
+                    }
+                } else if rise < -10.0 * allowed && step > largest * COARSE_SHARE {
+                    // Fell off an edge: come closer to it before letting go.
                     step *= 0.5;
                     self.turn(&state.rotation, step);
                     self.gather(&state, step);
                     continue;
                 }
-                if climbs && z > state.cor.z + step {
-                    // A wall that no contact announced: the motion cannot be followed further.
-                    return (Outcome::Undecided, self.error_of(&state));
-                }
                 travelled += length;
-                state = State { cor: next.cor.truncate().extend(z), ..next };
-                step = (step * 1.5).min(largest);
+                state = landed;
+                step = (step * 2.0).min(largest);
                 break;
             }
         }
@@ -148,22 +168,49 @@ impl<'a> Motion<'a> {
         self.rows.clear();
         self.gaps.clear();
         let axes = self.axes(state);
-        let free = self.pair.alignment.free;
         for contact in &self.contacts {
-            let n = contact.normal;
-            let arm = contact.point + n * contact.gap - state.cor;
-            let turn = arm.cross(n) / rho;
-            let mut row = [0.0; MAX_COORDINATES];
-            row[0] = if free.contains(Dof::X) { n.x } else { 0.0 };
-            row[1] = if free.contains(Dof::Y) { n.y } else { 0.0 };
-            row[2] = n.z;
-            for (k, axis) in axes.iter().enumerate() {
-                row[3 + k] = turn.dot(*axis);
-            }
-            let clear = if n.z < WALL { WALL_MARGIN } else { 0.0 };
-            self.rows.push(row);
+            let clear = if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 };
+            self.rows.push(self.row(contact, state, &axes));
             self.gaps.push((contact.gap - clear).max(0.0));
         }
+    }
+
+    /// What a displacement does to the gap of a contact.
+    fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
+        let free = self.pair.alignment.free;
+        let n = contact.normal;
+        let arm = contact.point + n * contact.gap - state.cor;
+        let turn = arm.cross(n) / self.pair.alignment.rotation_length;
+        let mut row = [0.0; MAX_COORDINATES];
+        row[0] = if free.contains(Dof::X) { n.x } else { 0.0 };
+        row[1] = if free.contains(Dof::Y) { n.y } else { 0.0 };
+        row[2] = n.z;
+        for (k, axis) in axes.iter().enumerate() {
+            row[3 + k] = turn.dot(*axis);
+        }
+        row
+    }
+
+    /// Adds what carries the body at `landed`, `rise` above where the displacement `u` had put it, to the contacts
+    /// of this step. Only what lies below the present position can be added: a valley's other side, not a step up.
+    fn cut(&mut self, landed: &State, rise: f64, u: &Vector) -> bool {
+        let mut carrying = std::mem::take(&mut self.carrying);
+        self.envelope.contacts(landed.cor, OVERLAP, &mut carrying);
+        let axes = self.axes(landed);
+        let mut added = false;
+        for contact in &carrying {
+            let row = self.row(contact, landed, &axes);
+            let there = -contact.normal.z * rise;
+            let here = there - row.iter().zip(u).map(|(a, b)| a * b).sum::<f64>();
+            // A contact this step already respects tells nothing new.
+            if there < -OVERLAP && here > 0.25 * there {
+                self.rows.push(row);
+                self.gaps.push(here.max(0.0));
+                added = true;
+            }
+        }
+        self.carrying = carrying;
+        added
     }
 
     /// Axes of the free rotations in the world frame, unit; zero for locked ones.
@@ -182,7 +229,7 @@ impl<'a> Motion<'a> {
     /// The displacement of one step and its length in the ρ-metric, at most `step`.
     ///
     /// `reach` is how hard the force pushes, in steps; kept between calls, raised on gentle slopes.
-    fn displacement(&self, _state: &State, step: f64, reach: &mut f64) -> (Vector, f64) {
+    fn displacement(&self, step: f64, reach: &mut f64) -> (Vector, f64) {
         let solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;
@@ -247,10 +294,9 @@ impl<'a> Motion<'a> {
     fn error_of(&self, state: &State) -> PoseError {
         let pose = CorPose { lateral: DVec2::new(state.cor.x, state.cor.y), rotation: state.rotation };
         let mut error = pose.to_error(self.pair.alignment.center_of_rotation);
+        // Locked rotations stay exactly 0: no detour through the matrix.
         if !self.spherical {
             [error.roll, error.pitch, error.yaw] = state.angles;
-        } else {
-            (error.roll, error.pitch, error.yaw) = euler_angles(&state.rotation);
         }
         error
     }
