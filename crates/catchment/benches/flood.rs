@@ -31,7 +31,7 @@ fn landscape(pair: &Pair, cells: usize) -> Landscape {
 }
 
 /// Heights alone.
-#[divan::bench(args = [("v-face.toml", 100), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
+#[divan::bench(sample_count = 10, args = [("v-face.toml", 100), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
 fn heights(bencher: divan::Bencher, (name, cells): (&str, usize)) {
     let pair = pair(name);
     let grid = Grid::over(&pair.alignment, |_| cells);
@@ -41,7 +41,7 @@ fn heights(bencher: divan::Bencher, (name, cells): (&str, usize)) {
 }
 
 /// The whole method, heights included.
-#[divan::bench(args = [("v-face.toml", 100), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
+#[divan::bench(sample_count = 10, args = [("v-face.toml", 100), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
 fn accept(bencher: divan::Bencher, (name, cells): (&str, usize)) {
     let pair = pair(name);
     let grid = Grid::over(&pair.alignment, |_| cells);
@@ -56,7 +56,7 @@ fn accept(bencher: divan::Bencher, (name, cells): (&str, usize)) {
 }
 
 /// Flooding alone; its peak memory stays below the estimate.
-#[divan::bench(args = [("v-face.toml", 100), ("v-face.toml", 1000), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
+#[divan::bench(sample_count = 10, args = [("v-face.toml", 100), ("v-face.toml", 1000), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
 fn flooding(bencher: divan::Bencher, (name, cells): (&str, usize)) {
     let pair = pair(name);
     let landscape = landscape(&pair, cells);
@@ -74,7 +74,7 @@ fn flooding(bencher: divan::Bencher, (name, cells): (&str, usize)) {
 /// Grid on which the judge is measured against the fast path.
 const SMALL: usize = 24;
 
-#[divan::bench]
+#[divan::bench(sample_count = 10)]
 fn small_fast(bencher: divan::Bencher) {
     let pair = pair("v-face.toml");
     let landscape = landscape(&pair, SMALL);
@@ -83,7 +83,7 @@ fn small_fast(bencher: divan::Bencher) {
         .bench_local(|| flood::flood(&landscape, &pair.alignment, &settings, &Exec::new()).expect("flooded"));
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 10)]
 fn small_brute(bencher: divan::Bencher) {
     let pair = pair("v-face.toml");
     let landscape = landscape(&pair, SMALL);
@@ -107,7 +107,7 @@ fn small_brute(bencher: divan::Bencher) {
 }
 
 /// A whole published table: 25 designs of 101 × 101 samples.
-#[divan::bench]
+#[divan::bench(sample_count = 10)]
 fn table_5_7() {
     let table = catchment::study::reproduce::reproduce("5.7", &Exec::new()).expect("a known table");
     assert_eq!(table.summary.exact, 25);

@@ -23,7 +23,8 @@
 //! the tolerance, the mated pose does not hold and nothing is accepted.
 //!
 //! **Not guaranteed:** motion on a grid can only follow the grid's directions, so the border of a flooded basin does
-//! not converge to the true one as the grid refines; it stays several percent off ([`Warning::FloodingBias`]).
+//! not converge to the true one as the grid refines ([`Warning::FloodingBias`]). Against exact descent, the Sum of five
+//! planar designs at 100 × 100 cells was off by +2, +2, +0.5, −5 and −24 %, and hardly better at 400 × 400.
 //! Nothing is known of what lies beyond the error box: a basin whose minimum lies on a border of x or y counts as
 //! missed (the halves slide off), one on a border of a rotation as jammed.
 

@@ -1,7 +1,8 @@
 //! The fast path against the judge, and closed forms.
 
 use super::*;
-use crate::design::Alignment;
+use crate::connector::Connector;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{Dof, DofSet, Mount};
 use proptest::prelude::*;
 
@@ -189,4 +190,75 @@ fn an_empty_set_of_free_axes_is_one_cell_at_the_mated_pose() {
     let landscape = Landscape { grid: Grid { axes: Vec::new() }, heights: vec![0.0] };
     let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.0 }, &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.outcomes, [Outcome::Aligned]);
+}
+
+fn pair(family: Family, aspect_ratio: f64, cor: f64, symmetry: u32) -> Pair {
+    let mount = if family.is_planar() { Mount::Y } else { Mount::X };
+    let free = if family.is_planar() { [Dof::X, Dof::Pitch].into_iter().collect() } else { DofSet::ALL };
+    let alignment = Alignment { center_of_rotation: cor, symmetry, ..Alignment::new(free, mount) };
+    let spec = FamilySpec { aspect_ratio, ..FamilySpec::new(family) };
+    let connector = ConnectorSpec::Family(spec);
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
+#[test]
+fn the_default_tolerance_is_a_tenth_of_the_face_height() {
+    let families =
+        [Family::VFace, Family::SFace, Family::XFace, Family::Pyramid, Family::Cone, Family::XFace3d];
+    for family in families {
+        for (aspect_ratio, cor) in [(0.25, 0.0), (1.0, -0.7)] {
+            let settings = Settings::for_pair(&pair(family, aspect_ratio, cor, 1));
+            assert!((settings.depth_tolerance - 0.1 * aspect_ratio).abs() < 1e-12, "{family:?} {settings:?}");
+        }
+    }
+}
+
+/// Exact values (rotation length 1) by quasi-static descent of 100 × 100 poses; flooding knows no rotation length and
+/// follows grid directions only. Its measured bias at 100 × 100 is part of what the room's opening says.
+#[test]
+fn the_bias_of_flooding_is_what_the_documentation_says() {
+    let cases = [
+        (Family::XFace, 1.0, 0.5, 3.853, 0.00..0.04),
+        (Family::XFace, 0.5, -0.5, 1.953, -0.26..-0.20),
+        (Family::VFace, 1.0, 0.0, 2.391, -0.02..0.02),
+        (Family::VFace, 0.5, -0.5, 1.276, -0.07..-0.03),
+        (Family::XFace, 2.0, 1.0, 3.707, 0.00..0.03),
+    ];
+    for (family, aspect_ratio, cor, exact, bias) in cases {
+        let pair = pair(family, aspect_ratio, cor, 1);
+        let settings = Settings::for_pair(&pair);
+        for cells in [100, 101] {
+            let grid = Grid::over(&pair.alignment, |_| cells);
+            let acceptance = accept(&pair, &grid, &settings, &Exec::new()).unwrap();
+            assert!(!acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
+            let sum = acceptance.counts()[0] as f64 * grid.cell_measure();
+            assert!(bias.contains(&(sum / exact - 1.0)), "{family:?} {aspect_ratio} {cor} {cells}: {sum}");
+        }
+    }
+}
+
+#[test]
+fn five_axes_agree_between_odd_and_even_grids_and_a_quarter_turn_doubles_the_basin() {
+    let share = |cells, symmetry| {
+        let pair = pair(Family::Pyramid, 0.5, 0.5, symmetry);
+        let grid = Grid::over(&pair.alignment, |_| cells);
+        let acceptance = accept(&pair, &grid, &Settings::for_pair(&pair), &Exec::new()).unwrap();
+        acceptance.counts()[0] as f64 / grid.len() as f64
+    };
+    // Rolls and pitches aside, yaw in ±90° holds one whole basin and two halves of its quarter turns.
+    let (odd, even) = (share(9, 4), share(10, 4));
+    assert!((odd / even - 1.0).abs() < 0.03, "{odd} {even}");
+    assert!((share(10, 4) / share(10, 1) - 2.0).abs() < 0.05);
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let pair = pair(Family::Pyramid, 0.5, 0.5, 1);
+    let grid = Grid::over(&pair.alignment, |_| 6);
+    let with = |threads| {
+        let exec = Exec::new().with_threads(threads).unwrap();
+        accept(&pair, &grid, &Settings::for_pair(&pair), &exec).unwrap()
+    };
+    assert_eq!(with(1), with(3));
 }
