@@ -284,14 +284,7 @@ fn warnings(grid: &Grid, outcomes: &[Outcome], targets: &[usize], border_cells: 
     if targets.is_empty() || targets.iter().all(|t| outcomes[*t] != Outcome::Aligned) {
         warnings.push(Warning::MatedPoseNotAccepted);
     }
-    let mut touched = vec![false; grid.axes.len()];
-    for (index, _) in outcomes.iter().enumerate().filter(|(_, o)| **o == Outcome::Aligned) {
-        for (k, (axis, touched)) in grid.cell(index).into_iter().zip(grid.axes.iter().zip(&mut touched)) {
-            *touched |= k == 0 || k + 1 == axis.cells;
-        }
-    }
-    let axes: Vec<String> =
-        grid.axes.iter().zip(touched).filter(|(_, t)| *t).map(|(a, _)| a.dof.name().to_owned()).collect();
+    let axes = touched_axes(grid, outcomes);
     if !axes.is_empty() {
         warnings.push(Warning::TouchesBorder { axes });
     }
@@ -309,4 +302,21 @@ fn warnings(grid: &Grid, outcomes: &[Outcome], targets: &[usize], border_cells: 
         warnings.push(Warning::Undecided { cells: undecided });
     }
     warnings
+}
+
+/// Names of the axes at whose border a cell is accepted.
+fn touched_axes(grid: &Grid, outcomes: &[Outcome]) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut stride = 1;
+    for axis in &grid.axes {
+        let at_border = |index: usize| {
+            let k = index / stride % axis.cells;
+            k == 0 || k + 1 == axis.cells
+        };
+        if outcomes.iter().enumerate().any(|(index, o)| *o == Outcome::Aligned && at_border(index)) {
+            names.push(axis.dof.name().to_owned());
+        }
+        stride *= axis.cells;
+    }
+    names
 }
