@@ -44,6 +44,11 @@ fn main() {
             println!("{} ar {ar} cor {cor}: {:.4} want {want} counts {:?} {:.2}s", f.name(), a.counts()[0] as f64*m, a.counts(), t.elapsed().as_secs_f64());
             if std::env::args().nth(4).is_some() { for r in (0..n).rev() { let s: String = (0..n).map(|k| [' ','A','.','_','?'][a.outcomes[r*n+k] as usize]).collect(); println!("{s}"); } }
         }
+    } else if what == "one" {
+        let d = design(Family::XFace, 0.5, -0.5, 1.0, [Dof::X, Dof::Pitch].into_iter().collect());
+        let c = Connector::build(&d).unwrap(); let pair = Pair::new(&c, &d.alignment);
+        let s = descent::Settings{max_steps: 400, ..settings.clone()};
+        println!("{:?}", descent::outcome(&pair, &PoseError{x:-0.16666666666666663, pitch: -1.5184364492350666, ..Default::default()}, &s));
     } else if what == "slow" {
         let (f, ar, cor, rho) = match std::env::args().nth(3).as_deref() { Some("x3") => (Family::XFace3d, 0.57735, 0.5, 0.5), Some("xf") => (Family::XFace, 1.0, 0.5, 1.0), _ => (Family::VFace, 1.0, 0.0, 1.0) };
         let free = if f.is_planar() { [Dof::X, Dof::Pitch].into_iter().collect() } else { DofSet::ALL };

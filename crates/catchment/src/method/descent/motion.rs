@@ -31,6 +31,10 @@ const REST: f64 = 1e-3;
 const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
 /// Steps that fall off an edge are halved down to this share: where exactly it falls matters little.
 const COARSE_SHARE: f64 = 1.0 / 16.0;
+/// Where a step of this share climbs although the slope falls gently, the bottom of a smooth hollow is within it.
+const REST_SHARE: f64 = 1.0 / 256.0;
+/// A gentle slope: what a curvature of 1/(0.01 D) makes of the smallest such step.
+const GENTLE: f64 = 0.01;
 /// How often one step may discover new contacts before it is halved.
 const MAX_CUTS: usize = 8;
 /// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
@@ -39,6 +43,14 @@ const WALL: f64 = 0.05;
 const WALL_MARGIN: f64 = 1e-6;
 /// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
 const OVERLAP: f64 = 1e-9;
+
+/// Rounding of a height, in D.
+const ROUNDING: f64 = 1e-12;
+/// A mean slope below this over a whole step's length, or over so many steps, is rest.
+const LEVEL: f64 = 1e-6;
+const LEVEL_STEPS: usize = 128;
+/// Rows that differ by less are one contact.
+const SAME: f64 = 1e-12;
 
 /// A mover of poses for one pair: owns the buffers.
 pub(super) struct Motion<'a> {
@@ -96,7 +108,14 @@ impl<'a> Motion<'a> {
             Some(z) => state.cor.z = z,
             None => return (Outcome::Missed, *error),
         }
-        for _ in 0..self.settings.max_steps {
+        let mut mark = (0, 0.0, state.cor.z);
+        for count in 0..self.settings.max_steps {
+            if travelled - mark.1 > largest || count - mark.0 > LEVEL_STEPS {
+                if mark.2 - state.cor.z < LEVEL * largest {
+                    return (Outcome::Jammed, self.error_of(&state));
+                }
+                mark = (count, travelled, state.cor.z);
+            }
             if self.is_aligned(&state) {
                 self.note(&state, travelled, &mut record);
                 return (Outcome::Aligned, self.error_of(&state));
@@ -106,6 +125,7 @@ impl<'a> Motion<'a> {
                 waypoints.push(self.waypoint(&state, travelled));
             }
             let mut cuts = 0;
+            let mut last_rise = f64::INFINITY;
             loop {
                 let (u, length) = self.displacement(step, &mut reach);
                 if length <= REST * step && reach >= MAX_REACH {
@@ -120,11 +140,17 @@ impl<'a> Motion<'a> {
                 let rise = z - next.cor.z;
                 let allowed = self.settings.surprise * step;
                 if std::env::var("DBG").is_ok() { eprintln!("step {step:.2e} reach {reach:.1e} len {length:.2e} uz {:.3e} z {:.9} rise {:.3e} n {} cuts {cuts}", u[2], state.cor.z, rise, self.rows.len()); for (c,g) in self.contacts.iter().zip(&self.gaps) { eprintln!("    gap {:.3e} {:.3e} n {:.4} p {:.4}", c.gap, g, c.normal, c.point); } }
-                if rise > allowed || z > state.cor.z + OVERLAP {
+                let climbs = z > state.cor.z + ROUNDING;
+                if rise > allowed || climbs {
                     // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
-                    if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
+                    if cuts < MAX_CUTS && rise < 0.5 * last_rise && self.cut(&landed, rise, &u) {
                         cuts += 1;
+                        last_rise = rise;
                         continue;
+                    }
+                    if climbs && step <= largest * REST_SHARE && -u[2] <= GENTLE * length {
+                        // The bottom of a smooth hollow, within a step.
+                        return (Outcome::Jammed, self.error_of(&state));
                     }
                     if step > largest * SMALLEST_SHARE {
                         step *= 0.5;
@@ -170,8 +196,16 @@ impl<'a> Motion<'a> {
         let axes = self.axes(state);
         for contact in &self.contacts {
             let clear = if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 };
-            self.rows.push(self.row(contact, state, &axes));
-            self.gaps.push((contact.gap - clear).max(0.0));
+            let row = self.row(contact, state, &axes);
+            let gap = (contact.gap - clear).max(0.0);
+            // Corners, edges and facets that meet at one point say the same thing several times.
+            let known = self.rows.iter().zip(&self.gaps).any(|(r, g)| {
+                (g - gap).abs() < SAME && r.iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
+            });
+            if !known {
+                self.rows.push(row);
+                self.gaps.push(gap);
+            }
         }
     }
 
