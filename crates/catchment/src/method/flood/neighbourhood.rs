@@ -83,7 +83,7 @@ mod tests {
                     .map(|n| {
                         let k = i % n;
                         i /= n;
-                        k as isize
+                        k.cast_signed()
                     })
                     .collect()
             };
