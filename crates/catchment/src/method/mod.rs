@@ -2,3 +2,5 @@
 //! and returns an [`crate::acceptance::Acceptance`].
 
 pub mod descent;
+pub mod flood;
+pub mod kinematic;
