@@ -11,9 +11,11 @@
 //! the contact room discards it.
 
 mod family;
+mod hull;
 mod problem;
 mod surface;
 
+pub use hull::{HullError, MAX_POINTS, convex_hull};
 pub use problem::{Problem, Side};
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
