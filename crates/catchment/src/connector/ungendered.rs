@@ -63,3 +63,43 @@ fn lies_on(a: &Half, b: &Half, tolerance: f64) -> bool {
         })
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::{family, stl};
+    use crate::design::{Family, FamilySpec};
+
+    fn connector(spec: &FamilySpec, mount: Mount) -> Connector {
+        Connector::placed(&family::draw(spec).unwrap(), mount)
+    }
+
+    #[test]
+    fn families_are_what_the_field_calls_them() {
+        for name in Family::ALL {
+            let ungendered =
+                matches!(name, Family::SFace | Family::XFace | Family::XFace3d | Family::XFace3dLocking);
+            for mount in [Mount::X, Mount::Y] {
+                assert_eq!(
+                    connector(&FamilySpec::new(name), mount).ungendered(mount),
+                    ungendered,
+                    "{name:?}"
+                );
+            }
+        }
+        let spec = FamilySpec { hermaphroditic: true, chamfer: 0.05, ..FamilySpec::new(Family::PinHole) };
+        assert!(connector(&spec, Mount::X).ungendered(Mount::X));
+    }
+
+    #[test]
+    fn a_mesh_in_single_precision_is_the_same_solid() {
+        let mut pair = connector(&FamilySpec::new(Family::XFace3d), Mount::X);
+        let mut file = Vec::new();
+        stl::write(&pair.fixed, stl::Format::Binary, &mut file).unwrap();
+        pair.fixed.surfaces = vec![stl::from_bytes(&file, file.len() as u64, 1.0).unwrap()];
+        assert!(pair.ungendered(Mount::X));
+        // A wall moved by a hundredth of D is seen.
+        pair.fixed = pair.fixed.mapped(|p| p * 1.01);
+        assert!(!pair.ungendered(Mount::X));
+    }
+}
