@@ -12,6 +12,7 @@
 //! down in plain loops and judges every fast path.
 
 pub mod brute;
+pub mod mated;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;

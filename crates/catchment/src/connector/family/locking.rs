@@ -8,9 +8,12 @@
 //!   z = H·m + clamp(k·m, −ℓ/2, ℓ/2),    k = cot δ − H
 //! ```
 //!
-//! δ is the draft angle of the mating faces from the vertical; δ = 0 is the limit, a step. z is odd in x and
-//! in y like the plain saddle, so the half mates with a copy of itself under either mount. The whole face is
-//! H + ℓ high, its lowest corners at z = 0.
+//! δ is the draft angle of the mating faces from the vertical. z is odd in x and in y like the plain saddle,
+//! so the half mates with a copy of itself under either mount. The whole face is H + ℓ high, its lowest
+//! corners at z = 0.
+//!
+//! With δ = 0 the lip is a vertical step, which needs play to go in: its faces stand back from the centre
+//! lines into the raised quadrants, so that `clearance` is the distance between the two halves' faces.
 
 use super::{Check, Halves, SOCKET_THICKNESS};
 use crate::connector::{Surface, SurfaceError};
@@ -26,6 +29,12 @@ pub(super) fn check(check: &mut Check) {
     let spec = check.spec;
     let (h, lip, draft) = (spec.aspect_ratio, spec.lip_height, spec.draft_angle);
     check.require("lip_height", lip, lip > 0.0, "give a number above 0, or use x-face-3d");
+    check.require(
+        "clearance",
+        spec.clearance,
+        draft != 0.0 || (spec.clearance > 0.0 && spec.clearance < 0.5),
+        "vertical lips need play to go in: give a number above 0 and below 0.5, or a draft_angle",
+    );
     let steepest = (1.0 / (h + lip)).atan();
     check.require(
         "draft_angle",
@@ -66,51 +75,52 @@ fn sign(octant: usize) -> f64 {
     if octant / 2 % 2 == 0 { 1.0 } else { -1.0 }
 }
 
-/// Vertical mating faces.
+/// Vertical mating faces, drawn back by half the play into the raised quadrants.
 fn stepped(spec: &FamilySpec) -> Result<Surface, SurfaceError> {
-    let (h, lip) = (spec.aspect_ratio, spec.lip_height);
+    let (h, lip, back) = (spec.aspect_ratio, spec.lip_height, spec.clearance / 2.0);
     let mid = height(spec) / 2.0;
     let base = spec.base_thickness.unwrap_or(SOCKET_THICKNESS);
-    // The centre at the foot of the lip, and once more at the top of each raised quadrant: the two quadrants
-    // meet along a vertical line, and separate corners keep every edge between two facets.
-    let mut vertices = vec![DVec3::new(0.0, 0.0, mid - lip / 2.0)];
-    vertices.extend([DVec3::new(0.0, 0.0, mid + lip / 2.0); 2]);
-    let centre = |octant: usize| if sign(octant) < 0.0 { 0 } else { 1 + (octant / 4) as u32 };
-    let corner = |k: usize| 3 + (k % 8 / 2) as u32;
-    vertices.extend([1, 3, 5, 7].map(|k| border(k).extend(mid + sign(k) * (h + lip) / 2.0)));
-    let low = |k: usize| 7 + (k % 8 / 2) as u32;
-    let high = |k: usize| 11 + (k % 8 / 2) as u32;
-    for step in [-lip, lip] {
-        vertices.extend([0, 2, 4, 6].map(|k| border(k).extend(mid + step / 2.0)));
-    }
-    let floor = |k: usize| 15 + (k % 8) as u32;
-    vertices.extend((0..8).map(|k| border(k).extend(-base)));
-
+    let (foot, top) = (mid - lip / 2.0, mid + lip / 2.0 + h * back);
+    let mut vertices = vec![DVec3::new(0.0, 0.0, foot)];
     let mut polygons: Vec<Vec<u32>> = Vec::new();
-    for octant in 0..8 {
-        let raised = sign(octant) > 0.0;
-        let axis = |k: usize| if raised { high(k) } else { low(k) };
-        let (c, next) = (centre(octant), octant + 1);
-        // A raised octant's outer wall also has the foot of the lip on its border.
-        let mut wall = vec![floor(octant), floor(next)];
-        if octant % 2 == 0 {
-            polygons.push(vec![c, axis(octant), corner(next)]);
-            wall.extend([corner(next), axis(octant)]);
-            if raised {
-                wall.push(low(octant));
-                polygons.push(vec![high(octant), c, 0, low(octant)]);
-            }
-        } else {
-            polygons.push(vec![c, corner(octant), axis(next)]);
-            if raised {
-                wall.push(low(next));
-                polygons.push(vec![c, high(next), low(next), 0]);
-            }
-            wall.extend([axis(next), corner(octant)]);
-        }
-        polygons.push(wall);
+    // Two opposite turns of the same: a raised quadrant and the lowered one after it.
+    const TURN: u32 = 16;
+    for turn in 0..2u32 {
+        let k = 4 * turn as usize;
+        let (along, across, corner) = (border(k), border(k + 2), border(k + 1));
+        let inner = corner * (2.0 * back);
+        let (near, far) = (along + across * (2.0 * back), across + along * (2.0 * back));
+        let lowered = border(k + 3).extend(mid - (h + lip) / 2.0);
+        let raised = corner.extend(mid + (h + lip) / 2.0);
+        vertices.extend([inner.extend(foot), near.extend(foot), far.extend(foot)]);
+        vertices.extend([inner.extend(top), near.extend(top), far.extend(top)]);
+        vertices.extend([along.extend(foot), raised, across.extend(foot), lowered]);
+        vertices.extend([along, near, corner, far, across, border(k + 3)].map(|p| p.extend(-base)));
+        let first = 1 + TURN * turn;
+        let [inner_foot, near_foot, far_foot, inner_top, near_top, far_top, start, raised, end, lowered] =
+            std::array::from_fn(|i| first + i as u32);
+        let floor: [u32; 6] = std::array::from_fn(|i| first + 10 + i as u32);
+        let after = 1 + TURN * (1 - turn);
+        let (next_start, next_floor) = (after + 6, after + 10);
+        polygons.extend([
+            vec![inner_top, near_top, raised],
+            vec![inner_top, raised, far_top],
+            vec![near_top, inner_top, inner_foot, near_foot],
+            vec![inner_top, far_top, far_foot, inner_foot],
+            vec![0, start, near_foot, inner_foot],
+            vec![0, inner_foot, far_foot, end],
+            vec![0, end, lowered],
+            vec![0, lowered, next_start],
+            vec![floor[0], floor[1], near_foot, start],
+            vec![floor[1], floor[2], raised, near_top, near_foot],
+            vec![floor[2], floor[3], far_foot, far_top, raised],
+            vec![floor[3], floor[4], end, far_foot],
+            vec![floor[4], floor[5], lowered, end],
+            vec![floor[5], next_floor, next_start, lowered],
+        ]);
     }
-    polygons.push((0..8).rev().map(floor).collect());
+    let ring = |turn: u32| (0..6).map(move |i| 1 + TURN * turn + 10 + i);
+    polygons.push(ring(0).chain(ring(1)).rev().collect());
     Surface::from_polygons(vertices, &polygons)
 }
 

@@ -166,11 +166,16 @@ mod tests {
 
     #[test]
     fn locking_halves_have_the_mean_height_of_their_face() {
-        // z − mid is odd in x, so the volume is that of the block up to mid height, drafted or not.
+        // z − mid is odd in x, so the volume is that of the block up to mid height; vertical faces lose the
+        // strip over which they stand back: H·m + ℓ over two L-shapes of width c/2.
+        let (h, lip, c): (f64, f64, f64) = (0.5, 0.2, 0.02);
         for draft_angle in [0.0, 0.01, 0.3] {
-            let s = FamilySpec { draft_angle, lip_height: 0.2, ..spec(Family::XFace3dLocking, 0.5, None) };
-            let drawn = draw(&s).unwrap();
-            assert!((volume(&drawn.fixed) - (0.25 + 0.35)).abs() < ROUNDING, "{draft_angle}");
+            let base = spec(Family::XFace3dLocking, h, None);
+            let drawn = draw(&FamilySpec { draft_angle, lip_height: lip, clearance: c, ..base }).unwrap();
+            let area = c / 2.0 - c.powi(2) / 4.0;
+            let moment = c.powi(2) / 8.0 - c.powi(3) / 12.0;
+            let lost = if draft_angle == 0.0 { 2.0 * (h * moment + lip * area) } else { 0.0 };
+            assert!((volume(&drawn.fixed) - (0.25 + 0.35 - lost)).abs() < ROUNDING, "{draft_angle}");
             assert_eq!(drawn.fixed, drawn.moving);
         }
     }
