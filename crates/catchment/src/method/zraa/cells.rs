@@ -57,7 +57,7 @@ pub(super) fn upper_envelope(patches: &[Patch], seam: f64, exec: &Exec) -> Resul
             } else {
                 clip(&other.footprint, |p| higher(p) / steepness)
             };
-            if region.len() >= 3 {
+            if is_cell(&region, seam) {
                 pieces = pieces.into_iter().flat_map(|piece| minus(piece, &region, seam)).collect();
             }
         }
@@ -91,7 +91,11 @@ fn minus(piece: Vec<DVec2>, region: &[DVec2], seam: f64) -> Vec<Vec<DVec2>> {
     let mut rest = piece.clone();
     for (k, &a) in region.iter().enumerate() {
         let along = region[(k + 1) % region.len()] - a;
-        let Some(inward) = along.perp().try_normalize() else { continue };
+        // A side shorter than the seam has no direction; its neighbours close the region without it.
+        if along.length() <= seam {
+            continue;
+        }
+        let inward = along.perp().normalize();
         let distance = |p: DVec2| {
             let d = inward.dot(p - a);
             if d.abs() <= seam { 0.0 } else { d }

@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::connector::Connector;
-use crate::contact::brute;
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{CorPose, DofSet, Mount};
 use glam::DMat3;
+use proptest::prelude::*;
 
 fn pair(spec: FamilySpec) -> Pair {
     let planar = spec.family.is_planar();
@@ -68,5 +68,83 @@ fn the_cone_accepts_its_polygon() {
         // The polygon lies inside the circle, within the chord error: it lacks less than its border's length times that.
         let lacking = std::f64::consts::FRAC_PI_4 - area;
         assert!(lacking > 0.0 && lacking < std::f64::consts::PI * chord_error, "{chord_error}: {area}");
+    }
+}
+
+/// Radius of the circle that the chamfer of the single hole accepts: the tip must land inside its mouth.
+#[test]
+fn a_peg_accepts_the_mouth_of_its_hole() {
+    let spec = FamilySpec { pins: 1, circle_radius: 0.0, ..FamilySpec::new(Family::PinHole) };
+    let mouth = spec.pin_radius + spec.clearance + spec.chamfer;
+    let circle = std::f64::consts::PI * mouth * mouth;
+    let lacking = circle - area(spec.clone());
+    assert!(lacking > 0.0 && lacking < 2.0 * std::f64::consts::PI * mouth * spec.chord_error, "{lacking}");
+}
+
+/// Steepest descent of the brute height by small steps; `None` where it ends too near a decision to tell.
+fn descends(pair: &Pair, mut at: DVec2) -> bool {
+    let height = |at: DVec2| {
+        pair.height(&CorPose { lateral: at, rotation: DMat3::IDENTITY }).unwrap_or(f64::NEG_INFINITY)
+    };
+    let mut step = 0.01;
+    let mut here = height(at);
+    while step > 1e-4 && here.is_finite() {
+        let lowest = (0..32)
+            .map(|k| at + step * DVec2::from_angle(f64::from(k) * std::f64::consts::PI / 16.0))
+            .map(|p| (height(p), p))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap();
+        if lowest.0 < here - 1e-9 {
+            (here, at) = lowest;
+        } else {
+            step /= 2.0;
+        }
+    }
+    at.length() < 0.01
+}
+
+fn contains(zraa: &Zraa, at: DVec2) -> bool {
+    let Zraa::Region { polygons, .. } = zraa else { return false };
+    polygons.iter().any(|p| (0..p.len()).all(|k| (p[(k + 1) % p.len()] - p[k]).perp_dot(at - p[k]) >= 0.0))
+}
+
+/// The region agrees with small steps down the brute height, but for offsets near its border.
+#[test]
+fn regions_agree_with_brute_descent() {
+    let coarse = |family| FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) };
+    let specs = [
+        coarse(Family::Pyramid),
+        coarse(Family::XFace3d),
+        FamilySpec { draft_angle: 0.3, ..coarse(Family::XFace3dLocking) },
+        FamilySpec { clearance: 0.05, ..coarse(Family::XFace3dLocking) },
+        FamilySpec { base_thickness: Some(0.1), ..coarse(Family::Cone) },
+    ];
+    for spec in specs {
+        let pair = pair(spec.clone());
+        let zraa = run(&pair, &Settings::default(), &Exec::new()).unwrap();
+        let mut wrong = 0;
+        for k in 0..200u32 {
+            // Offsets spread evenly over the box, the golden ratio's multiples.
+            let at = DVec2::new(
+                (f64::from(k) * 0.754_877_666).fract() * 2.0 - 1.0,
+                (f64::from(k) * 0.569_840_291).fract() * 2.0 - 1.0,
+            );
+            let near =
+                (0..8).map(|a| at + 0.03 * DVec2::from_angle(f64::from(a) * std::f64::consts::FRAC_PI_4));
+            let inside = contains(&zraa, at);
+            if near.into_iter().all(|p| contains(&zraa, p) == inside) && descends(&pair, at) != inside {
+                wrong += 1;
+            }
+        }
+        assert_eq!(wrong, 0, "{spec:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_shifted_seam_changes_nothing(seam in 1e-13..1e-9f64, aspect_ratio in 0.2..1.5f64) {
+        let pair = pair(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::XFace3d) });
+        let Zraa::Region { area, .. } = run(&pair, &Settings { seam }, &Exec::new()).unwrap() else { panic!() };
+        prop_assert!((area - 2.0).abs() < 1e-9);
     }
 }
