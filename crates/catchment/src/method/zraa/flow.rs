@@ -30,15 +30,23 @@ pub(super) struct Strip {
     pub(super) accepted: bool,
 }
 
+/// What is known of the points that leave by a border.
+#[derive(Debug, Clone)]
+enum Fate {
+    Unknown,
+    Sought,
+    Known(Vec<Strip>),
+}
+
 /// The flow over all cells.
 pub(super) struct Flow<'a> {
     patches: &'a [Patch],
     cells: &'a [Cell],
     borders: &'a [Vec<Border>],
-    /// Which cells have a corner or border near a cell's, itself included.
     seam: f64,
     mated_height: f64,
-    strips: Vec<Option<Vec<Strip>>>,
+    /// Per cell and border.
+    stretches: Vec<Vec<Fate>>,
     /// Whether some path was too long or came round to itself.
     pub(super) tangled: bool,
 }
@@ -61,8 +69,8 @@ impl<'a> Flow<'a> {
         seam: f64,
         mated_height: f64,
     ) -> Self {
-        let strips = vec![None; cells.len()];
-        Self { patches, cells, borders, seam, mated_height, strips, tangled: false }
+        let stretches = borders.iter().map(|b| vec![Fate::Unknown; b.len()]).collect();
+        Self { patches, cells, borders, seam, mated_height, stretches, tangled: false }
     }
 
     fn patch(&self, cell: usize) -> &'a Patch {
@@ -86,52 +94,66 @@ impl<'a> Flow<'a> {
     }
 
     /// The strips of a cell, in order.
-    pub(super) fn strips(&mut self, cell: usize, depth: usize) -> Vec<Strip> {
-        if let Some(strips) = &self.strips[cell] {
-            return strips.clone();
-        }
-        if depth > MAX_DEPTH {
-            self.tangled = true;
-            return Vec::new();
-        }
-        // A path that comes back here finds nothing: heights fall, so only rounding can bring it back.
-        self.strips[cell] = Some(Vec::new());
-        let direction = self.direction(cell);
-        let mut strips: Vec<Strip> = Vec::new();
-        if direction == DVec2::ZERO {
+    pub(super) fn strips(&mut self, cell: usize) -> Vec<Strip> {
+        self.strips_between(cell, f64::NEG_INFINITY, f64::INFINITY, 0)
+    }
+
+    /// The strips of a cell that lie in part between two values of [`Flow::across`], in order.
+    fn strips_between(&mut self, cell: usize, low: f64, high: f64, depth: usize) -> Vec<Strip> {
+        if self.direction(cell) == DVec2::ZERO {
             // A level cell: at rest, and mated if it is the floor of the mated pose.
             let accepted = self.touches(cell, DVec2::ZERO)
                 && (self.patch(cell).height(DVec2::ZERO) - self.mated_height).abs() <= self.near();
-            strips.push(Strip { from: f64::NEG_INFINITY, to: f64::INFINITY, accepted });
-        } else {
-            for border in self.borders[cell].clone() {
-                let (from, to) = (self.across(cell, border.from), self.across(cell, border.to));
-                // Outward of a counter-clockwise border is to its right: the motion leaves where `across` grows.
-                if to - from <= self.near() {
-                    continue;
-                }
-                for strip in self.stretch(cell, &border, depth) {
-                    strips.push(Strip { from: strip.from.max(from), to: strip.to.min(to), ..strip });
-                }
-            }
-            strips.sort_by(|a, b| a.from.total_cmp(&b.from));
-            strips.dedup_by(|next, last| {
-                let join = last.accepted == next.accepted && next.from - last.to <= self.near();
-                if join {
-                    last.to = next.to;
-                }
-                join
-            });
+            return vec![Strip { from: f64::NEG_INFINITY, to: f64::INFINITY, accepted }];
         }
-        self.strips[cell] = Some(strips.clone());
+        let mut strips: Vec<Strip> = Vec::new();
+        for k in 0..self.borders[cell].len() {
+            let (from, to) = self.span(cell, k);
+            if to - from > self.near() && from < high && to > low {
+                strips.extend(self.stretch(cell, k, depth));
+            }
+        }
+        strips.sort_by(|a, b| a.from.total_cmp(&b.from));
+        strips.dedup_by(|next, last| {
+            let join = last.accepted == next.accepted && next.from - last.to <= self.near();
+            if join {
+                last.to = next.to;
+            }
+            join
+        });
         strips
     }
 
-    /// What becomes of the points that leave `cell` by a border, in the cell's own coordinate.
-    fn stretch(&mut self, cell: usize, border: &Border, depth: usize) -> Vec<Strip> {
-        let (from, to) = (self.across(cell, border.from), self.across(cell, border.to));
+    /// A border's ends in its cell's own coordinate. The motion leaves by the borders along which it grows,
+    /// because the outside of a counter-clockwise border is to its right.
+    fn span(&self, cell: usize, border: usize) -> (f64, f64) {
+        let border = &self.borders[cell][border];
+        (self.across(cell, border.from), self.across(cell, border.to))
+    }
+
+    /// What becomes of the points that leave `cell` by its k-th border, in the cell's own coordinate.
+    fn stretch(&mut self, cell: usize, k: usize, depth: usize) -> Vec<Strip> {
+        match &self.stretches[cell][k] {
+            Fate::Known(strips) => return strips.clone(),
+            // Heights fall along every path, but a long border may be met twice at different heights.
+            Fate::Sought => self.tangled = true,
+            Fate::Unknown => {}
+        }
+        if self.tangled || depth > MAX_DEPTH {
+            self.tangled = true;
+            return Vec::new();
+        }
+        self.stretches[cell][k] = Fate::Sought;
+        let strips = self.sought(cell, k, depth);
+        self.stretches[cell][k] = Fate::Known(strips.clone());
+        strips
+    }
+
+    fn sought(&mut self, cell: usize, k: usize, depth: usize) -> Vec<Strip> {
+        let border = self.borders[cell][k];
+        let (from, to) = self.span(cell, k);
         let whole = |accepted| vec![Strip { from, to, accepted }];
-        match self.way(cell, border) {
+        match self.way(cell, &border) {
             Way::Rest | Way::Missed => whole(false),
             Way::Along(end) => {
                 let height = self.patch(cell).height(end);
@@ -143,12 +165,11 @@ impl<'a> Flow<'a> {
                 let (a, b) = (self.across(next, border.from), self.across(next, border.to));
                 if (b - a).abs() <= self.near() {
                     // The neighbour flows along the border: its strip there decides.
-                    let accepted = self.follow(next, border.from.midpoint(border.to), depth + 1);
+                    let accepted = self.follow(next, border.midpoint(), depth + 1);
                     return whole(accepted);
                 }
                 let back = |s: f64| from + (s - a) / (b - a) * (to - from);
-                let strips = self.strips(next, depth + 1);
-                strips
+                self.strips_between(next, a.min(b), a.max(b), depth + 1)
                     .into_iter()
                     .filter_map(|s| {
                         let (u, v) = (back(s.from), back(s.to));
@@ -222,8 +243,9 @@ impl<'a> Flow<'a> {
             if leads_in {
                 offer(self.patch(cell).gradient.length(), Ok(cell));
             }
-            for border in &self.borders[cell] {
-                let leaves = self.across(cell, border.to) - self.across(cell, border.from) > self.near();
+            for (k, border) in self.borders[cell].iter().enumerate() {
+                let (from, to) = self.span(cell, k);
+                let leaves = to - from > self.near();
                 let starts = border.from.distance(at) <= self.near() || border.to.distance(at) <= self.near();
                 if !leaves || !starts {
                     continue;
@@ -270,31 +292,23 @@ impl<'a> Flow<'a> {
         }
         let direction = self.direction(cell);
         if direction == DVec2::ZERO {
-            return self.strips(cell, depth).first().is_some_and(|s| s.accepted);
+            return self.strips(cell).first().is_some_and(|s| s.accepted);
         }
         let s = direction.perp_dot(at);
-        let leaving: Vec<Border> = self.borders[cell]
-            .iter()
-            .copied()
-            .filter(|b| self.across(cell, b.to) - self.across(cell, b.from) > self.near())
-            .collect();
-        let span = |flow: &Self, b: &Border| (flow.across(cell, b.from), flow.across(cell, b.to));
-        for border in &leaving {
-            let (from, to) = span(self, border);
-            for end in [border.from, border.to] {
-                if (self.across(cell, end) - s).abs() <= self.near() {
-                    // Straight into a point where borders meet.
-                    if end.distance(at) <= self.near() {
-                        continue;
-                    }
+        for k in 0..self.borders[cell].len() {
+            let (from, to) = self.span(cell, k);
+            if to - from <= self.near() {
+                continue;
+            }
+            let border = self.borders[cell][k];
+            for (end, across) in [(border.from, from), (border.to, to)] {
+                // Straight into a point where borders meet.
+                if (across - s).abs() <= self.near() && end.distance(at) > self.near() {
                     return self.ends_well(end, self.patch(cell).height(end), direction, depth + 1);
                 }
             }
             if s > from + self.near() && s < to - self.near() {
-                return self
-                    .stretch(cell, border, depth)
-                    .iter()
-                    .any(|t| t.accepted && t.from <= s && s <= t.to);
+                return self.stretch(cell, k, depth).iter().any(|t| t.accepted && t.from <= s && s <= t.to);
             }
         }
         false

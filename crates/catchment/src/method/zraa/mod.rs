@@ -132,11 +132,16 @@ fn region(patches: &[patch::Patch], settings: &Settings, exec: &Exec) -> Result<
     let mut polygons = Vec::new();
     for (k, cell) in cells.iter().enumerate() {
         exec.check()?;
-        for strip in flow.strips(k, 0).into_iter().filter(|s| s.accepted) {
+        for strip in flow.strips(k).into_iter().filter(|s| s.accepted) {
             let mut part = cell.polygon.clone();
             if strip.from.is_finite() {
                 part = cells::clip(&part, |p| flow.across(k, p) - strip.from);
                 part = cells::clip(&part, |p| strip.to - flow.across(k, p));
+            }
+            // Cuts through a corner leave it twice.
+            part.dedup_by(|a, b| a.distance(*b) <= seam);
+            while part.len() > 1 && part[0].distance(part[part.len() - 1]) <= seam {
+                part.pop();
             }
             if part.len() >= 3 {
                 polygons.push(part);
