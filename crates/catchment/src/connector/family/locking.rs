@@ -55,6 +55,9 @@ pub(super) fn locking(spec: &FamilySpec) -> Halves {
     [solid.clone(), solid]
 }
 
+/// Vertices of one raised quadrant and the lowered one after it, with vertical lips.
+const TURN: u32 = 16;
+
 /// The k-th point of the square's border at multiples of 45°: even ones on the axes, odd ones in the corners.
 fn border(k: usize) -> DVec2 {
     const POINTS: [(f64, f64); 8] = [
@@ -72,7 +75,7 @@ fn border(k: usize) -> DVec2 {
 
 /// +1 in the raised quadrants, −1 in the lowered ones; octants counted counter-clockwise from the x axis.
 fn sign(octant: usize) -> f64 {
-    if octant / 2 % 2 == 0 { 1.0 } else { -1.0 }
+    if (octant / 2).is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 /// Vertical mating faces, drawn back by half the play into the raised quadrants.
@@ -80,18 +83,18 @@ fn stepped(spec: &FamilySpec) -> Result<Surface, SurfaceError> {
     let (h, lip, back) = (spec.aspect_ratio, spec.lip_height, spec.clearance / 2.0);
     let mid = height(spec) / 2.0;
     let base = spec.base_thickness.unwrap_or(SOCKET_THICKNESS);
+    let rise = height(spec) / 2.0;
     let (foot, top) = (mid - lip / 2.0, mid + lip / 2.0 + h * back);
     let mut vertices = vec![DVec3::new(0.0, 0.0, foot)];
     let mut polygons: Vec<Vec<u32>> = Vec::new();
     // Two opposite turns of the same: a raised quadrant and the lowered one after it.
-    const TURN: u32 = 16;
     for turn in 0..2u32 {
         let k = 4 * turn as usize;
         let (along, across, corner) = (border(k), border(k + 2), border(k + 1));
         let inner = corner * (2.0 * back);
         let (near, far) = (along + across * (2.0 * back), across + along * (2.0 * back));
-        let lowered = border(k + 3).extend(mid - (h + lip) / 2.0);
-        let raised = corner.extend(mid + (h + lip) / 2.0);
+        let lowered = border(k + 3).extend(mid - rise);
+        let raised = corner.extend(mid + rise);
         vertices.extend([inner.extend(foot), near.extend(foot), far.extend(foot)]);
         vertices.extend([inner.extend(top), near.extend(top), far.extend(top)]);
         vertices.extend([along.extend(foot), raised, across.extend(foot), lowered]);

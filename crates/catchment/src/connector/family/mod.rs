@@ -40,15 +40,15 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
     let height = spec.aspect_ratio;
     check.require("aspect_ratio", height, height > 0.0, "the face needs a height: give a number above 0");
     if let Some(base) = spec.base_thickness {
-        if !spec.family.is_planar() {
+        if spec.family.is_planar() {
+            check.require("base_thickness", base, base >= 0.0, "give 0 or more");
+        } else {
             check.require(
                 "base_thickness",
                 base,
                 base > 0.0,
                 "the face needs material behind it: give a number above 0",
             );
-        } else {
-            check.require("base_thickness", base, base >= 0.0, "give 0 or more");
         }
     }
     match spec.family {

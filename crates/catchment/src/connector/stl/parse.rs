@@ -83,9 +83,11 @@ fn binary(records: &[u8]) -> Vec<Triangle> {
         .collect()
 }
 
+type Split<'a> = std::slice::Split<'a, u8, fn(&u8) -> bool>;
+
 /// The lines of an ASCII file that say something, with their numbers.
 struct Lines<'a> {
-    lines: std::iter::Enumerate<std::slice::Split<'a, u8, fn(&u8) -> bool>>,
+    lines: std::iter::Enumerate<Split<'a>>,
     last: usize,
 }
 

@@ -4,6 +4,7 @@ use super::*;
 use crate::connector::{Half, family};
 use crate::design::{Family, FamilySpec};
 use proptest::prelude::*;
+use std::fmt::Write as _;
 
 fn bytes(half: &Half, format: Format) -> Vec<u8> {
     let mut out = Vec::new();
@@ -34,7 +35,7 @@ fn text(triangles: &[[[f64; 3]; 3]]) -> String {
     for t in triangles {
         out += "facet normal 0 0 0\nouter loop\n";
         for [x, y, z] in t {
-            out += &format!("vertex {x} {y} {z}\n");
+            writeln!(out, "vertex {x} {y} {z}").unwrap();
         }
         out += "endloop\nendfacet\n";
     }

@@ -61,6 +61,14 @@ enum Way {
     Missed,
 }
 
+/// How a motion goes on from a point where borders meet.
+enum Onward {
+    /// Into a cell.
+    Into(usize),
+    /// Along a valley of a cell, to its end.
+    Along(usize, DVec2),
+}
+
 impl<'a> Flow<'a> {
     pub(super) fn new(
         patches: &'a [Patch],
@@ -221,8 +229,7 @@ impl<'a> Flow<'a> {
             self.tangled = true;
             return false;
         }
-        // (steepness, way on): into a cell, or along a valley to its end.
-        let mut best: Option<(f64, Result<usize, (usize, DVec2)>)> = None;
+        let mut best: Option<(f64, Onward)> = None;
         let mut offer = |steepness: f64, way| {
             if best.as_ref().is_none_or(|(most, _)| steepness > *most + 1e-12) {
                 best = Some((steepness, way));
@@ -241,7 +248,7 @@ impl<'a> Flow<'a> {
                     along.perp_dot(at - a) > self.near() || along.perp_dot(direction) >= -1e-9
                 });
             if leads_in {
-                offer(self.patch(cell).gradient.length(), Ok(cell));
+                offer(self.patch(cell).gradient.length(), Onward::Into(cell));
             }
             for (k, border) in self.borders[cell].iter().enumerate() {
                 let (from, to) = self.span(cell, k);
@@ -255,14 +262,14 @@ impl<'a> Flow<'a> {
                 {
                     let slope = -self.patch(cell).gradient.dot((end - at).normalize_or_zero());
                     if slope > self.seam {
-                        offer(slope, Err((cell, end)));
+                        offer(slope, Onward::Along(cell, end));
                     }
                 }
             }
         }
         match best {
-            Some((_, Ok(cell))) => self.follow(cell, at, depth + 1),
-            Some((_, Err((cell, end)))) => {
+            Some((_, Onward::Into(cell))) => self.follow(cell, at, depth + 1),
+            Some((_, Onward::Along(cell, end))) => {
                 let below = self.patch(cell).height(end);
                 self.ends_well(end, below, (end - at).normalize_or_zero(), depth + 1)
             }

@@ -105,7 +105,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaEr
     }
     exec.check()?;
     let (axis, direction) = match (free.contains(Dof::X), free.contains(Dof::Y)) {
-        (true, true) => return region(&patches, settings, exec),
+        (true, true) => return region(&patches, settings.seam, exec),
         (true, false) => (Dof::X, DVec2::X),
         (false, true) => (Dof::Y, DVec2::Y),
         (false, false) => return Err(ZraaError::NoTranslation),
@@ -114,8 +114,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaEr
     Ok(Zraa::Interval { axis, from, to })
 }
 
-fn region(patches: &[patch::Patch], settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaError> {
-    let seam = settings.seam;
+fn region(patches: &[patch::Patch], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
     let cells = cells::upper_envelope(patches, seam, exec)?;
     let borders = cells::borders(&cells, seam, exec)?;
     let inside = |polygon: &[DVec2]| {

@@ -1,7 +1,7 @@
 //! Closed forms, and the definition by brute descent.
 
 use super::*;
-use crate::connector::Connector;
+use crate::connector::{Connector, Half, stl};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{CorPose, DofSet, Mount};
 use glam::DMat3;
@@ -142,7 +142,7 @@ fn contains(zraa: &Zraa, at: DVec2) -> bool {
 
 /// The region agrees with small steps downhill, but for offsets near its border.
 #[test]
-fn regions_agree_with_brute_descent() {
+fn regions_agree_with_small_steps_downhill() {
     let coarse = |family| FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) };
     let specs = [
         coarse(Family::Pyramid),
@@ -175,5 +175,56 @@ proptest! {
         let pair = pair(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::XFace3d) });
         let Zraa::Region { area, .. } = run(&pair, &Settings { seam }, &Exec::new()).unwrap() else { panic!() };
         prop_assert!((area - 2.0).abs() < 1e-9);
+    }
+}
+
+/// A family's halves written to STL and read back as one mesh each.
+fn through_stl(pair: &Pair, format: stl::Format) -> Pair {
+    let read = |half: &Half| {
+        let mut file = Vec::new();
+        stl::write(half, format, &mut file).unwrap();
+        Half { surfaces: vec![stl::from_bytes(&file, file.len() as u64, 1.0).unwrap()] }
+    };
+    let face = glam::DVec3::new(0.0, 0.0, pair.alignment.center_of_rotation);
+    let moving = pair.moving.mapped(|p| p - face);
+    let connector = Connector { fixed: read(&pair.fixed), moving: read(&moving) };
+    Pair::new(&connector, &pair.alignment)
+}
+
+#[test]
+fn meshes_give_the_familys_region() {
+    for (family, exact) in [(Family::Pyramid, 1.0), (Family::XFace3d, 2.0)] {
+        let pair = pair(FamilySpec { aspect_ratio: 0.7, ..FamilySpec::new(family) });
+        for (format, tolerance) in [(stl::Format::Ascii, 1e-9), (stl::Format::Binary, 1e-6)] {
+            let mesh = through_stl(&pair, format);
+            let Zraa::Region { area, .. } = run(&mesh, &Settings::default(), &Exec::new()).unwrap() else {
+                panic!()
+            };
+            assert!((area - exact).abs() < tolerance, "{family:?} {format:?}: {area}");
+        }
+    }
+}
+
+#[test]
+fn locking_lips_and_pins_have_closed_forms_too() {
+    let c = 0.005;
+    let locking = FamilySpec { clearance: c, ..FamilySpec::new(Family::XFace3dLocking) };
+    // The lip takes corners from the diamond: 2c² with play c, 8w² with faces of half width w.
+    let w = locking.lip_height / 2.0 / (1.0 / 0.1f64.tan() - locking.aspect_ratio);
+    assert!((area(locking.clone()) - (2.0 - 2.0 * c * c)).abs() < 1e-9);
+    assert!((area(FamilySpec { draft_angle: 0.1, ..locking }) - (2.0 - 8.0 * w * w)).abs() < 1e-9);
+    let pins = FamilySpec { chord_error: 0.01, ..FamilySpec::new(Family::PinHole) };
+    for spec in [
+        pins.clone(),
+        FamilySpec { pins: 3, chamfer: 0.06, ..pins.clone() },
+        FamilySpec { hermaphroditic: true, chamfer: 0.05, ..pins },
+    ] {
+        // The polygon of n corners that stands for the mouth of a hole; neighbours' holes hold no mated pose.
+        let mouth = spec.pin_radius + spec.clearance + spec.chamfer;
+        let half_angle = (1.0 - spec.chord_error / mouth).acos();
+        let n = 4.0 * (std::f64::consts::PI / half_angle / 4.0).ceil();
+        let exact = n / 2.0 * (2.0 * std::f64::consts::PI / n).sin() * mouth * mouth;
+        let area = area(spec.clone());
+        assert!((area - exact).abs() < 1e-9, "{spec:?}: {area} {exact}");
     }
 }
