@@ -1,5 +1,7 @@
 //! The pyramid pair as a family, as convex pieces and as STL files: the same heights.
 
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
 use catchment::connector::{Connector, Half, Problem, Side, stl};
 use catchment::contact::{Pair, mated};
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};

@@ -2,20 +2,23 @@
 
 use super::*;
 use crate::connector::{Connector, Half, stl};
-use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
 use crate::pose::{CorPose, DofSet, Mount};
 use glam::DMat3;
 use proptest::prelude::*;
 
 fn pair(spec: FamilySpec) -> Pair {
     let planar = spec.family.is_planar();
+    pair_of(ConnectorSpec::Family(spec), planar)
+}
+
+fn pair_of(connector: ConnectorSpec, planar: bool) -> Pair {
     let free = DofSet::EMPTY.with(Dof::X);
     let free = if planar { free } else { free.with(Dof::Y) };
     let alignment = Alignment {
         center_of_rotation: 0.3,
         ..Alignment::new(free, if planar { Mount::Y } else { Mount::X })
     };
-    let connector = ConnectorSpec::Family(spec);
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
@@ -170,6 +173,42 @@ fn regions_agree_with_small_steps_downhill() {
 }
 
 proptest! {
+    /// A skew pyramid in its socket accepts exactly the socket's rim, seen from the apex: every facet leads
+    /// away from its own side of the rim, and every valley to the apex.
+    #[test]
+    fn skew_pyramids_accept_their_rim(
+        jitter in proptest::collection::vec(0.0..0.6f64, 3..8), apex in proptest::array::uniform2(-0.15..0.15f64),
+        height in 0.1..1.5f64
+    ) {
+        let n = jitter.len();
+        let rim: Vec<DVec2> = jitter
+            .iter()
+            .enumerate()
+            .map(|(k, j)| 0.5 * DVec2::from_angle((k as f64 + j) * std::f64::consts::TAU / n as f64))
+            .map(|p| p - DVec2::from_array(apex))
+            .collect();
+        // Seen from the apex the rim runs round it; otherwise the apex lies beside it.
+        prop_assume!((0..n).all(|k| rim[k].perp_dot(rim[(k + 1) % n]) > 0.01));
+        let at = |p: DVec2, z: f64| [p.x, p.y, z];
+        let wedge = |k: usize| {
+            let (p, q) = (rim[k], rim[(k + 1) % n]);
+            let o = DVec2::ZERO;
+            vec![at(o, 0.0), at(o, -0.2), at(p, -0.2), at(q, -0.2), at(p, height), at(q, height)]
+        };
+        // The plug is mounted by a half turn about x.
+        let flipped = |p: &DVec2| DVec2::new(p.x, -p.y);
+        let plug = rim.iter().map(|p| at(flipped(p), 0.0)).chain([at(DVec2::ZERO, height)]).collect();
+        let own = OwnSpec {
+            face_height: height / 2.0,
+            fixed: HalfSpec::Pieces((0..n).map(wedge).collect()),
+            moving: HalfSpec::Pieces(vec![plug]),
+        };
+        let Zraa::Region { area, .. } =
+            run(&pair_of(ConnectorSpec::Own(own), false), &Settings::default(), &Exec::new()).unwrap()
+        else { panic!() };
+        prop_assert!((area - patch::area(&rim)).abs() < 1e-9, "{} {}", area, patch::area(&rim));
+    }
+
     #[test]
     fn a_shifted_seam_changes_nothing(seam in 1e-13..1e-9f64, aspect_ratio in 0.2..1.5f64) {
         let pair = pair(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::XFace3d) });
