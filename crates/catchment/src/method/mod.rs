@@ -4,3 +4,4 @@
 pub mod descent;
 pub mod flood;
 pub mod kinematic;
+pub mod zraa;
