@@ -58,6 +58,7 @@ pub(crate) struct DesignArgs {
 
 impl DesignArgs {
     /// Reads the file and applies the changes.
+    #[expect(dead_code, reason = "for the commands that compute")]
     pub(crate) fn read(&self) -> Result<Input, Failure> {
         self.apply(Input::read(&self.path)?)
     }

@@ -18,7 +18,7 @@ fn scripts_and_pages_are_written_for_every_shell_and_subcommand() {
     let dir = tempfile::tempdir().unwrap();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let report = run(dir.path(), &["completions", shell]);
-        assert!(report.starts_with("exit 0\n") && report.contains("pyramid"), "{report}");
+        assert!(report.starts_with("exit 0\n") && report.contains("check"), "{report}");
     }
     for subcommand in ["new", "check", "schema", "completions", "man"] {
         let report = run(dir.path(), &["man", subcommand]);
