@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::failure::Failure;
 use crate::source::Input;
-use catchment::design::{Complaint, Design, Quantity, parse_dofs};
+use catchment::design::{Complaint, Quantity, parse_dofs};
 use catchment::pose::DofSet;
 use clap::{Args, Parser};
 use std::path::PathBuf;
@@ -64,31 +64,25 @@ impl DesignArgs {
     }
 
     /// Applies the changes to what the file says.
-    pub(crate) fn apply(&self, mut input: Input) -> Result<Input, Failure> {
-        type Change = Box<dyn Fn(Design) -> Result<Design, Complaint>>;
-        let changes: [(&str, Option<Change>); 4] = [
-            ("--free", self.free.map(|free| Box::new(move |d: Design| d.with_free(free)) as Change)),
-            (
-                "--cor",
-                self.cor.map(|cor| Box::new(move |d: Design| d.with_center_of_rotation(cor)) as Change),
-            ),
-            (
-                "--aspect-ratio",
-                self.aspect_ratio
-                    .map(|ratio| Box::new(move |d: Design| d.with_aspect_ratio(ratio)) as Change),
-            ),
-            (
-                "--rotation-length",
-                self.rotation_length
-                    .map(|rho| Box::new(move |d: Design| d.with_rotation_length(rho)) as Change),
-            ),
-        ];
-        for (option, change) in changes {
-            let Some(change) = change else { continue };
-            input.design =
-                change(input.design.clone()).map_err(|complaint| refused(&input, option, &complaint))?;
+    pub(crate) fn apply(&self, input: Input) -> Result<Input, Failure> {
+        let refuse = |option: &'static str| {
+            let input = &input;
+            move |complaint: Complaint| refused(input, option, &complaint)
+        };
+        let mut design = input.design.clone();
+        if let Some(free) = self.free {
+            design = design.with_free(free).map_err(refuse("--free"))?;
         }
-        Ok(input)
+        if let Some(cor) = self.cor {
+            design = design.with_center_of_rotation(cor).map_err(refuse("--cor"))?;
+        }
+        if let Some(ratio) = self.aspect_ratio {
+            design = design.with_aspect_ratio(ratio).map_err(refuse("--aspect-ratio"))?;
+        }
+        if let Some(length) = self.rotation_length {
+            design = design.with_rotation_length(length).map_err(refuse("--rotation-length"))?;
+        }
+        Ok(Input { design, ..input })
     }
 }
 
