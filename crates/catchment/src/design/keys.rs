@@ -226,6 +226,7 @@ const fn parameter(name: &'static str, applies: Applies, kind: Kind, doc: &'stat
 
 const LOCKING: Applies = Applies::Families(&[Family::XFace3dLocking]);
 const PINS_ONLY: Applies = Applies::Families(&[Family::PinHole]);
+const WITH_PLAY: Applies = Applies::Families(&[Family::PinHole, Family::XFace3dLocking]);
 const ROUND: Applies = Applies::Families(&[Family::Cone, Family::PinHole]);
 
 macro_rules! keys {
@@ -288,8 +289,8 @@ keys! {
     PIN_RADIUS = parameter("pin_radius", PINS_ONLY, Kind::Length(Range::new(1e-4, 1.0, "D")),
         "Radius of a pin.");
     /// `connector.clearance`
-    CLEARANCE = parameter("clearance", PINS_ONLY, Kind::Length(Range::new(0.0, 1.0, "D")),
-        "Radial play between pin and hole.");
+    CLEARANCE = parameter("clearance", WITH_PLAY, Kind::Length(Range::new(0.0, 1.0, "D")),
+        "Radial play between pin and hole; play between vertical lips.");
     /// `connector.chamfer`
     CHAMFER = parameter("chamfer", PINS_ONLY, Kind::Length(Range::new(0.0, 1.0, "D")),
         "Width of the chamfer around a hole and of the point of a pin.");

@@ -1,0 +1,49 @@
+//! What can be wrong with a geometry, where, and what to do about it.
+
+use super::SurfaceError;
+use std::fmt;
+
+/// Which half a problem lies in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The fixed half.
+    Fixed,
+    /// The moving half.
+    Moving,
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Fixed => "fixed half",
+            Self::Moving => "moving half",
+        })
+    }
+}
+
+/// One reason why a design's geometry cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Problem {
+    /// A family's parameter makes no solid.
+    #[error("{family}: {parameter} = {value}: {advice}")]
+    Parameter {
+        /// The family's name.
+        family: &'static str,
+        /// The parameter's name in the design file.
+        parameter: &'static str,
+        /// Its value, in D or radians.
+        value: f64,
+        /// What it must be.
+        advice: String,
+    },
+    /// Polygons that do not bound a solid.
+    #[error("{side}, surface {surface}: {error}")]
+    Surface {
+        /// Which half.
+        side: Side,
+        /// Which of its surfaces, from 0.
+        surface: usize,
+        /// Why not.
+        error: SurfaceError,
+    },
+}
