@@ -11,9 +11,14 @@
 //! the contact room discards it.
 
 mod family;
+mod hull;
+mod own;
 mod problem;
+pub mod stl;
 mod surface;
+mod ungendered;
 
+pub use hull::{HullError, MAX_POINTS, convex_hull};
 pub use problem::{Problem, Side};
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
@@ -53,7 +58,7 @@ impl Connector {
     pub fn build(design: &Design) -> Result<Self, Vec<Problem>> {
         let drawn = match &design.connector {
             ConnectorSpec::Family(spec) => family::draw(spec)?,
-            ConnectorSpec::Own(_) => return Err(Vec::new()),
+            ConnectorSpec::Own(spec) => own::build(spec)?,
         };
         Ok(Self::placed(&drawn, design.alignment.mount))
     }

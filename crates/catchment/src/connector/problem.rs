@@ -1,7 +1,9 @@
 //! What can be wrong with a geometry, where, and what to do about it.
 
-use super::SurfaceError;
+use super::stl::StlProblem;
+use super::{HullError, SurfaceError};
 use std::fmt;
+use std::path::PathBuf;
 
 /// Which half a problem lies in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,5 +47,35 @@ pub enum Problem {
         surface: usize,
         /// Why not.
         error: SurfaceError,
+    },
+    /// No convex pieces, or too many.
+    #[error("{side}: {count} convex pieces; give between 1 and {most}, or an STL mesh")]
+    PieceCount {
+        /// Which half.
+        side: Side,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// A convex piece that is none.
+    #[error("{side}, piece {piece}: {error}")]
+    Piece {
+        /// Which half.
+        side: Side,
+        /// Which piece, from 0.
+        piece: usize,
+        /// Why not.
+        error: HullError,
+    },
+    /// An STL file that is no half.
+    #[error("{side}, {}: {error}", path.display())]
+    Stl {
+        /// Which half.
+        side: Side,
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        error: StlProblem,
     },
 }

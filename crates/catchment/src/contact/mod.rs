@@ -14,6 +14,7 @@
 pub mod brute;
 mod element;
 mod envelope;
+pub mod mated;
 mod raster;
 mod shape;
 

@@ -165,7 +165,8 @@ pub struct FamilySpec {
     pub hermaphroditic: bool,
     /// Radius of a pin, in D (`pin-hole`).
     pub pin_radius: f64,
-    /// Radial play between pin and hole, in D (`pin-hole`).
+    /// Radial play between pin and hole, in D (`pin-hole`); play between vertical lips, in D
+    /// (`x-face-3d-locking` without draft).
     pub clearance: f64,
     /// Width of the chamfer around a hole, and of the point of a pin, in D (`pin-hole`).
     pub chamfer: f64,

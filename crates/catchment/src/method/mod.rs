@@ -2,3 +2,4 @@
 //! and returns an [`crate::acceptance::Acceptance`].
 
 pub mod descent;
+pub mod zraa;

@@ -9,10 +9,12 @@
 //!
 //! What lies behind the mating surface counts once a half tilts, so it belongs to the family:
 //! `base_thickness` backs it down to z = −`base_thickness`. Where a design names a thickness, both halves have
-//! it; where it does not, the socket halves of `pyramid` and `cone` and both halves of the saddles have 0.25,
-//! and everything else ends at z = 0.
+//! it; where it does not, the socket halves of `pyramid` and `cone` and both halves of the saddles and of
+//! `pin-hole` have 0.25, and everything else ends at z = 0.
 
 mod fan;
+mod locking;
+mod pin_hole;
 mod planar;
 
 use super::{Half, Problem, Side, Surface, SurfaceError};
@@ -37,21 +39,23 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
     let mut check = Check { spec, problems: Vec::new() };
     let height = spec.aspect_ratio;
     check.require("aspect_ratio", height, height > 0.0, "the face needs a height: give a number above 0");
-    let backed = matches!(spec.family, Family::Pyramid | Family::Cone | Family::XFace3d);
     if let Some(base) = spec.base_thickness {
-        if backed {
+        if !spec.family.is_planar() {
             check.require(
                 "base_thickness",
                 base,
                 base > 0.0,
-                "the bottom of the socket needs material behind it: give a number above 0",
+                "the face needs material behind it: give a number above 0",
             );
         } else {
             check.require("base_thickness", base, base >= 0.0, "give 0 or more");
         }
     }
-    if spec.family == Family::Cone {
-        fan::check_chord(&mut check);
+    match spec.family {
+        Family::Cone => fan::check_chord(&mut check),
+        Family::XFace3dLocking => locking::check(&mut check),
+        Family::PinHole => pin_hole::check(&mut check),
+        _ => {}
     }
     check.done()?;
     let halves = match spec.family {
@@ -61,15 +65,8 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
         Family::Pyramid => fan::pyramid(spec),
         Family::Cone => fan::cone(spec),
         Family::XFace3d => fan::saddle(spec),
-        Family::XFace3dLocking | Family::PinHole => {
-            let family = spec.family.name();
-            return Err(vec![Problem::Parameter {
-                family,
-                parameter: "family",
-                value: 0.0,
-                advice: "not drawn yet".into(),
-            }]);
-        }
+        Family::XFace3dLocking => locking::locking(spec),
+        Family::PinHole => pin_hole::pin_hole(spec),
     };
     let mut problems = Vec::new();
     let [fixed, moving] = halves;
@@ -84,7 +81,12 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
         half
     };
     let (fixed, moving) = (half(Side::Fixed, fixed), half(Side::Moving, moving));
-    if problems.is_empty() { Ok(Drawn { fixed, moving, face_height: height / 2.0 }) } else { Err(problems) }
+    let face_height = match spec.family {
+        Family::XFace3dLocking => locking::height(spec) / 2.0,
+        Family::PinHole => pin_hole::face_height(spec),
+        _ => height / 2.0,
+    };
+    if problems.is_empty() { Ok(Drawn { fixed, moving, face_height }) } else { Err(problems) }
 }
 
 /// The surfaces of the fixed and the moving half, as far as they could be built.
@@ -159,6 +161,70 @@ mod tests {
                 assert!(0.5 - p.midpoint(q).length() <= error * (1.0 + 1e-9), "{error}");
             }
             assert_eq!(rim.len() % 4, 0);
+        }
+    }
+
+    #[test]
+    fn locking_halves_have_the_mean_height_of_their_face() {
+        // z − mid is odd in x, so the volume is that of the block up to mid height; vertical faces lose the
+        // strip over which they stand back: H·m + ℓ over two L-shapes of width c/2.
+        let (h, lip, c): (f64, f64, f64) = (0.5, 0.2, 0.02);
+        for draft_angle in [0.0, 0.01, 0.3] {
+            let base = spec(Family::XFace3dLocking, h, None);
+            let drawn = draw(&FamilySpec { draft_angle, lip_height: lip, clearance: c, ..base }).unwrap();
+            let area = c / 2.0 - c.powi(2) / 4.0;
+            let moment = c.powi(2) / 8.0 - c.powi(3) / 12.0;
+            let lost = if draft_angle == 0.0 { 2.0 * (h * moment + lip * area) } else { 0.0 };
+            assert!((volume(&drawn.fixed) - (0.25 + 0.35 - lost)).abs() < ROUNDING, "{draft_angle}");
+            assert_eq!(drawn.fixed, drawn.moving);
+        }
+    }
+
+    #[test]
+    fn pins_and_holes_have_the_volume_of_their_polygons() {
+        for (pins, hermaphroditic, chamfer) in [
+            (1, false, 0.1),
+            (2, false, 0.1),
+            (3, false, 0.02),
+            (4, false, 0.03),
+            (2, true, 0.02),
+            (3, true, 0.05),
+        ] {
+            let s = FamilySpec { pins, hermaphroditic, chamfer, ..FamilySpec::new(Family::PinHole) };
+            let drawn = draw(&s).unwrap();
+            // Area of the inscribed n-gon of radius r, and a frustum's volume between two of them.
+            let n = super::fan::corners_of_circle(s.pin_radius + s.clearance + chamfer, s.chord_error);
+            let unit = n / 2.0 * (2.0 * std::f64::consts::PI / n).sin();
+            let frustum = |a: f64, b: f64, h: f64| unit * h * (a * a + a * b + b * b) / 3.0;
+            let (h, r, c) = (s.aspect_ratio, s.pin_radius, s.clearance);
+            let point = chamfer.min(r);
+            let pin = frustum(r, r, h - point) + frustum(r, r - point, point);
+            let hole = frustum(r + c + chamfer, r + c, chamfer)
+                + frustum(r + c, r + c, h - chamfer - point - c)
+                + frustum(r + c, r - point, point + c);
+            let n = f64::from(pins);
+            let (fixed, moving) = if hermaphroditic {
+                let v = h + 0.25 + n * (pin - hole);
+                (v, v)
+            } else {
+                (h + 0.25 - n * hole, 0.25 + n * pin)
+            };
+            assert!((volume(&drawn.fixed) - fixed).abs() < ROUNDING, "{pins} {hermaphroditic}");
+            assert!((volume(&drawn.moving) - moving).abs() < ROUNDING, "{pins} {hermaphroditic}");
+        }
+    }
+
+    #[test]
+    fn pins_that_overlap_or_leave_the_plate_are_refused() {
+        let default = FamilySpec::new(Family::PinHole);
+        for bad in [
+            FamilySpec { pins: 0, ..default.clone() },
+            FamilySpec { pins: 12, ..default.clone() },
+            FamilySpec { circle_radius: 0.4, ..default.clone() },
+            FamilySpec { aspect_ratio: 0.15, ..default.clone() },
+            FamilySpec { chord_error: 1e-9, ..default.clone() },
+        ] {
+            assert_eq!(draw(&bad).unwrap_err().len(), 1, "{bad:?}");
         }
     }
 

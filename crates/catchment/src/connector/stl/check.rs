@@ -1,0 +1,222 @@
+//! From loose triangles to a closed surface, or to every reason why they are none.
+
+use super::parse::Triangle;
+use super::{PLAUSIBLE_WIDTH, Reported, StlProblem, WELD};
+use crate::connector::Surface;
+use glam::{DVec3, I64Vec3};
+use std::collections::{BTreeMap, HashMap};
+
+/// Area of a triangle, relative to the square of its longest side, below which it has none: the rounding of
+/// single-precision corners moves the area of a unit triangle by about 1e-7.
+const NO_AREA: f64 = 1e-7;
+
+/// Welds, checks and scales.
+pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec<StlProblem>> {
+    let size =
+        triangles.iter().flat_map(|t| t.corners).fold(0.0, |size: f64, c| size.max(c.abs().max_element()));
+    let tolerance = WELD * size;
+    let (vertices, indexed) = weld(triangles, tolerance);
+    let mut reported = Reported::default();
+    reported.extend(zero_areas(triangles, &vertices, &indexed));
+    let sides = sides(&indexed);
+    reported.extend(open_edges(triangles, &vertices, &sides));
+    reported.extend(crowded_edges(&vertices, &sides));
+    reported.extend(wrong_windings(triangles, &sides));
+    if reported.problems.is_empty() {
+        if volume(&vertices, &indexed) <= 0.0 {
+            reported.extend([StlProblem::InsideOut]);
+        }
+        reported.extend(crossings(triangles, &vertices, &indexed, tolerance));
+    }
+    let (lo, hi) =
+        vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
+    let width = (hi - lo).truncate().max_element() * scale;
+    if !PLAUSIBLE_WIDTH.contains(&width) {
+        reported.extend([StlProblem::Unit { width }]);
+    }
+    reported.done()?;
+    let polygons: Vec<Vec<u32>> = indexed.iter().map(|t| t.to_vec()).collect();
+    // Everything that the surface refuses has been looked for above; what is left can only be rounding.
+    Surface::from_polygons(vertices.iter().map(|v| *v * scale).collect(), &polygons)
+        .map_err(|_| vec![StlProblem::InsideOut])
+}
+
+/// Joins corners within `tolerance` of each other. The first corner met gives the coordinates.
+fn weld(triangles: &[Triangle], tolerance: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let pitch = tolerance.max(f64::MIN_POSITIVE);
+    let key = |p: DVec3| (p / pitch).floor().as_i64vec3();
+    let mut cells: HashMap<I64Vec3, Vec<u32>> = HashMap::new();
+    let mut vertices: Vec<DVec3> = Vec::new();
+    let mut find = |p: DVec3| {
+        let home = key(p);
+        let near = (0..27i64).find_map(|k| {
+            let step = I64Vec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+            let close = |&&v: &&u32| vertices[v as usize].distance(p) <= tolerance;
+            cells.get(&home.saturating_add(step)).and_then(|cell| cell.iter().find(close)).copied()
+        });
+        near.unwrap_or_else(|| {
+            let index = vertices.len() as u32;
+            vertices.push(p);
+            cells.entry(home).or_default().push(index);
+            index
+        })
+    };
+    let indexed = triangles.iter().map(|t| t.corners.map(&mut find)).collect();
+    (vertices, indexed)
+}
+
+fn corners(vertices: &[DVec3], triangle: [u32; 3]) -> [DVec3; 3] {
+    triangle.map(|k| vertices[k as usize])
+}
+
+fn zero_areas(triangles: &[Triangle], vertices: &[DVec3], indexed: &[[u32; 3]]) -> Vec<StlProblem> {
+    let flat = |t: [u32; 3]| {
+        let [a, b, c] = corners(vertices, t);
+        let longest = [b - a, c - b, a - c].into_iter().map(DVec3::length_squared).fold(0.0, f64::max);
+        (b - a).cross(c - a).length() <= NO_AREA * longest
+    };
+    triangles
+        .iter()
+        .zip(indexed)
+        .filter(|&(_, &t)| flat(t))
+        .map(|(t, _)| StlProblem::ZeroArea { place: t.place, at: t.corners[0] })
+        .collect()
+}
+
+/// Per undirected edge: its triangles, and whether each runs along it upwards.
+type Sides = BTreeMap<[u32; 2], Vec<(usize, bool)>>;
+
+fn sides(indexed: &[[u32; 3]]) -> Sides {
+    let mut sides = Sides::new();
+    for (k, t) in indexed.iter().enumerate() {
+        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+            // A side without length belongs to a triangle without area, which is reported as such.
+            if a != b {
+                sides.entry([a.min(b), a.max(b)]).or_default().push((k, a < b));
+            }
+        }
+    }
+    sides
+}
+
+fn open_edges(triangles: &[Triangle], vertices: &[DVec3], sides: &Sides) -> Vec<StlProblem> {
+    sides
+        .iter()
+        .filter(|(_, owners)| owners.len() == 1)
+        .map(|([a, b], owners)| StlProblem::Open {
+            place: triangles[owners[0].0].place,
+            from: vertices[*a as usize],
+            to: vertices[*b as usize],
+        })
+        .collect()
+}
+
+fn crowded_edges(vertices: &[DVec3], sides: &Sides) -> Vec<StlProblem> {
+    sides
+        .iter()
+        .filter(|(_, owners)| owners.len() > 2)
+        .map(|([a, b], owners)| StlProblem::NonManifold {
+            count: owners.len(),
+            from: vertices[*a as usize],
+            to: vertices[*b as usize],
+        })
+        .collect()
+}
+
+fn wrong_windings(triangles: &[Triangle], sides: &Sides) -> Vec<StlProblem> {
+    sides
+        .values()
+        .filter_map(|owners| match owners[..] {
+            [(first, up), (second, also_up)] if up == also_up => {
+                Some(StlProblem::Winding { first: triangles[first].place, second: triangles[second].place })
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+fn volume(vertices: &[DVec3], indexed: &[[u32; 3]]) -> f64 {
+    // Seen from one of its own corners: far from the origin the sum would lose its digits.
+    let origin = vertices[0];
+    indexed
+        .iter()
+        .map(|&t| {
+            let [a, b, c] = corners(vertices, t).map(|p| p - origin);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum()
+}
+
+/// Pairs of triangles that cross: an edge of the one pierces the other. Sorted sweep along x.
+fn crossings(
+    triangles: &[Triangle],
+    vertices: &[DVec3],
+    indexed: &[[u32; 3]],
+    tolerance: f64,
+) -> Vec<StlProblem> {
+    let boxes: Vec<(DVec3, DVec3)> = indexed
+        .iter()
+        .map(|&t| {
+            let [a, b, c] = corners(vertices, t);
+            (a.min(b).min(c), a.max(b).max(c))
+        })
+        .collect();
+    let mut order: Vec<usize> = (0..indexed.len()).collect();
+    order.sort_by(|&a, &b| boxes[a].0.x.total_cmp(&boxes[b].0.x).then(a.cmp(&b)));
+    let mut found = Vec::new();
+    for (position, &i) in order.iter().enumerate() {
+        for &j in &order[position + 1..] {
+            if boxes[j].0.x > boxes[i].1.x {
+                break;
+            }
+            let apart = boxes[i].0.cmpgt(boxes[j].1).any() || boxes[j].0.cmpgt(boxes[i].1).any();
+            if apart {
+                continue;
+            }
+            if let Some(at) = cross(vertices, indexed[i], indexed[j], tolerance) {
+                let (first, second) = (i.min(j), i.max(j));
+                let (first, second) = (triangles[first].place, triangles[second].place);
+                found.push(StlProblem::SelfIntersection { first, second, at });
+            }
+        }
+    }
+    found
+}
+
+/// Where two triangles cross, if they do. Sharing a corner or a side is no crossing, folding over it is.
+fn cross(vertices: &[DVec3], first: [u32; 3], second: [u32; 3], tolerance: f64) -> Option<DVec3> {
+    let shared = first.iter().filter(|k| second.contains(k)).count();
+    let (a, b) = (corners(vertices, first), corners(vertices, second));
+    if shared >= 2 {
+        let apex = |of: [u32; 3], other: [u32; 3]| of.into_iter().find(|k| !other.contains(k));
+        let (Some(p), Some(q)) = (apex(first, second), apex(second, first)) else { return Some(a[0]) };
+        let hinge = vertices[first.into_iter().find(|k| second.contains(k))? as usize];
+        let (p, q) = (vertices[p as usize], vertices[q as usize]);
+        let (n, m) = ((a[1] - a[0]).cross(a[2] - a[0]), (b[1] - b[0]).cross(b[2] - b[0]));
+        // Folded flat on itself: opposite normals, apexes on the same side of the common edge.
+        let folded = n.dot(m) < 0.0 && n.cross(m).length() <= NO_AREA * n.length() * m.length();
+        return folded.then(|| hinge.lerp(p.midpoint(q), 0.5));
+    }
+    let pierce = |edges: [u32; 3], corners_of: [DVec3; 3], other: [u32; 3]| {
+        (0..3).find_map(|k| {
+            let (p, q) = (edges[k], edges[(k + 1) % 3]);
+            if other.contains(&p) || other.contains(&q) {
+                return None;
+            }
+            pierced(vertices[p as usize], vertices[q as usize], corners_of, tolerance)
+        })
+    };
+    pierce(first, b, second).or_else(|| pierce(second, a, first))
+}
+
+/// Where the segment p–q passes through a triangle from one side to the other.
+fn pierced(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3], tolerance: f64) -> Option<DVec3> {
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let (above, below) = (normal.dot(p - a), normal.dot(q - a));
+    if above.abs() <= tolerance || below.abs() <= tolerance || above.signum() == below.signum() {
+        return None;
+    }
+    let at = p.lerp(q, above / (above - below));
+    let inside = [(a, b), (b, c), (c, a)].into_iter().all(|(u, v)| (v - u).cross(at - u).dot(normal) >= 0.0);
+    inside.then_some(at)
+}

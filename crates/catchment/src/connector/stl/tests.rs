@@ -1,0 +1,235 @@
+//! Every way a file can be broken, and the families through both dialects.
+
+use super::*;
+use crate::connector::{Half, family};
+use crate::design::{Family, FamilySpec};
+use proptest::prelude::*;
+
+fn bytes(half: &Half, format: Format) -> Vec<u8> {
+    let mut out = Vec::new();
+    write(half, format, &mut out).unwrap();
+    out
+}
+
+fn parse(bytes: &[u8]) -> Result<Surface, Vec<StlProblem>> {
+    from_bytes(bytes, bytes.len() as u64, 1.0)
+}
+
+fn socket() -> Half {
+    family::draw(&FamilySpec::new(Family::Pyramid)).unwrap().fixed
+}
+
+/// A unit cube as text, its triangles as lists of corners that tests can spoil.
+fn cube() -> Vec<[[f64; 3]; 3]> {
+    let corner = |i: u8| [f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)];
+    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        .iter()
+        .flat_map(|q: &[u8; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]])
+        .map(|t| t.map(corner))
+        .collect()
+}
+
+fn text(triangles: &[[[f64; 3]; 3]]) -> String {
+    let mut out = String::from("solid cube\n");
+    for t in triangles {
+        out += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in t {
+            out += &format!("vertex {x} {y} {z}\n");
+        }
+        out += "endloop\nendfacet\n";
+    }
+    out + "endsolid cube\n"
+}
+
+fn complaints(triangles: &[[[f64; 3]; 3]]) -> Vec<StlProblem> {
+    parse(text(triangles).as_bytes()).unwrap_err()
+}
+
+#[test]
+fn families_survive_both_dialects() {
+    for name in [Family::Pyramid, Family::Cone, Family::XFace, Family::XFace3d, Family::PinHole] {
+        let drawn = family::draw(&FamilySpec::new(name)).unwrap();
+        for half in [&drawn.fixed, &drawn.moving] {
+            let volume: f64 = half.surfaces.iter().map(Surface::volume).sum();
+            let text = parse(&bytes(half, Format::Ascii)).unwrap_or_else(|e| panic!("{name:?}: {e:?}"));
+            let binary = parse(&bytes(half, Format::Binary)).unwrap_or_else(|e| panic!("{name:?}: {e:?}"));
+            assert!((text.volume() - volume).abs() < 1e-14);
+            // Single precision moves the boundary, of area below 5, by less than 6e-8.
+            assert!((binary.volume() - volume).abs() < 3e-7);
+            // Flat edges between triangles are no edges: as many as the family has.
+            let edges: usize = half.surfaces.iter().map(|s| s.edges.len()).sum();
+            assert_eq!(text.edges.len(), edges, "{name:?}");
+            // Rounding tilts slender triangles: a few flat edges may count, real ones may not get lost.
+            assert!((edges..edges + 10).contains(&binary.edges.len()), "{name:?}");
+        }
+    }
+}
+
+#[test]
+fn scale_turns_file_units_into_d() {
+    let half = socket().mapped(|p| p * 50.0);
+    let file = bytes(&half, Format::Binary);
+    let surface = from_bytes(&file, file.len() as u64, 1.0 / 50.0).unwrap();
+    assert!((surface.volume() - socket().surfaces[0].volume()).abs() < 1e-6);
+}
+
+#[test]
+fn an_empty_file_says_so() {
+    assert_eq!(parse(b"").unwrap_err(), [StlProblem::Empty]);
+    assert_eq!(parse(b"solid\nendsolid\n").unwrap_err(), [StlProblem::NoTriangles]);
+    assert_eq!(parse(b"hello").unwrap_err(), [StlProblem::NotStl { found: 5 }]);
+}
+
+#[test]
+fn a_truncated_binary_file_says_where() {
+    let mut file = bytes(&socket(), Format::Binary);
+    let expected = file.len() as u64;
+    file.truncate(400);
+    let triangles = (expected - 84) / 50;
+    assert_eq!(parse(&file).unwrap_err(), [StlProblem::Length { triangles, expected, found: 400 }]);
+}
+
+#[test]
+fn a_binary_file_that_begins_with_solid_is_binary() {
+    let mut file = bytes(&socket(), Format::Binary);
+    file[..5].copy_from_slice(b"solid");
+    parse(&file).unwrap();
+}
+
+#[test]
+fn a_truncated_text_says_in_which_line() {
+    let whole = text(&cube());
+    let cut: String = whole.lines().take(11).collect::<Vec<_>>().join("\n");
+    let problems = parse(cut.as_bytes()).unwrap_err();
+    assert!(
+        matches!(problems[..], [StlProblem::Syntax { line: 11, expected: "vertex", .. }]),
+        "{problems:?}"
+    );
+}
+
+#[test]
+fn a_misspelt_number_is_shown() {
+    let broken = text(&cube()).replacen("vertex 0 0 0", "vertex 0 o 0", 1);
+    let message = parse(broken.as_bytes()).unwrap_err()[0].to_string();
+    assert_eq!(message, "line 4: expected three numbers after vertex, found `0 o 0`");
+}
+
+#[test]
+fn more_triangles_than_the_limit_are_refused_before_they_are_read() {
+    let count: u32 = 3_000_000;
+    let mut header = vec![0u8; 80];
+    header.extend(count.to_le_bytes());
+    let problems = from_bytes(&header, 84 + 50 * u64::from(count), 1.0).unwrap_err();
+    assert_eq!(problems, [StlProblem::TooMany { count: 3_000_000 }]);
+    let many = vec![cube()[0]; MAX_TRIANGLES + 5];
+    assert_eq!(complaints(&many), [StlProblem::TooMany { count: MAX_TRIANGLES as u64 + 5 }]);
+    let problems = from_bytes(b"solid x", 1 << 40, 1.0).unwrap_err();
+    assert_eq!(problems, [StlProblem::TooLong { bytes: 1 << 40 }]);
+}
+
+#[test]
+fn a_corner_that_is_not_finite_is_located() {
+    for bad in [f64::NAN, f64::INFINITY] {
+        let mut triangles = cube();
+        triangles[3][1][2] = bad;
+        let place = Place { triangle: 3, start: Start::Line(2 + 3 * 7) };
+        assert_eq!(complaints(&triangles), [StlProblem::NotFinite { place }]);
+    }
+}
+
+#[test]
+fn a_hole_is_reported_edge_by_edge() {
+    let mut triangles = cube();
+    triangles.remove(5);
+    let problems = complaints(&triangles);
+    assert_eq!(problems.len(), 3);
+    assert!(problems.iter().all(|p| matches!(p, StlProblem::Open { .. })), "{problems:?}");
+}
+
+#[test]
+fn many_problems_of_a_kind_are_counted() {
+    let problems = complaints(&cube().into_iter().step_by(2).collect::<Vec<_>>());
+    assert_eq!(problems.len(), MAX_REPORTED + 1);
+    // Six separate triangles are open along 18 sides.
+    assert_eq!(problems.last(), Some(&StlProblem::More { count: 13 }));
+}
+
+#[test]
+fn a_triangle_without_area_is_located_not_dropped() {
+    let mut triangles = cube();
+    triangles.push([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
+    let problems = complaints(&triangles);
+    let place = Place { triangle: 12, start: Start::Line(2 + 12 * 7) };
+    assert!(problems.contains(&StlProblem::ZeroArea { place, at: DVec3::ZERO }), "{problems:?}");
+}
+
+#[test]
+fn solids_that_touch_along_an_edge_are_non_manifold() {
+    let shifted = cube().into_iter().map(|t| t.map(|[x, y, z]| [x + 1.0, y + 1.0, z]));
+    let problems = complaints(&cube().into_iter().chain(shifted).collect::<Vec<_>>());
+    assert!(matches!(problems[..], [StlProblem::NonManifold { count: 4, .. }]), "{problems:?}");
+}
+
+#[test]
+fn inside_out_and_mixed_windings_are_told_apart() {
+    let mut triangles = cube();
+    triangles[7].swap(0, 1);
+    let problems = complaints(&triangles);
+    assert_eq!(problems.len(), 3);
+    assert!(problems.iter().all(|p| matches!(p, StlProblem::Winding { .. })), "{problems:?}");
+    for t in &mut triangles {
+        t.swap(0, 1);
+    }
+    triangles[7].swap(0, 1);
+    assert_eq!(complaints(&triangles), [StlProblem::InsideOut]);
+}
+
+#[test]
+fn shells_that_cross_are_located() {
+    let shifted = cube().into_iter().map(|t| t.map(|[x, y, z]| [x + 0.3, y + 0.4, z + 0.5]));
+    let problems = complaints(&cube().into_iter().chain(shifted).collect::<Vec<_>>());
+    assert!(problems.iter().any(|p| matches!(p, StlProblem::SelfIntersection { .. })), "{problems:?}");
+}
+
+#[test]
+fn a_wrong_unit_is_suspected_from_the_size() {
+    let file = text(&cube());
+    for (scale, width) in [(50.0, 50.0), (0.001, 0.001)] {
+        let problems = from_bytes(file.as_bytes(), file.len() as u64, scale).unwrap_err();
+        assert_eq!(problems, [StlProblem::Unit { width }]);
+    }
+    let problems = from_bytes(file.as_bytes(), file.len() as u64, f64::NAN).unwrap_err();
+    assert!(matches!(problems[..], [StlProblem::Scale { .. }]));
+}
+
+#[test]
+fn a_missing_file_is_no_panic() {
+    let problems = read(Path::new("no/such/file.stl"), 1.0).unwrap_err();
+    assert!(matches!(problems[..], [StlProblem::Io { .. }]));
+}
+
+proptest! {
+    #[test]
+    fn spoilt_files_never_panic(
+        at in 0usize..2000, value in any::<u8>(), cut in 0usize..2000, ascii in any::<bool>()
+    ) {
+        let mut file = bytes(&socket(), if ascii { Format::Ascii } else { Format::Binary });
+        let n = file.len();
+        file[at % n] = value;
+        file.truncate(n - cut % n);
+        let _ = parse(&file);
+    }
+
+    #[test]
+    fn reading_does_not_depend_on_where_the_part_lies(shift in proptest::array::uniform3(-3.0..3.0f64)) {
+        let half = socket();
+        let moved = half.mapped(|p| p + DVec3::from_array(shift));
+        let back = parse(&bytes(&moved, Format::Binary)).unwrap();
+        // Coordinates below 4 round by 2.4e-7 in single precision.
+        for v in &half.surfaces[0].vertices {
+            let v = *v + DVec3::from_array(shift);
+            prop_assert!(back.vertices.iter().any(|w| w.distance(v) < 5e-7));
+        }
+        prop_assert_eq!(back.edges.len(), half.surfaces[0].edges.len());
+    }
+}

@@ -1,0 +1,87 @@
+//! Writing a half as STL: for other programs, and for reading it back in tests.
+
+use crate::connector::{Half, Surface};
+use glam::DVec3;
+use std::io::{self, Write};
+
+/// The two dialects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Text, all digits.
+    Ascii,
+    /// Single precision: coordinates are rounded to 6e-8 of their size.
+    Binary,
+}
+
+/// Writes all surfaces of `half` as one mesh, in its own coordinates.
+///
+/// The halves of a [`Connector`](crate::connector::Connector) have their face centre at the origin, and the
+/// moving one is mounted; to get it as a design file wants it, turn it back with `mapped(|p| mount.apply(p))`
+/// and give `face_height = 0`.
+pub fn write(half: &Half, format: Format, out: &mut impl Write) -> io::Result<()> {
+    let triangles: Vec<[DVec3; 3]> = half.surfaces.iter().flat_map(triangles).collect();
+    match format {
+        Format::Ascii => {
+            writeln!(out, "solid half")?;
+            for t in &triangles {
+                let n = normal(t);
+                writeln!(out, "  facet normal {:e} {:e} {:e}\n    outer loop", n.x, n.y, n.z)?;
+                for p in t {
+                    writeln!(out, "      vertex {} {} {}", p.x, p.y, p.z)?;
+                }
+                writeln!(out, "    endloop\n  endfacet")?;
+            }
+            writeln!(out, "endsolid half")
+        }
+        Format::Binary => {
+            let mut header = [0u8; 80];
+            header[..9].copy_from_slice(b"catchment");
+            out.write_all(&header)?;
+            let count = u32::try_from(triangles.len()).map_err(io::Error::other)?;
+            out.write_all(&count.to_le_bytes())?;
+            for t in &triangles {
+                for p in [normal(t), t[0], t[1], t[2]] {
+                    for value in p.to_array() {
+                        out.write_all(&(value as f32).to_le_bytes())?;
+                    }
+                }
+                out.write_all(&[0, 0])?;
+            }
+            Ok(())
+        }
+    }
+}
+
+fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+/// Cuts the facets into triangles, none of them flat even where corners of a facet lie on one line.
+fn triangles(surface: &Surface) -> Vec<[DVec3; 3]> {
+    let mut triangles = Vec::new();
+    for facet in &surface.facets {
+        let mut rest: Vec<DVec3> = facet.corners.iter().map(|&k| surface.vertices[k as usize]).collect();
+        while rest.len() > 3 {
+            let n = rest.len();
+            let area = |corners: &[DVec3]| {
+                corners
+                    .windows(2)
+                    .map(|w| (w[0] - corners[0]).cross(w[1] - corners[0]))
+                    .sum::<DVec3>()
+                    .length()
+            };
+            let ear = |k: usize| [rest[(k + n - 1) % n], rest[k], rest[(k + 1) % n]];
+            let whole = area(&rest);
+            // Neither the ear nor what it leaves may be flat.
+            let worth = |k: usize| {
+                let cut = area(&ear(k));
+                cut.min(whole - cut)
+            };
+            let best = (0..n).max_by(|&a, &b| worth(a).total_cmp(&worth(b))).unwrap_or(0);
+            triangles.push(ear(best));
+            rest.remove(best);
+        }
+        triangles.push([rest[0], rest[1], rest[2]]);
+    }
+    triangles
+}

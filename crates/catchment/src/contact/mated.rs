@@ -1,0 +1,213 @@
+//! Is the mated pose one? In it the halves must touch, not overlap, and no small error may let them sink
+//! deeper.
+//!
+//! ```text
+//!   h(aligned) = −cor        the face centres coincide at first contact
+//!   h(aligned ⊕ ε·d) ≥ h(aligned)   for every free direction d
+//! ```
+//!
+//! The second line is tried in every combination of signs of the free degrees of freedom. Slopes below 1 % and
+//! directions far from all of these are not seen: it is a check for wrong geometry, not a proof.
+
+use super::Pair;
+use crate::pose::{CorPose, Dof, PoseError};
+use glam::{DMat3, DVec2};
+
+/// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
+/// four digits, below any play that matters.
+pub const CONTACT_TOLERANCE: f64 = 1e-4;
+/// Length of a probe in the ρ-metric, in D: small beside any facet, so that only the facets that meet at the
+/// mated pose are seen.
+const PROBE: f64 = 1e-3;
+/// Descent per length that counts: above the curvature of a rotation over one probe (some 1e-3).
+const SLOPE: f64 = 1e-2;
+
+/// Why the aligned pose is no mated pose.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum MatedProblem {
+    /// The halves overlap in the aligned pose.
+    #[error(
+        "in the aligned pose the halves overlap by {overlap:.3e} D along the approach: check face_height, mount, and that both halves are drawn facing +z"
+    )]
+    Collision {
+        /// How far they would have to be drawn apart, in D.
+        overlap: f64,
+    },
+    /// The halves do not touch in the aligned pose.
+    #[error(
+        "in the aligned pose the halves are {gap:.3e} D apart along the approach: check face_height and that both halves are drawn to the same scale"
+    )]
+    Gap {
+        /// How far they are apart, in D.
+        gap: f64,
+    },
+    /// No vertical line meets both halves.
+    #[error(
+        "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis"
+    )]
+    Apart,
+    /// The aligned pose is no local minimum of the height.
+    #[error(
+        "the aligned pose does not hold: with an error of {} the halves sink {sinks:.3e} D deeper; check the mount, the centre of rotation, or lock that degree of freedom",
+        described(error)
+    )]
+    NotMinimum {
+        /// The error that lets them sink deepest among those tried.
+        error: PoseError,
+        /// How much deeper, in D.
+        sinks: f64,
+    },
+}
+
+/// The parts of an error that are not 0.
+fn described(error: &PoseError) -> String {
+    let parts: Vec<String> = Dof::ALL
+        .into_iter()
+        .zip(error.to_array())
+        .filter(|(_, value)| *value != 0.0)
+        .map(|(dof, value)| format!("{} {value:+.1e}", dof.name()))
+        .collect();
+    parts.join(", ")
+}
+
+/// Everything that keeps the aligned pose of a pair from being a mated pose; empty when it is one.
+pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
+    let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
+    let Some(height) = pair.height(&aligned) else { return vec![MatedProblem::Apart] };
+    let above = height + pair.alignment.center_of_rotation;
+    let mut problems = Vec::new();
+    if above > CONTACT_TOLERANCE {
+        problems.push(MatedProblem::Collision { overlap: above });
+    } else if above < -CONTACT_TOLERANCE {
+        problems.push(MatedProblem::Gap { gap: -above });
+    }
+    problems.extend(deepest(pair, height));
+    problems
+}
+
+/// The probe that sinks deepest, if one sinks more than rounding and curvature explain.
+fn deepest(pair: &Pair, aligned: f64) -> Option<MatedProblem> {
+    let free: Vec<Dof> =
+        pair.alignment.free.iter().filter(|dof| !pair.alignment.dont_care.contains(*dof)).collect();
+    let mut worst: Option<(f64, PoseError)> = None;
+    for code in 1..3usize.pow(free.len() as u32) {
+        let signs: Vec<f64> =
+            (0..free.len()).map(|k| [0.0, 1.0, -1.0][code / 3usize.pow(k as u32) % 3]).collect();
+        let count = signs.iter().filter(|s| **s != 0.0).count();
+        let mut error = [0.0; 5];
+        for (dof, sign) in free.iter().zip(&signs) {
+            let unit = if dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 };
+            error[dof.index()] = sign * PROBE / (count as f64).sqrt() / unit;
+        }
+        let error = PoseError::from_array(error);
+        let pose = CorPose { lateral: DVec2::new(error.x, error.y), rotation: error.rotation() };
+        // Passing by altogether is the deepest fall there is.
+        let sinks = pair.height(&pose).map_or(f64::INFINITY, |height| aligned - height);
+        if sinks > SLOPE * PROBE && worst.is_none_or(|(most, _)| sinks > most) {
+            worst = Some((sinks, error));
+        }
+    }
+    worst.map(|(sinks, error)| MatedProblem::NotMinimum { error, sinks })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
+    use crate::pose::{DofSet, Mount};
+
+    fn design(connector: ConnectorSpec, mount: Mount, free: DofSet, cor: f64) -> Design {
+        let alignment = Alignment { center_of_rotation: cor, ..Alignment::new(free, mount) };
+        Design { name: "test".into(), connector, width: 1.0, unit: None, alignment }
+    }
+
+    fn pair(design: &Design) -> Pair {
+        Pair::new(&Connector::build(design).unwrap(), &design.alignment)
+    }
+
+    fn family(spec: FamilySpec, cor: f64) -> Design {
+        let planar = spec.family.is_planar();
+        let free = match spec.family {
+            _ if planar => [Dof::X, Dof::Pitch].into_iter().collect(),
+            Family::Cone => DofSet::ALL.without(Dof::Yaw),
+            _ => DofSet::ALL,
+        };
+        let mount = if planar { Mount::Y } else { Mount::X };
+        design(ConnectorSpec::Family(spec), mount, free, cor)
+    }
+
+    #[test]
+    fn every_family_is_mated() {
+        let coarse = |family| FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) };
+        let mut specs: Vec<FamilySpec> = Family::ALL.into_iter().map(coarse).collect();
+        specs.push(FamilySpec { draft_angle: 0.2, ..coarse(Family::XFace3dLocking) });
+        specs.push(FamilySpec { hermaphroditic: true, chamfer: 0.05, ..coarse(Family::PinHole) });
+        specs.extend(
+            [Family::VFace, Family::SFace, Family::XFace, Family::Pyramid]
+                .map(|f| FamilySpec { base_thickness: Some(0.5), ..coarse(f) }),
+        );
+        for spec in specs {
+            for cor in [0.0, 0.5] {
+                assert_eq!(problems(&pair(&family(spec.clone(), cor))), [], "{spec:?} {cor}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wrong_face_height_is_a_collision_or_a_gap() {
+        let block = |z: f64| {
+            let corner = |i: u8| [f64::from(i & 1) - 0.5, f64::from(i >> 1 & 1) - 0.5, z * f64::from(i >> 2)];
+            HalfSpec::Pieces(vec![(0..8).map(corner).collect()])
+        };
+        for (face_height, expected) in [(0.2, 0.2), (0.3, 0.0), (0.4, -0.2)] {
+            let own = OwnSpec { face_height, fixed: block(0.3), moving: block(0.3) };
+            let free = DofSet::EMPTY.with(Dof::X);
+            let found = problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, free, 0.0)));
+            match found[..] {
+                [] => assert_eq!(expected, 0.0),
+                [MatedProblem::Collision { overlap }] => assert!((overlap - expected).abs() < 1e-14),
+                [MatedProblem::Gap { gap }] => assert!((gap + expected).abs() < 1e-14),
+                _ => panic!("{found:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn the_wrong_mount_puts_ridges_on_ridges() {
+        // Turned about y instead of x a V-notch's tip still fits; pins on a circle of three do not.
+        let spec = FamilySpec { pins: 3, chord_error: 0.05, ..FamilySpec::new(Family::PinHole) };
+        let mut wrong = family(spec, 0.0);
+        wrong.alignment.mount = Mount::Y;
+        assert!(matches!(problems(&pair(&wrong))[0], MatedProblem::Collision { .. }));
+    }
+
+    #[test]
+    fn a_pose_on_a_ridge_is_no_minimum() {
+        // Two tips, point on point: any lateral error lets them slide past each other.
+        let tip = || {
+            HalfSpec::Pieces(vec![vec![
+                [-0.5, -0.5, 0.0],
+                [0.5, -0.5, 0.0],
+                [0.5, 0.5, 0.0],
+                [-0.5, 0.5, 0.0],
+                [0.0, 0.0, 0.5],
+            ]])
+        };
+        let own = OwnSpec { face_height: 0.5, fixed: tip(), moving: tip() };
+        let found = problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, DofSet::ALL, 0.0)));
+        assert!(matches!(found[..], [MatedProblem::NotMinimum { .. }]), "{found:?}");
+    }
+
+    #[test]
+    fn halves_beside_each_other_never_meet() {
+        let block = |x: f64| {
+            let corner =
+                |i: u8| [x + 0.2 * f64::from(i & 1), f64::from(i >> 1 & 1) - 0.5, 0.3 * f64::from(i >> 2)];
+            HalfSpec::Pieces(vec![(0..8).map(corner).collect()])
+        };
+        let own = OwnSpec { face_height: 0.3, fixed: block(-0.5), moving: block(0.3) };
+        let found = problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, DofSet::ALL, 0.0)));
+        assert_eq!(found, [MatedProblem::Apart]);
+    }
+}

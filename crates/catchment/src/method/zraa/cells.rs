@@ -1,0 +1,195 @@
+//! The upper envelope of the patches as convex cells that tile the plane, and who lies across each border.
+
+use super::patch::{Patch, area};
+use crate::exec::{Cancelled, Exec};
+use glam::DVec2;
+
+/// Cells smaller than this square of the seam's width, in multiples of the seam, are rounding.
+const SLIVER: f64 = 10.0;
+
+/// A convex cell in which one patch is the highest.
+#[derive(Debug, Clone)]
+pub(super) struct Cell {
+    /// Corners, counter-clockwise.
+    pub(super) polygon: Vec<DVec2>,
+    /// Which patch.
+    pub(super) patch: usize,
+}
+
+/// Part of a cell's border with one neighbour, or none, across it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Border {
+    /// From here, counter-clockwise around the cell,
+    pub(super) from: DVec2,
+    /// to here.
+    pub(super) to: DVec2,
+    /// The cell across; `None` where the halves pass each other.
+    pub(super) across: Option<usize>,
+}
+
+impl Border {
+    pub(super) fn midpoint(&self) -> DVec2 {
+        self.from.midpoint(self.to)
+    }
+}
+
+/// The upper envelope of the patches.
+pub(super) fn upper_envelope(patches: &[Patch], seam: f64, exec: &Exec) -> Result<Vec<Cell>, Cancelled> {
+    let boxes: Vec<(DVec2, DVec2)> = patches.iter().map(|p| bounds(&p.footprint)).collect();
+    let mut cells = Vec::new();
+    for (i, patch) in patches.iter().enumerate() {
+        exec.check()?;
+        let mut pieces = vec![patch.footprint.clone()];
+        for (j, other) in patches.iter().enumerate() {
+            if i == j || !overlap(boxes[i], boxes[j]) || pieces.is_empty() {
+                continue;
+            }
+            let higher = |p: DVec2| other.height(p) - patch.height(p);
+            let steepness = (other.gradient - patch.gradient).length();
+            let region = if steepness <= seam {
+                // Parallel planes: the higher one wins everywhere, and the first of two equal ones.
+                let above = higher(patch.footprint[0]);
+                let wins = above > seam || (above >= -seam && j < i);
+                if !wins {
+                    continue;
+                }
+                other.footprint.clone()
+            } else {
+                clip(&other.footprint, |p| higher(p) / steepness)
+            };
+            if is_cell(&region, seam) {
+                pieces = pieces.into_iter().flat_map(|piece| minus(piece, &region, seam)).collect();
+            }
+        }
+        cells.extend(pieces.into_iter().map(|polygon| Cell { polygon, patch: i }));
+    }
+    Ok(cells)
+}
+
+/// The part of a convex polygon where `inside`, linear and in units of length, is at least 0.
+pub(super) fn clip(polygon: &[DVec2], inside: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
+    let mut out = Vec::with_capacity(polygon.len() + 1);
+    for (k, &a) in polygon.iter().enumerate() {
+        let b = polygon[(k + 1) % polygon.len()];
+        let (da, db) = (inside(a), inside(b));
+        if da >= 0.0 {
+            out.push(a);
+        }
+        if (da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0) {
+            out.push(a.lerp(b, da / (da - db)));
+        }
+    }
+    out
+}
+
+/// Convex pieces of `piece` outside the convex `region`.
+fn minus(piece: Vec<DVec2>, region: &[DVec2], seam: f64) -> Vec<Vec<DVec2>> {
+    if !overlap(bounds(&piece), bounds(region)) {
+        return vec![piece];
+    }
+    let mut outside = Vec::new();
+    let mut rest = piece.clone();
+    for (k, &a) in region.iter().enumerate() {
+        let along = region[(k + 1) % region.len()] - a;
+        // A side shorter than the seam has no direction; its neighbours close the region without it.
+        if along.length() <= seam {
+            continue;
+        }
+        let inward = along.perp().normalize();
+        let distance = |p: DVec2| {
+            let d = inward.dot(p - a);
+            if d.abs() <= seam { 0.0 } else { d }
+        };
+        let cut = clip(&rest, |p| -distance(p));
+        if is_cell(&cut, seam) {
+            outside.push(cut);
+        }
+        rest = clip(&rest, distance);
+        if !is_cell(&rest, seam) {
+            return vec![piece];
+        }
+    }
+    outside
+}
+
+/// Whether a polygon is more than rounding.
+fn is_cell(polygon: &[DVec2], seam: f64) -> bool {
+    if polygon.len() < 3 {
+        return false;
+    }
+    let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
+    area(polygon) > SLIVER * seam * size
+}
+
+fn bounds(polygon: &[DVec2]) -> (DVec2, DVec2) {
+    polygon.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)))
+}
+
+fn overlap(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> bool {
+    a.0.cmple(b.1).all() && b.0.cmple(a.1).all()
+}
+
+/// The border of every cell, cut where the neighbour across changes.
+pub(super) fn borders(cells: &[Cell], seam: f64, exec: &Exec) -> Result<Vec<Vec<Border>>, Cancelled> {
+    // Sides meet where their lines fall together within a few seams.
+    let near = SLIVER * seam;
+    let boxes: Vec<(DVec2, DVec2)> = cells
+        .iter()
+        .map(|c| {
+            let (lo, hi) = bounds(&c.polygon);
+            (lo - near, hi + near)
+        })
+        .collect();
+    let mut borders = Vec::with_capacity(cells.len());
+    for (i, cell) in cells.iter().enumerate() {
+        exec.check()?;
+        let neighbours: Vec<usize> =
+            (0..cells.len()).filter(|&j| j != i && overlap(boxes[i], boxes[j])).collect();
+        let n = cell.polygon.len();
+        let mut own = Vec::new();
+        for k in 0..n {
+            let (from, to) = (cell.polygon[k], cell.polygon[(k + 1) % n]);
+            let length = from.distance(to);
+            if length <= near {
+                continue;
+            }
+            let along = (to - from) / length;
+            // Stretches of this side, as distances from its start, with the cell across.
+            let mut stretches: Vec<(f64, f64, usize)> = Vec::new();
+            for &j in &neighbours {
+                let other = &cells[j].polygon;
+                for l in 0..other.len() {
+                    let (a, b) = (other[l] - from, other[(l + 1) % other.len()] - from);
+                    if along.perp_dot(a).abs() > near || along.perp_dot(b).abs() > near {
+                        continue;
+                    }
+                    // Across means running the other way.
+                    let (start, end) = (along.dot(b).max(0.0), along.dot(a).min(length));
+                    if end - start > near {
+                        stretches.push((start, end, j));
+                    }
+                }
+            }
+            stretches.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+            let point = |t: f64| from + along * t;
+            let mut reached = 0.0;
+            for (start, end, j) in stretches {
+                if start - reached > near {
+                    own.push(Border { from: point(reached), to: point(start), across: None });
+                }
+                let start = if start - reached > near { start } else { reached };
+                if end - start > near {
+                    own.push(Border { from: point(start), to: point(end), across: Some(j) });
+                    reached = end;
+                }
+            }
+            if length - reached > near {
+                own.push(Border { from: point(reached), to, across: None });
+            } else if let Some(last) = own.last_mut() {
+                last.to = to;
+            }
+        }
+        borders.push(own);
+    }
+    Ok(borders)
+}

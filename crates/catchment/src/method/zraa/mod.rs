@@ -1,0 +1,159 @@
+//! Zero-rotation area of acceptance: which lateral offsets contact corrects when no rotation is possible.
+//!
+//! ```text
+//!   h(x, y)  is piecewise linear at R = 1: the upper envelope of the contact patches
+//!   accepted = { (x, y) : the steepest descent of h from there ends at the mated pose }
+//! ```
+//!
+//! Nothing is sampled: the envelope is cut into convex cells, every cell into the strips of its flow that
+//! leave by different borders, and the accepted strips are polygons whose areas add up. In one dimension (one
+//! translation locked) the answer is an interval; for the planar families these are Nilsson's bounds, ±D/3 for
+//! the S-Face, ±D/2 for the V-Face and ±D for the X-Face.
+//!
+//! Exact up to rounding and [`Settings::seam`] for the solids as given; a cone is the polygon that stands for
+//! it. Sets without area (the ridge of a roof) are not decided. Source: the dissertation, section 2.2 (ZRAA);
+//! Nilsson for the bounds of planar faces.
+
+mod cells;
+mod flow;
+mod line;
+mod patch;
+
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec};
+use crate::pose::Dof;
+use flow::Flow;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// Most patches: cutting them against each other takes their square.
+const MAX_PATCHES: usize = 20_000;
+
+/// What changes the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Positions closer than this, in D, are one.
+    pub seam: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        // Above the rounding of a few hundred cuts, far below any length that a design has.
+        Self { seam: 1e-11 }
+    }
+}
+
+/// Translations that are corrected without any rotation.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Zraa {
+    /// One free translation: offsets from `from` to `to` along `axis`, in D.
+    Interval {
+        /// x or y.
+        axis: Dof,
+        /// Lower end, at most 0.
+        from: f64,
+        /// Upper end, at least 0.
+        to: f64,
+    },
+    /// Both translations.
+    Region {
+        /// Convex polygons that tile the accepted offsets, counter-clockwise, in D.
+        polygons: Vec<Vec<DVec2>>,
+        /// Their area, in D².
+        area: f64,
+    },
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ZraaError {
+    /// Stopped on request.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// Neither x nor y is free.
+    #[error("neither x nor y is free: name at least one of them in [alignment] free")]
+    NoTranslation,
+    /// The halves do not meet in the aligned pose.
+    #[error(
+        "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis"
+    )]
+    NoMatedPose,
+    /// The geometry is too rich.
+    #[error("{count} ways to touch, more than {MAX_PATCHES}: give a coarser mesh or a larger chord_error")]
+    TooManyPatches {
+        /// How many.
+        count: usize,
+    },
+    /// The subdivision is not consistent.
+    #[error(
+        "the motion over {cells} cells does not come to an end: the geometry has details below the seam of {seam:.1e} D"
+    )]
+    Tangled {
+        /// How many cells there are.
+        cells: usize,
+        /// The seam, in D.
+        seam: f64,
+    },
+}
+
+/// The zero-rotation area of acceptance of a pair, over those of x and y that are free.
+pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaError> {
+    let free = pair.alignment.free;
+    let patches = patch::patches(&pair.fixed, &pair.moving);
+    if patches.len() > MAX_PATCHES {
+        return Err(ZraaError::TooManyPatches { count: patches.len() });
+    }
+    exec.check()?;
+    let (axis, direction) = match (free.contains(Dof::X), free.contains(Dof::Y)) {
+        (true, true) => return region(&patches, settings, exec),
+        (true, false) => (Dof::X, DVec2::X),
+        (false, true) => (Dof::Y, DVec2::Y),
+        (false, false) => return Err(ZraaError::NoTranslation),
+    };
+    let [from, to] = line::interval(&patches, direction, settings.seam);
+    Ok(Zraa::Interval { axis, from, to })
+}
+
+fn region(patches: &[patch::Patch], settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaError> {
+    let seam = settings.seam;
+    let cells = cells::upper_envelope(patches, seam, exec)?;
+    let borders = cells::borders(&cells, seam, exec)?;
+    let inside = |polygon: &[DVec2]| {
+        (0..polygon.len())
+            .all(|k| (polygon[(k + 1) % polygon.len()] - polygon[k]).perp_dot(-polygon[k]) >= -seam)
+    };
+    let mated = cells
+        .iter()
+        .filter(|cell| inside(&cell.polygon))
+        .map(|cell| patches[cell.patch].height(DVec2::ZERO))
+        .max_by(f64::total_cmp)
+        .ok_or(ZraaError::NoMatedPose)?;
+    let mut flow = Flow::new(patches, &cells, &borders, seam, mated);
+    let mut polygons = Vec::new();
+    for (k, cell) in cells.iter().enumerate() {
+        exec.check()?;
+        for strip in flow.strips(k).into_iter().filter(|s| s.accepted) {
+            let mut part = cell.polygon.clone();
+            if strip.from.is_finite() {
+                part = cells::clip(&part, |p| flow.across(k, p) - strip.from);
+                part = cells::clip(&part, |p| strip.to - flow.across(k, p));
+            }
+            // Cuts through a corner leave it twice.
+            part.dedup_by(|a, b| a.distance(*b) <= seam);
+            while part.len() > 1 && part[0].distance(part[part.len() - 1]) <= seam {
+                part.pop();
+            }
+            if part.len() >= 3 {
+                polygons.push(part);
+            }
+        }
+    }
+    if flow.tangled {
+        return Err(ZraaError::Tangled { cells: cells.len(), seam });
+    }
+    let area = polygons.iter().map(|p| patch::area(p)).sum();
+    Ok(Zraa::Region { polygons, area })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,119 @@
+//! Every way in which the halves can touch at the aligned rotation, as a plane over a convex polygon.
+//!
+//! With the COR at c = (x, y, z), a point q of the moving half (from the COR) touches a point p of the fixed
+//! half with normal n when n·(c + q − p) = 0, which is a plane over (x, y). Its footprint is where the foot of
+//! the contact lies on both features. Features that cannot support the normal lie below others and are left
+//! out; what stays in too much does no harm to the upper envelope.
+
+use crate::connector::{Half, Surface};
+use glam::{DVec2, DVec3};
+
+/// Below this z-component a normal is horizontal: the feature is a wall and has no height.
+const VERTICAL: f64 = 1e-9;
+/// Slack of the support test, relative to lengths: rounding only.
+const ROUNDING: f64 = 1e-9;
+
+/// A plane over a convex polygon of the lateral plane.
+#[derive(Debug, Clone)]
+pub(super) struct Patch {
+    /// Corners, counter-clockwise.
+    pub(super) footprint: Vec<DVec2>,
+    /// Height over (0, 0), in D.
+    pub(super) offset: f64,
+    /// Gradient of the height, dimensionless.
+    pub(super) gradient: DVec2,
+}
+
+impl Patch {
+    /// Height over `at`.
+    pub(super) fn height(&self, at: DVec2) -> f64 {
+        self.offset + self.gradient.dot(at)
+    }
+
+    /// The contact with normal `n` of fixed point `p` and moving point `q`, over the given corners.
+    fn new(n: DVec3, p: DVec3, q: DVec3, mut footprint: Vec<DVec2>) -> Option<Self> {
+        let area = area(&footprint);
+        let size = footprint.iter().map(|c| c.distance(footprint[0])).fold(0.0, f64::max);
+        if area.abs() <= ROUNDING * size * size {
+            return None;
+        }
+        if area < 0.0 {
+            footprint.reverse();
+        }
+        Some(Self { footprint, offset: n.dot(p - q) / n.z, gradient: -n.truncate() / n.z })
+    }
+}
+
+/// Signed area of a polygon, positive when counter-clockwise.
+pub(super) fn area(polygon: &[DVec2]) -> f64 {
+    let Some(&origin) = polygon.first() else { return 0.0 };
+    polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>() / 2.0
+}
+
+/// All patches of a pair of halves, the moving one given from the COR at the aligned rotation.
+pub(super) fn patches(fixed: &Half, moving: &Half) -> Vec<Patch> {
+    let mut patches = Vec::new();
+    for f in &fixed.surfaces {
+        for m in &moving.surfaces {
+            facets_and_corners(f, m, 1.0, &mut patches);
+            facets_and_corners(m, f, -1.0, &mut patches);
+            edges(f, m, &mut patches);
+        }
+    }
+    patches
+}
+
+/// Facets of `a` against corners of `b`; `up` is +1 where a is the fixed half and −1 where it is the moving one.
+fn facets_and_corners(a: &Surface, b: &Surface, up: f64, out: &mut Vec<Patch>) {
+    let mut neighbours: Vec<Vec<DVec3>> = vec![Vec::new(); b.vertices.len()];
+    for facet in &b.facets {
+        for (k, &from) in facet.corners.iter().enumerate() {
+            let to = facet.corners[(k + 1) % facet.corners.len()];
+            neighbours[from as usize].push(b.vertices[to as usize] - b.vertices[from as usize]);
+        }
+    }
+    for facet in &a.facets {
+        if facet.normal.z * up <= VERTICAL {
+            continue;
+        }
+        for (v, around) in b.vertices.iter().zip(&neighbours) {
+            if around.is_empty() || around.iter().any(|e| facet.normal.dot(*e) < -ROUNDING * e.length()) {
+                continue;
+            }
+            let corners = facet.corners.iter().map(|&k| ((a.vertices[k as usize] - *v) * up).truncate());
+            let foot = a.vertices[facet.corners[0] as usize];
+            let (p, q) = if up > 0.0 { (foot, *v) } else { (*v, foot) };
+            out.extend(Patch::new(facet.normal * up, p, q, corners.collect()));
+        }
+    }
+}
+
+/// Convex edges against convex edges.
+fn edges(fixed: &Surface, moving: &Surface, out: &mut Vec<Patch>) {
+    for e in &fixed.edges {
+        let [a, b] = e.ends.map(|k| fixed.vertices[k as usize]);
+        let sides = e.facets.map(|k| fixed.facets[k as usize].normal);
+        for g in &moving.edges {
+            let [p, q] = g.ends.map(|k| moving.vertices[k as usize]);
+            let Some(n) = (b - a).cross(q - p).try_normalize() else { continue };
+            let n = if n.z < 0.0 { -n } else { n };
+            if n.z <= VERTICAL
+                || !between(n, sides, b - a)
+                || !between(-n, g.facets.map(|k| moving.facets[k as usize].normal), q - p)
+            {
+                continue;
+            }
+            let [a2, b2, p2, q2] = [a, b, p, q].map(DVec3::truncate);
+            out.extend(Patch::new(n, a, p, vec![a2 - p2, b2 - p2, b2 - q2, a2 - q2]));
+        }
+    }
+}
+
+/// Whether `n`, across a convex edge, lies between the outward normals of its two facets.
+fn between(n: DVec3, [left, right]: [DVec3; 2], edge: DVec3) -> bool {
+    let along = edge.normalize_or_zero();
+    let along = if left.cross(right).dot(along) < 0.0 { -along } else { along };
+    left.cross(n).dot(along) >= -ROUNDING
+        && n.cross(right).dot(along) >= -ROUNDING
+        && n.dot(left + right) > 0.0
+}

@@ -1,0 +1,179 @@
+//! Closed forms, and the definition by brute descent.
+
+use super::*;
+use crate::connector::Connector;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::pose::{CorPose, DofSet, Mount};
+use glam::DMat3;
+use proptest::prelude::*;
+
+fn pair(spec: FamilySpec) -> Pair {
+    let planar = spec.family.is_planar();
+    let free = DofSet::EMPTY.with(Dof::X);
+    let free = if planar { free } else { free.with(Dof::Y) };
+    let alignment = Alignment {
+        center_of_rotation: 0.3,
+        ..Alignment::new(free, if planar { Mount::Y } else { Mount::X })
+    };
+    let connector = ConnectorSpec::Family(spec);
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
+fn run_family(spec: FamilySpec) -> Zraa {
+    run(&pair(spec), &Settings::default(), &Exec::new()).unwrap()
+}
+
+fn area(spec: FamilySpec) -> f64 {
+    match run_family(spec) {
+        Zraa::Region { area, .. } => area,
+        other @ Zraa::Interval { .. } => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn planar_faces_reach_nilssons_bounds() {
+    for (family, bound) in [(Family::SFace, 1.0 / 3.0), (Family::VFace, 0.5), (Family::XFace, 1.0)] {
+        for aspect_ratio in [0.25, 1.0] {
+            for base_thickness in [None, Some(0.5)] {
+                let spec = FamilySpec { aspect_ratio, base_thickness, ..FamilySpec::new(family) };
+                let Zraa::Interval { axis, from, to } = run_family(spec) else { panic!("{family:?}") };
+                assert_eq!(axis, Dof::X);
+                assert!((from + bound).abs() < 1e-9 && (to - bound).abs() < 1e-9, "{family:?}: {from} {to}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_saddle_accepts_the_diamond() {
+    for aspect_ratio in [0.3, 0.577, 1.2] {
+        let area = area(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::XFace3d) });
+        assert!((area - 2.0).abs() < 1e-9, "{area}");
+    }
+}
+
+#[test]
+fn the_pyramid_accepts_its_socket() {
+    for aspect_ratio in [0.3, 1.0] {
+        let area = area(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::Pyramid) });
+        assert!((area - 1.0).abs() < 1e-9, "{area}");
+    }
+}
+
+#[test]
+fn the_cone_accepts_its_polygon() {
+    for chord_error in [0.02, 0.001] {
+        let area = area(FamilySpec { chord_error, ..FamilySpec::new(Family::Cone) });
+        // The polygon lies inside the circle, within the chord error: it lacks less than its border's length times that.
+        let lacking = std::f64::consts::FRAC_PI_4 - area;
+        assert!(lacking > 0.0 && lacking < std::f64::consts::PI * chord_error, "{chord_error}: {area}");
+    }
+}
+
+/// Radius of the circle that the chamfer of the single hole accepts: the tip must land inside its mouth.
+#[test]
+fn a_peg_accepts_the_mouth_of_its_hole() {
+    let spec = FamilySpec { pins: 1, circle_radius: 0.0, ..FamilySpec::new(Family::PinHole) };
+    let mouth = spec.pin_radius + spec.clearance + spec.chamfer;
+    let circle = std::f64::consts::PI * mouth * mouth;
+    let lacking = circle - area(spec.clone());
+    assert!(lacking > 0.0 && lacking < 2.0 * std::f64::consts::PI * mouth * spec.chord_error, "{lacking}");
+}
+
+/// The height as the patches have it.
+fn height(patches: &[patch::Patch], at: DVec2) -> f64 {
+    let over = |p: &&patch::Patch| {
+        let n = p.footprint.len();
+        (0..n).all(|k| {
+            let (a, b) = (p.footprint[k], p.footprint[(k + 1) % n]);
+            (b - a).perp_dot(at - a) >= -1e-12
+        })
+    };
+    patches.iter().filter(over).map(|p| p.height(at)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+#[test]
+fn patches_have_the_brute_height() {
+    for family in [Family::Pyramid, Family::Cone, Family::XFace3d, Family::XFace3dLocking, Family::PinHole] {
+        let pair = pair(FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) });
+        let patches = patch::patches(&pair.fixed, &pair.moving);
+        for k in 0..60u32 {
+            let lateral = offset(k);
+            let brute = pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
+            let ours = height(&patches, lateral);
+            // A few products of numbers below 1, divided by normals not flatter than 0.1.
+            assert!(
+                (brute.unwrap_or(f64::NEG_INFINITY) - ours).abs() < 1e-12 || (brute.is_none() && ours < -1e9)
+            );
+        }
+    }
+}
+
+/// Offsets spread evenly over the box, by multiples of an irrational pair.
+fn offset(k: u32) -> DVec2 {
+    let k = f64::from(k);
+    DVec2::new((k * 0.754_877_666).fract() * 2.0 - 1.0, (k * 0.569_840_291).fract() * 2.0 - 1.0)
+}
+
+/// Steepest descent by small steps.
+fn descends(patches: &[patch::Patch], mut at: DVec2) -> bool {
+    let mut step = 0.01;
+    let mut here = height(patches, at);
+    while step > 1e-4 && here.is_finite() {
+        let lowest = (0..32)
+            .map(|k| at + step * DVec2::from_angle(f64::from(k) * std::f64::consts::PI / 16.0))
+            .map(|p| (height(patches, p), p))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap();
+        if lowest.0 < here - 1e-9 {
+            (here, at) = lowest;
+        } else {
+            step /= 2.0;
+        }
+    }
+    at.length() < 0.01
+}
+
+fn contains(zraa: &Zraa, at: DVec2) -> bool {
+    let Zraa::Region { polygons, .. } = zraa else { return false };
+    polygons.iter().any(|p| (0..p.len()).all(|k| (p[(k + 1) % p.len()] - p[k]).perp_dot(at - p[k]) >= -1e-12))
+}
+
+/// The region agrees with small steps downhill, but for offsets near its border.
+#[test]
+fn regions_agree_with_brute_descent() {
+    let coarse = |family| FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) };
+    let specs = [
+        coarse(Family::Pyramid),
+        coarse(Family::XFace3d),
+        FamilySpec { draft_angle: 0.3, ..coarse(Family::XFace3dLocking) },
+        FamilySpec { clearance: 0.05, ..coarse(Family::XFace3dLocking) },
+        FamilySpec { base_thickness: Some(0.1), ..coarse(Family::Cone) },
+    ];
+    for spec in specs {
+        let pair = pair(spec.clone());
+        let zraa = run(&pair, &Settings::default(), &Exec::new()).unwrap();
+        let patches = patch::patches(&pair.fixed, &pair.moving);
+        let mut wrong = 0;
+        for k in 0..200u32 {
+            let at = offset(k);
+            let near =
+                (0..8).map(|a| at + 0.03 * DVec2::from_angle(f64::from(a) * std::f64::consts::FRAC_PI_4));
+            let inside = contains(&zraa, at);
+            if near.into_iter().all(|p| contains(&zraa, p) == inside) && descends(&patches, at) != inside {
+                wrong += 1;
+            }
+        }
+        assert_eq!(wrong, 0, "{spec:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_shifted_seam_changes_nothing(seam in 1e-13..1e-9f64, aspect_ratio in 0.2..1.5f64) {
+        let pair = pair(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::XFace3d) });
+        let Zraa::Region { area, .. } = run(&pair, &Settings { seam }, &Exec::new()).unwrap() else { panic!() };
+        prop_assert!((area - 2.0).abs() < 1e-9);
+    }
+}
