@@ -1,9 +1,9 @@
 //! The command line as types.
 
 use crate::command::Command;
-use crate::failure::Failure;
-use crate::source::Input;
-use catchment::design::{Complaint, Quantity, parse_dofs};
+use crate::geometry::Built;
+use crate::source::{Finding, Input, InputError};
+use catchment::design::{Complaint, Design, Quantity, parse_dofs};
 use catchment::pose::DofSet;
 use clap::{Args, Parser};
 use std::path::PathBuf;
@@ -57,45 +57,52 @@ pub(crate) struct DesignArgs {
 }
 
 impl DesignArgs {
-    /// Reads the file and applies the changes.
-    #[expect(dead_code, reason = "for the commands that compute")]
-    pub(crate) fn read(&self) -> Result<Input, Failure> {
-        self.apply(Input::read(&self.path)?)
+    /// Reads the file, applies the changes and builds the halves.
+    pub(crate) fn build(&self) -> Result<Built, InputError> {
+        Built::new(self.changed(Input::read(&self.path)?)?)
     }
 
     /// Applies the changes to what the file says.
-    pub(crate) fn apply(&self, input: Input) -> Result<Input, Failure> {
-        let refuse = |option: &'static str| {
-            let input = &input;
-            move |complaint: Complaint| refused(input, option, &complaint)
-        };
-        let mut design = input.design.clone();
+    fn changed(&self, mut input: Input) -> Result<Input, InputError> {
+        match self.changed_design(input.design.clone()) {
+            Ok(design) => {
+                input.design = design;
+                Ok(input)
+            }
+            Err((option, complaint)) => {
+                let finding = refusal(&input, option, &complaint);
+                Err(input.refused(vec![finding]))
+            }
+        }
+    }
+
+    fn changed_design(&self, mut design: Design) -> Result<Design, (&'static str, Complaint)> {
         if let Some(free) = self.free {
-            design = design.with_free(free).map_err(refuse("--free"))?;
+            design = design.with_free(free).map_err(|complaint| ("--free", complaint))?;
         }
         if let Some(cor) = self.cor {
-            design = design.with_center_of_rotation(cor).map_err(refuse("--cor"))?;
+            design = design.with_center_of_rotation(cor).map_err(|complaint| ("--cor", complaint))?;
         }
         if let Some(ratio) = self.aspect_ratio {
-            design = design.with_aspect_ratio(ratio).map_err(refuse("--aspect-ratio"))?;
+            design = design.with_aspect_ratio(ratio).map_err(|complaint| ("--aspect-ratio", complaint))?;
         }
-        if let Some(length) = self.rotation_length {
-            design = design.with_rotation_length(length).map_err(refuse("--rotation-length"))?;
+        if let Some(rho) = self.rotation_length {
+            design =
+                design.with_rotation_length(rho).map_err(|complaint| ("--rotation-length", complaint))?;
         }
-        Ok(Input { design, ..input })
+        Ok(design)
     }
 }
 
 /// A change that the design does not allow, shown beside the key that forbids it.
-fn refused(input: &Input, option: &str, complaint: &Complaint) -> Failure {
+fn refusal(input: &Input, option: &str, complaint: &Complaint) -> Finding {
     let place = match complaint {
         Complaint::OutOfPlane { .. } => "connector.family",
         Complaint::NotAParameter { .. } => "connector",
         Complaint::PitchBeyondPole => "errors.pitch",
         _ => "",
     };
-    let finding = input.finding(place, format!("{option}: {complaint}"), complaint.help());
-    Failure::one(input.source.report(finding))
+    input.finding(place, format!("{option}: {complaint}"), complaint.help())
 }
 
 fn dofs(text: &str) -> Result<DofSet, String> {

@@ -72,6 +72,11 @@ impl Input {
         }
     }
 
+    /// This design, refused for what was found.
+    pub(crate) fn refused(self, findings: Vec<Finding>) -> InputError {
+        InputError::Findings { source: self.source, findings, omitted: 0 }
+    }
+
     /// A finding about `place` (such as `connector.fixed.pieces[2]`), or what the file mentions around it.
     pub(crate) fn finding(&self, place: &str, message: String, help: Option<String>) -> Finding {
         Finding { message, help, span: self.sources.span(place).filter(|span| !span.is_empty()) }
@@ -143,13 +148,13 @@ impl From<InputError> for Failure {
             InputError::Load(error) => Self::with_help(error.to_string(), None),
             InputError::Findings { source, findings, omitted } => {
                 let count = findings.len() + omitted;
-                let noun = if count == 1 { "problem" } else { "problems" };
                 let shown = if omitted > 0 {
                     format!(", of which the first {} are shown", findings.len())
                 } else {
                     String::new()
                 };
-                let closing = format!("{count} {noun} in {}{shown}", source.path.display());
+                let closing =
+                    (count > 1).then(|| format!("{count} problems in {}{shown}", source.path.display()));
                 Self::many(findings.into_iter().map(|finding| source.report(finding)).collect(), closing)
             }
         }

@@ -139,7 +139,18 @@ impl<'a> Motion<'a> {
                 let landed = State { cor: next.cor.truncate().extend(z), ..next };
                 let rise = z - next.cor.z;
                 let allowed = self.settings.surprise * step;
-                if std::env::var("DBG").is_ok() { eprintln!("step {step:.2e} reach {reach:.1e} len {length:.2e} uz {:.3e} z {:.9} rise {:.3e} n {} cuts {cuts}", u[2], state.cor.z, rise, self.rows.len()); for (c,g) in self.contacts.iter().zip(&self.gaps) { eprintln!("    gap {:.3e} {:.3e} n {:.4} p {:.4}", c.gap, g, c.normal, c.point); } }
+                if std::env::var("DBG").is_ok() {
+                    eprintln!(
+                        "step {step:.2e} reach {reach:.1e} len {length:.2e} uz {:.3e} z {:.9} rise {:.3e} n {} cuts {cuts}",
+                        u[2],
+                        state.cor.z,
+                        rise,
+                        self.rows.len()
+                    );
+                    for (c, g) in self.contacts.iter().zip(&self.gaps) {
+                        eprintln!("    gap {:.3e} {:.3e} n {:.4} p {:.4}", c.gap, g, c.normal, c.point);
+                    }
+                }
                 let climbs = z > state.cor.z + ROUNDING;
                 if rise > allowed || climbs {
                     // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
