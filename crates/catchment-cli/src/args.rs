@@ -1,8 +1,8 @@
 //! The command line as types.
 
 use crate::command::Command;
-use crate::failure::Failure;
-use crate::source::Input;
+use crate::geometry::Built;
+use crate::source::{Finding, Input, InputError};
 use catchment::design::{Complaint, Design, Quantity, parse_dofs};
 use catchment::pose::DofSet;
 use clap::{Args, Parser};
@@ -57,50 +57,52 @@ pub(crate) struct DesignArgs {
 }
 
 impl DesignArgs {
-    /// Reads the file and applies the changes.
-    pub(crate) fn read(&self) -> Result<Input, Failure> {
-        self.apply(Input::read(&self.path)?)
+    /// Reads the file, applies the changes and builds the halves.
+    pub(crate) fn build(&self) -> Result<Built, InputError> {
+        Built::new(self.changed(Input::read(&self.path)?)?)
     }
 
     /// Applies the changes to what the file says.
-    pub(crate) fn apply(&self, mut input: Input) -> Result<Input, Failure> {
-        type Change = Box<dyn Fn(Design) -> Result<Design, Complaint>>;
-        let changes: [(&str, Option<Change>); 4] = [
-            ("--free", self.free.map(|free| Box::new(move |d: Design| d.with_free(free)) as Change)),
-            (
-                "--cor",
-                self.cor.map(|cor| Box::new(move |d: Design| d.with_center_of_rotation(cor)) as Change),
-            ),
-            (
-                "--aspect-ratio",
-                self.aspect_ratio
-                    .map(|ratio| Box::new(move |d: Design| d.with_aspect_ratio(ratio)) as Change),
-            ),
-            (
-                "--rotation-length",
-                self.rotation_length
-                    .map(|rho| Box::new(move |d: Design| d.with_rotation_length(rho)) as Change),
-            ),
-        ];
-        for (option, change) in changes {
-            let Some(change) = change else { continue };
-            input.design =
-                change(input.design.clone()).map_err(|complaint| refused(&input, option, &complaint))?;
+    fn changed(&self, mut input: Input) -> Result<Input, InputError> {
+        match self.changed_design(input.design.clone()) {
+            Ok(design) => {
+                input.design = design;
+                Ok(input)
+            }
+            Err((option, complaint)) => {
+                let finding = refusal(&input, option, &complaint);
+                Err(input.refused(vec![finding]))
+            }
         }
-        Ok(input)
+    }
+
+    fn changed_design(&self, mut design: Design) -> Result<Design, (&'static str, Complaint)> {
+        if let Some(free) = self.free {
+            design = design.with_free(free).map_err(|complaint| ("--free", complaint))?;
+        }
+        if let Some(cor) = self.cor {
+            design = design.with_center_of_rotation(cor).map_err(|complaint| ("--cor", complaint))?;
+        }
+        if let Some(ratio) = self.aspect_ratio {
+            design = design.with_aspect_ratio(ratio).map_err(|complaint| ("--aspect-ratio", complaint))?;
+        }
+        if let Some(rho) = self.rotation_length {
+            design =
+                design.with_rotation_length(rho).map_err(|complaint| ("--rotation-length", complaint))?;
+        }
+        Ok(design)
     }
 }
 
 /// A change that the design does not allow, shown beside the key that forbids it.
-fn refused(input: &Input, option: &str, complaint: &Complaint) -> Failure {
+fn refusal(input: &Input, option: &str, complaint: &Complaint) -> Finding {
     let place = match complaint {
         Complaint::OutOfPlane { .. } => "connector.family",
         Complaint::NotAParameter { .. } => "connector",
         Complaint::PitchBeyondPole => "errors.pitch",
         _ => "",
     };
-    let finding = input.finding(place, format!("{option}: {complaint}"), complaint.help());
-    Failure::one(input.source.report(finding))
+    input.finding(place, format!("{option}: {complaint}"), complaint.help())
 }
 
 fn dofs(text: &str) -> Result<DofSet, String> {

@@ -32,6 +32,7 @@ pub(crate) struct ExecArgs {
 }
 
 /// An [`Exec`] that Ctrl-C cancels, with its progress bar, which goes away with it.
+#[cfg_attr(not(test), expect(dead_code, reason = "for the commands that compute"))]
 pub(crate) struct Running {
     /// Hand it to the library.
     pub exec: Exec,
@@ -46,6 +47,7 @@ impl Drop for Running {
 
 impl ExecArgs {
     /// Starts threads, the progress bar (on a terminal only) and the handling of Ctrl-C: once per process.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for the commands that compute"))]
     pub(crate) fn start(&self) -> Result<Running, Failure> {
         const STEPS: u64 = 1000;
         let mut exec = Exec::new().with_threads(usize::from(self.threads))?;
@@ -107,6 +109,15 @@ fn bytes(text: &str) -> Result<u64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_asked_for_is_started() {
+        let args = ExecArgs { threads: 2, memory: Some(1000), quiet: true };
+        let running = args.start().unwrap();
+        assert_eq!(running.exec.threads(), 2);
+        assert_eq!(running.exec.memory_budget(), 1000);
+        assert!(!interrupted() && !running.exec.is_cancelled());
+    }
 
     #[test]
     fn sizes_are_read() {

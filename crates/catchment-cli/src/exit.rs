@@ -7,6 +7,9 @@ use std::process::ExitCode;
 pub(crate) enum ExitStatus {
     /// Done; every stated requirement is met.
     Done,
+    /// Done, but a stated requirement is not met.
+    #[expect(dead_code, reason = "for the commands that compute")]
+    RequirementNotMet,
     /// Could not compute: bad input, bad usage, no memory, no file.
     Failed,
     /// Stopped by Ctrl-C.
@@ -17,6 +20,7 @@ impl From<ExitStatus> for ExitCode {
     fn from(status: ExitStatus) -> Self {
         Self::from(match status {
             ExitStatus::Done => 0,
+            ExitStatus::RequirementNotMet => 1,
             ExitStatus::Failed => 2,
             ExitStatus::Interrupted => INTERRUPTED_CODE,
         })

@@ -14,21 +14,16 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    /// Several reports and a closing line that counts them.
-    pub(crate) fn many(reports: Vec<Report>, closing: String) -> Self {
-        Self { reports, closing: Some(closing), broken_pipe: false }
+    /// Reports and a closing line, such as their number.
+    pub(crate) fn many(reports: Vec<Report>, closing: Option<String>) -> Self {
+        Self { reports, closing, broken_pipe: false }
     }
 
     /// One message with advice.
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
         let mut diagnostic = miette::MietteDiagnostic::new(message);
         diagnostic.help = help;
-        Self::one(Report::new(diagnostic))
-    }
-
-    /// One report.
-    pub(crate) fn one(report: Report) -> Self {
-        Self { reports: vec![report], closing: None, broken_pipe: false }
+        Self { reports: vec![Report::new(diagnostic)], closing: None, broken_pipe: false }
     }
 
     /// The reader of stdout went away.
@@ -59,6 +54,6 @@ impl Failure {
 
 impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
-        Self::one(Report::from_err(error))
+        Self { reports: vec![Report::from_err(error)], closing: None, broken_pipe: false }
     }
 }

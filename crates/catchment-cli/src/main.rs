@@ -7,6 +7,7 @@ mod command;
 mod exec_args;
 mod exit;
 mod failure;
+mod geometry;
 mod output;
 mod source;
 

@@ -5,12 +5,15 @@ use catchment::design::{Design, LoadError, Sources, line_column, load, read};
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The text of a design file.
 #[derive(Debug, Clone)]
 pub(crate) struct SourceText {
     path: PathBuf,
     text: String,
+    /// The text as it may be shown, shared by all reports.
+    shown: Arc<String>,
 }
 
 /// A design file that was read.
@@ -55,7 +58,7 @@ impl Input {
     /// Reads a design file.
     pub(crate) fn read(path: &Path) -> Result<Self, InputError> {
         let text = load(path).map_err(InputError::Load)?;
-        let source = SourceText { path: path.to_path_buf(), text };
+        let source = SourceText::new(path, text);
         match read(&source.text, path.parent().unwrap_or_else(|| Path::new(""))) {
             Ok(file) => Ok(Self { design: file.design, sources: file.sources, source }),
             Err(problems) => {
@@ -69,6 +72,11 @@ impl Input {
         }
     }
 
+    /// This design, refused for what was found.
+    pub(crate) fn refused(self, findings: Vec<Finding>) -> InputError {
+        InputError::Findings { source: self.source, findings, omitted: 0 }
+    }
+
     /// A finding about `place` (such as `connector.fixed.pieces[2]`), or what the file mentions around it.
     pub(crate) fn finding(&self, place: &str, message: String, help: Option<String>) -> Finding {
         Finding { message, help, span: self.sources.span(place).filter(|span| !span.is_empty()) }
@@ -76,6 +84,10 @@ impl Input {
 }
 
 impl SourceText {
+    fn new(path: &Path, text: String) -> Self {
+        Self { path: path.to_path_buf(), shown: Arc::new(printable(&text)), text }
+    }
+
     /// The file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
@@ -86,14 +98,48 @@ impl SourceText {
         line_column(&self.text, byte)
     }
 
-    /// The finding as a report with the lines it is about.
+    /// The finding as a report with the lines it is about. Where those are too long to show (a mesh written
+    /// on one line), it says their numbers instead.
     pub(crate) fn report(&self, finding: Finding) -> Report {
         let mut diagnostic = MietteDiagnostic::new(finding.message);
         diagnostic.help = finding.help;
-        diagnostic.labels = finding.span.map(|span| vec![LabeledSpan::new_with_span(None, span)]);
+        let Some(span) = finding.span.map(|span| self.first_line(span)) else {
+            return Report::new(diagnostic);
+        };
+        if self.is_too_wide_around(span.start) {
+            let (line, column) = self.line_column(span.start);
+            diagnostic.message = format!("line {line}, column {column}: {}", diagnostic.message);
+            return Report::new(diagnostic);
+        }
+        diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, span)]);
         let name = self.path.display().to_string();
-        Report::new(diagnostic).with_source_code(NamedSource::new(name, self.text.clone()))
+        Report::new(diagnostic).with_source_code(NamedSource::new(name, Arc::clone(&self.shown)))
     }
+
+    /// A span that ends with the line it starts in.
+    fn first_line(&self, span: Range<usize>) -> Range<usize> {
+        let end = self.text[span.start..].find(['\r', '\n']).map_or(self.text.len(), |at| span.start + at);
+        span.start..span.end.min(end.max(span.start))
+    }
+
+    /// Whether the line of `byte`, or one beside it, is too long to show.
+    fn is_too_wide_around(&self, byte: usize) -> bool {
+        const WIDEST: usize = 300;
+        let (line, _) = self.line_column(byte);
+        self.text.lines().skip(line.saturating_sub(2)).take(3).any(|line| line.len() > WIDEST)
+    }
+}
+
+/// The text with control characters replaced, byte for byte: a file must not steer the terminal.
+fn printable(text: &str) -> String {
+    text.chars().fold(String::with_capacity(text.len()), |mut shown, c| {
+        if c.is_control() && !matches!(c, '\n' | '\r' | '\t') {
+            shown.extend(std::iter::repeat_n('?', c.len_utf8()));
+        } else {
+            shown.push(c);
+        }
+        shown
+    })
 }
 
 impl From<InputError> for Failure {
@@ -102,15 +148,49 @@ impl From<InputError> for Failure {
             InputError::Load(error) => Self::with_help(error.to_string(), None),
             InputError::Findings { source, findings, omitted } => {
                 let count = findings.len() + omitted;
-                let noun = if count == 1 { "problem" } else { "problems" };
                 let shown = if omitted > 0 {
                     format!(", of which the first {} are shown", findings.len())
                 } else {
                     String::new()
                 };
-                let closing = format!("{count} {noun} in {}{shown}", source.path.display());
+                let closing =
+                    (count > 1).then(|| format!("{count} problems in {}{shown}", source.path.display()));
                 Self::many(findings.into_iter().map(|finding| source.report(finding)).collect(), closing)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &str) -> SourceText {
+        SourceText::new(Path::new("d.toml"), text.to_owned())
+    }
+
+    fn shown(text: &str, span: Range<usize>) -> String {
+        let finding = Finding { message: "wrong".to_owned(), help: None, span: Some(span) };
+        format!("{:?}", source(text).report(finding))
+    }
+
+    #[test]
+    fn long_lines_and_long_spans_are_not_printed() {
+        let wide = format!("a = 1\npieces = [{}]\n", "[0, 0, 0], ".repeat(1000));
+        assert!(shown(&wide, 10..20).contains("line 2, column 5: wrong"));
+        assert!(shown(&wide, 10..20).len() < 200);
+        let tall = "pieces = [\n".to_owned() + &"[0, 0, 0],\n".repeat(1000);
+        assert!(shown(&tall, 9..tall.len()).len() < 500);
+    }
+
+    #[test]
+    fn control_characters_keep_their_width_but_not_their_power() {
+        assert_eq!(printable("a\x1b[2J\u{9b}\tµ\r\n"), "a?[2J??\tµ\r\n");
+    }
+
+    #[test]
+    fn a_span_at_the_end_of_the_text_is_shown() {
+        assert!(shown("a =", 3..3).contains("wrong"));
+        assert!(shown("a =\n", 4..4).contains("wrong"));
     }
 }

@@ -3,14 +3,14 @@
 use crate::args::DesignArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
+use crate::geometry::Built;
 use crate::output::to_stdout;
 use crate::source::{Finding, Input, InputError, SourceText};
-use catchment::design::{ConnectorSpec, Design, HalfSpec};
+use catchment::design::{ConnectorSpec, HalfSpec};
 use catchment::pose::{Dof, DofSet};
 use clap::Args;
 use serde_json::json;
 use std::fmt::Write;
-use std::path::Path;
 
 /// Check a design file: all problems at once, with their places
 #[derive(Debug, Args)]
@@ -29,29 +29,31 @@ pub(crate) struct CheckArgs {
 const JSON_SCHEMA: u32 = 1;
 
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
-    let checked = checked(&args.design.path);
+    let checked = checked(&args.design);
     if args.json {
-        return print_json(args, checked);
+        return print_json(checked);
     }
-    let input = args.design.apply(checked?)?;
-    to_stdout(&summary(input.source.path(), &input.design)?)?;
+    to_stdout(&summary(&checked?)?)?;
     Ok(ExitStatus::Done)
 }
 
-/// Every check of a design, each on what the one before let through: its file, read and understood.
-fn checked(path: &Path) -> Result<Input, InputError> {
-    Input::read(path)
+/// Every check of a design, each on what the one before let through: its file, the changes, the geometry of
+/// its halves, and the pose in which they mate.
+fn checked(args: &DesignArgs) -> Result<Built, InputError> {
+    let built = args.build()?;
+    let findings = built.mated_findings();
+    if findings.is_empty() { Ok(built) } else { Err(built.input.refused(findings)) }
 }
 
-fn print_json(args: &CheckArgs, checked: Result<Input, InputError>) -> Result<ExitStatus, Failure> {
+fn print_json(checked: Result<Built, InputError>) -> Result<ExitStatus, Failure> {
     let (report, status) = match checked {
-        Ok(input) => {
-            let input = args.design.apply(input)?;
+        Ok(Built { input, connector }) => {
             let report = json!({
                 "schema": JSON_SCHEMA,
                 "file": input.source.path(),
                 "ok": true,
                 "design": input.design,
+                "ungendered": connector.ungendered(input.design.alignment.mount),
                 "problems": [],
                 "omitted": 0,
             });
@@ -83,14 +85,15 @@ fn finding_json(source: &SourceText, finding: &Finding) -> serde_json::Value {
 }
 
 /// The design as understood, for a person: degrees, and lengths in the design's unit beside D.
-fn summary(path: &Path, design: &Design) -> Result<String, std::fmt::Error> {
+fn summary(built: &Built) -> Result<String, std::fmt::Error> {
+    let Input { design, source, .. } = &built.input;
     let alignment = &design.alignment;
     let length = |d: f64| match design.unit {
         Some(unit) => format!("{d} D = {} {}", rounded(d * design.width), unit.symbol()),
         None => format!("{d} D"),
     };
     let mut text = String::new();
-    writeln!(text, "{}: no problems", path.display())?;
+    writeln!(text, "{}: no problems", source.path().display())?;
     writeln!(text, "  name                {}", design.name)?;
     match &design.connector {
         ConnectorSpec::Family(spec) => {
@@ -101,6 +104,8 @@ fn summary(path: &Path, design: &Design) -> Result<String, std::fmt::Error> {
             writeln!(text, "  moving half         {}", half(&own.moving))?;
         }
     }
+    let alike = if built.connector.ungendered(alignment.mount) { "alike (ungendered)" } else { "different" };
+    writeln!(text, "  halves              {alike}")?;
     match design.unit {
         Some(unit) => writeln!(text, "  width D             {} {}", design.width, unit.symbol())?,
         None => writeln!(text, "  width D             {} (dimensionless)", design.width)?,

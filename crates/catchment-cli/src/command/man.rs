@@ -19,19 +19,16 @@ pub(crate) struct ManArgs {
 pub(crate) fn run(args: &ManArgs) -> Result<ExitStatus, Failure> {
     let mut command = Cli::command();
     command.build();
-    let page = match &args.subcommand {
-        None => command,
-        Some(name) => match command.find_subcommand(name) {
-            Some(subcommand) => subcommand.clone(),
-            None => {
-                let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
-                let help = format!("one of {}", names.join(", "));
-                return Err(Failure::with_help(format!("there is no subcommand `{name}`"), Some(help)));
-            }
-        },
-    };
+    if let Some(name) = &args.subcommand {
+        let Some(subcommand) = command.find_subcommand(name) else {
+            let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+            let help = format!("one of {}", names.join(", "));
+            return Err(Failure::with_help(format!("there is no subcommand `{name}`"), Some(help)));
+        };
+        command = subcommand.clone();
+    }
     let mut roff = Vec::new();
-    clap_mangen::Man::new(page).render(&mut roff)?;
+    clap_mangen::Man::new(command).render(&mut roff)?;
     to_stdout(&String::from_utf8_lossy(&roff))?;
     Ok(ExitStatus::Done)
 }

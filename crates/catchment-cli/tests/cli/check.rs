@@ -54,6 +54,32 @@ fn own_halves_are_checked() {
     insta::assert_snapshot!("own_halves", check(text.as_bytes(), &[]));
 }
 
+const BOX: &str = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]]";
+
+#[test]
+fn geometry_is_complained_about_in_its_place() {
+    let flat = format!(
+        "[connector]\nface_height = 1\n\n[connector.fixed]\npieces = [\n  {BOX},\n  \
+         [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]],\n]\n\n[connector.moving]\npieces = [{BOX}]\n"
+    );
+    insta::assert_snapshot!("flat_piece", check(flat.as_bytes(), &[]));
+    let overlapping = format!(
+        "[connector]\nface_height = 0.5\nfixed.pieces = [{BOX}]\nmoving.pieces = [{BOX}]\n\
+         [alignment]\nfree = [\"x\"]\n"
+    );
+    insta::assert_snapshot!("overlapping_halves", check(overlapping.as_bytes(), &[]));
+}
+
+#[test]
+fn a_mesh_that_is_none_is_refused_and_nothing_is_left() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("half.stl"), b"").unwrap();
+    let text = "[connector]\nface_height = 0.5\nfixed.mesh = \"half.stl\"\nmoving.mesh = \"half.stl\"\n";
+    fs::write(dir.path().join("design.toml"), text).unwrap();
+    insta::assert_snapshot!("empty_mesh", run(dir.path(), &["check", "design.toml"]));
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+}
+
 #[test]
 fn changes_obey_the_rules_of_the_file() {
     let planar = b"[connector]\nfamily = \"v-face\"\n";

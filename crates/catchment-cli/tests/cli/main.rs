@@ -1,5 +1,7 @@
 //! The real binary: exit code, stdout and stderr together.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot be set up should stop")]
+
 mod check;
 mod new;
 mod plumbing;

@@ -226,6 +226,7 @@ const fn parameter(name: &'static str, applies: Applies, kind: Kind, doc: &'stat
 
 const LOCKING: Applies = Applies::Families(&[Family::XFace3dLocking]);
 const PINS_ONLY: Applies = Applies::Families(&[Family::PinHole]);
+const WITH_PLAY: Applies = Applies::Families(&[Family::PinHole, Family::XFace3dLocking]);
 const ROUND: Applies = Applies::Families(&[Family::Cone, Family::PinHole]);
 
 macro_rules! keys {
@@ -267,7 +268,8 @@ keys! {
         "H/D: height of the mating profile over the width.");
     /// `connector.base_thickness`
     BASE_THICKNESS = parameter("base_thickness", Applies::AnyFamily, Kind::Length(Range::new(0.0, 100.0, "D")),
-        "Material behind the mating surface. It matters once a half tilts.");
+        "Material behind the mating surface, which matters once a half tilts. Without it: 0.25 behind sockets and 3-D \
+         X-Faces, nothing behind plugs and planar faces.");
     /// `connector.chord_error`
     CHORD_ERROR = parameter("chord_error", ROUND, Kind::Length(Range::new(1e-6, 0.1, "D")),
         "Largest distance between a circle and the polygon that stands for it.");
@@ -282,13 +284,13 @@ keys! {
         "Pins per half.");
     /// `connector.hermaphroditic`
     HERMAPHRODITIC = parameter("hermaphroditic", PINS_ONLY, Kind::Flag,
-        "Pins and holes alternate on both halves, instead of all pins on the moving one.");
+        "Pins and holes alternate on both halves, instead of all pins on one.");
     /// `connector.pin_radius`
     PIN_RADIUS = parameter("pin_radius", PINS_ONLY, Kind::Length(Range::new(1e-4, 1.0, "D")),
         "Radius of a pin.");
     /// `connector.clearance`
-    CLEARANCE = parameter("clearance", PINS_ONLY, Kind::Length(Range::new(0.0, 1.0, "D")),
-        "Radial play between pin and hole.");
+    CLEARANCE = parameter("clearance", WITH_PLAY, Kind::Length(Range::new(0.0, 1.0, "D")),
+        "Radial play between pin and hole; play between vertical lips.");
     /// `connector.chamfer`
     CHAMFER = parameter("chamfer", PINS_ONLY, Kind::Length(Range::new(0.0, 1.0, "D")),
         "Width of the chamfer around a hole and of the point of a pin.");

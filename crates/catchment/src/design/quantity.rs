@@ -91,13 +91,15 @@ impl FromStr for Quantity {
     }
 }
 
-/// The first 40 characters: messages quote input of any size.
+/// The first 40 characters without control characters: messages quote input of any size and kind.
 pub(super) fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
+    let printable = |c: char| if c.is_control() { '\u{FFFD}' } else { c };
+    let mut short: String = text.chars().take(LONGEST).map(printable).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        short.push('…');
     }
+    short
 }
 
 /// What turns lengths into D.

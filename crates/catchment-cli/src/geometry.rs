@@ -1,0 +1,67 @@
+//! From a design to its halves, with geometry's complaints placed in the design file.
+
+use crate::source::{Finding, Input, InputError};
+use catchment::connector::{Connector, Problem, Side};
+use catchment::contact::Pair;
+use catchment::contact::mated::{self, MatedProblem};
+
+/// A design and its halves.
+#[derive(Debug)]
+pub(crate) struct Built {
+    /// The design, and where its file says what.
+    pub input: Input,
+    /// Its halves.
+    pub connector: Connector,
+}
+
+impl Built {
+    /// Builds the halves of a design.
+    pub(crate) fn new(input: Input) -> Result<Self, InputError> {
+        match Connector::build(&input.design) {
+            Ok(connector) => Ok(Self { input, connector }),
+            Err(problems) => {
+                let findings = problems
+                    .iter()
+                    .map(|problem| input.finding(&place(problem), problem.to_string(), None))
+                    .collect();
+                Err(input.refused(findings))
+            }
+        }
+    }
+
+    /// What keeps the aligned pose from being a mated pose.
+    pub(crate) fn mated_findings(&self) -> Vec<Finding> {
+        let pair = Pair::new(&self.connector, &self.input.design.alignment);
+        let found = mated::problems(&pair);
+        found
+            .iter()
+            .map(|problem| self.input.finding(mated_place(problem), problem.to_string(), None))
+            .collect()
+    }
+}
+
+/// The key that a geometric problem is about.
+fn place(problem: &Problem) -> String {
+    match problem {
+        Problem::Parameter { parameter, .. } => format!("connector.{parameter}"),
+        Problem::Surface { side, .. } => format!("connector.{}", key(*side)),
+        Problem::PieceCount { side, .. } => format!("connector.{}.pieces", key(*side)),
+        Problem::Piece { side, piece, .. } => format!("connector.{}.pieces[{piece}]", key(*side)),
+        Problem::Stl { side, .. } => format!("connector.{}.mesh", key(*side)),
+    }
+}
+
+fn key(side: Side) -> &'static str {
+    match side {
+        Side::Fixed => "fixed",
+        Side::Moving => "moving",
+    }
+}
+
+fn mated_place(problem: &MatedProblem) -> &'static str {
+    match problem {
+        MatedProblem::Collision { .. } | MatedProblem::Gap { .. } => "connector.face_height",
+        MatedProblem::Apart => "connector",
+        MatedProblem::NotMinimum { .. } => "alignment.free",
+    }
+}
