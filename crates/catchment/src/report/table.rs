@@ -91,7 +91,8 @@ fn acceptance(text: &mut String, report: &Report) {
     if let Some([lo, hi]) = a.sum_bracket {
         row(text, "", &format!("one cell of doubt: {} … {}", significant(lo), significant(hi)));
     }
-    let share = |n: usize| percent(if a.cells == 0 { 0.0 } else { n as f64 / a.cells as f64 });
+    let share =
+        |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
     let o = &a.outcomes;
     row(
         text,

@@ -139,12 +139,12 @@ impl Frame {
     pub(super) fn draw(&self, svg: &mut Svg) {
         let r = self.rect;
         let tick = format!(r#"stroke="{SOFT}" stroke-width="0.8""#);
-        for x in self.x.ticks((r.w / 58.0) as usize) {
+        for x in self.x.ticks((r.w / 46.0) as usize) {
             let px = self.px(x);
             svg.line([px, r.y + r.h], [px, r.y + r.h + 4.0], &tick);
             svg.text([px, r.y + r.h + 15.5], TICK, Anchor::Middle, SOFT, &tick_label(x));
         }
-        for y in self.y.ticks((r.h / 42.0) as usize) {
+        for y in self.y.ticks((r.h / 34.0) as usize) {
             let py = self.py(y);
             svg.line([r.x - 4.0, py], [r.x, py], &tick);
             svg.text([r.x - 7.0, py + 3.8], TICK, Anchor::End, SOFT, &tick_label(y));

@@ -126,36 +126,58 @@ fn cube(svg: &mut Svg, map: &Map, frame: &Frame, units: &Units, onaa: &Onaa) {
     svg.rect(rect, &format!(r#"fill="none" stroke="{INK}" stroke-width="1.7"{dash}"#));
 }
 
-/// The outcomes that occur, with their share of the whole grid, from left to right; returns the width used.
-pub(super) fn legend(svg: &mut Svg, acceptance: &Acceptance, onaa: bool, [x, y]: [f64; 2]) -> f64 {
-    let counts = acceptance.counts();
+/// What a legend names: a fill (none for the cube) and the words.
+fn entries(acceptance: &Acceptance, onaa: bool) -> Vec<(Option<Rgb>, String)> {
     let total = acceptance.outcomes.len().max(1) as f64;
-    let mut place = x;
-    for (outcome, count) in Outcome::ALL.into_iter().zip(counts).filter(|(_, count)| *count > 0) {
-        let fill = hex(colour::outcome(outcome));
-        let swatch = Rect { x: place, y: y - 10.0, w: 13.0, h: 13.0 };
-        svg.rect(
-            swatch,
-            &format!(r#"fill="{fill}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#),
-        );
-        let words = format!("{} {} %", outcome.name(), short(100.0 * count as f64 / total));
-        svg.text([place + 19.0, y + 0.5], LABEL, Anchor::Start, INK, &words);
-        place += 19.0 + width_of(&words, LABEL) + 20.0;
-    }
+    let mut entries: Vec<(Option<Rgb>, String)> = Outcome::ALL
+        .into_iter()
+        .zip(acceptance.counts())
+        .filter(|(_, count)| *count > 0)
+        .map(|(o, count)| {
+            (Some(colour::outcome(o)), format!("{} {} %", o.name(), short(100.0 * count as f64 / total)))
+        })
+        .collect();
     if onaa {
-        let swatch = Rect { x: place, y: y - 10.0, w: 13.0, h: 13.0 };
-        svg.rect(swatch, &format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#));
-        let words = "largest cube (ONAA)";
-        svg.text([place + 19.0, y + 0.5], LABEL, Anchor::Start, INK, words);
-        place += 19.0 + width_of(words, LABEL);
+        entries.push((None, "largest cube (ONAA)".to_owned()));
     }
-    place - x
+    entries
 }
 
-/// Width of a text in DejaVu Sans, near enough to lay things out.
+/// From a swatch to its words, and from words to the next swatch.
+const SWATCH: f64 = 19.0;
+const BETWEEN: f64 = 22.0;
+
+/// Width of the legend.
+pub(super) fn legend_width(acceptance: &Acceptance, onaa: bool) -> f64 {
+    entries(acceptance, onaa).iter().map(|(_, words)| SWATCH + width_of(words, LABEL) + BETWEEN).sum::<f64>()
+        - BETWEEN
+}
+
+/// The outcomes that occur, with their share of the whole grid, from left to right.
+pub(super) fn legend(svg: &mut Svg, acceptance: &Acceptance, onaa: bool, [x, y]: [f64; 2]) {
+    let mut place = x;
+    for (fill, words) in entries(acceptance, onaa) {
+        let swatch = Rect { x: place, y: y - 10.0, w: 13.0, h: 13.0 };
+        let style = fill.map_or_else(
+            || format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#),
+            |fill| format!(r#"fill="{}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#, hex(fill)),
+        );
+        svg.rect(swatch, &style);
+        svg.text([place + SWATCH, y + 0.5], LABEL, Anchor::Start, INK, &words);
+        place += SWATCH + width_of(&words, LABEL) + BETWEEN;
+    }
+}
+
+/// Width of a text in DejaVu Sans, near enough to lay things out: narrow, wide and other characters.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
-    const MEAN_ADVANCE: f64 = 0.6;
-    text.chars().count() as f64 * MEAN_ADVANCE * size
+    let advance = |c: char| match c {
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ' ' | ':' => 0.3,
+        'f' | 't' | 'r' | '(' | ')' => 0.4,
+        'm' | 'w' | '%' | 'M' | 'W' => 0.93,
+        'A'..='Z' => 0.72,
+        _ => 0.62,
+    };
+    size * text.chars().map(advance).sum::<f64>()
 }
 
 /// A colour bar with ticks, to the right of a map.

@@ -28,7 +28,7 @@ pub fn slices(
     let columns = match pairs.len() {
         1 => 1,
         2 | 4 => 2,
-        n if n > 6 => 4,
+        n if n > 6 => 5,
         _ => 3,
     };
     let side = match pairs.len() {
@@ -37,8 +37,9 @@ pub fn slices(
         _ => 230.0,
     };
     let (left, top, cell) = (62.0, 74.0, [side + 76.0, side + 62.0]);
+    let legend = map::legend_width(acceptance, !onaa.bounds.is_empty());
     let rows = pairs.len().div_ceil(columns);
-    let width = (left + columns as f64 * cell[0] - 50.0).max(560.0);
+    let width = (left + columns as f64 * cell[0] - 50.0).max(legend + 48.0);
     let height = top + rows as f64 * cell[1] + 28.0;
     let indent = left + 0.5 * (width - left - 26.0 - (columns as f64 * cell[0] - 76.0)).max(0.0);
     let mut svg = Svg::new(width, height);

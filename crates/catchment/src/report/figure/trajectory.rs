@@ -1,6 +1,6 @@
 //! One motion: the moving half along its path in section, and the errors it still has.
 
-use super::axis::{Frame, Scale, Units, short};
+use super::axis::{Frame, Scale, Units};
 use super::colour::{self, hex};
 use super::map::{JOIN, width_of};
 use super::section::{Placement, View, describe};
@@ -115,19 +115,19 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
         }
         svg.end();
         frame.draw(svg);
-        legend(svg, group, waypoints, factor, frame.rect);
+        legend(svg, group, waypoints, &units, frame.rect);
     }
 }
 
 /// Names of the curves with the error that is left, above their frame.
-fn legend(svg: &mut Svg, group: &[Dof], waypoints: &[Waypoint], factor: f64, rect: Rect) {
+fn legend(svg: &mut Svg, group: &[Dof], waypoints: &[Waypoint], units: &Units, rect: Rect) {
     let mut x = rect.x;
     let y = rect.y - 8.0;
     for dof in group {
         let stroke = hex(colour::CURVES[dof.index()]);
         svg.line([x, y - 4.0], [x + 16.0, y - 4.0], &format!(r#"stroke="{stroke}" stroke-width="2.4""#));
-        let left = waypoints.last().map_or(0.0, |w| w.error.to_array()[dof.index()] * factor);
-        let words = format!("{}, {} left", dof.name(), short(left));
+        let left = waypoints.last().map_or(0.0, |w| w.error.to_array()[dof.index()]);
+        let words = format!("{} left", units.value(*dof, left));
         svg.text([x + 21.0, y], LABEL - 1.0, Anchor::Start, INK, &words);
         x += 21.0 + width_of(&words, LABEL - 1.0) + 10.0;
     }
@@ -157,7 +157,7 @@ mod tests {
         let picture = trajectory(&design, &v_face(), &path()).unwrap();
         look("trajectory", &picture);
         assert!(picture.svg().contains("from x = 17.5 mm, pitch = 25.8° → aligned"));
-        assert!(picture.svg().contains("pitch, 0 left"));
+        assert!(picture.svg().contains("pitch = 0° left"));
     }
 
     #[test]
