@@ -249,8 +249,8 @@ mod tests {
 
     #[test]
     fn numbers_keep_four_digits() {
-        let written = [0.0, 0.012_345, 3.141_59, 31.4159, 12_345.6, 1.5e-7].map(significant);
-        assert_eq!(written, ["0", "0.01235", "3.142", "31.42", "12346", "1.500e-7"]);
+        let written = [0.0, 0.012_345, 2.345_67, 23.4567, 12_345.6, 1.5e-7].map(significant);
+        assert_eq!(written, ["0", "0.01235", "2.346", "23.46", "12346", "1.500e-7"]);
         assert_eq!(grouped(24_300_000), "24 300 000");
         assert_eq!(number(-0.5), "-0.5");
     }

@@ -56,8 +56,8 @@ pub enum ZarrError {
     },
 }
 
-fn storage(reason: impl ToString) -> ZarrError {
-    ZarrError::Storage { reason: reason.to_string() }
+fn storage<E: std::error::Error>(error: E) -> ZarrError {
+    ZarrError::Storage { reason: error.to_string() }
 }
 
 /// Writes a run to the folder `path`, which must not exist or be such a group. `heights`, in D, are in the order of the
@@ -137,17 +137,13 @@ fn fill(
     let root = json!({
         "zarr_format": 3,
         "node_type": "group",
-        "attributes": { "catchment": LAYOUT, "title": acceptance_title(&report), "report": report },
+        "attributes": { "catchment": LAYOUT, "title": report["design"]["name"], "report": report },
         "consolidated_metadata": { "kind": "inline", "must_understand": false, "metadata": arrays },
     });
     let text = serde_json::to_string_pretty(&root).map_err(storage)?;
     let place = folder.join("zarr.json");
     std::fs::write(&place, text).map_err(|e| WriteError::at(&place, e))?;
     Ok(())
-}
-
-fn acceptance_title(report: &Value) -> Value {
-    report["design"]["name"].clone()
 }
 
 fn long_name(axis: &GridAxis) -> String {
@@ -233,7 +229,7 @@ fn unravel(mut number: usize, shape: &[usize]) -> Vec<usize> {
     place
 }
 
-/// The cells of one chunk, row-major; beyond the array the fill value.
+/// The cells of one chunk, row-major, copied row by row; beyond the array the fill value.
 fn gather(
     bytes: &[u8],
     size: usize,
@@ -242,17 +238,21 @@ fn gather(
     place: &[usize],
     fill: &[u8],
 ) -> Vec<u8> {
-    let cells: usize = chunk.iter().product();
-    let mut data = Vec::with_capacity(cells * size);
-    for number in 0..cells {
-        let mut index = 0;
-        let mut inside = true;
-        for (((k, c), p), n) in unravel(number, chunk).into_iter().zip(chunk).zip(place).zip(shape) {
-            let position = p * c + k;
-            inside &= position < *n;
-            index = index * n + position;
-        }
-        data.extend_from_slice(if inside { &bytes[index * size..(index + 1) * size] } else { fill });
+    let (Some((&length, rows)), Some((&along, others))) = (chunk.split_last(), shape.split_last()) else {
+        return bytes.to_vec();
+    };
+    let first = place[place.len() - 1] * length;
+    let inside = along.saturating_sub(first).min(length);
+    let mut data = Vec::with_capacity(chunk.iter().product::<usize>() * size);
+    for number in 0..rows.iter().product() {
+        let row = unravel(number, rows).into_iter().zip(rows).zip(place).map(|((k, c), p)| p * c + k);
+        let index = row.zip(others).try_fold(0, |index, (k, n)| (k < *n).then_some(index * n + k));
+        let copied = index.map_or(0, |row| {
+            let start = (row * along + first) * size;
+            data.extend_from_slice(&bytes[start..start + inside * size]);
+            inside
+        });
+        data.extend(std::iter::repeat_n(fill, length - copied).flatten());
     }
     data
 }

@@ -88,6 +88,8 @@ impl Scale {
 
     /// Round numbers in the range, about `wanted` of them.
     pub(super) fn ticks(&self, wanted: usize) -> Vec<f64> {
+        /// A step may be this much finer than wanted before the next rounder one is taken.
+        const FINER: f64 = 0.8;
         const DEGREES: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0];
         let span = self.hi - self.lo;
         if !(span > 0.0 && span.is_finite()) {
@@ -99,7 +101,7 @@ impl Scale {
             [1.0, 2.0, 5.0]
                 .into_iter()
                 .map(|k| k * magnitude)
-                .find(|s| *s >= rough)
+                .find(|s| *s >= FINER * rough)
                 .unwrap_or(10.0 * magnitude)
         };
         let step = if self.degrees && (0.5..=45.0).contains(&rough) {

@@ -2,7 +2,7 @@
 
 use super::axis::{Frame, Units, short};
 use super::colour::{self, Rgb, hex};
-use super::svg::{Anchor, INK, LABEL, Rect, Svg, TICK, n, polyline};
+use super::svg::{Anchor, INK, LABEL, Rect, Svg, TICK, polyline};
 use super::{FigureError, raster};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::Grid;
@@ -168,7 +168,7 @@ pub(super) fn legend(svg: &mut Svg, acceptance: &Acceptance, onaa: bool, [x, y]:
     }
 }
 
-/// Width of a text in DejaVu Sans, near enough to lay things out: narrow, wide and other characters.
+/// Width of a text in `DejaVu Sans`, near enough to lay things out: narrow, wide and other characters.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
     let advance = |c: char| match c {
         'i' | 'j' | 'l' | 'I' | '.' | ',' | ' ' | ':' => 0.3,
@@ -229,7 +229,7 @@ pub(super) fn contour(frame: &Frame, [width, height]: [usize; 2], field: &[f64],
                 }
             }
             for ends in crossings.chunks_exact(2) {
-                data += &format!("M{} {}L{} {}", n(ends[0][0]), n(ends[0][1]), n(ends[1][0]), n(ends[1][1]));
+                data += &polyline(ends.iter().copied(), false);
             }
         }
     }

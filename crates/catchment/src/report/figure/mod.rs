@@ -60,7 +60,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The picture as SVG. Text asks for DejaVu Sans and falls back to what the viewer has.
+    /// The picture as SVG. Text asks for `DejaVu Sans` and falls back to what the viewer has.
     pub fn svg(&self) -> &str {
         &self.svg
     }

@@ -138,18 +138,11 @@ impl<'a> View<'a> {
     /// Both halves, the moving one at `placement`, with its face centre and centre of rotation.
     pub(super) fn halves(&self, svg: &mut Svg, frame: &Frame, placement: &Placement) {
         svg.begin_clip(frame.rect);
-        self.approach_axis(svg, frame);
+        approach_axis(svg, frame);
         self.fixed(svg, frame);
         self.moving(svg, frame, placement);
         self.marks(svg, frame, placement);
         svg.end();
-    }
-
-    pub(super) fn approach_axis(&self, svg: &mut Svg, frame: &Frame) {
-        let x = frame.px(0.0);
-        let style =
-            format!(r#"stroke="{SOFT}" stroke-opacity="0.6" stroke-width="0.9" stroke-dasharray="9 3 2 3""#);
-        svg.line([x, frame.rect.y], [x, frame.rect.y + frame.rect.h], &style);
     }
 
     pub(super) fn fixed(&self, svg: &mut Svg, frame: &Frame) {
@@ -214,6 +207,14 @@ impl<'a> View<'a> {
             svg.text([at_cor[0] + 9.0, at_cor[1] + 4.0], LABEL - 1.0, Anchor::Start, INK, "COR");
         }
     }
+}
+
+/// The dash-dotted line x = 0.
+pub(super) fn approach_axis(svg: &mut Svg, frame: &Frame) {
+    let x = frame.px(0.0);
+    let style =
+        format!(r#"stroke="{SOFT}" stroke-opacity="0.6" stroke-width="0.9" stroke-dasharray="9 3 2 3""#);
+    svg.line([x, frame.rect.y], [x, frame.rect.y + frame.rect.h], &style);
 }
 
 /// Where to cut: y = 0, or either side of it if a half has facets there. From far (+y) to near.

@@ -112,6 +112,8 @@ struct Camera {
 impl Camera {
     const AZIMUTH: f64 = 0.5;
     const ELEVATION: f64 = 0.42;
+    /// Share of the image that the halves take: the rest is room for the lines of their edges.
+    const FILL: f64 = 0.94;
 
     fn new(bodies: &[Body], [width, height]: [usize; 2]) -> Result<Self, FigureError> {
         let (sa, ca) = Self::AZIMUTH.sin_cos();
@@ -129,10 +131,8 @@ impl Camera {
         if lo[0] >= hi[0] || lo[1] >= hi[1] {
             return Err(FigureError::Empty { what: "the halves have no facets" });
         }
-        /// Room around the halves, so that no edge line is cut.
-        const FILL: f64 = 0.94;
         let size = [width as f64, height as f64];
-        let scale = FILL * (size[0] / (hi[0] - lo[0])).min(size[1] / (hi[1] - lo[1]));
+        let scale = Self::FILL * (size[0] / (hi[0] - lo[0])).min(size[1] / (hi[1] - lo[1]));
         let shift = [0.5 * (size[0] - scale * (lo[0] + hi[0])), 0.5 * (size[1] + scale * (lo[1] + hi[1]))];
         Ok(Self { right, up, towards, scale, shift })
     }
@@ -232,16 +232,16 @@ impl Canvas {
     /// A line a little in front of the facets it borders.
     fn edge(&mut self, [a, b]: [DVec3; 2], colour: Rgb) {
         /// Half-width of the line, and how far it stands out, in fine pixels.
-        const HALF: i64 = 2;
+        const HALF: i32 = 2;
         const PROUD: f64 = 9.0;
         let steps = (b - a).truncate().length().ceil().max(1.0);
         for k in 0..=steps as usize {
             let p = a + (b - a) * (k as f64 / steps);
             for dy in -HALF..=HALF {
                 for dx in -HALF..=HALF {
-                    let (x, y) = (p.x as i64 + dx, p.y as i64 + dy);
-                    let outside = x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64;
-                    if outside || dx * dx + dy * dy > HALF * HALF {
+                    let (x, y) = (p.x + f64::from(dx), p.y + f64::from(dy));
+                    let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
+                    if !inside || dx * dx + dy * dy > HALF * HALF {
                         continue;
                     }
                     let index = x as usize + y as usize * self.width;

@@ -3,7 +3,7 @@
 use super::axis::{Frame, Scale, Units};
 use super::colour::{self, hex};
 use super::map::{JOIN, width_of};
-use super::section::{Placement, View, describe};
+use super::section::{Placement, View, approach_axis, describe};
 use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use super::{FigureError, Picture};
 use crate::connector::Connector;
@@ -34,7 +34,7 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
 
     let frame = view.frame(Rect { x: 72.0, y: 74.0, w: left, h: height });
     svg.begin_clip(frame.rect);
-    view.approach_axis(&mut svg, &frame);
+    approach_axis(&mut svg, &frame);
     view.fixed(&mut svg, &frame);
     for (k, placement) in placements.iter().enumerate() {
         let age = k as f64 / (placements.len() - 1).max(1) as f64;
