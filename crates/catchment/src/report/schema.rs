@@ -7,11 +7,14 @@ use crate::acceptance::{Acceptance, Outcome, Warning};
 use crate::design::{Alignment, Design};
 use crate::merit::MeritError;
 use crate::merit::centered::{CenteredBox, centered_cube};
+use crate::merit::doubts;
 use crate::merit::onaa::Onaa;
+use crate::merit::success::{Distribution, success};
 use crate::merit::sum::Sum;
 use crate::merit::tolerance::{Tolerance, tolerances};
 use crate::pose::Dof;
 use serde::{Deserialize, Serialize};
+use std::mem::discriminant;
 
 /// Version of the report's layout.
 pub const SCHEMA: u32 = 1;
@@ -40,6 +43,8 @@ pub struct Report {
     pub centered: Option<CenteredReport>,
     /// How far each error may go alone; empty for listed poses.
     pub tolerances: Vec<ToleranceReport>,
+    /// Success probability for the errors asked about; null if none were.
+    pub success: Option<SuccessReport>,
     /// Doubts.
     pub warnings: Vec<WarningReport>,
     /// How long it took; null where equal runs must write equal bytes.
@@ -168,6 +173,22 @@ pub struct ToleranceReport {
     pub plus_reaches_border: bool,
 }
 
+/// Success probability for a distribution of errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SuccessReport {
+    /// How the errors are distributed.
+    pub distribution: Distribution,
+    /// Probability that an error is accepted, in [0, 1]; errors outside the error box count as failures.
+    pub probability: f64,
+    /// The same with the cells at the border of the accepted set counted as failures, and as successes.
+    pub bracket: [f64; 2],
+    /// 95 % interval of `probability`; null where it is an exact sum over cells.
+    pub ci95: Option<[f64; 2]>,
+    /// Probability of an error outside the error box.
+    pub outside: f64,
+}
+
 /// A doubt, for programs and for people.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -189,7 +210,8 @@ pub struct Timing {
 }
 
 impl Report {
-    /// Evaluates an acceptance. `settings` are those of the method that gave it.
+    /// Evaluates an acceptance. `settings` are those of the method that gave it. The doubts that the accepted set
+    /// itself raises are added to the method's own.
     ///
     /// # Errors
     /// None at present for a well-formed acceptance; the figures of merit may name a missing axis.
@@ -200,6 +222,9 @@ impl Report {
         timing: Option<Timing>,
     ) -> Result<Self, MeritError> {
         let has_grid = acceptance.grid().is_some();
+        let mut warnings = acceptance.warnings.clone();
+        let known = |w: &Warning| acceptance.warnings.iter().any(|o| discriminant(o) == discriminant(w));
+        warnings.extend(doubts(acceptance).into_iter().filter(|w| !known(w)));
         let message = |w: &Warning| WarningReport { warning: w.clone(), message: w.to_string() };
         Ok(Self {
             schema: SCHEMA,
@@ -216,9 +241,30 @@ impl Report {
             } else {
                 Vec::new()
             },
-            warnings: acceptance.warnings.iter().map(message).collect(),
+            success: None,
+            warnings: warnings.iter().map(message).collect(),
             timing,
         })
+    }
+
+    /// Adds the success probability for a distribution of errors.
+    ///
+    /// # Errors
+    /// Those of [`success()`].
+    pub fn with_success(
+        mut self,
+        acceptance: &Acceptance,
+        distribution: Distribution,
+    ) -> Result<Self, MeritError> {
+        let found = success(acceptance, &distribution)?;
+        self.success = Some(SuccessReport {
+            distribution,
+            probability: found.probability,
+            bracket: found.bracket,
+            ci95: found.ci95,
+            outside: found.outside,
+        });
+        Ok(self)
     }
 
     /// The report as indented JSON, ending with a line break.
@@ -348,7 +394,11 @@ mod tests {
     fn report() -> Report {
         let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
         let settings = serde_json::json!({ "depth_tolerance": 0.1, "resolution": 12 });
-        Report::new(&design, &blob(&design, 12), settings, Some(Timing { total_s: 0.25, threads: 2 }))
+        let blob = blob(&design, 12);
+        let sigma = PoseError { x: 0.1, yaw: 0.2, ..PoseError::default() };
+        let normal = Distribution::Normal { mean: PoseError::default(), sigma };
+        Report::new(&design, &blob, settings, Some(Timing { total_s: 0.25, threads: 2 }))
+            .and_then(|r| r.with_success(&blob, normal))
             .unwrap()
     }
 
@@ -371,7 +421,22 @@ mod tests {
         assert_eq!(outcomes.keys().collect::<Vec<_>>(), ["aligned", "jammed", "missed", "undecided"]);
         assert!(value["onaa"]["edge"].as_f64().unwrap() > 0.0);
         assert_eq!(value["tolerances"][2]["axis"], "yaw");
+        assert_eq!(value["success"]["distribution"]["kind"], "normal");
+        assert!(value["success"]["probability"].as_f64().unwrap() > 0.9);
         assert_eq!(value["warnings"][0]["warning"]["kind"], "flooding-bias");
+    }
+
+    #[test]
+    fn doubts_of_the_set_itself_are_added_once() {
+        let design = design([Dof::X, Dof::Y].into_iter().collect());
+        let mut all = blob(&design, 4);
+        all.outcomes.fill(Outcome::Aligned);
+        all.outcomes[0] = Outcome::Undecided;
+        all.warnings.push(Warning::Undecided { cells: 1 });
+        let report = Report::new(&design, &all, serde_json::Value::Null, None).unwrap();
+        let kinds: Vec<_> = report.warnings.iter().map(|w| w.warning.clone()).collect();
+        let border = Warning::TouchesBorder { axes: vec!["x".to_owned(), "y".to_owned()] };
+        assert_eq!(kinds, [Warning::FloodingBias, Warning::Undecided { cells: 1 }, border]);
     }
 
     #[test]

@@ -24,6 +24,13 @@ pub fn table(report: &Report) -> String {
         let more = if centered.reaches_border { ", up to the error box" } else { "" };
         row(&mut text, "centred edge", &format!("{:.4}   around zero{more}", centered.edge));
     }
+    if let Some(s) = &report.success {
+        let outside = format!("{} of the errors lie outside the error box", percent(s.outside));
+        row(&mut text, "success", &format!("{}   ({outside})", percent(s.probability)));
+        let [lo, hi] = s.ci95.unwrap_or(s.bracket).map(percent);
+        let what = if s.ci95.is_some() { "95 % interval" } else { "one cell of doubt:" };
+        row(&mut text, "", &format!("{what} {lo} … {hi}"));
+    }
     if !report.tolerances.is_empty() {
         text.push('\n');
         tolerances(&mut text, report);
@@ -116,15 +123,16 @@ fn cube(onaa: &OnaaReport) -> String {
 
 fn tolerances(text: &mut String, report: &Report) {
     let unit = report.design.unit;
-    let own = unit.map_or("", |u| u.symbol());
-    line(text, &format!("  {:<9}{:>22}{:>22}{:>22}", "tolerance", "D, rad", own, "deg"));
+    let own = unit.map_or_else(String::new, |u| format!("{:>22}", u.symbol()));
+    line(text, &format!("  {:<9}{:>22}{own}{:>22}", "tolerance", "D, rad", "deg"));
     let mut open = false;
     for t in &report.tolerances {
         let angle = t.axis.is_rotation();
         let base = both(t, 1.0, 4);
-        let lengths = if angle || unit.is_none() { String::new() } else { both(t, report.design.width, 3) };
+        let lengths = if angle { String::new() } else { both(t, report.design.width, 3) };
+        let lengths = if unit.is_none() { String::new() } else { format!("{lengths:>22}") };
         let degrees = if angle { both(t, 1f64.to_degrees(), 2) } else { String::new() };
-        line(text, &format!("  {:<9}{base:>22}{lengths:>22}{degrees:>22}", t.axis.name()));
+        line(text, &format!("  {:<9}{base:>22}{lengths}{degrees:>22}", t.axis.name()));
         open |= t.minus_reaches_border || t.plus_reaches_border;
     }
     let half: Vec<String> = report
