@@ -146,7 +146,7 @@ impl Frame {
             svg.line([px, r.y + r.h], [px, r.y + r.h + 4.0], &tick);
             svg.text([px, r.y + r.h + 15.5], TICK, Anchor::Middle, SOFT, &tick_label(x));
         }
-        for y in self.y.ticks((r.h / 34.0) as usize) {
+        for y in self.y.ticks((r.h / 40.0) as usize) {
             let py = self.py(y);
             svg.line([r.x - 4.0, py], [r.x, py], &tick);
             svg.text([r.x - 7.0, py + 3.8], TICK, Anchor::End, SOFT, &tick_label(y));

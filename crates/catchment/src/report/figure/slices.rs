@@ -101,6 +101,17 @@ mod tests {
     }
 
     #[test]
+    fn a_design_without_a_unit_is_shown_in_d() {
+        let mut design = design([Dof::X, Dof::Y].into_iter().collect());
+        (design.unit, design.width) = (None, 1.0);
+        let mut blob = blob(&design, 31);
+        blob.outcomes[5] = crate::acceptance::Outcome::Undecided;
+        let picture = slices(&design, &blob, &[], &PoseError::default()).unwrap();
+        look("slices-dimensionless", &picture);
+        assert!(picture.svg().contains("x [D]") && picture.svg().contains("undecided 0.1 %"));
+    }
+
+    #[test]
     fn one_error_has_no_map() {
         let design = design([Dof::X].into_iter().collect());
         let error = slices(&design, &blob(&design, 10), &[], &PoseError::default()).unwrap_err();
