@@ -17,11 +17,13 @@ use super::{MeritError, advance, axis_number, grid_of};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{SQRT_2, TAU};
 
 /// How pose errors are distributed. Five numbers are in the order of [`Dof::ALL`], in D and radians; 0 for errors that do
 /// not occur.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Distribution {
     /// Independent normal errors.
     Normal {

@@ -1,1 +1,23 @@
-//! What a person or another program receives: JSON, text table, figures, Zarr.
+//! What a person or another program receives.
+//!
+//! ```text
+//!                 ┌─ schema   versioned JSON: everything that changes the answer, and the answer
+//!   Acceptance ───┼─ table    the same for eyes, in 80 columns
+//!   merit         ├─ figure   PNG and SVG (feature `figure`)
+//!                 └─ zarr     the whole grid, for xarray (feature `zarr`)
+//!                       └──▶  write: complete or not at all
+//! ```
+//!
+//! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians in
+//! every machine format; for people the design's own unit and degrees stand beside them.
+
+#[cfg(feature = "figure")]
+pub mod figure;
+pub mod schema;
+mod table;
+pub mod write;
+#[cfg(feature = "zarr")]
+pub mod zarr;
+
+pub use schema::Report;
+pub use table::table;

@@ -1,0 +1,147 @@
+//! Pictures: SVG, and PNG drawn from it with an embedded font, so that a machine without fonts draws the same.
+//!
+//! ```text
+//!   slices      outcomes over pairs of errors, the border of the accepted set, the ONAA cube
+//!   heights     height of first contact over a pair, contours, the same border on top
+//!   section     both halves cut along the approach axis, at any pose
+//!   solids      both halves in space
+//!   trajectory  the moving half along its path, and the errors it still has
+//!   overview    the picture of a design: halves, acceptance, heights
+//! ```
+//!
+//! For people: lengths in the design's unit where it has one (else D), angles in degrees. The same input gives the
+//! same bytes. Maps and solids are embedded images, everything else is vector.
+
+mod axis;
+mod colour;
+mod heights;
+mod map;
+mod overview;
+mod raster;
+mod section;
+mod slices;
+mod solid;
+mod svg;
+mod trajectory;
+
+pub use heights::heights;
+pub use overview::overview;
+pub use section::{Placement, section};
+pub use slices::slices;
+pub use solid::solids;
+pub use trajectory::trajectory;
+
+use crate::merit::MeritError;
+
+/// Why a picture cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum FigureError {
+    /// The grid does not have what the picture shows.
+    #[error(transparent)]
+    Merit(#[from] MeritError),
+    /// There is nothing to show.
+    #[error("there is nothing to draw: {what}")]
+    Empty {
+        /// What is missing.
+        what: &'static str,
+    },
+    /// The image could not be encoded.
+    #[error("cannot encode the image: {reason}")]
+    Encode {
+        /// What the encoder says.
+        reason: String,
+    },
+}
+
+/// A finished picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    svg: String,
+}
+
+impl Picture {
+    /// The picture as SVG. Text asks for `DejaVu Sans` and falls back to what the viewer has.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
+    /// The picture as PNG, `scale` pixels per SVG unit (2 is good for screens and slides).
+    ///
+    /// # Errors
+    /// If the scale gives an image that cannot be held.
+    pub fn png(&self, scale: f32) -> Result<Vec<u8>, FigureError> {
+        raster::render(&self.svg, scale)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    //! A pair of halves to draw, and a look at what was drawn.
+
+    use super::Picture;
+    use crate::connector::{Connector, Half, Surface};
+    use glam::DVec3;
+
+    /// A convex prism over a polygon in x–z (counter-clockwise seen from −y), `lo` to `hi` along y.
+    fn prism(profile: &[[f64; 2]], lo: f64, hi: f64) -> Surface {
+        let n = profile.len() as u32;
+        let at = |y: f64| profile.iter().map(move |[x, z]| DVec3::new(*x, y, *z));
+        let mut polygons = vec![(0..n).collect::<Vec<u32>>(), (n..2 * n).rev().collect()];
+        polygons.extend((0..n).map(|k| vec![(k + 1) % n, k, k + n, (k + 1) % n + n]));
+        Surface::from_polygons(at(lo).chain(at(hi)).collect(), &polygons).unwrap()
+    }
+
+    /// A V notch and its tip, face centres at the origin.
+    pub(crate) fn v_face() -> Connector {
+        let (h, d) = (0.25, 0.5);
+        let left = prism(&[[-d, -h], [0.0, -h], [-d, h]], -0.25, 0.25);
+        let right = prism(&[[d, -h], [d, h], [0.0, -h]], -0.25, 0.25);
+        let tip = prism(&[[-d, h], [0.0, -h], [d, h]], -0.25, 0.25);
+        Connector { fixed: Half { surfaces: vec![left, right] }, moving: Half { surfaces: vec![tip] } }
+    }
+
+    /// Two crossed ramps in two layers, as the fixed half and a copy of it turned over.
+    pub(crate) fn x_face() -> Connector {
+        let h = 0.25;
+        let rising = prism(&[[-0.5, -h], [0.5, -h], [0.5, h]], -0.25, 0.0);
+        let falling = prism(&[[-0.5, -h], [0.5, -h], [-0.5, h]], 0.0, 0.25);
+        let fixed = Half { surfaces: vec![rising, falling] };
+        let moving = fixed.mapped(|p| crate::pose::Mount::Y.apply(p));
+        Connector { fixed, moving }
+    }
+
+    /// A square pyramid over its socket, which is four wedges on a base.
+    pub(crate) fn pyramid() -> Connector {
+        let (h, d, base) = (0.25, 0.5, 0.5);
+        let ring = [[-d, -d], [d, -d], [d, d], [-d, d]];
+        let rim = |z: f64| ring.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
+        let mut vertices: Vec<DVec3> = rim(-base).chain(rim(h)).collect();
+        vertices.push(DVec3::new(0.0, 0.0, -h));
+        let mut polygons = vec![vec![3, 2, 1, 0]];
+        polygons.extend((0..4u32).map(|k| vec![k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4]));
+        polygons.extend((0..4u32).map(|k| vec![k + 4, (k + 1) % 4 + 4, 8]));
+        let socket = Surface::from_polygons(vertices, &polygons).unwrap();
+        let mut vertices: Vec<DVec3> = rim(h).collect();
+        vertices.push(DVec3::new(0.0, 0.0, -h));
+        let mut polygons = vec![vec![0, 1, 2, 3]];
+        polygons.extend((0..4u32).map(|k| vec![(k + 1) % 4, k, 4]));
+        let plug = Surface::from_polygons(vertices, &polygons).unwrap();
+        Connector { fixed: Half { surfaces: vec![socket] }, moving: Half { surfaces: vec![plug] } }
+    }
+
+    /// Checks that the picture is well formed and not blank; writes it to `$CATCHMENT_PICTURES` for eyes.
+    pub(crate) fn look(name: &str, picture: &Picture) {
+        resvg::usvg::roxmltree::Document::parse(picture.svg()).unwrap();
+        let bytes = picture.png(2.0).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let dark = pixels.chunks_exact(4).filter(|p| p[0] < 128 && p[1] < 128 && p[2] < 128).count();
+        assert!(dark * 1000 > pixels.len() / 4, "{name}: fewer than one dark pixel in a thousand");
+        if let Some(folder) = std::env::var_os("CATCHMENT_PICTURES") {
+            let folder = std::path::PathBuf::from(folder);
+            std::fs::write(folder.join(format!("{name}.png")), bytes).unwrap();
+            std::fs::write(folder.join(format!("{name}.svg")), picture.svg()).unwrap();
+        }
+    }
+}

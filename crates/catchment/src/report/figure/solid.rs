@@ -1,0 +1,327 @@
+//! Both halves in space: parallel projection, shaded facets, a depth buffer.
+//!
+//! A depth buffer shows halves that touch or overlap as they are, which sorting facets by distance cannot. The image
+//! is drawn three times larger than shown and averaged down; lines mark edges where the surface bends.
+
+use super::colour::{self, Rgb, mix};
+use super::section::{Placement, describe};
+use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::{FigureError, Picture, raster};
+use crate::connector::{Connector, Surface};
+use crate::design::Design;
+use glam::{DMat3, DVec3};
+use std::collections::BTreeMap;
+
+/// Draws the two halves in space at a pose.
+///
+/// # Errors
+/// If neither half has a facet.
+pub fn solids(design: &Design, connector: &Connector, placement: &Placement) -> Result<Picture, FigureError> {
+    let (width, height) = (560.0, 520.0);
+    let mut svg = Svg::new(width, height);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &describe(design, placement));
+    panel(
+        &mut svg,
+        Rect { x: 20.0, y: 62.0, w: width - 40.0, h: height - 82.0 },
+        design,
+        connector,
+        placement,
+    )?;
+    Ok(Picture { svg: svg.finish() })
+}
+
+/// The image alone.
+pub(super) fn panel(
+    svg: &mut Svg,
+    rect: Rect,
+    design: &Design,
+    connector: &Connector,
+    placement: &Placement,
+) -> Result<(), FigureError> {
+    /// Pixels per SVG unit in the finished image.
+    const PIXELS: f64 = 2.0;
+    let (rotation, face) = placement.of(design);
+    let bodies: Vec<Body> = connector
+        .fixed
+        .surfaces
+        .iter()
+        .map(|s| Body::new(s, DMat3::IDENTITY, DVec3::ZERO, [colour::FIXED, colour::FIXED_EDGE]))
+        .chain(
+            connector
+                .moving
+                .surfaces
+                .iter()
+                .map(|s| Body::new(s, rotation, face, [colour::MOVING, colour::MOVING_EDGE])),
+        )
+        .collect();
+    let size = [(rect.w * PIXELS) as usize, (rect.h * PIXELS) as usize];
+    let image = draw(&bodies, size)?;
+    svg.image(rect, &raster::encode(size[0], size[1], true, &image)?, false);
+    Ok(())
+}
+
+/// A surface in the world frame.
+struct Body<'a> {
+    surface: &'a Surface,
+    corners: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    fill: Rgb,
+    edge: Rgb,
+}
+
+impl<'a> Body<'a> {
+    fn new(surface: &'a Surface, rotation: DMat3, shift: DVec3, [fill, edge]: [Rgb; 2]) -> Self {
+        Self {
+            surface,
+            corners: surface.vertices.iter().map(|v| rotation * *v + shift).collect(),
+            normals: surface.facets.iter().map(|f| rotation * f.normal).collect(),
+            fill,
+            edge,
+        }
+    }
+
+    /// Edges where two facets meet at more than [`BEND`].
+    fn bends(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+        /// Cosine of 20°: the facets of a tessellated cone meet at less, those of a designed edge at more.
+        const BEND: f64 = 0.94;
+        let mut sides: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
+        for (number, facet) in self.surface.facets.iter().enumerate() {
+            let n = facet.corners.len();
+            for k in 0..n {
+                let (a, b) = (facet.corners[k], facet.corners[(k + 1) % n]);
+                sides.entry((a.min(b), a.max(b))).or_default().push(number);
+            }
+        }
+        sides.into_iter().filter_map(|((a, b), facets)| {
+            let bent = facets.len() != 2 || self.normals[facets[0]].dot(self.normals[facets[1]]) < BEND;
+            bent.then(|| [self.corners[a as usize], self.corners[b as usize]])
+        })
+    }
+}
+
+/// Seen from the front right, somewhat above.
+struct Camera {
+    right: DVec3,
+    up: DVec3,
+    towards: DVec3,
+    scale: f64,
+    shift: [f64; 2],
+}
+
+impl Camera {
+    const AZIMUTH: f64 = 0.5;
+    const ELEVATION: f64 = 0.42;
+    /// Share of the image that the halves take: the rest is room for the lines of their edges.
+    const FILL: f64 = 0.94;
+
+    fn new(bodies: &[Body], [width, height]: [usize; 2]) -> Result<Self, FigureError> {
+        let (sa, ca) = Self::AZIMUTH.sin_cos();
+        let (se, ce) = Self::ELEVATION.sin_cos();
+        let towards = DVec3::new(ce * sa, -ce * ca, se);
+        let right = DVec3::new(ca, sa, 0.0);
+        let up = towards.cross(right);
+        let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for p in bodies.iter().flat_map(|b| &b.corners) {
+            for (k, v) in [p.dot(right), p.dot(up)].into_iter().enumerate() {
+                lo[k] = lo[k].min(v);
+                hi[k] = hi[k].max(v);
+            }
+        }
+        if lo[0] >= hi[0] || lo[1] >= hi[1] {
+            return Err(FigureError::Empty { what: "the halves have no facets" });
+        }
+        let size = [width as f64, height as f64];
+        let scale = Self::FILL * (size[0] / (hi[0] - lo[0])).min(size[1] / (hi[1] - lo[1]));
+        let shift = [0.5 * (size[0] - scale * (lo[0] + hi[0])), 0.5 * (size[1] + scale * (lo[1] + hi[1]))];
+        Ok(Self { right, up, towards, scale, shift })
+    }
+
+    /// Pixel coordinates, y down, and depth in pixels, growing towards the eye.
+    fn project(&self, p: DVec3) -> DVec3 {
+        DVec3::new(
+            self.shift[0] + self.scale * p.dot(self.right),
+            self.shift[1] - self.scale * p.dot(self.up),
+            self.scale * p.dot(self.towards),
+        )
+    }
+}
+
+/// How many times larger than shown the image is drawn, each way.
+const FINER: usize = 3;
+
+/// RGBA pixels of the image.
+fn draw(bodies: &[Body], size: [usize; 2]) -> Result<Vec<u8>, FigureError> {
+    let fine = size.map(|n| n * FINER);
+    let camera = Camera::new(bodies, fine)?;
+    let mut canvas = Canvas {
+        width: fine[0],
+        height: fine[1],
+        depth: vec![f64::NEG_INFINITY; fine[0] * fine[1]],
+        colour: Vec::new(),
+    };
+    canvas.colour = vec![[255; 3]; canvas.depth.len()];
+    for body in bodies {
+        for (facet, normal) in body.surface.facets.iter().zip(&body.normals) {
+            if normal.dot(camera.towards) <= 0.0 {
+                continue;
+            }
+            let shade = shade(body.fill, *normal);
+            let corners: Vec<DVec3> =
+                facet.corners.iter().map(|i| camera.project(body.corners[*i as usize])).collect();
+            for k in 1..corners.len() - 1 {
+                canvas.triangle([corners[0], corners[k], corners[k + 1]], shade);
+            }
+        }
+    }
+    for body in bodies {
+        for ends in body.bends() {
+            canvas.edge(ends.map(|p| camera.project(p)), body.edge);
+        }
+    }
+    Ok(canvas.averaged())
+}
+
+/// Light from the upper left front, and a floor of brightness.
+fn shade(fill: Rgb, normal: DVec3) -> Rgb {
+    let light = DVec3::new(-0.45, -0.55, 0.7) / 0.998_749_2;
+    let brightness = normal.dot(light);
+    if brightness > 0.0 {
+        mix(fill, [255; 3], 0.42 * brightness)
+    } else {
+        mix(fill, [0x22, 0x2b, 0x3a], -0.45 * brightness)
+    }
+}
+
+struct Canvas {
+    width: usize,
+    height: usize,
+    depth: Vec<f64>,
+    colour: Vec<Rgb>,
+}
+
+impl Canvas {
+    fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb) {
+        let area = (b - a).truncate().perp_dot((c - a).truncate());
+        if area.abs() < 1e-9 {
+            return;
+        }
+        let range = |u: f64, v: f64, w: f64, n: usize| {
+            let lo = u.min(v).min(w).floor().max(0.0) as usize;
+            let hi = (u.max(v).max(w).ceil().max(0.0) as usize).min(n);
+            lo..hi
+        };
+        for y in range(a.y, b.y, c.y, self.height) {
+            for x in range(a.x, b.x, c.x, self.width) {
+                let p = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let wb = (p - a.truncate()).perp_dot((c - a).truncate()) / area;
+                let wc = (b - a).truncate().perp_dot(p - a.truncate()) / area;
+                if wb < 0.0 || wc < 0.0 || wb + wc > 1.0 {
+                    continue;
+                }
+                let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
+                let index = x + y * self.width;
+                if z > self.depth[index] {
+                    self.depth[index] = z;
+                    self.colour[index] = colour;
+                }
+            }
+        }
+    }
+
+    /// A line a little in front of the facets it borders.
+    fn edge(&mut self, [a, b]: [DVec3; 2], colour: Rgb) {
+        /// Half-width of the line, and how far it stands out, in fine pixels.
+        const HALF: i32 = 2;
+        const PROUD: f64 = 9.0;
+        let steps = (b - a).truncate().length().ceil().max(1.0);
+        for k in 0..=steps as usize {
+            let p = a + (b - a) * (k as f64 / steps);
+            for dy in -HALF..=HALF {
+                for dx in -HALF..=HALF {
+                    let (x, y) = (p.x + f64::from(dx), p.y + f64::from(dy));
+                    let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
+                    if !inside || dx * dx + dy * dy > HALF * HALF {
+                        continue;
+                    }
+                    let index = x as usize + y as usize * self.width;
+                    if p.z + PROUD > self.depth[index] {
+                        self.colour[index] = colour;
+                        // Covered from now on, but no nearer than the facet: a later line may cross it.
+                        self.depth[index] = self.depth[index].max(p.z);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Averages blocks of fine pixels; where nothing was drawn the image is transparent.
+    fn averaged(&self) -> Vec<u8> {
+        let (width, height) = (self.width / FINER, self.height / FINER);
+        let mut pixels = Vec::with_capacity(4 * width * height);
+        for y in 0..height {
+            for x in 0..width {
+                let (mut sum, mut covered) = ([0u32; 3], 0u32);
+                for index in
+                    (0..FINER * FINER).map(|k| x * FINER + k % FINER + (y * FINER + k / FINER) * self.width)
+                {
+                    if self.depth[index] > f64::NEG_INFINITY {
+                        covered += 1;
+                        for (total, channel) in sum.iter_mut().zip(self.colour[index]) {
+                            *total += u32::from(channel);
+                        }
+                    }
+                }
+                let n = covered.max(1);
+                pixels.extend(sum.map(|total| ((total + n / 2) / n) as u8));
+                pixels.push((covered * 255 / (FINER * FINER) as u32) as u8);
+            }
+        }
+        pixels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{look, pyramid, v_face, x_face};
+    use super::*;
+    use crate::pose::{DofSet, PoseError};
+    use crate::report::schema::testing::design;
+
+    #[test]
+    fn solids_of_every_kind() {
+        let design = design(DofSet::ALL);
+        let error = PoseError { x: 0.2, y: -0.1, roll: 0.1, pitch: 0.2, yaw: 0.3 };
+        let placement = Placement { error, height: 0.75 };
+        for (name, connector) in [("solid-v", v_face()), ("solid-x", x_face()), ("solid-pyramid", pyramid())]
+        {
+            look(name, &solids(&design, &connector, &placement).unwrap());
+        }
+    }
+
+    #[test]
+    fn the_nearer_half_hides_the_other() {
+        // The plug sits in its socket: of the plug only the base, facing up, is seen; no pixel of its flanks.
+        let connector = pyramid();
+        let body = |s, c| Body::new(s, DMat3::IDENTITY, DVec3::ZERO, [c, c]);
+        let bodies = [
+            body(&connector.fixed.surfaces[0], [0, 0, 200]),
+            body(&connector.moving.surfaces[0], [200, 0, 0]),
+        ];
+        let image = draw(&bodies, [200, 160]).unwrap();
+        let red = image.chunks_exact(4).filter(|p| p[3] == 255 && p[0] > p[2]);
+        let mut shades: Vec<_> = red.map(|p| [p[0], p[1], p[2]]).collect();
+        shades.sort_unstable();
+        let most = shades.chunk_by(|a, b| a == b).map(<[_]>::len).max().unwrap();
+        assert!(most * 10 > shades.len() * 8, "one facet, one shade: {most} of {}", shades.len());
+    }
+
+    #[test]
+    fn nothing_cannot_be_drawn() {
+        let nothing =
+            Connector { fixed: crate::connector::Half::default(), moving: crate::connector::Half::default() };
+        let design = design(DofSet::ALL);
+        let placement = Placement::mated(&design, 0.0);
+        assert!(matches!(solids(&design, &nothing, &placement), Err(FigureError::Empty { .. })));
+    }
+}

@@ -1,0 +1,422 @@
+//! The JSON report: a versioned contract. Lengths in D, angles in radians, fields in this order.
+//!
+//! [`SCHEMA`] rises when a field changes its meaning or goes away; new fields may appear under the same number.
+//! The same run writes the same bytes but for `timing`.
+
+use crate::acceptance::{Acceptance, Outcome, Warning};
+use crate::design::{Alignment, Design};
+use crate::merit::MeritError;
+use crate::merit::centered::{CenteredBox, centered_cube};
+use crate::merit::doubts;
+use crate::merit::onaa::Onaa;
+use crate::merit::success::{Distribution, success};
+use crate::merit::sum::Sum;
+use crate::merit::tolerance::{Tolerance, tolerances};
+use crate::pose::Dof;
+use serde::{Deserialize, Serialize};
+use std::mem::discriminant;
+
+/// Version of the report's layout.
+pub const SCHEMA: u32 = 1;
+
+/// Everything one run has to say.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Report {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// Version of the program that wrote it.
+    pub catchment: String,
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// Name of the method that decided.
+    pub method: String,
+    /// The method's settings: what else changes the answer.
+    pub settings: serde_json::Value,
+    /// The axes of the error grid, the first one fastest; empty for listed poses.
+    pub axes: Vec<Axis>,
+    /// The accepted set.
+    pub acceptance: AcceptanceReport,
+    /// The largest axis-oriented cube; null for listed poses.
+    pub onaa: Option<OnaaReport>,
+    /// The largest cube around zero; null for listed poses.
+    pub centered: Option<CenteredReport>,
+    /// How far each error may go alone; empty for listed poses.
+    pub tolerances: Vec<ToleranceReport>,
+    /// Success probability for the errors asked about; null if none were.
+    pub success: Option<SuccessReport>,
+    /// Doubts.
+    pub warnings: Vec<WarningReport>,
+    /// How long it took; null where equal runs must write equal bytes.
+    pub timing: Option<Timing>,
+}
+
+/// One axis of the error grid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// Which error.
+    pub axis: Dof,
+    /// `D` or `rad`.
+    pub unit: Unit,
+    /// Lower border of the error box.
+    pub lo: f64,
+    /// Upper border of the error box.
+    pub hi: f64,
+    /// Number of equal cells, each sampled at its centre.
+    pub cells: usize,
+}
+
+/// Unit of an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Unit {
+    /// Widths of the connector.
+    D,
+    /// Radians.
+    #[serde(rename = "rad")]
+    Rad,
+}
+
+impl Unit {
+    /// The unit of an error.
+    pub const fn of(dof: Dof) -> Self {
+        if dof.is_rotation() { Self::Rad } else { Self::D }
+    }
+}
+
+/// The accepted set in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AcceptanceReport {
+    /// Its measure, in `unit`.
+    pub sum: f64,
+    /// Unit of `sum`, like `D²·rad³`.
+    pub unit: String,
+    /// 95 % interval of `sum`; null if nothing was sampled at random.
+    pub sum_ci95: Option<[f64; 2]>,
+    /// `sum` without the accepted cells that touch a rejected one, and with the rejected cells that touch an
+    /// accepted one: the doubt of resolution, no confidence interval. Null for listed poses.
+    pub sum_bracket: Option<[f64; 2]>,
+    /// Share of the error box, in [0, 1].
+    pub fraction: f64,
+    /// Cells or poses tried.
+    pub cells: usize,
+    /// How many met each outcome.
+    pub outcomes: Outcomes,
+}
+
+/// Poses per outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Outcomes {
+    /// Contact brings the halves to the mated pose.
+    pub aligned: usize,
+    /// At rest in contact elsewhere.
+    pub jammed: usize,
+    /// No contact, or slid off.
+    pub missed: usize,
+    /// The budget ran out.
+    pub undecided: usize,
+}
+
+/// An interval along an axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Interval {
+    /// Which error.
+    pub axis: Dof,
+    /// Lower end, D or rad.
+    pub lo: f64,
+    /// Upper end, D or rad.
+    pub hi: f64,
+}
+
+/// The largest axis-oriented n-cube in the accepted set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnaaReport {
+    /// Its edge after each axis is divided by its range: in [0, 1].
+    pub edge: f64,
+    /// Where it lies; empty if the edge is 0.
+    pub bounds: Vec<Interval>,
+}
+
+/// The largest n-cube around zero in the accepted set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CenteredReport {
+    /// Its edge after each axis is divided by its range: in [0, 1].
+    pub edge: f64,
+    /// Where it lies.
+    pub bounds: Vec<Interval>,
+    /// The border of the error box stopped it: it may be larger.
+    pub reaches_border: bool,
+}
+
+/// How far one error may go alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ToleranceReport {
+    /// Which error.
+    pub axis: Dof,
+    /// `D` or `rad`.
+    pub unit: Unit,
+    /// Below zero; not negative.
+    pub minus: f64,
+    /// Above zero; not negative.
+    pub plus: f64,
+    /// Uncertainty of both: half a cell.
+    pub half_cell: f64,
+    /// The border of the error box stopped `minus`: it may be larger.
+    pub minus_reaches_border: bool,
+    /// The border of the error box stopped `plus`: it may be larger.
+    pub plus_reaches_border: bool,
+}
+
+/// Success probability for a distribution of errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SuccessReport {
+    /// How the errors are distributed.
+    pub distribution: Distribution,
+    /// Probability that an error is accepted, in [0, 1]; errors outside the error box count as failures.
+    pub probability: f64,
+    /// The same with the cells at the border of the accepted set counted as failures, and as successes.
+    pub bracket: [f64; 2],
+    /// 95 % interval of `probability`; null where it is an exact sum over cells.
+    pub ci95: Option<[f64; 2]>,
+    /// Probability of an error outside the error box.
+    pub outside: f64,
+}
+
+/// A doubt, for programs and for people.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WarningReport {
+    /// The doubt itself, with its `kind`.
+    pub warning: Warning,
+    /// The same as a sentence.
+    pub message: String,
+}
+
+/// How long it took. The only part of a report that differs between equal runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Timing {
+    /// Wall-clock time of the computation, in seconds.
+    pub total_s: f64,
+    /// Worker threads.
+    pub threads: usize,
+}
+
+impl Report {
+    /// Evaluates an acceptance. `settings` are those of the method that gave it. The doubts that the accepted set
+    /// itself raises are added to the method's own.
+    ///
+    /// # Errors
+    /// None at present for a well-formed acceptance; the figures of merit may name a missing axis.
+    pub fn new(
+        design: &Design,
+        acceptance: &Acceptance,
+        settings: serde_json::Value,
+        timing: Option<Timing>,
+    ) -> Result<Self, MeritError> {
+        let has_grid = acceptance.grid().is_some();
+        let mut warnings = acceptance.warnings.clone();
+        let known = |w: &Warning| acceptance.warnings.iter().any(|o| discriminant(o) == discriminant(w));
+        warnings.extend(doubts(acceptance).into_iter().filter(|w| !known(w)));
+        let message = |w: &Warning| WarningReport { warning: w.clone(), message: w.to_string() };
+        Ok(Self {
+            schema: SCHEMA,
+            catchment: env!("CARGO_PKG_VERSION").to_owned(),
+            design: design.clone(),
+            method: acceptance.method.to_owned(),
+            settings,
+            axes: axes(acceptance),
+            acceptance: AcceptanceReport::new(acceptance, &design.alignment),
+            onaa: has_grid.then(|| Onaa::of(acceptance)).transpose()?.map(OnaaReport::from),
+            centered: has_grid.then(|| centered_cube(acceptance)).transpose()?.map(CenteredReport::from),
+            tolerances: if has_grid {
+                tolerances(acceptance)?.into_iter().map(ToleranceReport::from).collect()
+            } else {
+                Vec::new()
+            },
+            success: None,
+            warnings: warnings.iter().map(message).collect(),
+            timing,
+        })
+    }
+
+    /// Adds the success probability for a distribution of errors.
+    ///
+    /// # Errors
+    /// Those of [`success()`].
+    pub fn with_success(
+        mut self,
+        acceptance: &Acceptance,
+        distribution: Distribution,
+    ) -> Result<Self, MeritError> {
+        let found = success(acceptance, &distribution)?;
+        self.success = Some(SuccessReport {
+            distribution,
+            probability: found.probability,
+            bracket: found.bracket,
+            ci95: found.ci95,
+            outside: found.outside,
+        });
+        Ok(self)
+    }
+
+    /// The report as indented JSON, ending with a line break.
+    ///
+    /// # Errors
+    /// None at present: every field has a JSON form.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string_pretty(self).map(|text| text + "\n")
+    }
+
+    /// Reads a report back. Unknown fields are refused.
+    ///
+    /// # Errors
+    /// Where the text is no report, with line and column.
+    pub fn from_json(text: &str) -> Result<Self, serde_json::Error> {
+        serde_json::from_str(text)
+    }
+}
+
+fn axes(acceptance: &Acceptance) -> Vec<Axis> {
+    let Some(grid) = acceptance.grid() else { return Vec::new() };
+    grid.axes
+        .iter()
+        .map(|a| Axis { axis: a.dof, unit: Unit::of(a.dof), lo: a.lo, hi: a.hi, cells: a.cells })
+        .collect()
+}
+
+impl AcceptanceReport {
+    fn new(acceptance: &Acceptance, alignment: &Alignment) -> Self {
+        let sum = Sum::of(acceptance, alignment);
+        let count = |o: Outcome| sum.counts[o as usize - 1];
+        Self {
+            sum: sum.sum,
+            unit: sum.unit(),
+            sum_ci95: sum.ci95,
+            sum_bracket: sum.bracket,
+            fraction: sum.fraction,
+            cells: sum.tried,
+            outcomes: Outcomes {
+                aligned: count(Outcome::Aligned),
+                jammed: count(Outcome::Jammed),
+                missed: count(Outcome::Missed),
+                undecided: count(Outcome::Undecided),
+            },
+        }
+    }
+}
+
+impl From<Onaa> for OnaaReport {
+    fn from(onaa: Onaa) -> Self {
+        let bounds = onaa.bounds.into_iter().map(|(axis, lo, hi)| Interval { axis, lo, hi }).collect();
+        Self { edge: onaa.edge, bounds }
+    }
+}
+
+impl From<CenteredBox> for CenteredReport {
+    fn from(found: CenteredBox) -> Self {
+        let bounds =
+            found.half_widths.into_iter().map(|(axis, h)| Interval { axis, lo: -h, hi: h }).collect();
+        Self { edge: found.scale, bounds, reaches_border: found.reaches_border }
+    }
+}
+
+impl From<Tolerance> for ToleranceReport {
+    fn from(t: Tolerance) -> Self {
+        Self {
+            axis: t.dof,
+            unit: Unit::of(t.dof),
+            minus: t.minus,
+            plus: t.plus,
+            half_cell: t.half_cell,
+            minus_reaches_border: t.minus_reaches_border,
+            plus_reaches_border: t.plus_reaches_border,
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing;
+
+#[cfg(test)]
+mod tests {
+    use super::testing::*;
+    use super::*;
+    use crate::acceptance::Domain;
+    use crate::pose::{DofSet, PoseError};
+
+    fn report() -> Report {
+        let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
+        let settings = serde_json::json!({ "depth_tolerance": 0.1, "resolution": 12 });
+        let blob = blob(&design, 12);
+        let sigma = PoseError { x: 0.1, yaw: 0.2, ..PoseError::default() };
+        let normal = Distribution::Normal { mean: PoseError::default(), sigma };
+        Report::new(&design, &blob, settings, Some(Timing { total_s: 0.25, threads: 2 }))
+            .and_then(|r| r.with_success(&blob, normal))
+            .unwrap()
+    }
+
+    #[test]
+    fn what_is_written_reads_back_equal() {
+        let report = report();
+        let text = report.to_json().unwrap();
+        assert_eq!(Report::from_json(&text).unwrap(), report);
+        assert_eq!(Report::from_json(&text).unwrap().to_json().unwrap(), text);
+    }
+
+    #[test]
+    fn the_contract_names_its_fields() {
+        let value: serde_json::Value = serde_json::from_str(&report().to_json().unwrap()).unwrap();
+        assert_eq!(value["schema"], 1);
+        assert!(value["acceptance"]["sum_ci95"].is_null());
+        assert_eq!(value["acceptance"]["unit"], "D²·rad");
+        assert_eq!(value["acceptance"]["cells"], 12 * 12 * 12);
+        let outcomes = value["acceptance"]["outcomes"].as_object().unwrap();
+        assert_eq!(outcomes.keys().collect::<Vec<_>>(), ["aligned", "jammed", "missed", "undecided"]);
+        assert!(value["onaa"]["edge"].as_f64().unwrap() > 0.0);
+        assert_eq!(value["tolerances"][2]["axis"], "yaw");
+        assert_eq!(value["success"]["distribution"]["kind"], "normal");
+        assert!(value["success"]["probability"].as_f64().unwrap() > 0.9);
+        assert_eq!(value["warnings"][0]["warning"]["kind"], "flooding-bias");
+    }
+
+    #[test]
+    fn doubts_of_the_set_itself_are_added_once() {
+        let design = design([Dof::X, Dof::Y].into_iter().collect());
+        let mut all = blob(&design, 4);
+        all.outcomes.fill(Outcome::Aligned);
+        all.outcomes[0] = Outcome::Undecided;
+        all.warnings.push(Warning::Undecided { cells: 1 });
+        let report = Report::new(&design, &all, serde_json::Value::Null, None).unwrap();
+        let kinds: Vec<_> = report.warnings.iter().map(|w| w.warning.clone()).collect();
+        let border = Warning::TouchesBorder { axes: vec!["x".to_owned(), "y".to_owned()] };
+        assert_eq!(kinds, [Warning::FloodingBias, Warning::Undecided { cells: 1 }, border]);
+    }
+
+    #[test]
+    fn unknown_fields_are_refused() {
+        let text = report().to_json().unwrap().replacen("\"onaa\"", "\"onna\"", 1);
+        assert!(Report::from_json(&text).unwrap_err().to_string().contains("unknown field `onna`"));
+    }
+
+    #[test]
+    fn listed_poses_have_an_interval_and_no_cubes() {
+        let design = design(DofSet::ALL);
+        let sample = Acceptance {
+            method: "descent",
+            domain: Domain::Poses(vec![PoseError::default(); 4]),
+            outcomes: vec![Outcome::Aligned, Outcome::Jammed, Outcome::Aligned, Outcome::Undecided],
+            warnings: Vec::new(),
+        };
+        let report = Report::new(&design, &sample, serde_json::Value::Null, None).unwrap();
+        assert!(report.acceptance.sum_ci95.is_some() && report.onaa.is_none() && report.axes.is_empty());
+        assert_eq!(Report::from_json(&report.to_json().unwrap()).unwrap(), report);
+    }
+}

@@ -1,0 +1,265 @@
+//! The report as aligned text, 80 columns wide, without colour.
+
+use super::schema::{OnaaReport, Report, ToleranceReport};
+use crate::design::{ConnectorSpec, Design};
+use std::fmt::Write;
+
+/// Width of a line.
+const COLUMNS: usize = 80;
+/// Width of the column of names.
+const NAMES: usize = 17;
+
+/// The report for people; ends with a line break.
+pub fn table(report: &Report) -> String {
+    let mut text = String::new();
+    heading(&mut text, &report.design);
+    let method = format!("{}, {}", report.method, tried(report));
+    row(&mut text, "method", &method);
+    text.push('\n');
+    acceptance(&mut text, report);
+    if let Some(onaa) = &report.onaa {
+        row(&mut text, "ONAA edge", &cube(onaa));
+    }
+    if let Some(centered) = &report.centered {
+        let more = if centered.reaches_border { ", up to the error box" } else { "" };
+        row(&mut text, "centred edge", &format!("{:.4}   around zero{more}", centered.edge));
+    }
+    if let Some(s) = &report.success {
+        let outside = format!("{} of the errors lie outside the error box", percent(s.outside));
+        row(&mut text, "success", &format!("{}   ({outside})", percent(s.probability)));
+        let [lo, hi] = s.ci95.unwrap_or(s.bracket).map(percent);
+        let what = if s.ci95.is_some() { "95 % interval" } else { "one cell of doubt:" };
+        row(&mut text, "", &format!("{what} {lo} … {hi}"));
+    }
+    if !report.tolerances.is_empty() {
+        text.push('\n');
+        tolerances(&mut text, report);
+    }
+    if !report.warnings.is_empty() {
+        text.push('\n');
+        for warning in &report.warnings {
+            wrapped(&mut text, "warning: ", &warning.message);
+        }
+    }
+    text
+}
+
+fn line(text: &mut String, content: &str) {
+    text.push_str(content.trim_end());
+    text.push('\n');
+}
+
+fn row(text: &mut String, name: &str, value: &str) {
+    line(text, &format!("  {name:<width$}{value}", width = NAMES - 2));
+}
+
+fn heading(text: &mut String, design: &Design) {
+    line(text, &design.name);
+    line(text, &"─".repeat(design.name.chars().count().clamp(24, COLUMNS)));
+    let kind = match &design.connector {
+        ConnectorSpec::Family(f) => format!("{}, aspect ratio {}", f.family.name(), number(f.aspect_ratio)),
+        ConnectorSpec::Own(_) => "own halves".to_owned(),
+    };
+    let width =
+        design.unit.map_or_else(|| "D = 1".to_owned(), |u| format!("D = {} {}", design.width, u.symbol()));
+    row(text, "connector", &format!("{kind}, {width}"));
+    let alignment = &design.alignment;
+    let free: Vec<&str> = alignment.free.iter().map(crate::pose::Dof::name).collect();
+    row(text, "free errors", &free.join(", "));
+    row(
+        text,
+        "motion",
+        &format!(
+            "COR {} D before the face, rotation length {} D",
+            number(alignment.center_of_rotation),
+            number(alignment.rotation_length)
+        ),
+    );
+}
+
+fn tried(report: &Report) -> String {
+    if report.axes.is_empty() {
+        return format!("{} poses", grouped(report.acceptance.cells));
+    }
+    let cells: Vec<String> = report.axes.iter().map(|a| a.cells.to_string()).collect();
+    format!("{} = {} cells", cells.join(" × "), grouped(report.acceptance.cells))
+}
+
+fn acceptance(text: &mut String, report: &Report) {
+    let a = &report.acceptance;
+    row(
+        text,
+        "Sum",
+        &format!("{} {}   ({} of the error box)", significant(a.sum), a.unit, percent(a.fraction)),
+    );
+    if let Some([lo, hi]) = a.sum_ci95 {
+        row(text, "", &format!("95 % interval {} … {}", significant(lo), significant(hi)));
+    }
+    if let Some([lo, hi]) = a.sum_bracket {
+        row(text, "", &format!("one cell of doubt: {} … {}", significant(lo), significant(hi)));
+    }
+    let share =
+        |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
+    let o = &a.outcomes;
+    row(
+        text,
+        "outcomes",
+        &format!(
+            "aligned {}  jammed {}  missed {}  undecided {}",
+            share(o.aligned),
+            share(o.jammed),
+            share(o.missed),
+            share(o.undecided)
+        ),
+    );
+}
+
+fn cube(onaa: &OnaaReport) -> String {
+    if onaa.bounds.is_empty() {
+        return "0   no cell is accepted".to_owned();
+    }
+    format!("{:.4}   of the error box, along every axis", onaa.edge)
+}
+
+fn tolerances(text: &mut String, report: &Report) {
+    let unit = report.design.unit;
+    let own = unit.map_or_else(String::new, |u| format!("{:>22}", u.symbol()));
+    line(text, &format!("  {:<9}{:>22}{own}{:>22}", "tolerance", "D, rad", "deg"));
+    let mut open = false;
+    for t in &report.tolerances {
+        let angle = t.axis.is_rotation();
+        let base = both(t, 1.0, 4);
+        let lengths = if angle { String::new() } else { both(t, report.design.width, 3) };
+        let lengths = if unit.is_none() { String::new() } else { format!("{lengths:>22}") };
+        let degrees = if angle { both(t, 1f64.to_degrees(), 2) } else { String::new() };
+        line(text, &format!("  {:<9}{base:>22}{lengths}{degrees:>22}", t.axis.name()));
+        open |= t.minus_reaches_border || t.plus_reaches_border;
+    }
+    let half: Vec<String> = report
+        .tolerances
+        .iter()
+        .map(|t| {
+            if t.axis.is_rotation() {
+                format!("{} {:.2}°", t.axis.name(), t.half_cell.to_degrees())
+            } else {
+                format!("{} {:.4} D", t.axis.name(), t.half_cell)
+            }
+        })
+        .collect();
+    wrapped(text, "  each ± half a cell: ", &half.join(", "));
+    if open {
+        line(text, "  * up to the border of the error box, perhaps further");
+    }
+}
+
+/// `±0.5` where both sides agree, `−0.5 / +0.3` where they do not; a star where the error box cut it off.
+fn both(t: &ToleranceReport, scale: f64, digits: usize) -> String {
+    let star = |open: bool| if open { "*" } else { "" };
+    let (minus, plus) = (format!("{:.digits$}", t.minus * scale), format!("{:.digits$}", t.plus * scale));
+    if minus == plus && t.minus_reaches_border == t.plus_reaches_border {
+        return format!("±{plus}{}", star(t.plus_reaches_border));
+    }
+    format!("−{minus}{} / +{plus}{}", star(t.minus_reaches_border), star(t.plus_reaches_border))
+}
+
+/// Breaks `content` between words; later lines are indented by the width of `first`.
+fn wrapped(text: &mut String, first: &str, content: &str) {
+    let indent = first.chars().count();
+    let mut current = first.to_owned();
+    let mut used = indent;
+    for word in content.split_whitespace() {
+        let length = word.chars().count();
+        if used > indent && used + 1 + length > COLUMNS {
+            line(text, &current);
+            current = " ".repeat(indent);
+            used = indent;
+        }
+        if used > indent {
+            current.push(' ');
+            used += 1;
+        }
+        current.push_str(word);
+        used += length;
+    }
+    line(text, &current);
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+/// A number as a person writes it: up to four decimals, no trailing zeros.
+fn number(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Four significant digits.
+fn significant(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor();
+    if !(-4.0..6.0).contains(&magnitude) {
+        return format!("{value:.3e}");
+    }
+    format!("{value:.*}", (3.0 - magnitude).max(0.0) as usize)
+}
+
+/// Thousands kept apart by thin gaps: 24 300 000.
+fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (position, digit) in digits.chars().enumerate() {
+        if position > 0 && (digits.len() - position).is_multiple_of(3) {
+            // Writing to a String cannot fail.
+            let _ = text.write_char(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::schema::testing::*;
+    use super::*;
+    use crate::acceptance::Warning;
+    use crate::pose::{Dof, DofSet};
+
+    fn text(free: DofSet, cells: usize) -> String {
+        let design = design(free);
+        let mut blob = blob(&design, cells);
+        blob.warnings.push(Warning::Undecided { cells: 3 });
+        table(&Report::new(&design, &blob, serde_json::Value::Null, None).unwrap())
+    }
+
+    #[test]
+    fn it_fits_in_eighty_columns_and_names_the_units() {
+        let text = text(DofSet::ALL, 8);
+        for line in text.lines() {
+            assert!(line.chars().count() <= COLUMNS && line == line.trim_end(), "{line:?}");
+        }
+        for word in
+            ["pyramid, AR 1/2", "D = 50 mm", "D²·rad³", "32 768 cells", "ONAA", "mm", "deg", "warning: "]
+        {
+            assert!(text.contains(word), "{word} is missing in\n{text}");
+        }
+    }
+
+    #[test]
+    fn tolerances_stand_in_every_unit() {
+        // x: aligned while 1.96 x² < 0.7, so to the border of the cell with centre 0.59: 0.6 D = 30 mm.
+        let text = text([Dof::X].into_iter().collect(), 100);
+        let row = text.lines().find(|l| l.starts_with("  x ")).unwrap();
+        assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["x", "±0.6000", "±30.000"]);
+    }
+
+    #[test]
+    fn numbers_keep_four_digits() {
+        let written = [0.0, 0.012_345, 2.345_67, 23.4567, 12_345.6, 1.5e-7].map(significant);
+        assert_eq!(written, ["0", "0.01235", "2.346", "23.46", "12346", "1.500e-7"]);
+        assert_eq!(grouped(24_300_000), "24 300 000");
+        assert_eq!(number(-0.5), "-0.5");
+    }
+}

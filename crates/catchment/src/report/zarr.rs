@@ -1,0 +1,350 @@
+//! One run as a Zarr v3 group that xarray opens with named dimensions and coordinates.
+//!
+//! ```text
+//!   out.zarr/          attributes: catchment (layout version), report (the JSON report)
+//!   ├── outcome        u8, 0 none · 1 aligned · 2 jammed · 3 missed · 4 undecided; (yaw, pitch, roll, y, x)
+//!   ├── height         f32, z of the COR at first contact in D, NaN without contact; same shape, where known
+//!   └── x, y, …        f64, centres of the cells, in D and rad
+//! ```
+//!
+//! The grid's first axis runs fastest in memory, so in the row-major order of Zarr its dimensions are reversed. The
+//! metadata are consolidated. The same run writes the same bytes but for the report's `timing`.
+
+use super::schema::{Report, Unit};
+use super::write::{self, WriteError};
+use crate::acceptance::{Acceptance, Outcome};
+use crate::landscape::{Grid, GridAxis};
+use crate::merit::MeritError;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+use std::sync::Arc;
+use zarrs::array::codec::GzipCodec;
+use zarrs::array::{Array, ArrayBuilder, ArrayBytes, ArrayMetadataOptions, DataType, FillValue, data_type};
+use zarrs::filesystem::FilesystemStore;
+
+/// Version of the group's layout, its attribute `catchment`.
+pub const LAYOUT: u32 = 1;
+
+/// Cells per chunk at most: a megabyte or a few, read in one go.
+const CHUNK_CELLS: usize = 1 << 20;
+
+/// Level of compression: outcomes are long runs, more effort gains nothing.
+const COMPRESSION: u32 = 5;
+
+/// Why a group could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ZarrError {
+    /// Its files could not.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The outcomes are not over a grid.
+    #[error(transparent)]
+    Merit(#[from] MeritError),
+    /// The heights do not belong to the grid.
+    #[error("{heights} heights for {cells} cells")]
+    Shape {
+        /// Number of heights.
+        heights: usize,
+        /// Number of cells.
+        cells: usize,
+    },
+    /// The storage library refused.
+    #[error("cannot write the Zarr group: {reason}")]
+    Storage {
+        /// What it says.
+        reason: String,
+    },
+}
+
+fn storage<E: std::error::Error>(error: E) -> ZarrError {
+    ZarrError::Storage { reason: error.to_string() }
+}
+
+/// Writes a run to the folder `path`, which must not exist or be such a group. `heights`, in D, are in the order of the
+/// grid's cells; values that are not finite stand for no contact.
+///
+/// # Errors
+/// See [`ZarrError`]. Nothing is left behind and an older result stays as it was.
+pub fn write(
+    path: &Path,
+    report: &Report,
+    acceptance: &Acceptance,
+    heights: Option<&[f32]>,
+) -> Result<(), ZarrError> {
+    let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
+    if let Some(heights) = heights
+        && heights.len() != grid.len()
+    {
+        return Err(ZarrError::Shape { heights: heights.len(), cells: grid.len() });
+    }
+    write::folder(path, is_group, |folder| fill(folder, report, acceptance, grid, heights))
+}
+
+/// Whether a folder is a group written by [`write()`].
+pub fn is_group(path: &Path) -> bool {
+    let text = std::fs::read_to_string(path.join("zarr.json")).unwrap_or_default();
+    let root: Value = serde_json::from_str(&text).unwrap_or_default();
+    root["node_type"] == "group" && root["attributes"]["catchment"].is_u64()
+}
+
+fn fill(
+    folder: &Path,
+    report: &Report,
+    acceptance: &Acceptance,
+    grid: &Grid,
+    heights: Option<&[f32]>,
+) -> Result<(), ZarrError> {
+    let store = Arc::new(FilesystemStore::new(folder).map_err(storage)?);
+    let mut arrays = Map::new();
+    for axis in &grid.axes {
+        let centers: Vec<u8> = (0..axis.cells).flat_map(|k| axis.center(k).to_le_bytes()).collect();
+        let attributes = json!({
+            "long_name": long_name(axis),
+            "units": units(axis),
+            "lower_border": axis.lo,
+            "upper_border": axis.hi,
+        });
+        let plan = Plan {
+            name: axis.dof.name(),
+            axes: &[*axis],
+            kind: data_type::float64(),
+            fill: FillValue::from(f64::NAN),
+        };
+        arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, 8, &centers)?);
+    }
+    let codes: Vec<u8> = acceptance.outcomes.iter().map(|o| *o as u8).collect();
+    let attributes = json!({
+        "long_name": format!("outcome by {}", acceptance.method),
+        "flag_values": Outcome::ALL.map(|o| o as u8),
+        "flag_meanings": Outcome::ALL.map(Outcome::name).join(" "),
+    });
+    let plan =
+        Plan { name: "outcome", axes: &grid.axes, kind: data_type::uint8(), fill: FillValue::from(0u8) };
+    arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, 1, &codes)?);
+    if let Some(heights) = heights {
+        let finite = |h: &f32| if h.is_finite() { *h } else { f32::NAN };
+        let bytes: Vec<u8> = heights.iter().flat_map(|h| finite(h).to_le_bytes()).collect();
+        let attributes = json!({ "long_name": "z of the centre of rotation at first contact", "units": "D" });
+        let plan = Plan {
+            name: "height",
+            axes: &grid.axes,
+            kind: data_type::float32(),
+            fill: FillValue::from(f32::NAN),
+        };
+        arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, 4, &bytes)?);
+    }
+    let report = serde_json::to_value(report).map_err(storage)?;
+    let root = json!({
+        "zarr_format": 3,
+        "node_type": "group",
+        "attributes": { "catchment": LAYOUT, "title": report["design"]["name"], "report": report },
+        "consolidated_metadata": { "kind": "inline", "must_understand": false, "metadata": arrays },
+    });
+    let text = serde_json::to_string_pretty(&root).map_err(storage)?;
+    let place = folder.join("zarr.json");
+    std::fs::write(&place, text).map_err(|e| WriteError::at(&place, e))?;
+    Ok(())
+}
+
+fn long_name(axis: &GridAxis) -> String {
+    match Unit::of(axis.dof) {
+        Unit::D => format!("lateral offset of the face centre along {}", axis.dof.name()),
+        Unit::Rad => format!("{} error", axis.dof.name()),
+    }
+}
+
+const fn units(axis: &GridAxis) -> &'static str {
+    match Unit::of(axis.dof) {
+        Unit::D => "D",
+        Unit::Rad => "rad",
+    }
+}
+
+/// An array to be written: axes with the fastest first, as in a grid.
+struct Plan<'a> {
+    name: &'static str,
+    axes: &'a [GridAxis],
+    kind: DataType,
+    fill: FillValue,
+}
+
+impl Plan<'_> {
+    /// Stores metadata and chunks of `bytes` (little-endian, `size` bytes per cell); returns the metadata.
+    fn write(
+        &self,
+        store: &Arc<FilesystemStore>,
+        attributes: Value,
+        size: usize,
+        bytes: &[u8],
+    ) -> Result<Value, ZarrError> {
+        let shape: Vec<usize> = self.axes.iter().rev().map(|a| a.cells).collect();
+        let chunk = chunk_shape(&shape);
+        let wide = |shape: &[usize]| shape.iter().map(|n| *n as u64).collect::<Vec<u64>>();
+        let codec = GzipCodec::new(COMPRESSION).map_err(storage)?;
+        let attributes = match attributes {
+            Value::Object(map) => map,
+            _ => Map::new(),
+        };
+        let array: Array<FilesystemStore> =
+            ArrayBuilder::new(wide(&shape), wide(&chunk), self.kind.clone(), self.fill.clone())
+                .bytes_to_bytes_codecs(vec![Arc::new(codec)])
+                .dimension_names(Some(self.axes.iter().rev().map(|a| a.dof.name())))
+                .attributes(attributes)
+                .build(Arc::clone(store), &format!("/{}", self.name))
+                .map_err(storage)?;
+        // The library's own name and version would change the bytes with every upgrade.
+        let options = ArrayMetadataOptions::default().with_include_zarrs_metadata(false);
+        array.store_metadata_opt(&options).map_err(storage)?;
+        let grid: Vec<usize> = shape.iter().zip(&chunk).map(|(n, c)| n.div_ceil(*c)).collect();
+        let chunks: usize = grid.iter().product();
+        for number in 0..chunks {
+            let place = unravel(number, &grid);
+            let data = gather(bytes, size, &shape, &chunk, &place, self.fill.as_ne_bytes());
+            array.store_chunk(&wide(&place), ArrayBytes::new_flen(data)).map_err(storage)?;
+        }
+        serde_json::to_value(array.metadata_opt(&options)).map_err(storage)
+    }
+}
+
+/// Whole rows of the fastest dimensions, as many as fit into a chunk.
+fn chunk_shape(shape: &[usize]) -> Vec<usize> {
+    let mut chunk = shape.to_vec();
+    for k in 0..chunk.len() {
+        let others: usize = chunk[k + 1..].iter().product();
+        if chunk[k] * others <= CHUNK_CELLS {
+            break;
+        }
+        chunk[k] = (CHUNK_CELLS / others.max(1)).clamp(1, chunk[k]);
+    }
+    chunk
+}
+
+/// Row-major position of a number: the last dimension runs fastest.
+fn unravel(mut number: usize, shape: &[usize]) -> Vec<usize> {
+    let mut place = vec![0; shape.len()];
+    for (k, n) in place.iter_mut().zip(shape).rev() {
+        *k = number % n;
+        number /= n;
+    }
+    place
+}
+
+/// The cells of one chunk, row-major, copied row by row; beyond the array the fill value.
+fn gather(
+    bytes: &[u8],
+    size: usize,
+    shape: &[usize],
+    chunk: &[usize],
+    place: &[usize],
+    fill: &[u8],
+) -> Vec<u8> {
+    let (Some((&length, rows)), Some((&along, others))) = (chunk.split_last(), shape.split_last()) else {
+        return bytes.to_vec();
+    };
+    let first = place[place.len() - 1] * length;
+    let inside = along.saturating_sub(first).min(length);
+    let mut data = Vec::with_capacity(chunk.iter().product::<usize>() * size);
+    for number in 0..rows.iter().product() {
+        let row = unravel(number, rows).into_iter().zip(rows).zip(place).map(|((k, c), p)| p * c + k);
+        let index = row.zip(others).try_fold(0, |index, (k, n)| (k < *n).then_some(index * n + k));
+        let copied = index.map_or(0, |row| {
+            let start = (row * along + first) * size;
+            data.extend_from_slice(&bytes[start..start + inside * size]);
+            inside
+        });
+        data.extend(std::iter::repeat_n(fill, length - copied).flatten());
+    }
+    data
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose::Dof;
+    use crate::report::schema::testing::{blob, design};
+
+    fn run(folder: &Path, cells: usize) -> (Acceptance, Vec<f32>) {
+        let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
+        let acceptance = blob(&design, cells);
+        let heights: Vec<f32> = (0..acceptance.outcomes.len())
+            .map(|i| if i == 7 { f32::NEG_INFINITY } else { i as f32 })
+            .collect();
+        let report = Report::new(&design, &acceptance, Value::Null, None).unwrap();
+        write(folder, &report, &acceptance, Some(&heights)).unwrap();
+        (acceptance, heights)
+    }
+
+    fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+        let mut found = Vec::new();
+        let mut open = vec![folder.to_owned()];
+        while let Some(next) = open.pop() {
+            for entry in std::fs::read_dir(next).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    open.push(path);
+                } else {
+                    let name = path.strip_prefix(folder).unwrap().display().to_string();
+                    found.push((name, std::fs::read(&path).unwrap()));
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("out.zarr");
+        let (acceptance, heights) = run(&path, 6);
+        let store = Arc::new(FilesystemStore::new(&path).unwrap());
+        let outcome = Array::open(Arc::clone(&store), "/outcome").unwrap();
+        let codes: Vec<u8> = outcome.retrieve_array_subset(&outcome.subset_all()).unwrap();
+        assert_eq!(codes, acceptance.outcomes.iter().map(|o| *o as u8).collect::<Vec<_>>());
+        let height = Array::open(Arc::clone(&store), "/height").unwrap();
+        let read: Vec<f32> = height.retrieve_array_subset(&height.subset_all()).unwrap();
+        assert!(read[7].is_nan() && read[8] == heights[8]);
+        let yaw = Array::open(store, "/yaw").unwrap();
+        let centers: Vec<f64> = yaw.retrieve_array_subset(&yaw.subset_all()).unwrap();
+        assert_eq!(centers[5], acceptance.grid().unwrap().axes[2].center(5));
+        let root: Value = serde_json::from_slice(&std::fs::read(path.join("zarr.json")).unwrap()).unwrap();
+        assert_eq!(root["attributes"]["report"]["schema"], 1);
+        let names = &root["consolidated_metadata"]["metadata"]["outcome"]["dimension_names"];
+        assert_eq!(*names, json!(["yaw", "y", "x"]));
+    }
+
+    #[test]
+    fn the_same_run_writes_the_same_bytes_in_place_of_the_old() {
+        let home = tempfile::tempdir().unwrap();
+        let [a, b] = ["a.zarr", "b.zarr"].map(|n| home.path().join(n));
+        run(&a, 5);
+        run(&b, 6);
+        run(&b, 5);
+        assert_eq!(files(&a), files(&b));
+    }
+
+    #[test]
+    fn another_group_is_not_replaced() {
+        let home = tempfile::tempdir().unwrap();
+        let text = r#"{"zarr_format":3,"node_type":"group","attributes":{"from":"elsewhere"}}"#;
+        std::fs::write(home.path().join("zarr.json"), text).unwrap();
+        let design = design([Dof::X].into_iter().collect());
+        let acceptance = blob(&design, 4);
+        let report = Report::new(&design, &acceptance, Value::Null, None).unwrap();
+        let refused = write(home.path(), &report, &acceptance, None);
+        assert!(matches!(refused, Err(ZarrError::Write(WriteError::NotAResult { .. }))));
+        let short = write(&home.path().join("new.zarr"), &report, &acceptance, Some(&[0.0]));
+        assert!(matches!(short, Err(ZarrError::Shape { heights: 1, cells: 4 })));
+    }
+
+    #[test]
+    fn chunks_cover_the_array_and_are_bounded() {
+        assert_eq!(chunk_shape(&[30; 5]), [1, 30, 30, 30, 30]);
+        assert_eq!(chunk_shape(&[100, 100]), [100, 100]);
+        assert_eq!(chunk_shape(&[3 << 20]), [1 << 20]);
+        assert_eq!(chunk_shape(&[64; 5]), [1, 4, 64, 64, 64]);
+        let bytes: Vec<u8> = (0..15).collect();
+        // The last chunk of a 3 × 5 array in chunks of 2 × 3: one row and two columns are inside.
+        assert_eq!(gather(&bytes, 1, &[3, 5], &[2, 3], &[1, 1], &[99]), [13, 14, 99, 99, 99, 99]);
+    }
+}
