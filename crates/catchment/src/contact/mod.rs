@@ -12,12 +12,19 @@
 //! down in plain loops and judges every fast path.
 
 pub mod brute;
+mod element;
+mod envelope;
 pub mod mated;
+mod raster;
+mod shape;
+
+pub use envelope::Envelope;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::CorPose;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec3};
+use shape::Shape;
 
 /// A connector whose moving half is given from the COR: ready for heights.
 #[derive(Debug, Clone)]
@@ -28,27 +35,29 @@ pub struct Pair {
     pub moving: Half,
     /// The alignment problem it was built for.
     pub alignment: Alignment,
+    fixed_shapes: Vec<Shape>,
+    moving_shapes: Vec<Shape>,
 }
 
 impl Pair {
     /// Places the COR of `alignment` into the moving half.
     pub fn new(connector: &Connector, alignment: &Alignment) -> Self {
         let face_from_cor = DVec3::new(0.0, 0.0, alignment.center_of_rotation);
-        Self {
-            fixed: connector.fixed.clone(),
-            moving: connector.moving.mapped(|p| p + face_from_cor),
-            alignment: alignment.clone(),
-        }
+        let fixed = connector.fixed.clone();
+        let moving = connector.moving.mapped(|p| p + face_from_cor);
+        let shapes = |half: &Half| half.surfaces.iter().map(Shape::new).collect();
+        let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
+        Self { fixed, moving, alignment: alignment.clone(), fixed_shapes, moving_shapes }
     }
 
     /// z of the COR at first contact, in D; `None` where the halves pass each other by.
     pub fn height(&self, pose: &CorPose) -> Option<f64> {
-        brute::height(self, pose)
+        self.at_rotation(pose.rotation).height(pose.lateral)
     }
 
     /// The pair at one rotation: heights for any lateral position.
     pub fn at_rotation(&self, rotation: DMat3) -> Envelope<'_> {
-        Envelope { pair: self, rotation }
+        Envelope::new(self, &rotation)
     }
 }
 
@@ -70,27 +79,24 @@ impl Lattice {
     }
 }
 
-/// The heights of a pair at one rotation, over the lateral plane.
-#[derive(Debug)]
-pub struct Envelope<'a> {
-    pair: &'a Pair,
-    rotation: DMat3,
+/// A point where the halves touch, or nearly do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Distance along the normal, in D; 0 when touching, negative when the halves overlap by rounding.
+    pub gap: f64,
+    /// Unit normal, from the fixed half to the moving one.
+    pub normal: DVec3,
+    /// The touching point of the fixed half, in the world frame.
+    pub point: DVec3,
 }
 
-impl Envelope<'_> {
-    /// z of the COR at first contact with the COR at `lateral`, in D.
-    pub fn height(&self, lateral: DVec2) -> Option<f64> {
-        brute::height(self.pair, &CorPose { lateral, rotation: self.rotation })
-    }
-
-    /// Heights over a lattice of *COR* positions, x fastest; −∞ where the halves pass each other by.
+impl Contact {
+    /// Gradient of the height of first contact where this is the only contact: `[∂h/∂x, ∂h/∂y]` (D/D) of the COR's
+    /// lateral position and `∂h/∂ω` (D/rad) of a turn about the COR in world axes.
     ///
-    /// `out` has `x.count · y.count` cells and is overwritten.
-    pub fn heights(&self, x: Lattice, y: Lattice, out: &mut [f64]) {
-        for (row, cells) in out.chunks_exact_mut(x.count).enumerate() {
-            for (column, cell) in cells.iter_mut().enumerate() {
-                *cell = self.height(DVec2::new(x.at(column), y.at(row))).unwrap_or(f64::NEG_INFINITY);
-            }
-        }
+    /// `∂h/∂x = −n_x/n_z`, `∂h/∂y = −n_y/n_z`, `∂h/∂ω = −(r × n)/n_z` with r from the COR to the contact.
+    pub fn gradient(&self, cor: DVec3) -> ([f64; 2], DVec3) {
+        let n = self.normal;
+        ([-n.x / n.z, -n.y / n.z], -(self.point - cor).cross(n) / n.z)
     }
 }

@@ -1,5 +1,110 @@
-//! Exact quasi-static motion of one pose: frictionless, overdamped, contact kept.
+//! Exact quasi-static motion of one pose: frictionless, overdamped, contact kept. The ground truth.
+//!
+//! ```text
+//!   q̇ = −M⁻¹ · (minimum-norm point of the convex hull of the active contacts' gradients of h)
+//! ```
+//!
+//! in the metric `|v|² + ρ²|ω|²` (v at the COR), several simultaneous contacts as a matter of course, until
+//! aligned, at rest, or off. No grid is involved, and no sampling of surfaces.
+//!
+//! Not promised: friction, speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
+//! the motion could go either way, may be reported as jammed there.
 
+mod motion;
+mod projection;
 mod trajectory;
 
 pub use trajectory::{Touch, Trajectory, Waypoint};
+
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec};
+use crate::pose::PoseError;
+use motion::Motion;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What may change the answer of [`run`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Longest step in the ρ-metric, in D. Halving it must not change outcomes; it is here to be tested.
+    pub step: f64,
+    /// Largest mismatch between a step's predicted and true height, as a share of the step; beyond it the step is halved.
+    pub surprise: f64,
+    /// Aligned: face centres this close (D) and rotation within this angle (radians).
+    pub aligned_within: f64,
+    /// Steps after which a motion counts as undecided.
+    pub max_steps: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { step: 0.02, surprise: 0.05, aligned_within: 0.02, max_steps: 20_000 }
+    }
+}
+
+/// Where a pose ends.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct End {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// The last pose error.
+    pub error: PoseError,
+}
+
+/// Follows one pose to its end.
+pub fn outcome(pair: &Pair, error: &PoseError, settings: &Settings) -> End {
+    let (outcome, error) = Motion::new(pair, settings).follow(error, None);
+    End { outcome, error }
+}
+
+/// Follows one pose and keeps its path.
+pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory {
+    let mut waypoints = Vec::new();
+    let (outcome, _) = Motion::new(pair, settings).follow(error, Some(&mut waypoints));
+    Trajectory { waypoints, outcome }
+}
+
+/// Follows every pose of a domain, in parallel; the ends are in the order of the domain.
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop; checked before every pose.
+pub fn run(
+    pair: &Pair,
+    domain: Domain,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<(Acceptance, Vec<End>), Cancelled> {
+    let count = match &domain {
+        Domain::Grid(grid) => grid.len(),
+        Domain::Poses(poses) => poses.len(),
+    };
+    let pose = |k: usize| match &domain {
+        Domain::Grid(grid) => grid.pose(k),
+        Domain::Poses(poses) => poses[k],
+    };
+    let done = AtomicUsize::new(0);
+    let ends: Vec<End> = exec.install(|| {
+        (0..count)
+            .into_par_iter()
+            .map_init(
+                || Motion::new(pair, settings),
+                |motion, k| {
+                    exec.check()?;
+                    let (outcome, error) = motion.follow(&pose(k), None);
+                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                    if done.is_multiple_of(256) {
+                        exec.report(done as f64 / count as f64, "descents");
+                    }
+                    Ok(End { outcome, error })
+                },
+            )
+            .collect::<Result<_, Cancelled>>()
+    })?;
+    let outcomes: Vec<Outcome> = ends.iter().map(|e| e.outcome).collect();
+    let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();
+    let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
+    Ok((Acceptance { method: "descent", domain, outcomes, warnings }, ends))
+}

@@ -1,0 +1,117 @@
+//! One way in which two halves can touch: a corner on a facet, a facet on a corner, or two crossed edges.
+//!
+//! At a fixed rotation every element is a plane in the position c of the COR:
+//!
+//! ```text
+//!   gap(c) = n·c + offset          > 0 apart, 0 touching          (n unit, from fixed to moving)
+//!   z(x, y) = −(n_x x + n_y y + offset)/n_z                       its height of contact
+//! ```
+//!
+//! valid while the foot of the contact lies on both features.
+
+use super::shape::Shape;
+use crate::contact::brute::SEAM;
+use glam::{DVec2, DVec3};
+
+/// Which features meet; indices into the fixed and the moving shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Features {
+    /// Fixed facet under a moving corner.
+    FacetCorner { facet: u32, vertex: u32 },
+    /// Fixed corner under a moving facet.
+    CornerFacet { vertex: u32, facet: u32 },
+    /// Fixed edge under a moving edge, by their ends.
+    EdgeEdge { fixed: [u32; 2], moving: [u32; 2] },
+}
+
+/// A possible contact at one rotation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Element {
+    /// Index of the fixed and of the moving shape.
+    pub(super) shapes: [u32; 2],
+    pub(super) features: Features,
+    /// Unit normal, from fixed to moving.
+    pub(super) normal: DVec3,
+    /// `gap = normal·c + offset`.
+    pub(super) offset: f64,
+}
+
+impl Element {
+    /// Distance along the normal with the COR at `c`; negative when the halves overlap.
+    pub(super) fn gap(&self, c: DVec3) -> f64 {
+        self.normal.dot(c) + self.offset
+    }
+
+    /// z of the COR at contact. Only for elements that face up.
+    pub(super) fn height(&self, lateral: DVec2) -> f64 {
+        -(self.normal.truncate().dot(lateral) + self.offset) / self.normal.z
+    }
+
+    /// The point of the fixed half where this element touches (or would, across its gap) with the COR at `c`;
+    /// `None` when the foot misses one of the features.
+    pub(super) fn foot(&self, fixed: &Shape, moving: &Shape, c: DVec3) -> Option<DVec3> {
+        match self.features {
+            Features::FacetCorner { facet, vertex } => {
+                let point = c + moving.at(vertex);
+                let foot = point - self.normal * self.gap(c);
+                on_facet(fixed, facet, foot).then_some(foot)
+            }
+            Features::CornerFacet { vertex, facet } => {
+                let foot = fixed.at(vertex);
+                // Seen from the COR, across the gap.
+                let seen = foot + self.normal * self.gap(c) - c;
+                on_facet(moving, facet, seen).then_some(foot)
+            }
+            Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
+                let (a, p) = (fixed.at(a), moving.at(p));
+                let (u, w) = (fixed.at(b) - a, moving.at(q) - p);
+                let across = u.cross(w);
+                let d = c + p - a;
+                let scale = 1.0 / across.length_squared();
+                let s = d.cross(w).dot(across) * scale;
+                let t = d.cross(u).dot(across) * scale;
+                let on = |k: f64, edge: DVec3| {
+                    let slack = SEAM / edge.length();
+                    k >= -slack && k <= 1.0 + slack
+                };
+                (on(s, u) && on(t, w)).then(|| a + u * s)
+            }
+        }
+    }
+
+    /// The lateral COR positions for which the element is valid, as the corners of a convex polygon.
+    pub(super) fn footprint(&self, fixed: &Shape, moving: &Shape, out: &mut Vec<DVec2>) {
+        out.clear();
+        match self.features {
+            Features::FacetCorner { facet, vertex } => {
+                let v = moving.at(vertex);
+                let facet = &fixed.facets[facet as usize];
+                out.extend(facet.corners.iter().map(|&k| (fixed.at(k) - v).truncate()));
+            }
+            Features::CornerFacet { vertex, facet } => {
+                let v = fixed.at(vertex);
+                let facet = &moving.facets[facet as usize];
+                out.extend(facet.corners.iter().map(|&k| (v - moving.at(k)).truncate()));
+            }
+            Features::EdgeEdge { fixed: f, moving: m } => {
+                let [a, b] = f.map(|k| fixed.at(k).truncate());
+                let [p, q] = m.map(|k| moving.at(k).truncate());
+                out.extend([a - p, b - p, b - q, a - q]);
+            }
+        }
+    }
+}
+
+/// Whether a point of a facet's plane lies on the facet, within the seam.
+fn on_facet(shape: &Shape, facet: u32, point: DVec3) -> bool {
+    let facet = &shape.facets[facet as usize];
+    let n = facet.corners.len();
+    let mut a = shape.at(facet.corners[n - 1]);
+    facet.corners.iter().all(|&k| {
+        let b = shape.at(k);
+        let along = b - a;
+        let inside = facet.normal.dot(along.cross(point - a)) >= -SEAM * along.length();
+        a = b;
+        inside
+    })
+}

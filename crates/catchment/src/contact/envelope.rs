@@ -1,0 +1,202 @@
+//! All supported elements of a pair at one rotation: the upper envelope, and the contacts near a position.
+
+use super::element::{Element, Features};
+use super::shape::{Corner, Shape, Side};
+use super::{Contact, Lattice, Pair};
+use glam::{DMat3, DVec2, DVec3};
+
+/// Below this z-component a normal counts as horizontal: such a facet has no height of its own, its rim
+/// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
+const VERTICAL: f64 = 1e-9;
+
+/// Sine of the angle by which a feature may fail to support a normal and still count: rounding only.
+const ROUNDING: f64 = 1e-9;
+
+/// The pair at one rotation: which features can touch, for any position of the COR.
+///
+/// Reusable: [`Envelope::turn`] replaces the rotation without allocating anew.
+#[derive(Debug, Clone)]
+pub struct Envelope<'a> {
+    pair: &'a Pair,
+    moving: Vec<Shape>,
+    elements: Vec<Element>,
+}
+
+impl<'a> Envelope<'a> {
+    /// The envelope at `rotation`.
+    pub(super) fn new(pair: &'a Pair, rotation: &DMat3) -> Self {
+        let mut envelope = Self { pair, moving: pair.moving_shapes.clone(), elements: Vec::new() };
+        envelope.turn(rotation);
+        envelope
+    }
+
+    /// Moves on to another rotation: everything that can carry the moving half from below.
+    pub fn turn(&mut self, rotation: &DMat3) {
+        self.turn_within(rotation, ROUNDING, VERTICAL);
+    }
+
+    /// Moves on to another rotation, and keeps walls and features that support a normal only within `slack` radians:
+    /// what a motion that turns by up to `slack` may meet.
+    pub fn turn_with_slack(&mut self, rotation: &DMat3, slack: f64) {
+        self.turn_within(rotation, slack.max(ROUNDING), -slack.max(ROUNDING));
+    }
+
+    fn turn_within(&mut self, rotation: &DMat3, slack: f64, lowest: f64) {
+        for (turned, shape) in self.moving.iter_mut().zip(&self.pair.moving_shapes) {
+            shape.rotate_into(rotation, turned);
+        }
+        self.elements.clear();
+        for (f, fixed) in self.pair.fixed_shapes.iter().enumerate() {
+            for (m, moving) in self.moving.iter().enumerate() {
+                let shapes = [f as u32, m as u32];
+                collect(fixed, moving, slack, lowest, |features, normal, offset| {
+                    self.elements.push(Element { shapes, features, normal, offset });
+                });
+            }
+        }
+    }
+
+    /// z of the COR at first contact with the COR at `lateral`, in D; `None` where the halves pass each other.
+    pub fn height(&self, lateral: DVec2) -> Option<f64> {
+        let mut highest = f64::NEG_INFINITY;
+        for element in &self.elements {
+            if element.normal.z <= VERTICAL {
+                continue;
+            }
+            let z = element.height(lateral);
+            if z > highest && self.foot(element, lateral.extend(z)).is_some() {
+                highest = z;
+            }
+        }
+        highest.is_finite().then_some(highest)
+    }
+
+    /// Heights over a lattice of *COR* positions, x fastest; −∞ where the halves pass each other by.
+    ///
+    /// `out` has `x.count · y.count` cells and is overwritten.
+    pub fn heights(&self, x: Lattice, y: Lattice, out: &mut [f64]) {
+        out.fill(f64::NEG_INFINITY);
+        let mut polygon = Vec::new();
+        for element in &self.elements {
+            if element.normal.z <= VERTICAL {
+                continue;
+            }
+            let [f, m] = element.shapes.map(|s| s as usize);
+            element.footprint(&self.pair.fixed_shapes[f], &self.moving[m], &mut polygon);
+            let slope = -element.normal.truncate() / element.normal.z;
+            let level = -element.offset / element.normal.z;
+            super::raster::fill_convex(&polygon, x, y, |row, columns| {
+                let base = slope.y.mul_add(y.at(row), level);
+                let cells = &mut out[row * x.count + columns.start..row * x.count + columns.end];
+                for (k, cell) in cells.iter_mut().enumerate() {
+                    let z = slope.x.mul_add(x.at(columns.start + k), base);
+                    *cell = cell.max(z);
+                }
+            });
+        }
+    }
+
+    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.
+    pub fn contacts(&self, position: DVec3, reach: f64, out: &mut Vec<Contact>) {
+        out.clear();
+        for element in &self.elements {
+            let gap = element.gap(position);
+            // Deeper than `reach` the halves are not near each other along this normal: they passed.
+            if gap.abs() > reach {
+                continue;
+            }
+            let Some(point) = self.foot(element, position) else { continue };
+            if !self.is_exposed(element, point, position) {
+                continue;
+            }
+            out.push(Contact { gap, normal: element.normal, point });
+        }
+    }
+
+    fn foot(&self, element: &Element, position: DVec3) -> Option<DVec3> {
+        let [f, m] = element.shapes.map(|s| s as usize);
+        element.foot(&self.pair.fixed_shapes[f], &self.moving[m], position)
+    }
+
+    /// Whether the contact lies on the surface of both solids, not on a wall between two pieces of one.
+    fn is_exposed(&self, element: &Element, point: DVec3, position: DVec3) -> bool {
+        /// How far outside its own surface a contact looks for another piece of the same solid, in D.
+        const LOOK: f64 = 1e-7;
+        let hidden = |shapes: &[Shape], own: u32, point: DVec3| {
+            shapes.len() > 1
+                && shapes
+                    .iter()
+                    .enumerate()
+                    .any(|(s, shape)| s as u32 != own && shape.contains(point, LOOK * 1e-3))
+        };
+        let outward = element.normal * LOOK;
+        let seen = point + element.normal * element.gap(position) - position;
+        !hidden(&self.pair.fixed_shapes, element.shapes[0], point + outward)
+            && !hidden(&self.moving, element.shapes[1], seen - outward)
+    }
+}
+
+/// Visits every supported element of two shapes whose normal has a z-component above `lowest`.
+fn collect(
+    fixed: &Shape,
+    moving: &Shape,
+    slack: f64,
+    lowest: f64,
+    mut visit: impl FnMut(Features, DVec3, f64),
+) {
+    for (facet, f) in fixed.facets.iter().enumerate().filter(|(_, f)| f.normal.z > lowest) {
+        let level = f.normal.dot(fixed.at(f.corners[0]));
+        for corner in &moving.corners {
+            if supports(moving, corner, f.normal, slack) {
+                let features = Features::FacetCorner { facet: facet as u32, vertex: corner.vertex };
+                visit(features, f.normal, f.normal.dot(moving.at(corner.vertex)) - level);
+            }
+        }
+    }
+    for (facet, m) in moving.facets.iter().enumerate().filter(|(_, m)| -m.normal.z > lowest) {
+        let level = m.normal.dot(moving.at(m.corners[0]));
+        for corner in &fixed.corners {
+            if supports(fixed, corner, m.normal, slack) {
+                let features = Features::CornerFacet { vertex: corner.vertex, facet: facet as u32 };
+                visit(features, -m.normal, m.normal.dot(fixed.at(corner.vertex)) - level);
+            }
+        }
+    }
+    for f in &fixed.sides {
+        if fixed.steepest(f).1 <= lowest {
+            continue;
+        }
+        let along = fixed.at(f.ends[1]) - fixed.at(f.ends[0]);
+        for m in &moving.sides {
+            if moving.steepest(m).0 >= -lowest {
+                continue;
+            }
+            let across = along.cross(moving.at(m.ends[1]) - moving.at(m.ends[0]));
+            let length = across.length();
+            // Parallel edges have no normal of their own: their ends speak for them.
+            if length <= ROUNDING {
+                continue;
+            }
+            if let Some(normal) = edge_normal(f, m, across / length, slack).filter(|n| n.z > lowest) {
+                let offset = normal.dot(moving.at(m.ends[0]) - fixed.at(f.ends[0]));
+                visit(Features::EdgeEdge { fixed: f.ends, moving: m.ends }, normal, offset);
+            }
+        }
+    }
+}
+
+/// Whether a corner is its shape's locally extreme point against `toward`: no neighbour further along −`toward`.
+fn supports(shape: &Shape, corner: &Corner, toward: DVec3, slack: f64) -> bool {
+    let v = shape.at(corner.vertex);
+    corner.neighbors.iter().all(|&w| {
+        let d = shape.at(w) - v;
+        toward.dot(d) >= -slack * d.length()
+    })
+}
+
+/// The sense of the common normal that both edges support, if either does.
+fn edge_normal(fixed: &Side, moving: &Side, across: DVec3, slack: f64) -> Option<DVec3> {
+    [across, -across].into_iter().find(|n| {
+        fixed.into.iter().all(|s| n.dot(*s) <= slack) && moving.into.iter().all(|s| n.dot(*s) >= -slack)
+    })
+}

@@ -1,0 +1,112 @@
+//! A surface prepared for contact: what can touch, and in which directions it supports.
+//!
+//! Something touches first only where its solid is locally convex: a corner, a convex edge, a facet. A contact
+//! normal n (pointing from the fixed to the moving half) is *supported* by a feature when the solid lies
+//! locally on one side of the plane through it with normal n:
+//!
+//! ```text
+//!   corner v   n·(w − v) ≤ 0 for every neighbour w
+//!   edge       n·s ≤ 0 for the two directions s that lead from it into its facets
+//! ```
+//!
+//! (for the fixed half; ≥ for the moving one). All other contacts are dominated by a supported one.
+
+use crate::connector::{Facet, Surface};
+use glam::{DMat3, DVec3};
+
+/// A corner that may touch.
+#[derive(Debug, Clone)]
+pub(super) struct Corner {
+    /// Index into the vertices.
+    pub(super) vertex: u32,
+    /// Its neighbours along edges.
+    pub(super) neighbors: Vec<u32>,
+}
+
+/// A convex edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side {
+    /// Its two ends.
+    pub(super) ends: [u32; 2],
+    /// Its two facets.
+    pub(super) facets: [u32; 2],
+    /// Unit vectors from the edge into its two facets, perpendicular to it.
+    pub(super) into: [DVec3; 2],
+}
+
+/// A surface with its touching features.
+#[derive(Debug, Clone)]
+pub(super) struct Shape {
+    pub(super) vertices: Vec<DVec3>,
+    pub(super) facets: Vec<Facet>,
+    pub(super) corners: Vec<Corner>,
+    pub(super) sides: Vec<Side>,
+    pub(super) convex: bool,
+}
+
+impl Shape {
+    pub(super) fn new(surface: &Surface) -> Self {
+        let at = |i: u32| surface.vertices[i as usize];
+        let mut neighbors = vec![Vec::new(); surface.vertices.len()];
+        for facet in &surface.facets {
+            let n = facet.corners.len();
+            for k in 0..n {
+                // Each edge is met once in each direction, so every neighbour is entered exactly once.
+                neighbors[facet.corners[k] as usize].push(facet.corners[(k + 1) % n]);
+            }
+        }
+        let mut pointed = vec![false; surface.vertices.len()];
+        let mut sides = Vec::with_capacity(surface.edges.len());
+        for edge in &surface.edges {
+            let [a, b] = edge.ends;
+            let along = (at(b) - at(a)).normalize_or_zero();
+            // Counter-clockwise seen from outside, the inside of a facet lies to the left of its edges.
+            let left = surface.facets[edge.facets[0] as usize].normal.cross(along);
+            let right = along.cross(surface.facets[edge.facets[1] as usize].normal);
+            sides.push(Side { ends: edge.ends, facets: edge.facets, into: [left, right] });
+            pointed[a as usize] = true;
+            pointed[b as usize] = true;
+        }
+        let corners = neighbors
+            .into_iter()
+            .enumerate()
+            .filter(|(v, _)| pointed[*v])
+            .map(|(v, neighbors)| Corner { vertex: v as u32, neighbors })
+            .collect();
+        Self {
+            vertices: surface.vertices.clone(),
+            facets: surface.facets.clone(),
+            corners,
+            sides,
+            convex: surface.convex,
+        }
+    }
+
+    /// Turns the shape about its origin, writing into `out` (same topology) without allocating.
+    pub(super) fn rotate_into(&self, rotation: &DMat3, out: &mut Self) {
+        for (o, v) in out.vertices.iter_mut().zip(&self.vertices) {
+            *o = *rotation * *v;
+        }
+        for (o, f) in out.facets.iter_mut().zip(&self.facets) {
+            o.normal = *rotation * f.normal;
+        }
+        for (o, s) in out.sides.iter_mut().zip(&self.sides) {
+            o.into = [*rotation * s.into[0], *rotation * s.into[1]];
+        }
+    }
+
+    pub(super) fn at(&self, vertex: u32) -> DVec3 {
+        self.vertices[vertex as usize]
+    }
+
+    /// Whether a point lies strictly inside a convex shape, by more than `margin`.
+    pub(super) fn contains(&self, point: DVec3, margin: f64) -> bool {
+        self.convex && self.facets.iter().all(|f| f.normal.dot(point - self.at(f.corners[0])) < -margin)
+    }
+
+    /// Largest z-component of a normal that this side supports, over its two facets.
+    pub(super) fn steepest(&self, side: &Side) -> (f64, f64) {
+        let [a, b] = side.facets.map(|f| self.facets[f as usize].normal.z);
+        (a.min(b), a.max(b))
+    }
+}

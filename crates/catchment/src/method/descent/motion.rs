@@ -1,0 +1,365 @@
+//! One motion, step by step.
+//!
+//! Per step: everything that touches or may be met is found exactly at the current position; the closest allowed
+//! displacement to the push of the force is taken ([`super::projection`]); the height is then set to that of
+//! first contact, so that errors of the linearisation never build up. A step that the height contradicts
+//! is halved.
+
+use super::projection::{MAX_COORDINATES, Vector, closest_allowed};
+use super::{Settings, Touch, Waypoint};
+use crate::acceptance::Outcome;
+use crate::contact::{Contact, Envelope, Pair};
+use crate::pose::{CorPose, Dof, PoseError, face_from_cor, rotation, rotation_angle};
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use std::f64::consts::TAU;
+
+/// Position of the moving half.
+#[derive(Debug, Clone, Copy)]
+struct State {
+    /// COR in the world frame.
+    cor: DVec3,
+    rotation: DMat3,
+    /// (roll, pitch, yaw) where some rotation is locked; unused when all three are free.
+    angles: [f64; 3],
+}
+
+/// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
+const MAX_REACH: f64 = 1e7;
+/// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
+const REST: f64 = 1e-3;
+/// Steps are halved down to this share of the chosen one.
+const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
+/// Steps that fall off an edge are halved down to this share: where exactly it falls matters little.
+const COARSE_SHARE: f64 = 1.0 / 16.0;
+/// Where a step of this share climbs although the slope falls gently, the bottom of a smooth hollow is within it.
+const REST_SHARE: f64 = 1.0 / 256.0;
+/// A gentle slope: what a curvature of 1/(0.01 D) makes of the smallest such step.
+const GENTLE: f64 = 0.01;
+/// How often one step may discover new contacts before it is halved.
+const MAX_CUTS: usize = 8;
+/// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
+const WALL: f64 = 0.05;
+/// Clearance from walls, in D: above the curvature error of the smallest steps, below any fit that is designed.
+const WALL_MARGIN: f64 = 1e-6;
+/// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
+const OVERLAP: f64 = 1e-9;
+
+/// Rounding of a height, in D.
+const ROUNDING: f64 = 1e-12;
+/// A mean slope below this over a whole step's length, or over so many steps, is rest.
+const LEVEL: f64 = 1e-6;
+const LEVEL_STEPS: usize = 128;
+/// Rows that differ by less are one contact.
+const SAME: f64 = 1e-12;
+
+/// A mover of poses for one pair: owns the buffers.
+pub(super) struct Motion<'a> {
+    pair: &'a Pair,
+    settings: &'a Settings,
+    envelope: Envelope<'a>,
+    contacts: Vec<Contact>,
+    /// Scratch for [`Motion::cut`].
+    carrying: Vec<Contact>,
+    rows: Vec<Vector>,
+    gaps: Vec<f64>,
+    /// Largest distance of a moving corner from the COR.
+    radius: f64,
+    /// All three rotations free: they live on SO(3), not in Euler angles.
+    spherical: bool,
+}
+
+impl<'a> Motion<'a> {
+    pub(super) fn new(pair: &'a Pair, settings: &'a Settings) -> Self {
+        let radius =
+            pair.moving.surfaces.iter().flat_map(|s| &s.vertices).map(|v| v.length()).fold(0.0, f64::max);
+        Self {
+            pair,
+            settings,
+            envelope: pair.at_rotation(DMat3::IDENTITY),
+            contacts: Vec::new(),
+            carrying: Vec::new(),
+            rows: Vec::new(),
+            gaps: Vec::new(),
+            radius,
+            spherical: pair.alignment.free.rotations() == 3,
+        }
+    }
+
+    /// Lowers the moving half at `error` and follows it to its end; returns the outcome and the last pose error.
+    /// `record` sees every waypoint.
+    pub(super) fn follow(
+        &mut self,
+        error: &PoseError,
+        mut record: Option<&mut Vec<Waypoint>>,
+    ) -> (Outcome, PoseError) {
+        let alignment = &self.pair.alignment;
+        let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        let mut state = State {
+            cor: start.lateral.extend(0.0),
+            rotation: start.rotation,
+            angles: [error.roll, error.pitch, error.yaw],
+        };
+        let largest = self.settings.step;
+        let mut step = largest;
+        let mut reach = 1.0;
+        let mut travelled = 0.0;
+        self.turn(&state.rotation, step);
+        match self.envelope.height(start.lateral) {
+            Some(z) => state.cor.z = z,
+            None => return (Outcome::Missed, *error),
+        }
+        let mut mark = (0, 0.0, state.cor.z);
+        for count in 0..self.settings.max_steps {
+            if travelled - mark.1 > largest || count - mark.0 > LEVEL_STEPS {
+                if mark.2 - state.cor.z < LEVEL * largest {
+                    return (Outcome::Jammed, self.error_of(&state));
+                }
+                mark = (count, travelled, state.cor.z);
+            }
+            if self.is_aligned(&state) {
+                self.note(&state, travelled, &mut record);
+                return (Outcome::Aligned, self.error_of(&state));
+            }
+            self.gather(&state, step);
+            if let Some(waypoints) = record.as_deref_mut() {
+                waypoints.push(self.waypoint(&state, travelled));
+            }
+            let mut cuts = 0;
+            let mut last_rise = f64::INFINITY;
+            loop {
+                let (u, length) = self.displacement(step, &mut reach);
+                if length <= REST * step && reach >= MAX_REACH {
+                    return (Outcome::Jammed, self.error_of(&state));
+                }
+                let next = self.moved(&state, &u);
+                self.turn(&next.rotation, step);
+                let Some(z) = self.envelope.height(next.cor.truncate()) else {
+                    return (Outcome::Missed, self.error_of(&next));
+                };
+                let landed = State { cor: next.cor.truncate().extend(z), ..next };
+                let rise = z - next.cor.z;
+                let allowed = self.settings.surprise * step;
+                if std::env::var("DBG").is_ok() {
+                    eprintln!(
+                        "step {step:.2e} reach {reach:.1e} len {length:.2e} uz {:.3e} z {:.9} rise {:.3e} n {} cuts {cuts}",
+                        u[2],
+                        state.cor.z,
+                        rise,
+                        self.rows.len()
+                    );
+                    for (c, g) in self.contacts.iter().zip(&self.gaps) {
+                        eprintln!("    gap {:.3e} {:.3e} n {:.4} p {:.4}", c.gap, g, c.normal, c.point);
+                    }
+                }
+                let climbs = z > state.cor.z + ROUNDING;
+                if rise > allowed || climbs {
+                    // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
+                    if cuts < MAX_CUTS && rise < 0.5 * last_rise && self.cut(&landed, rise, &u) {
+                        cuts += 1;
+                        last_rise = rise;
+                        continue;
+                    }
+                    if climbs && step <= largest * REST_SHARE && -u[2] <= GENTLE * length {
+                        // The bottom of a smooth hollow, within a step.
+                        return (Outcome::Jammed, self.error_of(&state));
+                    }
+                    if step > largest * SMALLEST_SHARE {
+                        step *= 0.5;
+                        self.turn(&state.rotation, step);
+                        self.gather(&state, step);
+                        continue;
+                    }
+                    if z > state.cor.z + largest {
+                        // A wall that no contact announced: the motion cannot be followed further.
+                        return (Outcome::Undecided, self.error_of(&state));
+                    }
+                } else if rise < -10.0 * allowed && step > largest * COARSE_SHARE {
+                    // Fell off an edge: come closer to it before letting go.
+                    step *= 0.5;
+                    self.turn(&state.rotation, step);
+                    self.gather(&state, step);
+                    continue;
+                }
+                travelled += length;
+                state = landed;
+                step = (step * 2.0).min(largest);
+                break;
+            }
+        }
+        (Outcome::Undecided, self.error_of(&state))
+    }
+
+    /// Prepares the envelope for a step of length `step`.
+    fn turn(&mut self, rotation: &DMat3, step: f64) {
+        // A step turns by at most step/ρ; what it may bring into contact supports its normal within that angle.
+        let slack = (step / self.pair.alignment.rotation_length).min(0.2);
+        self.envelope.turn_with_slack(rotation, slack);
+    }
+
+    /// Finds all contacts that a step may close, as rows of the projection.
+    fn gather(&mut self, state: &State, step: f64) {
+        let rho = self.pair.alignment.rotation_length;
+        let near = step * (1.0 + self.radius / rho);
+        self.envelope.contacts(state.cor, near, &mut self.contacts);
+        self.contacts.retain(|c| c.gap > -OVERLAP);
+        self.rows.clear();
+        self.gaps.clear();
+        let axes = self.axes(state);
+        for contact in &self.contacts {
+            let clear = if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 };
+            let row = self.row(contact, state, &axes);
+            let gap = (contact.gap - clear).max(0.0);
+            // Corners, edges and facets that meet at one point say the same thing several times.
+            let known = self.rows.iter().zip(&self.gaps).any(|(r, g)| {
+                (g - gap).abs() < SAME && r.iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
+            });
+            if !known {
+                self.rows.push(row);
+                self.gaps.push(gap);
+            }
+        }
+    }
+
+    /// What a displacement does to the gap of a contact.
+    fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
+        let free = self.pair.alignment.free;
+        let n = contact.normal;
+        let arm = contact.point + n * contact.gap - state.cor;
+        let turn = arm.cross(n) / self.pair.alignment.rotation_length;
+        let mut row = [0.0; MAX_COORDINATES];
+        row[0] = if free.contains(Dof::X) { n.x } else { 0.0 };
+        row[1] = if free.contains(Dof::Y) { n.y } else { 0.0 };
+        row[2] = n.z;
+        for (k, axis) in axes.iter().enumerate() {
+            row[3 + k] = turn.dot(*axis);
+        }
+        row
+    }
+
+    /// Adds what carries the body at `landed`, `rise` above where the displacement `u` had put it, to the contacts
+    /// of this step. Only what lies below the present position can be added: a valley's other side, not a step up.
+    fn cut(&mut self, landed: &State, rise: f64, u: &Vector) -> bool {
+        let mut carrying = std::mem::take(&mut self.carrying);
+        self.envelope.contacts(landed.cor, OVERLAP, &mut carrying);
+        let axes = self.axes(landed);
+        let mut added = false;
+        for contact in &carrying {
+            let row = self.row(contact, landed, &axes);
+            let there = -contact.normal.z * rise;
+            let here = there - row.iter().zip(u).map(|(a, b)| a * b).sum::<f64>();
+            // A contact this step already respects tells nothing new.
+            if there < -OVERLAP && here > 0.25 * there {
+                self.rows.push(row);
+                self.gaps.push(here.max(0.0));
+                added = true;
+            }
+        }
+        self.carrying = carrying;
+        added
+    }
+
+    /// Axes of the free rotations in the world frame, unit; zero for locked ones.
+    fn axes(&self, state: &State) -> [DVec3; 3] {
+        if self.spherical {
+            return [DVec3::X, DVec3::Y, DVec3::Z];
+        }
+        let [_, pitch, yaw] = state.angles;
+        let free = self.pair.alignment.free;
+        let about_z = DMat3::from_rotation_z(yaw);
+        let roll = about_z * (DMat3::from_rotation_y(pitch) * DVec3::X);
+        let axes = [(Dof::Roll, roll), (Dof::Pitch, about_z * DVec3::Y), (Dof::Yaw, DVec3::Z)];
+        axes.map(|(dof, axis)| if free.contains(dof) { axis } else { DVec3::ZERO })
+    }
+
+    /// The displacement of one step and its length in the ρ-metric, at most `step`.
+    ///
+    /// `reach` is how hard the force pushes, in steps; kept between calls, raised on gentle slopes.
+    fn displacement(&self, step: f64, reach: &mut f64) -> (Vector, f64) {
+        let solve = |reach: f64| {
+            let mut push = [0.0; MAX_COORDINATES];
+            push[2] = -reach * step;
+            let u = closest_allowed(&push, &self.rows, &self.gaps, step * reach);
+            let length = u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>();
+            (u, length.sqrt())
+        };
+        *reach = (*reach * 0.5).max(1.0);
+        let mut found = solve(*reach);
+        while found.1 < 0.5 * step && *reach < MAX_REACH {
+            *reach = (*reach * 4.0).min(MAX_REACH);
+            found = solve(*reach);
+        }
+        while found.1 > 2.0 * step && *reach > 1.0 {
+            *reach = (*reach * 0.5).max(1.0);
+            found = solve(*reach);
+        }
+        let (mut u, mut length) = found;
+        // Nothing moved and 0 displacement are both allowed, hence everything in between.
+        let longest = length.max(u[2].abs());
+        if longest > step {
+            let share = step / longest;
+            u = u.map(|x| x * share);
+            length *= share;
+        }
+        (u, length)
+    }
+
+    fn moved(&self, state: &State, u: &Vector) -> State {
+        let cor = state.cor + DVec3::new(u[0], u[1], u[2]);
+        let turn = [u[3], u[4], u[5]].map(|x| x / self.pair.alignment.rotation_length);
+        if self.spherical {
+            let q = DQuat::from_scaled_axis(DVec3::from_array(turn)) * DQuat::from_mat3(&state.rotation);
+            State { cor, rotation: DMat3::from_quat(q.normalize()), angles: state.angles }
+        } else {
+            let mut angles = state.angles;
+            for (angle, turn) in angles.iter_mut().zip(turn) {
+                *angle += turn;
+            }
+            State { cor, rotation: rotation(angles[0], angles[1], angles[2]), angles }
+        }
+    }
+
+    /// Whether the pose is the mated one, or a declared equivalent, within the tolerance.
+    fn is_aligned(&self, state: &State) -> bool {
+        let alignment = &self.pair.alignment;
+        let tolerance = self.settings.aligned_within;
+        let face = state.cor + face_from_cor(&state.rotation, alignment.center_of_rotation);
+        if face.truncate().length() > tolerance {
+            return false;
+        }
+        if alignment.dont_care.contains(Dof::Yaw) {
+            let tilt = state.rotation.z_axis;
+            return tilt.truncate().length().atan2(tilt.z) <= tolerance;
+        }
+        (0..alignment.symmetry).any(|k| {
+            let turn = DMat3::from_rotation_z(-TAU * f64::from(k) / f64::from(alignment.symmetry));
+            rotation_angle(&(state.rotation * turn)) <= tolerance
+        })
+    }
+
+    fn error_of(&self, state: &State) -> PoseError {
+        let pose = CorPose { lateral: DVec2::new(state.cor.x, state.cor.y), rotation: state.rotation };
+        let mut error = pose.to_error(self.pair.alignment.center_of_rotation);
+        // Locked rotations stay exactly 0: no detour through the matrix.
+        if !self.spherical {
+            [error.roll, error.pitch, error.yaw] = state.angles;
+        }
+        error
+    }
+
+    fn waypoint(&self, state: &State, travelled: f64) -> Waypoint {
+        let touches = self
+            .contacts
+            .iter()
+            .filter(|c| c.gap <= OVERLAP)
+            .map(|c| Touch { point: c.point, normal: c.normal })
+            .collect();
+        Waypoint { error: self.error_of(state), height: state.cor.z, travelled, touches }
+    }
+
+    fn note(&mut self, state: &State, travelled: f64, record: &mut Option<&mut Vec<Waypoint>>) {
+        if let Some(waypoints) = record.as_deref_mut() {
+            self.gather(state, self.settings.step);
+            waypoints.push(self.waypoint(state, travelled));
+        }
+    }
+}
