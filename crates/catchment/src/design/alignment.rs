@@ -1,5 +1,7 @@
 //! The alignment problem: everything but the geometry that the answer depends on.
 
+use super::Family;
+use super::complaint::Complaint;
 use crate::pose::{Dof, DofSet, Mount};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -41,6 +43,28 @@ impl Alignment {
             symmetry: 1,
             half_ranges: Self::DEFAULT_HALF_RANGES,
         }
+    }
+
+    /// The defaults of a family (`None`: of own halves). Planar families move in x and pitch and are mounted
+    /// about y; all others move in all five and are mounted about x. The yaw of a cone does not matter.
+    pub fn default_for(family: Option<Family>) -> Self {
+        match family {
+            Some(family) if family.is_planar() => {
+                Self::new(DofSet::EMPTY.with(Dof::X).with(Dof::Pitch), Mount::Y)
+            }
+            Some(Family::Cone) => Self {
+                dont_care: DofSet::EMPTY.with(Dof::Yaw),
+                ..Self::new(DofSet::ALL.without(Dof::Yaw), Mount::X)
+            },
+            _ => Self::new(DofSet::ALL, Mount::X),
+        }
+    }
+
+    /// The complaint about Euler angles that reach rotations twice, if they do.
+    pub(super) fn beyond_the_pole(&self) -> Option<Complaint> {
+        // "90 deg" may round to one unit in the last place above π/2.
+        let beyond = self.half_ranges[Dof::Pitch.index()] > FRAC_PI_2 * (1.0 + 4.0 * f64::EPSILON);
+        (self.free.rotations() == 3 && beyond).then_some(Complaint::PitchBeyondPole)
     }
 
     /// Half-range of one degree of freedom: 0 when it is not free.

@@ -1,10 +1,40 @@
 //! What a person wrote, typed: the connector they mean and the alignment problem it has to solve.
 //!
+//! ```text
+//! design.toml ──load──▶ text ──read──▶ DesignFile { design, sources }
+//!                              └─────▶ Problems: all of them, each with line, column and advice
+//! ```
+//!
 //! A [`Design`] is resolved: units are gone (lengths in D, angles in radians), defaults are filled in, every
-//! number has been checked. Geometry is built from it by the next room, [`crate::connector`].
+//! number has been checked. Geometry is built from it by the next room, [`crate::connector`], which is also
+//! where geometry is judged: this room does not know whether halves fit.
+//!
+//! One table, [`keys`], says what a design file may contain; the reader, the JSON schema for editors
+//! ([`json_schema`]) and the commented starting points ([`template`]) all come from it.
 
 mod alignment;
+mod complaint;
+pub mod keys;
+mod load;
 mod model;
+mod overrides;
+mod problem;
+mod quantity;
+mod read;
+mod reader;
+mod schema;
+mod suggest;
+mod template;
+#[cfg(test)]
+mod tests;
 
 pub use alignment::Alignment;
+pub use complaint::{Complaint, Dimension};
+pub use load::{LoadError, load};
 pub use model::{ConnectorSpec, Design, Family, FamilySpec, HalfSpec, LengthUnit, OwnSpec};
+pub use overrides::parse_dofs;
+pub use problem::{Problem, Problems, Sources, line_column};
+pub use quantity::{Quantity, Scale, Unit};
+pub use read::{DesignFile, LARGEST_FILE, read};
+pub use schema::json_schema;
+pub use template::template;

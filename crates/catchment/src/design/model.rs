@@ -36,6 +36,9 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
+    /// Every unit, small to large but for the inch.
+    pub const ALL: [Self; 5] = [Self::Um, Self::Mm, Self::Cm, Self::M, Self::In];
+
     /// Metres in one of this unit.
     pub const fn metres(self) -> f64 {
         match self {
@@ -117,6 +120,20 @@ impl Family {
             Self::XFace3d => "x-face-3d",
             Self::XFace3dLocking => "x-face-3d-locking",
             Self::PinHole => "pin-hole",
+        }
+    }
+
+    /// What it is, in a few words.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Self::VFace => "V notch and tip, planar",
+            Self::SFace => "sawtooth of three edges, planar, both halves alike",
+            Self::XFace => "two crossed ramps in two layers, planar, both halves alike",
+            Self::Pyramid => "square pyramid in its socket",
+            Self::Cone => "circular cone in its socket",
+            Self::XFace3d => "saddle of four triangles, both halves alike",
+            Self::XFace3dLocking => "the saddle with a lip along its centre lines, both halves alike",
+            Self::PinHole => "pins and chamfered holes on a circle",
         }
     }
 

@@ -1,5 +1,21 @@
 //! The error grid and the height of first contact over it.
+//!
+//! ```text
+//!   h │ ╲       ╱╲          one height per cell of the error box: z of the centre of rotation
+//!     │  ╲     ╱  ╲         when the moving half, lowered with that pose error, first touches;
+//!     │   ╲   ╱    ╲        −∞ where it passes by
+//!     │    ╲_╱
+//!     └─────┴────────▶ x, y, roll, pitch, yaw
+//!         mated
+//! ```
+//!
+//! Lengths in D, angles in radians. The heights are exact at the cells' centres up to single precision; nothing is
+//! promised about what lies between two centres.
 
 mod grid;
+mod heights;
+mod resolution;
 
 pub use grid::{Grid, GridAxis};
+pub use heights::{Landscape, LandscapeError};
+pub use resolution::{Resolution, ResolutionError};

@@ -1,1 +1,215 @@
-//! Figures of merit: one file each, all computed from an [`crate::acceptance::Acceptance`].
+//! Figures of merit: what one set of accepted pose errors is worth. One file each.
+//!
+//! ```text
+//!   pitch ▲            ░ accepted            Sum        measure of ░
+//!         │   ░░░░░    □ ONAA                ONAA       edge of the largest cube in ░ (axes scaled to [0,1])
+//!         │ ░░┌───┐░   ▪ centred             centred    largest box in ░ with its centre at zero
+//!         │ ░░│ ▪ │░░                        tolerance  how far one error alone may go
+//!         │  ░└───┘░   ─▶ x                  success    probability that a given error lies in ░
+//! ```
+//!
+//! All of them are computed from an [`Acceptance`] alone. Over a grid a cell stands for its whole volume:
+//! the accepted set is the union of the accepted cells, and every length is a whole number of cell borders,
+//! right to about half a cell. Lengths are in D, angles in radians.
+//!
+//! What is *not* promised: that the grid saw everything. A jam thinner than a cell can hide between centres.
+//! [`sum::Sum::bracket`] says how much one cell of doubt on either side of the border amounts to.
+
+pub mod centered;
+mod morphology;
+pub mod onaa;
+pub mod slice;
+pub mod success;
+pub mod sum;
+pub mod tolerance;
+
+use crate::acceptance::{Acceptance, Outcome, Warning};
+use crate::landscape::{Grid, GridAxis};
+use crate::pose::{Dof, PoseError};
+
+/// Why a figure of merit cannot be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeritError {
+    /// The figure needs a grid, the outcomes are of listed poses.
+    #[error("this figure needs outcomes over a grid, but they were computed for listed poses; use `run`")]
+    NotAGrid,
+    /// The figure needs an axis that the grid does not have.
+    #[error("{} is not an axis of the grid; its axes are {axes}", dof.name())]
+    NoAxis {
+        /// The axis asked for.
+        dof: Dof,
+        /// Names of the axes there are.
+        axes: String,
+    },
+    /// The same axis was named twice.
+    #[error("{} is named twice", dof.name())]
+    RepeatedAxis {
+        /// The axis.
+        dof: Dof,
+    },
+    /// A value lies outside the error box.
+    #[error("{} = {value} lies outside the error box [{lo}, {hi}]", dof.name())]
+    OutsideBox {
+        /// The axis.
+        dof: Dof,
+        /// The value, D or radians.
+        value: f64,
+        /// Lower border of the box.
+        lo: f64,
+        /// Upper border of the box.
+        hi: f64,
+    },
+    /// A number that must be finite and not negative is not.
+    #[error("{what} must be finite and not negative, not {value}")]
+    Negative {
+        /// What the number is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A covariance matrix is not symmetric positive semidefinite.
+    #[error("the covariance matrix is not symmetric and positive semidefinite (row {row})")]
+    NotACovariance {
+        /// The first row where it shows, from 1.
+        row: usize,
+    },
+}
+
+/// The grid of an acceptance.
+fn grid_of(acceptance: &Acceptance) -> Result<&Grid, MeritError> {
+    acceptance.grid().ok_or(MeritError::NotAGrid)
+}
+
+/// The position of `dof` among the axes of `grid`.
+fn axis_number(grid: &Grid, dof: Dof) -> Result<usize, MeritError> {
+    grid.axes.iter().position(|a| a.dof == dof).ok_or_else(|| MeritError::NoAxis {
+        dof,
+        axes: grid.axes.iter().map(|a| a.dof.name()).collect::<Vec<_>>().join(", "),
+    })
+}
+
+/// Distance from zero to the interior of cell `k`: 0 for a cell that holds zero or has it on its border.
+fn gap(axis: &GridAxis, k: usize) -> f64 {
+    let step = axis.step();
+    let below = axis.lo + k as f64 * step;
+    let above = axis.lo + (k as f64 + 1.0) * step;
+    // Borders that should be zero are so only to rounding: a millionth of a cell is far above that.
+    let distance = below.max(-above);
+    if distance <= 1e-6 * step { 0.0 } else { distance }
+}
+
+/// Doubts that the accepted set itself raises: it reaches the border of the error box, it does not hold the
+/// mated pose, some poses are undecided.
+pub fn doubts(acceptance: &Acceptance) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if let Some(grid) = acceptance.grid() {
+        let axes = border_axes(acceptance, grid);
+        if !axes.is_empty() {
+            let axes = axes.iter().map(|d| d.name().to_owned()).collect();
+            warnings.push(Warning::TouchesBorder { axes });
+        }
+        let tolerable = tolerance::around_zero(grid);
+        let holds = |cell: &usize| acceptance.outcomes[*cell] == Outcome::Aligned;
+        if !tolerable.is_empty() && !tolerable.iter().any(holds) {
+            warnings.push(Warning::MatedPoseNotAccepted);
+        }
+    }
+    let undecided = acceptance.counts()[Outcome::Undecided as usize - 1];
+    if undecided > 0 {
+        warnings.push(Warning::Undecided { cells: undecided });
+    }
+    warnings
+}
+
+/// The axes at whose border an accepted cell lies.
+fn border_axes(acceptance: &Acceptance, grid: &Grid) -> Vec<Dof> {
+    let shape = grid.shape();
+    let mut touched = vec![false; shape.len()];
+    let mut cell = vec![0; shape.len()];
+    for accepted in acceptance.accepted() {
+        if accepted {
+            for ((touched, k), n) in touched.iter_mut().zip(&cell).zip(&shape) {
+                *touched |= *k == 0 || k + 1 == *n;
+            }
+        }
+        advance(&mut cell, &shape);
+    }
+    grid.axes.iter().zip(touched).filter_map(|(a, t)| t.then_some(a.dof)).collect()
+}
+
+/// Steps per-axis cell numbers to the next cell in memory order, the first axis fastest.
+fn advance(cell: &mut [usize], shape: &[usize]) {
+    for (k, n) in cell.iter_mut().zip(shape) {
+        *k += 1;
+        if *k < *n {
+            return;
+        }
+        *k = 0;
+    }
+}
+
+/// Five numbers of which only those of the grid's axes count: the others must be zero.
+fn require_sampled(grid: &Grid, values: &PoseError) -> Result<(), MeritError> {
+    for (dof, value) in Dof::ALL.into_iter().zip(values.to_array()) {
+        if value != 0.0 {
+            axis_number(grid, dof)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    //! Acceptances with closed forms.
+
+    use super::*;
+    use crate::acceptance::Domain;
+
+    /// Axes over the first `shape.len()` errors, each over [−`half`, `half`].
+    pub(crate) fn grid(shape: &[usize], half: &[f64]) -> Grid {
+        let axis = |((dof, cells), half): ((Dof, &usize), &f64)| GridAxis {
+            dof,
+            lo: -half,
+            hi: *half,
+            cells: *cells,
+        };
+        Grid { axes: Dof::ALL.into_iter().zip(shape).zip(half).map(axis).collect() }
+    }
+
+    /// Accepts the cells whose centre satisfies `inside`; the others are jammed.
+    pub(crate) fn accept(grid: &Grid, inside: impl Fn([f64; 5]) -> bool) -> Acceptance {
+        let outcome = |i| if inside(grid.pose(i).to_array()) { Outcome::Aligned } else { Outcome::Jammed };
+        Acceptance {
+            method: "closed form",
+            outcomes: (0..grid.len()).map(outcome).collect(),
+            domain: Domain::Grid(grid.clone()),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// A ball of radius `r` around zero in the coordinates of the error.
+    pub(crate) fn ball(grid: &Grid, r: f64) -> Acceptance {
+        accept(grid, |e| e.iter().map(|v| v * v).sum::<f64>() < r * r)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::*;
+    use super::*;
+
+    #[test]
+    fn a_set_cut_off_by_the_box_says_along_which_axes() {
+        let grid = grid(&[8, 8, 8], &[1.0, 1.0, 1.0]);
+        let slab = accept(&grid, |e| e[1].abs() < 0.5);
+        assert_eq!(doubts(&slab), [Warning::TouchesBorder { axes: vec!["x".into(), "roll".into()] }]);
+        assert_eq!(doubts(&ball(&grid, 0.5)), []);
+    }
+
+    #[test]
+    fn a_set_beside_the_mated_pose_is_doubtful() {
+        let grid = grid(&[9, 9], &[1.0, 1.0]);
+        let beside = accept(&grid, |e| (0.2..0.8).contains(&e[0]) && e[1].abs() < 0.5);
+        assert_eq!(doubts(&beside), [Warning::MatedPoseNotAccepted]);
+    }
+}

@@ -2,4 +2,6 @@
 //! and returns an [`crate::acceptance::Acceptance`].
 
 pub mod descent;
+pub mod flood;
+pub mod kinematic;
 pub mod zraa;

@@ -1,1 +1,3 @@
-//! Many evaluations at once: reproduction of published tables.
+//! Studies over many designs: reproduction of published tables.
+
+pub mod reproduce;

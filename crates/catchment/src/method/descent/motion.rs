@@ -5,7 +5,7 @@
 //! first contact, so that errors of the linearisation never build up. A step that the height contradicts
 //! is halved.
 
-use super::projection::{MAX_COORDINATES, Vector, closest_allowed};
+use super::projection::{MAX_COORDINATES, Vector, closest_allowed, dot};
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Envelope, Pair};
@@ -23,6 +23,22 @@ struct State {
     angles: [f64; 3],
 }
 
+/// How a motion goes on.
+enum Advance {
+    /// To here, by this length in the ρ-metric.
+    Moved(State, f64),
+    /// No further than here.
+    Ended(Outcome, State),
+}
+
+/// How boldly a motion steps; kept from step to step.
+struct Pace {
+    /// Length of the next step in the ρ-metric, in D.
+    step: f64,
+    /// How hard the force pushes, in steps.
+    reach: f64,
+}
+
 /// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
 const MAX_REACH: f64 = 1e7;
 /// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
@@ -30,13 +46,13 @@ const REST: f64 = 1e-3;
 /// Steps are halved down to this share of the chosen one.
 const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
 /// Steps that fall off an edge are halved down to this share: where exactly it falls matters little.
-const COARSE_SHARE: f64 = 1.0 / 16.0;
+const COARSE_SHARE: f64 = 1.0 / 64.0;
 /// Where a step of this share climbs although the slope falls gently, the bottom of a smooth hollow is within it.
 const REST_SHARE: f64 = 1.0 / 256.0;
 /// A gentle slope: what a curvature of 1/(0.01 D) makes of the smallest such step.
 const GENTLE: f64 = 0.01;
-/// How often one step may discover new contacts before it is halved.
-const MAX_CUTS: usize = 8;
+/// A fall of this many allowed surprises is a fall off an edge.
+const FALL: f64 = 1.0;
 /// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
 const WALL: f64 = 0.05;
 /// Clearance from walls, in D: above the curvature error of the smallest steps, below any fit that is designed.
@@ -94,99 +110,115 @@ impl<'a> Motion<'a> {
     ) -> (Outcome, PoseError) {
         let alignment = &self.pair.alignment;
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        let mut pace = Pace { step: self.settings.step, reach: 1.0 };
+        self.turn(&start.rotation, pace.step);
+        let Some(z) = self.envelope.height(start.lateral) else { return (Outcome::Missed, *error) };
         let mut state = State {
-            cor: start.lateral.extend(0.0),
+            cor: start.lateral.extend(z),
             rotation: start.rotation,
             angles: [error.roll, error.pitch, error.yaw],
         };
-        let largest = self.settings.step;
-        let mut step = largest;
-        let mut reach = 1.0;
         let mut travelled = 0.0;
-        self.turn(&state.rotation, step);
-        match self.envelope.height(start.lateral) {
-            Some(z) => state.cor.z = z,
-            None => return (Outcome::Missed, *error),
-        }
-        let mut mark = (0, 0.0, state.cor.z);
+        let mut mark = (0, travelled, z);
         for count in 0..self.settings.max_steps {
-            if travelled - mark.1 > largest || count - mark.0 > LEVEL_STEPS {
-                if mark.2 - state.cor.z < LEVEL * largest {
+            self.gather(&state, pace.step);
+            if let Some(waypoints) = record.as_deref_mut() {
+                waypoints.push(self.waypoint(&state, travelled));
+            }
+            if self.is_aligned(&state) {
+                return (Outcome::Aligned, self.error_of(&state));
+            }
+            if travelled - mark.1 > self.settings.step || count - mark.0 > LEVEL_STEPS {
+                if mark.2 - state.cor.z < LEVEL * self.settings.step {
                     return (Outcome::Jammed, self.error_of(&state));
                 }
                 mark = (count, travelled, state.cor.z);
             }
-            if self.is_aligned(&state) {
-                self.note(&state, travelled, &mut record);
-                return (Outcome::Aligned, self.error_of(&state));
-            }
-            self.gather(&state, step);
-            if let Some(waypoints) = record.as_deref_mut() {
-                waypoints.push(self.waypoint(&state, travelled));
-            }
-            let mut cuts = 0;
-            let mut last_rise = f64::INFINITY;
-            loop {
-                let (u, length) = self.displacement(step, &mut reach);
-                if length <= REST * step && reach >= MAX_REACH {
-                    return (Outcome::Jammed, self.error_of(&state));
+            match self.advance(&state, &mut pace) {
+                Advance::Moved(next, length) => {
+                    state = next;
+                    travelled += length;
                 }
-                let next = self.moved(&state, &u);
-                self.turn(&next.rotation, step);
-                let Some(z) = self.envelope.height(next.cor.truncate()) else {
-                    return (Outcome::Missed, self.error_of(&next));
-                };
-                let landed = State { cor: next.cor.truncate().extend(z), ..next };
-                let rise = z - next.cor.z;
-                let allowed = self.settings.surprise * step;
-                if std::env::var("DBG").is_ok() {
-                    eprintln!(
-                        "step {step:.2e} reach {reach:.1e} len {length:.2e} uz {:.3e} z {:.9} rise {:.3e} n {} cuts {cuts}",
-                        u[2],
-                        state.cor.z,
-                        rise,
-                        self.rows.len()
-                    );
-                    for (c, g) in self.contacts.iter().zip(&self.gaps) {
-                        eprintln!("    gap {:.3e} {:.3e} n {:.4} p {:.4}", c.gap, g, c.normal, c.point);
-                    }
-                }
-                let climbs = z > state.cor.z + ROUNDING;
-                if rise > allowed || climbs {
-                    // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
-                    if cuts < MAX_CUTS && rise < 0.5 * last_rise && self.cut(&landed, rise, &u) {
-                        cuts += 1;
-                        last_rise = rise;
-                        continue;
-                    }
-                    if climbs && step <= largest * REST_SHARE && -u[2] <= GENTLE * length {
-                        // The bottom of a smooth hollow, within a step.
-                        return (Outcome::Jammed, self.error_of(&state));
-                    }
-                    if step > largest * SMALLEST_SHARE {
-                        step *= 0.5;
-                        self.turn(&state.rotation, step);
-                        self.gather(&state, step);
-                        continue;
-                    }
-                    if z > state.cor.z + largest {
-                        // A wall that no contact announced: the motion cannot be followed further.
-                        return (Outcome::Undecided, self.error_of(&state));
-                    }
-                } else if rise < -10.0 * allowed && step > largest * COARSE_SHARE {
-                    // Fell off an edge: come closer to it before letting go.
-                    step *= 0.5;
-                    self.turn(&state.rotation, step);
-                    self.gather(&state, step);
-                    continue;
-                }
-                travelled += length;
-                state = landed;
-                step = (step * 2.0).min(largest);
-                break;
+                Advance::Ended(outcome, last) => return (outcome, self.error_of(&last)),
             }
         }
         (Outcome::Undecided, self.error_of(&state))
+    }
+
+    /// One step from `state`, whose contacts have been gathered: halved until the height agrees with it.
+    fn advance(&mut self, state: &State, pace: &mut Pace) -> Advance {
+        let longest = self.settings.step;
+        let (mut u, mut length) = self.displacement(pace);
+        let mut fresh = true;
+        let mut last_rise = f64::INFINITY;
+        loop {
+            if length <= REST * pace.step && pace.reach >= MAX_REACH {
+                return Advance::Ended(Outcome::Jammed, *state);
+            }
+            if fresh && self.look_ahead(state, pace, &u) {
+                (u, length) = self.displacement(pace);
+            }
+            let next = self.moved(state, &u);
+            self.turn(&next.rotation, pace.step);
+            let Some(z) = self.envelope.height(next.cor.truncate()) else {
+                return Advance::Ended(Outcome::Missed, next);
+            };
+            let landed = State { cor: next.cor.truncate().extend(z), ..next };
+            let rise = z - next.cor.z;
+            let allowed = self.settings.surprise * pace.step;
+            let climbs = z > state.cor.z + ROUNDING;
+            let halve = if rise > allowed || climbs {
+                // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
+                if rise < 0.5 * last_rise && self.cut(&landed, rise, &u) {
+                    last_rise = rise;
+                    fresh = false;
+                    (u, length) = self.displacement(pace);
+                    continue;
+                }
+                if climbs && pace.step <= longest * REST_SHARE && -u[2] <= GENTLE * length {
+                    // The bottom of a smooth hollow, within a step.
+                    return Advance::Ended(Outcome::Jammed, *state);
+                }
+                pace.step > longest * SMALLEST_SHARE
+            } else {
+                // Falling off an edge: come closer to it before letting go.
+                rise < -FALL * allowed && pace.step > longest * COARSE_SHARE
+            };
+            if !halve {
+                if z > state.cor.z + longest {
+                    // A wall that no contact announced: the motion cannot be followed further.
+                    return Advance::Ended(Outcome::Undecided, *state);
+                }
+                pace.step = (pace.step * 2.0).min(longest);
+                return Advance::Moved(landed, length);
+            }
+            pace.step *= 0.5;
+            self.turn(&state.rotation, pace.step);
+            self.gather(state, pace.step);
+            (u, length) = self.displacement(pace);
+            fresh = true;
+            last_rise = f64::INFINITY;
+        }
+    }
+
+    /// Replaces the contacts at the start of a step by those halfway along `u`, seen from the start: the midpoint
+    /// rule, second order where contacts bend. `false`, with nothing replaced, where contacts change on the way.
+    fn look_ahead(&mut self, state: &State, pace: &Pace, u: &Vector) -> bool {
+        let mut half = u.map(|x| 0.5 * x);
+        let mut middle = self.moved(state, &half);
+        self.turn(&middle.rotation, pace.step);
+        let Some(z) = self.envelope.height(middle.cor.truncate()) else { return false };
+        let rise = z - middle.cor.z;
+        if rise.abs() > self.settings.surprise * pace.step {
+            return false;
+        }
+        half[2] += rise;
+        middle.cor.z = z;
+        self.gather(&middle, pace.step);
+        for (gap, row) in self.gaps.iter_mut().zip(&self.rows) {
+            *gap -= dot(row, &half);
+        }
+        true
     }
 
     /// Prepares the envelope for a step of length `step`.
@@ -246,7 +278,7 @@ impl<'a> Motion<'a> {
         for contact in &carrying {
             let row = self.row(contact, landed, &axes);
             let there = -contact.normal.z * rise;
-            let here = there - row.iter().zip(u).map(|(a, b)| a * b).sum::<f64>();
+            let here = there - dot(&row, u);
             // A contact this step already respects tells nothing new.
             if there < -OVERLAP && here > 0.25 * there {
                 self.rows.push(row);
@@ -273,8 +305,10 @@ impl<'a> Motion<'a> {
 
     /// The displacement of one step and its length in the ρ-metric, at most `step`.
     ///
-    /// `reach` is how hard the force pushes, in steps; kept between calls, raised on gentle slopes.
-    fn displacement(&self, step: f64, reach: &mut f64) -> (Vector, f64) {
+    /// The reach of the pace is adapted: raised on gentle slopes.
+    fn displacement(&self, pace: &mut Pace) -> (Vector, f64) {
+        let Pace { step, reach } = pace;
+        let step = *step;
         let solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;
@@ -354,12 +388,5 @@ impl<'a> Motion<'a> {
             .map(|c| Touch { point: c.point, normal: c.normal })
             .collect();
         Waypoint { error: self.error_of(state), height: state.cor.z, travelled, touches }
-    }
-
-    fn note(&mut self, state: &State, travelled: f64, record: &mut Option<&mut Vec<Waypoint>>) {
-        if let Some(waypoints) = record.as_deref_mut() {
-            self.gather(state, self.settings.step);
-            waypoints.push(self.waypoint(state, travelled));
-        }
     }
 }

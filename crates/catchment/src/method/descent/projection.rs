@@ -48,7 +48,8 @@ pub(super) fn closest_allowed(push: &Vector, rows: &[Vector], gaps: &[f64], scal
     [0.0; MAX_COORDINATES]
 }
 
-fn dot(a: &Vector, b: &Vector) -> f64 {
+/// Scalar product.
+pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 

@@ -1,0 +1,130 @@
+//! The command line as types.
+
+use crate::command::Command;
+use crate::failure::Failure;
+use crate::source::Input;
+use catchment::design::{Complaint, Design, Quantity, parse_dofs};
+use catchment::pose::DofSet;
+use clap::{Args, Parser};
+use std::path::PathBuf;
+
+/// How much misalignment does a docking connector forgive?
+///
+/// Takes the geometry of the two halves of a connector and computes which pose errors (x, y, roll, pitch, yaw)
+/// their contact corrects: its area of acceptance.
+#[derive(Debug, Parser)]
+#[command(
+    name = "catchment",
+    version,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 done, 1 done but a requirement is not met, 2 could not compute, 130 interrupted.",
+    after_long_help = "Examples:\n  \
+        catchment new pyramid -o design.toml    a commented starting point\n  \
+        catchment check design.toml             everything that is wrong with it\n\n\
+        Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\
+        Exit codes: 0 done, 1 done but a requirement is not met, 2 could not compute, 130 interrupted."
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// A design file, and what to change in it for this run.
+#[derive(Debug, Args)]
+pub(crate) struct DesignArgs {
+    /// The design file
+    #[arg(value_name = "DESIGN", value_hint = clap::ValueHint::FilePath)]
+    pub(crate) path: PathBuf,
+    /// Degrees of freedom that are free, such as x,y,yaw; the others are locked
+    #[arg(long, value_name = "DOFS", value_parser = dofs, help_heading = "Instead of what the design says")]
+    free: Option<DofSet>,
+    /// Centre of rotation in front of the face centre: in D, or with a unit, such as "5 mm"
+    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true,
+          help_heading = "Instead of what the design says")]
+    cor: Option<Quantity>,
+    /// H/D, height of the mating profile over the width
+    #[arg(
+        long,
+        value_name = "RATIO",
+        allow_hyphen_values = true,
+        help_heading = "Instead of what the design says"
+    )]
+    aspect_ratio: Option<f64>,
+    /// rho, how far one radian counts as when motion is damped: in D, or with a unit
+    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true,
+          help_heading = "Instead of what the design says")]
+    rotation_length: Option<Quantity>,
+}
+
+impl DesignArgs {
+    /// Reads the file and applies the changes.
+    pub(crate) fn read(&self) -> Result<Input, Failure> {
+        self.apply(Input::read(&self.path)?)
+    }
+
+    /// Applies the changes to what the file says.
+    pub(crate) fn apply(&self, mut input: Input) -> Result<Input, Failure> {
+        type Change = Box<dyn Fn(Design) -> Result<Design, Complaint>>;
+        let changes: [(&str, Option<Change>); 4] = [
+            ("--free", self.free.map(|free| Box::new(move |d: Design| d.with_free(free)) as Change)),
+            (
+                "--cor",
+                self.cor.map(|cor| Box::new(move |d: Design| d.with_center_of_rotation(cor)) as Change),
+            ),
+            (
+                "--aspect-ratio",
+                self.aspect_ratio
+                    .map(|ratio| Box::new(move |d: Design| d.with_aspect_ratio(ratio)) as Change),
+            ),
+            (
+                "--rotation-length",
+                self.rotation_length
+                    .map(|rho| Box::new(move |d: Design| d.with_rotation_length(rho)) as Change),
+            ),
+        ];
+        for (option, change) in changes {
+            let Some(change) = change else { continue };
+            input.design =
+                change(input.design.clone()).map_err(|complaint| refused(&input, option, &complaint))?;
+        }
+        Ok(input)
+    }
+}
+
+/// A change that the design does not allow, shown beside the key that forbids it.
+fn refused(input: &Input, option: &str, complaint: &Complaint) -> Failure {
+    let place = match complaint {
+        Complaint::OutOfPlane { .. } => "connector.family",
+        Complaint::NotAParameter { .. } => "connector",
+        Complaint::PitchBeyondPole => "errors.pitch",
+        _ => "",
+    };
+    let finding = input.finding(place, format!("{option}: {complaint}"), complaint.help());
+    Failure::one(input.source.report(finding))
+}
+
+fn dofs(text: &str) -> Result<DofSet, String> {
+    parse_dofs(text).map_err(|complaint| with_advice(&complaint))
+}
+
+fn quantity(text: &str) -> Result<Quantity, String> {
+    text.parse().map_err(|complaint| with_advice(&complaint))
+}
+
+fn with_advice(complaint: &Complaint) -> String {
+    match complaint.help() {
+        Some(help) => format!("{complaint}; {help}"),
+        None => complaint.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

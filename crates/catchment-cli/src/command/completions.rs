@@ -1,0 +1,25 @@
+//! `catchment completions`: what the Tab key knows.
+
+use crate::args::Cli;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::to_stdout;
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+/// Write a completion script for a shell
+#[derive(Debug, Args)]
+#[command(
+    after_long_help = "Example:\n  catchment completions bash > ~/.local/share/bash-completion/completions/catchment"
+)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    shell: Shell,
+}
+
+pub(crate) fn run(args: &CompletionsArgs) -> Result<ExitStatus, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "catchment", &mut script);
+    to_stdout(&String::from_utf8_lossy(&script))?;
+    Ok(ExitStatus::Done)
+}

@@ -1,0 +1,33 @@
+//! `catchment new`: a commented starting point.
+
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::OutputArgs;
+use catchment::design::{Family, template};
+use clap::Args;
+use clap::builder::{PossibleValue, TypedValueParser, ValueParser};
+
+/// Write a commented design file to start from
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment new pyramid > design.toml\n  \
+    catchment new x-face-3d -o design.toml")]
+pub(crate) struct NewArgs {
+    /// The built-in family
+    #[arg(value_name = "FAMILY", value_parser = family_parser())]
+    family: Family,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+fn family_parser() -> ValueParser {
+    let values = Family::ALL.map(|family| PossibleValue::new(family.name()).help(family.summary()));
+    clap::builder::PossibleValuesParser::new(values)
+        .try_map(|name| Family::ALL.into_iter().find(|family| family.name() == name).ok_or("no such family"))
+        .into()
+}
+
+pub(crate) fn run(args: &NewArgs) -> Result<ExitStatus, Failure> {
+    args.output.write(&template(args.family))?;
+    Ok(ExitStatus::Done)
+}

@@ -1,0 +1,120 @@
+//! How a computation runs: threads, memory, progress, Ctrl-C. Nothing here changes a result.
+
+use crate::exit::INTERRUPTED_CODE;
+use crate::failure::Failure;
+use catchment::exec::Exec;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Whether Ctrl-C was pressed.
+pub(crate) fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
+/// Options of every command that computes.
+#[derive(Debug, Args)]
+pub(crate) struct ExecArgs {
+    /// Worker threads; 0 means one per core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024),
+          help_heading = "How to run (never changes a result)")]
+    threads: u16,
+    /// Refuse results larger than this, such as "4 GiB" [default: three quarters of the free memory]
+    #[arg(long, value_name = "SIZE", value_parser = bytes, help_heading = "How to run (never changes a result)")]
+    memory: Option<u64>,
+    /// No progress bar
+    #[arg(short, long, help_heading = "How to run (never changes a result)")]
+    quiet: bool,
+}
+
+/// An [`Exec`] that Ctrl-C cancels, with its progress bar, which goes away with it.
+pub(crate) struct Running {
+    /// Hand it to the library.
+    pub exec: Exec,
+    bar: ProgressBar,
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl ExecArgs {
+    /// Starts threads, the progress bar (on a terminal only) and the handling of Ctrl-C: once per process.
+    pub(crate) fn start(&self) -> Result<Running, Failure> {
+        const STEPS: u64 = 1000;
+        let mut exec = Exec::new().with_threads(usize::from(self.threads))?;
+        if let Some(bytes) = self.memory {
+            exec = exec.with_memory_budget(bytes);
+        }
+        let bar = if self.quiet || !std::io::stderr().is_terminal() {
+            ProgressBar::hidden()
+        } else {
+            let bar = ProgressBar::new(STEPS);
+            bar.set_style(ProgressStyle::with_template("{msg:16} {bar:40} {percent:>3} %  {eta}")?);
+            let shown = bar.clone();
+            exec = exec.with_progress(Arc::new(move |fraction, stage| {
+                shown.set_message(stage);
+                shown.set_position((fraction * STEPS as f64) as u64);
+            }));
+            bar
+        };
+        let cancel = exec.cancel_flag();
+        ctrlc::set_handler(move || {
+            cancel.store(true, Ordering::Relaxed);
+            if INTERRUPTED.swap(true, Ordering::Relaxed) {
+                leave();
+            }
+        })?;
+        Ok(Running { exec, bar })
+    }
+}
+
+/// Ctrl-C a second time: whoever presses it twice does not want to wait for the end of a step.
+#[expect(clippy::exit, reason = "the computation does not listen, and the person insists")]
+fn leave() {
+    std::process::exit(i32::from(INTERRUPTED_CODE));
+}
+
+/// A size such as `4 GiB`, `500 MB` or `1e9` (bytes).
+fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 9] = [
+        ("", 1.0),
+        ("B", 1.0),
+        ("kB", 1e3),
+        ("MB", 1e6),
+        ("GB", 1e9),
+        ("KiB", 1024.0),
+        ("MiB", 1_048_576.0),
+        ("GiB", 1_073_741_824.0),
+        ("TiB", 1_099_511_627_776.0),
+    ];
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = &text[number.len()..];
+    let factor = UNITS.iter().find(|(name, _)| *name == unit).map(|(_, factor)| factor);
+    let value: Option<f64> = number.trim().parse().ok();
+    match value.zip(factor).map(|(value, factor)| value * factor) {
+        Some(bytes) if (1.0..=1e18).contains(&bytes) => Ok(bytes as u64),
+        _ => Err("a size is a positive number and one of B, kB, MB, GB, KiB, MiB, GiB, TiB".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read() {
+        assert_eq!(bytes("4 GiB"), Ok(4 << 30));
+        assert_eq!(bytes("1.5MB"), Ok(1_500_000));
+        assert_eq!(bytes("1024"), Ok(1024));
+        for wrong in ["", "GiB", "-1 MB", "nan", "inf GiB", "4 gigs", "1e30 TiB"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! What the exit code says.
+
+use std::process::ExitCode;
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ExitStatus {
+    /// Done; every stated requirement is met.
+    Done,
+    /// Could not compute: bad input, bad usage, no memory, no file.
+    Failed,
+    /// Stopped by Ctrl-C.
+    Interrupted,
+}
+
+impl From<ExitStatus> for ExitCode {
+    fn from(status: ExitStatus) -> Self {
+        Self::from(match status {
+            ExitStatus::Done => 0,
+            ExitStatus::Failed => 2,
+            ExitStatus::Interrupted => INTERRUPTED_CODE,
+        })
+    }
+}
+
+/// 128 + SIGINT, as shells expect.
+pub(crate) const INTERRUPTED_CODE: u8 = 130;

@@ -1,0 +1,64 @@
+//! Why a command could not do its work, and how that is shown.
+
+use crate::exec_args;
+use crate::exit::ExitStatus;
+use miette::Report;
+use std::io::Write;
+
+/// Reports for stderr; `?` makes one of any error.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    reports: Vec<Report>,
+    closing: Option<String>,
+    broken_pipe: bool,
+}
+
+impl Failure {
+    /// Several reports and a closing line that counts them.
+    pub(crate) fn many(reports: Vec<Report>, closing: String) -> Self {
+        Self { reports, closing: Some(closing), broken_pipe: false }
+    }
+
+    /// One message with advice.
+    pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
+        let mut diagnostic = miette::MietteDiagnostic::new(message);
+        diagnostic.help = help;
+        Self::one(Report::new(diagnostic))
+    }
+
+    /// One report.
+    pub(crate) fn one(report: Report) -> Self {
+        Self { reports: vec![report], closing: None, broken_pipe: false }
+    }
+
+    /// The reader of stdout went away.
+    pub(crate) fn broken_pipe() -> Self {
+        Self { reports: Vec::new(), closing: None, broken_pipe: true }
+    }
+
+    /// Prints it on stderr and says how the command ended.
+    pub(crate) fn show(self) -> ExitStatus {
+        if self.broken_pipe {
+            return ExitStatus::Done;
+        }
+        let mut stderr = std::io::stderr().lock();
+        // Nobody is left to tell when stderr itself is gone.
+        if exec_args::interrupted() {
+            let _ = writeln!(stderr, "interrupted; nothing was written");
+            return ExitStatus::Interrupted;
+        }
+        for report in &self.reports {
+            let _ = writeln!(stderr, "{report:?}");
+        }
+        if let Some(closing) = self.closing {
+            let _ = writeln!(stderr, "{closing}");
+        }
+        ExitStatus::Failed
+    }
+}
+
+impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::one(Report::from_err(error))
+    }
+}

@@ -1,0 +1,341 @@
+//! What can be wrong with a design: facts, each with advice.
+
+use super::Family;
+use super::keys::Range;
+use crate::pose::Dof;
+use std::path::PathBuf;
+
+/// Lengths and angles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// D, or a unit of length.
+    Length,
+    /// Radians or degrees.
+    Angle,
+}
+
+impl Dimension {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Length => "a length",
+            Self::Angle => "an angle",
+        }
+    }
+
+    const fn units(self) -> &'static str {
+        match self {
+            Self::Length => "lengths are bare numbers (in D) or strings with D, um, mm, cm, m or in",
+            Self::Angle => "angles are bare numbers (in radians) or strings with rad or deg",
+        }
+    }
+}
+
+/// One thing that is wrong with a design.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Complaint {
+    /// Not TOML.
+    #[error("{message}")]
+    Syntax {
+        /// What the TOML parser says.
+        message: String,
+    },
+    /// A key that the table does not have.
+    #[error("unknown key `{key}` in {table}")]
+    UnknownKey {
+        /// The key as written.
+        key: String,
+        /// The table, for a person.
+        table: &'static str,
+        /// The key it probably stands for.
+        meant: Option<&'static str>,
+        /// Another table that has a key of this name.
+        elsewhere: Option<&'static str>,
+        /// The keys that the table has.
+        known: Vec<&'static str>,
+    },
+    /// A value of another type.
+    #[error("`{key}` should be {expected}, not {found}")]
+    WrongType {
+        /// The key.
+        key: String,
+        /// The type it should have.
+        expected: &'static str,
+        /// The type it has.
+        found: &'static str,
+    },
+    /// A number out of range.
+    #[error("`{key}` is {found}, outside of {range}")]
+    OutOfRange {
+        /// The key.
+        key: String,
+        /// The number as written, and as understood where that differs.
+        found: String,
+        /// Where it should lie.
+        range: Range,
+        /// What the key means.
+        doc: &'static str,
+    },
+    /// Infinite or not a number.
+    #[error("`{text}` is not a finite number")]
+    NotFinite {
+        /// As written.
+        text: String,
+    },
+    /// A string that is not a number with a unit.
+    #[error("`{text}` is not a number with a unit")]
+    NotAQuantity {
+        /// As written.
+        text: String,
+    },
+    /// A string with a number but no unit.
+    #[error("\"{text}\" has no unit")]
+    NoUnit {
+        /// As written.
+        text: String,
+    },
+    /// A unit nobody knows.
+    #[error("unknown unit `{unit}`")]
+    UnknownUnit {
+        /// As written.
+        unit: String,
+        /// The unit it probably stands for.
+        meant: Option<&'static str>,
+    },
+    /// A length where an angle belongs, or the other way round.
+    #[error("`{text}` is not {}", wanted.name())]
+    WrongDimension {
+        /// As written.
+        text: String,
+        /// What belongs here.
+        wanted: Dimension,
+    },
+    /// A unit where a plain number belongs.
+    #[error("`{key}` is a plain number, not `{text}`")]
+    NotARatio {
+        /// The key.
+        key: &'static str,
+        /// As written.
+        text: String,
+    },
+    /// A length with a unit in a design without one.
+    #[error("`{text}` has a unit, but the design is dimensionless")]
+    UnitInDimensionlessDesign {
+        /// As written.
+        text: String,
+    },
+    /// A width in widths.
+    #[error("the width is D itself, so it cannot be given in D")]
+    WidthInD,
+    /// A piece that encloses no volume.
+    #[error("`{key}` has {found} points; a solid has at least 4")]
+    TooFewPoints {
+        /// The piece.
+        key: String,
+        /// Its points.
+        found: usize,
+    },
+    /// A list that is no point.
+    #[error("a point of `{key}` has {found} coordinates instead of 3")]
+    NotAPoint {
+        /// The piece.
+        key: String,
+        /// Its coordinates.
+        found: usize,
+    },
+    /// One of a few words was expected.
+    #[error("unknown {what} `{name}`")]
+    UnknownName {
+        /// What is named.
+        what: &'static str,
+        /// As written.
+        name: String,
+        /// The name it probably stands for.
+        meant: Option<&'static str>,
+        /// All names.
+        known: Vec<&'static str>,
+    },
+    /// Something that has to be there is not.
+    #[error("`{key}` is missing")]
+    Missing {
+        /// The key.
+        key: String,
+        /// What to write.
+        advice: &'static str,
+    },
+    /// An empty list or text.
+    #[error("`{key}` is empty")]
+    Empty {
+        /// The key.
+        key: String,
+        /// What to write.
+        advice: &'static str,
+    },
+    /// A text that is too long or has control characters.
+    #[error("`{key}` is not a line of at most {longest} characters")]
+    NotALine {
+        /// The key.
+        key: String,
+        /// The longest text, in characters.
+        longest: usize,
+    },
+    /// Two keys that cannot stand together.
+    #[error("`{key}` and `{other}` exclude each other")]
+    Contradiction {
+        /// The key complained about.
+        key: String,
+        /// The other one.
+        other: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// A parameter that this connector does not have.
+    #[error("`{key}` is no parameter of {owner}")]
+    NotAParameter {
+        /// The key.
+        key: String,
+        /// The family, or own halves.
+        owner: &'static str,
+        /// What has it.
+        belongs_to: String,
+    },
+    /// A degree of freedom named twice in one list.
+    #[error("`{}` is listed twice", dof.name())]
+    Repeated {
+        /// Which.
+        dof: Dof,
+    },
+    /// A degree of freedom that is free and does not matter.
+    #[error("`{}` is both free and don't-care", dof.name())]
+    FreeAndDontCare {
+        /// Which.
+        dof: Dof,
+    },
+    /// A translation that is declared not to matter.
+    #[error("`{}` is a translation: only rotations can be don't-care", dof.name())]
+    DontCareTranslation {
+        /// Which.
+        dof: Dof,
+    },
+    /// Motion out of the plane of a planar family.
+    #[error("`{}` leaves the plane of {family}", dof.name())]
+    OutOfPlane {
+        /// Which.
+        dof: Dof,
+        /// The family.
+        family: &'static str,
+    },
+    /// Pitch beyond ±90° beside free roll and yaw.
+    #[error("a pitch of more than 90 deg counts rotations twice when roll and yaw are free")]
+    PitchBeyondPole,
+    /// A shape of half that a later version will read.
+    #[error("`{key}` halves are not yet supported")]
+    UnsupportedHalf {
+        /// The kind of half.
+        key: &'static str,
+    },
+    /// A file that is not there.
+    #[error("there is no file {}", path.display())]
+    NoFile {
+        /// The path that was tried.
+        path: PathBuf,
+    },
+    /// A format version of another program.
+    #[error("this design has schema {found}; this program reads schema {known}")]
+    OtherSchema {
+        /// As written.
+        found: i64,
+        /// The one that is understood.
+        known: i64,
+    },
+    /// More text than a design has.
+    #[error("the design file is larger than {limit} bytes")]
+    TooLarge {
+        /// The limit, in bytes.
+        limit: usize,
+    },
+}
+
+impl Complaint {
+    pub(super) fn nothing_free(key: String) -> Self {
+        Self::Empty {
+            key,
+            advice: "name at least one of x, y, roll, pitch, yaw, or remove the key for the default",
+        }
+    }
+
+    /// The rule of planar families: nothing leaves the x–z plane.
+    pub(super) fn out_of_plane(dof: Dof, family: Option<Family>) -> Option<Self> {
+        let family = family.filter(|family| family.is_planar() && !matches!(dof, Dof::X | Dof::Pitch))?;
+        Some(Self::OutOfPlane { dof, family: family.name() })
+    }
+
+    /// What to do about it; `None` where the message says it all.
+    pub fn help(&self) -> Option<String> {
+        let did_you_mean = |meant: Option<&str>| meant.map(|word| format!("did you mean `{word}`?"));
+        match self {
+            Self::UnknownKey { meant: Some(word), .. } => Some(format!("did you mean `{word}`?")),
+            Self::UnknownKey { elsewhere: Some(table), .. } => Some(format!("it belongs to {table}")),
+            Self::UnknownKey { known, .. } => Some(format!("keys here: {}", known.join(", "))),
+            Self::OutOfRange { doc, range, .. } if range.unit == "rad" => {
+                Some(format!("{doc} Bare angles are radians; degrees are written \"30 deg\""))
+            }
+            Self::OutOfRange { doc, .. } => Some((*doc).to_owned()),
+            Self::NotAQuantity { .. } => {
+                Some("write the number, a space and the unit, such as \"5 mm\" or \"30 deg\"".to_owned())
+            }
+            Self::NoUnit { text } => Some(format!(
+                "write {text} without quotes for D or radians, or add a unit as in \"{text} mm\" or \"{text} deg\""
+            )),
+            Self::UnknownUnit { meant, .. } => did_you_mean(*meant)
+                .or_else(|| Some("lengths: um, mm, cm, m, in, D; angles: deg, rad".to_owned())),
+            Self::WidthInD => Some(
+                "write a bare number, in `unit`; a dimensionless design has width = 1.0 or no width at all".to_owned(),
+            ),
+            Self::WrongDimension { wanted, .. } => Some(wanted.units().to_owned()),
+            Self::UnitInDimensionlessDesign { .. } => Some(
+                "add `unit = \"mm\"` (the unit of `width`) to [connector], or write a bare number in D".to_owned(),
+            ),
+            Self::UnknownName { meant, known, .. } => Some(match did_you_mean(*meant) {
+                Some(question) => format!("{question} One of {}", known.join(", ")),
+                None => format!("one of {}", known.join(", ")),
+            }),
+            Self::Missing { advice, .. } | Self::Empty { advice, .. } | Self::Contradiction { advice, .. } => {
+                Some((*advice).to_owned())
+            }
+            Self::NotAParameter { belongs_to, .. } => Some(format!("it belongs to {belongs_to}; remove it")),
+            Self::FreeAndDontCare { .. } => {
+                Some("a don't-care rotation is locked in the motion: list it in one of the two".to_owned())
+            }
+            Self::OutOfPlane { .. } => Some(
+                "a planar family is a profile in the x-z plane: only x and pitch can be free; for a solid of finite \
+                 depth give own halves"
+                    .to_owned(),
+            ),
+            Self::PitchBeyondPole => {
+                Some("set `errors.pitch` to at most \"90 deg\", or lock roll or yaw".to_owned())
+            }
+            Self::UnsupportedHalf { .. } => {
+                Some("give convex `pieces` or a closed triangle mesh: mesh = \"half.stl\"".to_owned())
+            }
+            Self::NoFile { .. } => Some("the path is relative to the folder of the design file".to_owned()),
+            Self::TooLarge { .. } => {
+                Some("put large geometry into an STL file: mesh = \"half.stl\"".to_owned())
+            }
+            Self::OtherSchema { found, known } if found > known => Some("use a newer version of catchment".to_owned()),
+            Self::Syntax { message } if message.contains("string values must be quoted") => {
+                Some("a value with a unit is a string: \"5 mm\"".to_owned())
+            }
+            Self::Syntax { .. }
+            | Self::WrongType { .. }
+            | Self::NotFinite { .. }
+            | Self::TooFewPoints { .. }
+            | Self::NotAPoint { .. }
+            | Self::NotARatio { .. }
+            | Self::NotALine { .. }
+            | Self::Repeated { .. }
+            | Self::DontCareTranslation { .. }
+            | Self::OtherSchema { .. } => None,
+        }
+    }
+}

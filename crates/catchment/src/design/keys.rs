@@ -1,0 +1,396 @@
+//! The design file as one table: every key with its place, type, range and meaning.
+//!
+//! The reader checks by it, the JSON schema and the commented templates are generated from it, so that they
+//! cannot disagree.
+
+use super::Family;
+use super::complaint::Complaint;
+use super::quantity::{Quantity, Scale, Unit};
+use std::f64::consts::PI;
+use std::fmt;
+
+/// Version of the design format.
+pub const SCHEMA: i64 = 1;
+
+/// A closed interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// What it is in: `""`, `"D"`, `"rad"`.
+    pub unit: &'static str,
+}
+
+impl Range {
+    const fn new(min: f64, max: f64, unit: &'static str) -> Self {
+        Self { min, max, unit }
+    }
+
+    /// Whether `value` lies in it; a NaN does not.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.min..=self.max).contains(&value)
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.unit == "rad" {
+            let above = if self.min > 0.0 { "more than " } else { "" };
+            write!(f, "{above}{} to {} deg", self.min.to_degrees().round(), self.max.to_degrees().round())
+        } else {
+            write!(f, "{} to {}", self.min, self.max)?;
+            if self.unit.is_empty() { Ok(()) } else { write!(f, " {}", self.unit) }
+        }
+    }
+}
+
+/// What a value may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A line of text for people.
+    Line,
+    /// A number without a unit.
+    Ratio(Range),
+    /// A whole number.
+    Whole {
+        /// Smallest.
+        min: u32,
+        /// Largest.
+        max: u32,
+    },
+    /// `true` or `false`.
+    Flag,
+    /// A length: bare in D.
+    Length(Range),
+    /// A length: bare in the unit of the design.
+    DrawnLength(Range),
+    /// The width itself, in the unit of the design.
+    Width(Range),
+    /// An angle: bare in radians.
+    Angle(Range),
+    /// A unit of length.
+    Unit,
+    /// The name of a family.
+    Family,
+    /// `"x"` or `"y"`.
+    Mount,
+    /// A list of degrees of freedom.
+    Dofs,
+    /// The path of a file.
+    Path,
+    /// Convex pieces, each a list of points.
+    Pieces,
+    /// Read by a later version.
+    Later,
+    /// A table with keys of its own.
+    Table(Table),
+}
+
+/// A table of the design file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Table {
+    /// The file itself.
+    Root,
+    /// `[connector]`.
+    Connector,
+    /// `[connector.fixed]` and `[connector.moving]`.
+    Half,
+    /// `[alignment]`.
+    Alignment,
+    /// `[errors]`.
+    Errors,
+}
+
+impl Table {
+    /// Every table.
+    pub const ALL: [Self; 5] = [Self::Root, Self::Connector, Self::Half, Self::Alignment, Self::Errors];
+
+    /// For a person.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Root => "the top of the file",
+            Self::Connector => "[connector]",
+            Self::Half => "[connector.fixed] and [connector.moving]",
+            Self::Alignment => "[alignment]",
+            Self::Errors => "[errors]",
+        }
+    }
+
+    /// Its keys, in the order of the documentation.
+    pub fn keys(self) -> impl Iterator<Item = &'static Key> {
+        KEYS.iter().copied().filter(move |key| key.table == self)
+    }
+}
+
+/// Which connectors have a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Applies {
+    /// Every design.
+    Always,
+    /// Every built-in family.
+    AnyFamily,
+    /// Some families.
+    Families(&'static [Family]),
+    /// Own halves.
+    OwnHalves,
+}
+
+impl Applies {
+    /// Whether a design with this family (`None`: own halves) has the parameter.
+    pub fn to(self, family: Option<Family>) -> bool {
+        match (self, family) {
+            (Self::Always, _) | (Self::AnyFamily, Some(_)) | (Self::OwnHalves, None) => true,
+            (Self::Families(list), Some(family)) => list.contains(&family),
+            (Self::AnyFamily | Self::Families(_), None) | (Self::OwnHalves, Some(_)) => false,
+        }
+    }
+}
+
+impl fmt::Display for Applies {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Always => f.write_str("every design"),
+            Self::AnyFamily => f.write_str("the built-in families"),
+            Self::OwnHalves => f.write_str("own halves"),
+            Self::Families(list) => {
+                let names: Vec<&str> = list.iter().map(|family| family.name()).collect();
+                f.write_str(&names.join(" and "))
+            }
+        }
+    }
+}
+
+/// A key of the design file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Key {
+    /// The table it stands in.
+    pub table: Table,
+    /// Its name.
+    pub name: &'static str,
+    /// What its value may be.
+    pub kind: Kind,
+    /// Who has it.
+    pub applies: Applies,
+    /// What it means, for a person.
+    pub doc: &'static str,
+}
+
+impl Key {
+    /// The quantity in the unit of this key's range (D, radians or none), if it lies in the range. `None` when
+    /// that takes a `scale` and there is none.
+    ///
+    /// # Errors
+    /// Out of range, a unit of the wrong dimension, or a unit in a dimensionless design.
+    pub fn checked(&self, quantity: Quantity, scale: Option<&Scale>) -> Result<Option<f64>, Complaint> {
+        let needs_scale = match self.kind {
+            Kind::Length(_) => !matches!(quantity.unit, Unit::Bare | Unit::D),
+            Kind::DrawnLength(_) => quantity.unit != Unit::D,
+            _ => false,
+        };
+        let scale = match scale {
+            Some(scale) => *scale,
+            None if needs_scale => return Ok(None),
+            None => Scale { width: 1.0, unit: None },
+        };
+        let (number, range) = match self.kind {
+            Kind::Length(range) => (quantity.length_d(&scale)?, range),
+            Kind::DrawnLength(range) => (quantity.drawn_length_d(&scale)?, range),
+            Kind::Angle(range) => (quantity.angle_rad()?, range),
+            Kind::Width(range) => (quantity.width(scale.unit)?, range),
+            Kind::Ratio(range) if quantity.unit == Unit::Bare => (quantity.value, range),
+            _ => return Err(Complaint::NotARatio { key: self.name, text: quantity.to_string() }),
+        };
+        if range.contains(number) {
+            return Ok(Some(number));
+        }
+        let found = match quantity.unit {
+            _ if range.unit.is_empty() => quantity.to_string(),
+            Unit::Bare if matches!(self.kind, Kind::DrawnLength(_)) => format!("{quantity} = {number} D"),
+            Unit::Bare | Unit::D => format!("{} {}", quantity.value, range.unit),
+            Unit::Length(_) => format!("{quantity} = {number} D"),
+            Unit::Degrees | Unit::Radians => quantity.to_string(),
+        };
+        Err(Complaint::OutOfRange { key: self.name.to_owned(), found, range, doc: self.doc })
+    }
+}
+
+const fn key(table: Table, name: &'static str, kind: Kind, doc: &'static str) -> Key {
+    Key { table, name, kind, applies: Applies::Always, doc }
+}
+
+const fn parameter(name: &'static str, applies: Applies, kind: Kind, doc: &'static str) -> Key {
+    Key { table: Table::Connector, name, kind, applies, doc }
+}
+
+const LOCKING: Applies = Applies::Families(&[Family::XFace3dLocking]);
+const PINS_ONLY: Applies = Applies::Families(&[Family::PinHole]);
+const ROUND: Applies = Applies::Families(&[Family::Cone, Family::PinHole]);
+
+macro_rules! keys {
+    ($($(#[$doc:meta])* $name:ident = $key:expr;)*) => {
+        $($(#[$doc])* pub const $name: Key = $key;)*
+        /// Every key, in the order of the documentation.
+        pub const KEYS: &[&Key] = &[$(&$name),*];
+    };
+}
+
+keys! {
+    /// `schema`
+    SCHEMA_KEY = key(Table::Root, "schema", Kind::Whole { min: 1, max: 1 },
+        "Version of this format: 1.");
+    /// `name`
+    NAME = key(Table::Root, "name", Kind::Line,
+        "What reports call the design.");
+    /// `[connector]`
+    CONNECTOR = key(Table::Root, "connector", Kind::Table(Table::Connector),
+        "The two halves: a built-in family with its parameters, or own halves.");
+    /// `[alignment]`
+    ALIGNMENT = key(Table::Root, "alignment", Kind::Table(Table::Alignment),
+        "The alignment problem: everything but the geometry that the answer depends on.");
+    /// `[errors]`
+    ERRORS = key(Table::Root, "errors", Kind::Table(Table::Errors),
+        "Half-ranges of the error box: an error x of 0.5 means x from -0.5 D to 0.5 D.");
+
+    /// `connector.family`
+    FAMILY = key(Table::Connector, "family", Kind::Family,
+        "Built-in family: v-face, s-face, x-face, pyramid, cone, x-face-3d, x-face-3d-locking or pin-hole.");
+    /// `connector.width`
+    WIDTH = key(Table::Connector, "width", Kind::Width(Range::new(1e-6, 1e6, "")),
+        "D, the width of the connector, in `unit`. Results are in D.");
+    /// `connector.unit`
+    UNIT = key(Table::Connector, "unit", Kind::Unit,
+        "Unit of `width` and of drawn coordinates: um, mm, cm, m or in. Without it the design is dimensionless.");
+    /// `connector.aspect_ratio`
+    ASPECT_RATIO = parameter("aspect_ratio", Applies::AnyFamily, Kind::Ratio(Range::new(1e-3, 100.0, "")),
+        "H/D: height of the mating profile over the width.");
+    /// `connector.base_thickness`
+    BASE_THICKNESS = parameter("base_thickness", Applies::AnyFamily, Kind::Length(Range::new(0.0, 100.0, "D")),
+        "Material behind the mating surface. It matters once a half tilts.");
+    /// `connector.chord_error`
+    CHORD_ERROR = parameter("chord_error", ROUND, Kind::Length(Range::new(1e-6, 0.1, "D")),
+        "Largest distance between a circle and the polygon that stands for it.");
+    /// `connector.lip_height`
+    LIP_HEIGHT = parameter("lip_height", LOCKING, Kind::Length(Range::new(1e-4, 10.0, "D")),
+        "Height of the lip along the centre lines.");
+    /// `connector.draft_angle`
+    DRAFT_ANGLE = parameter("draft_angle", LOCKING, Kind::Angle(Range::new(0.0, 80.0 / 180.0 * PI, "rad")),
+        "Inclination of the lip's mating faces from the vertical.");
+    /// `connector.pins`
+    PINS = parameter("pins", PINS_ONLY, Kind::Whole { min: 1, max: 64 },
+        "Pins per half.");
+    /// `connector.hermaphroditic`
+    HERMAPHRODITIC = parameter("hermaphroditic", PINS_ONLY, Kind::Flag,
+        "Pins and holes alternate on both halves, instead of all pins on the moving one.");
+    /// `connector.pin_radius`
+    PIN_RADIUS = parameter("pin_radius", PINS_ONLY, Kind::Length(Range::new(1e-4, 1.0, "D")),
+        "Radius of a pin.");
+    /// `connector.clearance`
+    CLEARANCE = parameter("clearance", PINS_ONLY, Kind::Length(Range::new(0.0, 1.0, "D")),
+        "Radial play between pin and hole.");
+    /// `connector.chamfer`
+    CHAMFER = parameter("chamfer", PINS_ONLY, Kind::Length(Range::new(0.0, 1.0, "D")),
+        "Width of the chamfer around a hole and of the point of a pin.");
+    /// `connector.circle_radius`
+    CIRCLE_RADIUS = parameter("circle_radius", PINS_ONLY, Kind::Length(Range::new(0.0, 2.0, "D")),
+        "Radius of the circle on which pins and holes sit.");
+    /// `connector.face_height`
+    FACE_HEIGHT = parameter("face_height", Applies::OwnHalves, Kind::DrawnLength(Range::new(-1e3, 1e3, "D")),
+        "z of the face centre in each half's own frame, in the unit of the design.");
+    /// `[connector.fixed]`
+    FIXED = parameter("fixed", Applies::OwnHalves, Kind::Table(Table::Half),
+        "The fixed half, drawn facing +z.");
+    /// `[connector.moving]`
+    MOVING = parameter("moving", Applies::OwnHalves, Kind::Table(Table::Half),
+        "The moving half, drawn facing +z as well; `alignment.mount` turns it over.");
+
+    /// `pieces` of a half
+    PIECES = key(Table::Half, "pieces", Kind::Pieces,
+        "Convex pieces whose union is the half: each a list of points [x, y, z] in the unit of the design.");
+    /// `mesh` of a half
+    MESH = key(Table::Half, "mesh", Kind::Path,
+        "A closed triangle mesh: an STL file, its path relative to the folder of the design file.");
+    /// `unit` of a half
+    MESH_UNIT = key(Table::Half, "unit", Kind::Unit,
+        "Unit of the mesh file, which cannot say it itself: um, mm, cm, m or in.");
+    /// `profile` of a half
+    PROFILE = key(Table::Half, "profile", Kind::Later,
+        "Not yet supported: a profile in the x-z plane.");
+    /// `heightfield` of a half
+    HEIGHTFIELD = key(Table::Half, "heightfield", Kind::Later,
+        "Not yet supported: a grid of heights.");
+
+    /// `alignment.free`
+    FREE = key(Table::Alignment, "free", Kind::Dofs,
+        "Pose errors that occur and that contact may correct: x, y, roll, pitch, yaw. The others are locked.");
+    /// `alignment.dont_care`
+    DONT_CARE = key(Table::Alignment, "dont_care", Kind::Dofs,
+        "Rotations that do not matter, such as the yaw of a round plug.");
+    /// `alignment.center_of_rotation`
+    CENTER_OF_ROTATION = key(Table::Alignment, "center_of_rotation", Kind::Length(Range::new(-100.0, 100.0, "D")),
+        "Distance of the centre of rotation in front of the face centre; the approach force acts through it.");
+    /// `alignment.rotation_length`
+    ROTATION_LENGTH = key(Table::Alignment, "rotation_length", Kind::Length(Range::new(1e-3, 1e3, "D")),
+        "rho: how far one radian counts as when motion is damped. Declare it; the answer depends on it.");
+    /// `alignment.mount`
+    MOUNT = key(Table::Alignment, "mount", Kind::Mount,
+        "Axis of the half turn that brings the moving half face to face with the fixed one: x or y.");
+    /// `alignment.symmetry`
+    SYMMETRY = key(Table::Alignment, "symmetry", Kind::Whole { min: 1, max: 360 },
+        "n-fold symmetry about the approach axis: turned by 360/n deg the pair is aligned as well.");
+
+    /// `errors.x`
+    ERROR_X = key(Table::Errors, "x", Kind::Length(Range::new(1e-6, 100.0, "D")),
+        "Largest lateral offset along x.");
+    /// `errors.y`
+    ERROR_Y = key(Table::Errors, "y", Kind::Length(Range::new(1e-6, 100.0, "D")),
+        "Largest lateral offset along y.");
+    /// `errors.roll`
+    ERROR_ROLL = key(Table::Errors, "roll", Kind::Angle(Range::new(1e-6, PI, "rad")),
+        "Largest rotation about x.");
+    /// `errors.pitch`
+    ERROR_PITCH = key(Table::Errors, "pitch", Kind::Angle(Range::new(1e-6, PI, "rad")),
+        "Largest rotation about y.");
+    /// `errors.yaw`
+    ERROR_YAW = key(Table::Errors, "yaw", Kind::Angle(Range::new(1e-6, PI, "rad")),
+        "Largest rotation about the approach axis.");
+}
+
+/// The error half-ranges in the order of [`crate::pose::Dof::ALL`].
+pub const ERROR_KEYS: [Key; 5] = [ERROR_X, ERROR_Y, ERROR_ROLL, ERROR_PITCH, ERROR_YAW];
+
+/// A coordinate of a drawn point: 1000 widths away is a wrong unit.
+pub const COORDINATE: Key = key(
+    Table::Half,
+    "pieces",
+    Kind::DrawnLength(Range::new(-1e3, 1e3, "D")),
+    "A coordinate of a convex piece, in the unit of the design. Is `connector.width` in the same unit?",
+);
+
+/// Longest name, in characters.
+pub const LONGEST_LINE: usize = 200;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_key_stands_twice_in_a_table() {
+        for table in Table::ALL {
+            let mut names: Vec<&str> = table.keys().map(|key| key.name).collect();
+            let all = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), all, "{}", table.name());
+            assert!(all > 0, "{}", table.name());
+        }
+    }
+
+    #[test]
+    fn ranges_are_closed_and_refuse_nan() {
+        let range = Range::new(0.0, 1.0, "D");
+        assert!(range.contains(0.0) && range.contains(1.0));
+        assert!(!range.contains(-1e-300) && !range.contains(f64::NAN));
+    }
+}

@@ -1,0 +1,102 @@
+//! A design with one setting changed: what sweeps and command-line options do. The rules are those of the file.
+
+use super::complaint::Complaint;
+use super::keys;
+use super::quantity::{Quantity, Unit, shortened};
+use super::reader::unknown_name;
+use super::{ConnectorSpec, Design, Family};
+use crate::pose::{Dof, DofSet};
+
+/// The set in a list such as `x,y,yaw`.
+///
+/// # Errors
+/// An unknown name, one that stands twice, or an empty list.
+pub fn parse_dofs(text: &str) -> Result<DofSet, Complaint> {
+    let mut set = DofSet::EMPTY;
+    for name in text.split(',').map(str::trim) {
+        if text.trim().is_empty() {
+            return Err(Complaint::nothing_free("free".to_owned()));
+        }
+        let dof = Dof::ALL.into_iter().find(|dof| dof.name() == name).ok_or_else(|| {
+            unknown_name("degree of freedom", &shortened(name), Dof::ALL.into_iter().map(Dof::name))
+        })?;
+        if set.contains(dof) {
+            return Err(Complaint::Repeated { dof });
+        }
+        set = set.with(dof);
+    }
+    Ok(set)
+}
+
+impl Design {
+    /// The built-in family, if it is one.
+    pub const fn family(&self) -> Option<Family> {
+        match &self.connector {
+            ConnectorSpec::Family(spec) => Some(spec.family),
+            ConnectorSpec::Own(_) => None,
+        }
+    }
+
+    /// This design with other free degrees of freedom. One that did not matter and is now free matters.
+    ///
+    /// # Errors
+    /// None are free, or one leaves the plane of a planar family.
+    pub fn with_free(mut self, free: DofSet) -> Result<Self, Complaint> {
+        if free.is_empty() {
+            return Err(Complaint::nothing_free("free".to_owned()));
+        }
+        if let Some(complaint) = free.iter().find_map(|dof| Complaint::out_of_plane(dof, self.family())) {
+            return Err(complaint);
+        }
+        self.alignment.free = free;
+        self.alignment.dont_care =
+            self.alignment.dont_care.iter().filter(|dof| !free.contains(*dof)).collect();
+        match self.alignment.beyond_the_pole() {
+            Some(complaint) => Err(complaint),
+            None => Ok(self),
+        }
+    }
+
+    /// This design with its centre of rotation elsewhere; bare numbers are in D.
+    ///
+    /// # Errors
+    /// Out of the range of the design file, or not a length.
+    pub fn with_center_of_rotation(mut self, cor: Quantity) -> Result<Self, Complaint> {
+        if let Some(cor) = keys::CENTER_OF_ROTATION.checked(cor, Some(&self.scale()))? {
+            self.alignment.center_of_rotation = cor;
+        }
+        Ok(self)
+    }
+
+    /// This design with another ρ; bare numbers are in D.
+    ///
+    /// # Errors
+    /// Out of the range of the design file, or not a length.
+    pub fn with_rotation_length(mut self, length: Quantity) -> Result<Self, Complaint> {
+        if let Some(length) = keys::ROTATION_LENGTH.checked(length, Some(&self.scale()))? {
+            self.alignment.rotation_length = length;
+        }
+        Ok(self)
+    }
+
+    /// This design with another H/D.
+    ///
+    /// # Errors
+    /// Out of the range of the design file, or the halves are the person's own and have a fixed shape.
+    pub fn with_aspect_ratio(mut self, ratio: f64) -> Result<Self, Complaint> {
+        let scale = self.scale();
+        let ConnectorSpec::Family(spec) = &mut self.connector else {
+            return Err(Complaint::NotAParameter {
+                key: keys::ASPECT_RATIO.name.to_owned(),
+                owner: "own halves",
+                belongs_to: keys::ASPECT_RATIO.applies.to_string(),
+            });
+        };
+        if let Some(ratio) =
+            keys::ASPECT_RATIO.checked(Quantity { value: ratio, unit: Unit::Bare }, Some(&scale))?
+        {
+            spec.aspect_ratio = ratio;
+        }
+        Ok(self)
+    }
+}

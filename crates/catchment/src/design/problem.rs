@@ -1,0 +1,134 @@
+//! Problems: complaints with their places in the file.
+
+use super::complaint::Complaint;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+
+/// A complaint and where it belongs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// What is wrong.
+    pub complaint: Complaint,
+    /// Bytes of the file it is about; empty at the end of what comes before where something is missing.
+    pub span: Range<usize>,
+    /// Line of the first of them, from 1.
+    pub line: usize,
+    /// Column of the first of them in characters, from 1.
+    pub column: usize,
+}
+
+impl Problem {
+    /// Places `complaint` at the bytes `span` of `text`.
+    pub fn new(complaint: Complaint, span: Range<usize>, text: &str) -> Self {
+        let (line, column) = line_column(text, span.start);
+        Self { complaint, span, line, column }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.line, self.column, self.complaint)
+    }
+}
+
+/// Line and column (in characters) of a byte, both from 1. A byte behind the end counts as the end.
+pub fn line_column(text: &str, byte: usize) -> (usize, usize) {
+    let before = &text.as_bytes()[..byte.min(text.len())];
+    let line_start = before.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
+    let line = before.split(|b| *b == b'\n').count();
+    // Characters are counted by their first bytes, so a byte in the middle of one is no trouble.
+    let column = 1 + before[line_start..].iter().filter(|b| **b & 0xC0 != 0x80).count();
+    (line, column)
+}
+
+/// All problems of a file in the order of their places; never empty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problems {
+    /// The first of them.
+    pub list: Vec<Problem>,
+    /// How many more there are beyond [`Problems::MOST`].
+    pub omitted: usize,
+}
+
+impl Problems {
+    /// Problems that are listed: who has more will not read them.
+    pub const MOST: usize = 50;
+
+    /// Sorts and shortens a list, of which `omitted` complaints were dropped before.
+    pub(super) fn new(mut found: Vec<(Complaint, Range<usize>)>, omitted: usize, text: &str) -> Self {
+        found.sort_by_key(|(_, span)| (span.start, span.end));
+        let omitted = omitted + found.len().saturating_sub(Self::MOST);
+        found.truncate(Self::MOST);
+        let list = found.into_iter().map(|(complaint, span)| Problem::new(complaint, span, text)).collect();
+        Self { list, omitted }
+    }
+}
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, problem) in self.list.iter().enumerate() {
+            let separator = if index == 0 { "" } else { "\n" };
+            write!(f, "{separator}{problem}")?;
+        }
+        if self.omitted > 0 {
+            write!(f, "\nand {} more", self.omitted)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Problems {}
+
+/// Where each key of a design stands in its file, so that later rooms can point at what they complain about.
+///
+/// Places are written as in `connector.fixed.pieces[2]`.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Sources {
+    spans: BTreeMap<String, Range<usize>>,
+}
+
+impl Sources {
+    pub(super) fn insert(&mut self, place: String, span: Range<usize>) {
+        self.spans.insert(place, span);
+    }
+
+    /// Bytes of the file for `place`, or of the nearest thing around it that the file mentions.
+    pub fn span(&self, place: &str) -> Option<Range<usize>> {
+        let mut place = place;
+        loop {
+            if let Some(span) = self.spans.get(place) {
+                return Some(span.clone());
+            }
+            if place.is_empty() {
+                return None;
+            }
+            place = &place[..place.rfind(['.', '[']).unwrap_or(0)];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_count_from_one_in_characters() {
+        let text = "a\n µ=1\n";
+        assert_eq!(line_column(text, 0), (1, 1));
+        assert_eq!(line_column(text, 2), (2, 1));
+        assert_eq!(line_column(text, text.find('=').unwrap()), (2, 3));
+        assert_eq!(line_column(text, 1000), (3, 1));
+        assert_eq!(line_column("", 0), (1, 1));
+    }
+
+    #[test]
+    fn places_fall_back_to_what_surrounds_them() {
+        let mut sources = Sources::default();
+        sources.insert("connector".into(), 0..9);
+        sources.insert("connector.fixed.pieces".into(), 20..30);
+        assert_eq!(sources.span("connector.fixed.pieces[2]"), Some(20..30));
+        assert_eq!(sources.span("connector.moving"), Some(0..9));
+        assert_eq!(sources.span("alignment.free"), None);
+    }
+}

@@ -1,0 +1,418 @@
+//! From the text of a design file to a [`Design`], or to all its problems at once.
+
+use super::complaint::Complaint;
+use super::keys::{self, Key, Table};
+use super::problem::{Problems, Sources};
+use super::quantity::Scale;
+use super::reader::{Reader, Section};
+use super::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
+use crate::pose::{Dof, DofSet};
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Largest design file, in bytes. Larger geometry belongs into a mesh file; the worst text of this size takes
+/// the TOML parser half a gigabyte.
+pub const LARGEST_FILE: usize = 4 << 20;
+
+/// A design and the places of its keys.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesignFile {
+    /// What the file says.
+    pub design: Design,
+    /// Where it says it.
+    pub sources: Sources,
+}
+
+/// Reads a design file. Paths in it are relative to `base_dir`, the folder it lies in; whether the mesh files
+/// exist is checked, they are not opened.
+///
+/// # Errors
+/// All problems of the text, in order.
+pub fn read(text: &str, base_dir: &Path) -> Result<DesignFile, Problems> {
+    if text.len() > LARGEST_FILE {
+        let complaint = Complaint::TooLarge { limit: LARGEST_FILE };
+        return Err(Problems::new(vec![(complaint, 0..0)], 0, text));
+    }
+    let (document, syntax) = DeTable::parse_recoverable(text);
+    let mut walk = Walk { reader: Reader::new(text, syntax), base_dir };
+    let design = walk.design(&Section::root(&document));
+    let mut sources = walk.reader.finish()?;
+    // Whatever is missing was complained about, so this is the one way out without a design.
+    let Some(design) = design else {
+        let complaint = Complaint::Missing { key: "connector".to_owned(), advice: NO_CONNECTOR };
+        return Err(Problems::new(vec![(complaint, 0..0)], 0, text));
+    };
+    sources.insert(String::new(), 0..0);
+    Ok(DesignFile { design, sources })
+}
+
+const NO_CONNECTOR: &str = "name a built-in family: [connector] family = \"pyramid\"; or give own halves: \
+                            [connector.fixed] and [connector.moving]. `catchment new` writes a starting point";
+
+/// Whose parameters the file gives.
+#[derive(Clone, Copy, PartialEq)]
+enum Owner {
+    Family(Family),
+    OwnHalves,
+    /// The family is misspelt or missing: every parameter is let pass.
+    Unknown,
+}
+
+impl Owner {
+    const fn family(self) -> Option<Family> {
+        match self {
+            Self::Family(family) => Some(family),
+            Self::OwnHalves | Self::Unknown => None,
+        }
+    }
+}
+
+struct Walk<'t> {
+    reader: Reader<'t>,
+    base_dir: &'t Path,
+}
+
+impl<'t> Walk<'t> {
+    fn design(&mut self, root: &Section<'t>) -> Option<Design> {
+        self.reader.refuse_unknown_keys(root, Table::Root);
+        if let Some((found, span)) = self.reader.integer(root, &keys::SCHEMA_KEY)
+            && found != keys::SCHEMA
+        {
+            self.reader.complain(Complaint::OtherSchema { found, known: keys::SCHEMA }, span);
+        }
+        let name = self.reader.line(root, &keys::NAME);
+        let connector = self.reader.section(root, &keys::CONNECTOR);
+        if !root.has(&keys::CONNECTOR) {
+            self.reader.missing(root, &keys::CONNECTOR, NO_CONNECTOR);
+        }
+        let owner = connector.as_ref().map_or(Owner::Unknown, |section| self.owner(section));
+        let scale = connector.as_ref().and_then(|section| self.scale(section));
+        let spec = connector.as_ref().and_then(|section| self.connector(section, owner, scale.as_ref()));
+        let alignment = self.alignment(root, owner, scale.as_ref());
+        let (Scale { width, unit }, connector) = (scale?, spec?);
+        let name =
+            name.unwrap_or_else(|| owner.family().map_or("own halves", |family| family.name()).to_owned());
+        Some(Design { name, connector, width, unit, alignment })
+    }
+
+    /// Family or own halves; complains about both, neither, and parameters of the wrong one.
+    fn owner(&mut self, section: &Section<'t>) -> Owner {
+        self.reader.refuse_unknown_keys(section, Table::Connector);
+        let halves = [keys::FIXED, keys::MOVING];
+        let owner = if section.has(&keys::FAMILY) {
+            for half in &halves {
+                if let Some(span) = section.key_span(half) {
+                    let complaint = Complaint::Contradiction {
+                        key: section.place(half.name),
+                        other: section.place(keys::FAMILY.name),
+                        advice: "a design has a built-in family or own halves: remove one of them",
+                    };
+                    self.reader.complain(complaint, span);
+                }
+            }
+            self.reader.family(section, &keys::FAMILY).map_or(Owner::Unknown, Owner::Family)
+        } else if halves.iter().any(|half| section.has(half)) {
+            Owner::OwnHalves
+        } else {
+            self.reader.missing(section, &keys::FAMILY, NO_CONNECTOR);
+            Owner::Unknown
+        };
+        if owner == Owner::Unknown {
+            return owner;
+        }
+        for key in Table::Connector.keys().filter(|key| !key.applies.to(owner.family())) {
+            if let Some(span) = section.key_span(key)
+                && !halves.contains(key)
+            {
+                let complaint = Complaint::NotAParameter {
+                    key: key.name.to_owned(),
+                    owner: owner.family().map_or("own halves", Family::name),
+                    belongs_to: key.applies.to_string(),
+                };
+                self.reader.complain(complaint, span);
+            }
+        }
+        owner
+    }
+
+    /// Width and unit; `None` when one of them is wrong.
+    fn scale(&mut self, section: &Section<'t>) -> Option<Scale> {
+        let unit = self.reader.unit(section, &keys::UNIT);
+        if section.has(&keys::UNIT) && unit.is_none() {
+            return None;
+        }
+        if !section.has(&keys::WIDTH) {
+            if unit.is_some() {
+                self.reader.missing(section, &keys::WIDTH, "a design with a unit needs its D: width = 50.0");
+                return None;
+            }
+            return Some(Scale { width: 1.0, unit });
+        }
+        // In "widths of 1 unit", the number is the width in the unit of the design.
+        let width = self.reader.number(section, &keys::WIDTH, Some(&Scale { width: 1.0, unit }))?;
+        Some(Scale { width, unit })
+    }
+
+    fn connector(
+        &mut self,
+        section: &Section<'t>,
+        owner: Owner,
+        scale: Option<&Scale>,
+    ) -> Option<ConnectorSpec> {
+        // Parameters of an unknown family are checked against any one's ranges.
+        let spec = self.family_spec(section, owner.family().unwrap_or(Family::Pyramid), scale);
+        match owner {
+            Owner::Family(_) => Some(ConnectorSpec::Family(spec)),
+            Owner::OwnHalves => self.own_spec(section, scale).map(ConnectorSpec::Own),
+            Owner::Unknown => None,
+        }
+    }
+
+    fn family_spec(&mut self, section: &Section<'t>, family: Family, scale: Option<&Scale>) -> FamilySpec {
+        let default = FamilySpec::new(family);
+        let mut number = |key: &Key| self.reader.number(section, key, scale);
+        let mut spec = FamilySpec {
+            family,
+            aspect_ratio: number(&keys::ASPECT_RATIO).unwrap_or(default.aspect_ratio),
+            base_thickness: number(&keys::BASE_THICKNESS),
+            chord_error: number(&keys::CHORD_ERROR).unwrap_or(default.chord_error),
+            lip_height: number(&keys::LIP_HEIGHT).unwrap_or(default.lip_height),
+            draft_angle: number(&keys::DRAFT_ANGLE).unwrap_or(default.draft_angle),
+            pin_radius: number(&keys::PIN_RADIUS).unwrap_or(default.pin_radius),
+            clearance: number(&keys::CLEARANCE).unwrap_or(default.clearance),
+            chamfer: number(&keys::CHAMFER).unwrap_or(default.chamfer),
+            circle_radius: number(&keys::CIRCLE_RADIUS).unwrap_or(default.circle_radius),
+            ..default
+        };
+        if let Some(pins) = self.reader.whole(section, &keys::PINS) {
+            spec.pins = pins;
+        }
+        if let Some(flag) = self.reader.flag(section, &keys::HERMAPHRODITIC) {
+            spec.hermaphroditic = flag;
+        }
+        spec
+    }
+
+    fn own_spec(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<OwnSpec> {
+        let face_height = self.reader.number(section, &keys::FACE_HEIGHT, scale);
+        if !section.has(&keys::FACE_HEIGHT) {
+            let advice = "give the height of the face centre over each half's own origin: face_height = 0.25";
+            self.reader.missing(section, &keys::FACE_HEIGHT, advice);
+        }
+        let fixed = self.half(section, &keys::FIXED, scale);
+        let moving = self.half(section, &keys::MOVING, scale);
+        Some(OwnSpec { face_height: face_height?, fixed: fixed?, moving: moving? })
+    }
+
+    fn half(&mut self, parent: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<HalfSpec> {
+        const ADVICE: &str = "give convex pieces = [[[x, y, z], …], …] or mesh = \"half.stl\"";
+        let Some(section) = self.reader.section(parent, key) else {
+            if !parent.has(key) {
+                self.reader.missing(parent, key, ADVICE);
+            }
+            return None;
+        };
+        self.reader.refuse_unknown_keys(&section, Table::Half);
+        let later = [keys::PROFILE, keys::HEIGHTFIELD];
+        for key in &later {
+            if let Some(span) = section.key_span(key) {
+                self.reader.complain(Complaint::UnsupportedHalf { key: key.name }, span);
+            }
+        }
+        if let (Some(span), true) = (section.key_span(&keys::MESH), section.has(&keys::PIECES)) {
+            let complaint = Complaint::Contradiction {
+                key: section.place(keys::MESH.name),
+                other: section.place(keys::PIECES.name),
+                advice: "a half is drawn once: remove one of them",
+            };
+            self.reader.complain(complaint, span);
+            return None;
+        }
+        if section.has(&keys::PIECES) {
+            if let Some(span) = section.key_span(&keys::MESH_UNIT) {
+                let complaint = Complaint::NotAParameter {
+                    key: keys::MESH_UNIT.name.to_owned(),
+                    owner: "pieces, which are drawn in the unit of [connector]",
+                    belongs_to: "a mesh".to_owned(),
+                };
+                self.reader.complain(complaint, span);
+            }
+            return self.pieces(&section, scale).map(HalfSpec::Pieces);
+        }
+        if section.has(&keys::MESH) {
+            return self.mesh(&section, scale);
+        }
+        if !later.iter().any(|key| section.has(key)) {
+            self.reader.missing(&section, &keys::PIECES, ADVICE);
+        }
+        None
+    }
+
+    fn mesh(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<HalfSpec> {
+        let unit = self.reader.unit(section, &keys::MESH_UNIT);
+        let path = self.reader.string(section, &keys::MESH).and_then(|(written, span)| {
+            let path = self.base_dir.join(written);
+            if written.trim().is_empty() {
+                let key = section.place(keys::MESH.name);
+                self.reader.complain(Complaint::Empty { key, advice: "name an STL file" }, span);
+                None
+            } else if path.is_file() {
+                Some(path)
+            } else {
+                self.reader.complain(Complaint::NoFile { path }, span);
+                None
+            }
+        });
+        let scale = scale?;
+        let scale = match (unit, scale.unit) {
+            (Some(file), Some(design)) => file.metres() / (design.metres() * scale.width),
+            (None, None) => 1.0 / scale.width,
+            (Some(file), None) => {
+                let text = file.symbol().to_owned();
+                let span = section.key_span(&keys::MESH_UNIT)?;
+                self.reader.complain(Complaint::UnitInDimensionlessDesign { text }, span);
+                return None;
+            }
+            (None, Some(_)) => {
+                if !section.has(&keys::MESH_UNIT) {
+                    let advice = "a mesh file does not say its unit: write it beside the file, unit = \"mm\"";
+                    self.reader.missing(section, &keys::MESH_UNIT, advice);
+                }
+                return None;
+            }
+        };
+        Some(HalfSpec::Mesh { path: path?, scale })
+    }
+
+    fn pieces(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<Vec<Vec<[f64; 3]>>> {
+        const LEAST_POINTS: usize = 4;
+        let value = self.reader.raw(section, &keys::PIECES)?;
+        let place = section.place(keys::PIECES.name);
+        let elements = self.reader.array(&place, "a list of pieces", value)?;
+        if elements.is_empty() {
+            let advice = "a half has at least one convex piece";
+            self.reader.complain(Complaint::Empty { key: place, advice }, value.span());
+            return None;
+        }
+        let mut pieces = Some(Vec::with_capacity(elements.len()));
+        for (index, element) in elements.iter().enumerate() {
+            let place = format!("{place}[{index}]");
+            self.reader.sources.insert(place.clone(), element.span());
+            let piece = self.reader.array(&place, "a list of points [x, y, z]", element).and_then(|points| {
+                if points.len() < LEAST_POINTS {
+                    let complaint = Complaint::TooFewPoints { key: place.clone(), found: points.len() };
+                    self.reader.complain(complaint, element.span());
+                    return None;
+                }
+                // Every point is looked at, also behind a wrong one.
+                let points: Vec<_> = points.iter().map(|point| self.point(&place, point, scale)).collect();
+                points.into_iter().collect::<Option<Vec<_>>>()
+            });
+            pieces = pieces.zip(piece).map(|(mut list, piece)| {
+                list.push(piece);
+                list
+            });
+        }
+        pieces
+    }
+
+    fn point(
+        &mut self,
+        place: &str,
+        value: &'t Spanned<DeValue<'t>>,
+        scale: Option<&Scale>,
+    ) -> Option<[f64; 3]> {
+        let coordinates = self.reader.array(place, "a point [x, y, z]", value)?;
+        let [x, y, z] = coordinates else {
+            let complaint = Complaint::NotAPoint { key: place.to_owned(), found: coordinates.len() };
+            self.reader.complain(complaint, value.span());
+            return None;
+        };
+        let mut coordinate = |value: &'t Spanned<DeValue<'t>>| {
+            let quantity = self.reader.quantity(place, value)?;
+            match keys::COORDINATE.checked(quantity, scale) {
+                Ok(number) => number,
+                Err(complaint) => {
+                    self.reader.complain(complaint, value.span());
+                    None
+                }
+            }
+        };
+        let (x, y, z) = (coordinate(x), coordinate(y), coordinate(z));
+        Some([x?, y?, z?])
+    }
+
+    fn alignment(&mut self, root: &Section<'t>, owner: Owner, scale: Option<&Scale>) -> Alignment {
+        let mut alignment = Alignment::default_for(owner.family());
+        if let Some(section) = self.reader.section(root, &keys::ALIGNMENT) {
+            self.reader.refuse_unknown_keys(&section, Table::Alignment);
+            self.freedom(&section, owner, &mut alignment);
+            if let Some(cor) = self.reader.number(&section, &keys::CENTER_OF_ROTATION, scale) {
+                alignment.center_of_rotation = cor;
+            }
+            if let Some(length) = self.reader.number(&section, &keys::ROTATION_LENGTH, scale) {
+                alignment.rotation_length = length;
+            }
+            if let Some(mount) = self.reader.mount(&section, &keys::MOUNT) {
+                alignment.mount = mount;
+            }
+            if let Some(symmetry) = self.reader.whole(&section, &keys::SYMMETRY) {
+                alignment.symmetry = symmetry;
+            }
+        }
+        if let Some(section) = self.reader.section(root, &keys::ERRORS) {
+            self.reader.refuse_unknown_keys(&section, Table::Errors);
+            for (half_range, key) in alignment.half_ranges.iter_mut().zip(&keys::ERROR_KEYS) {
+                if let Some(number) = self.reader.number(&section, key, scale) {
+                    *half_range = number;
+                }
+            }
+            if let (Some(complaint), Some(span)) =
+                (alignment.beyond_the_pole(), section.key_span(&keys::ERROR_PITCH))
+            {
+                self.reader.complain(complaint, span);
+            }
+        }
+        alignment
+    }
+
+    /// `free` and `dont_care`.
+    fn freedom(&mut self, section: &Section<'t>, owner: Owner, alignment: &mut Alignment) {
+        let set = |list: &[(Dof, _)]| list.iter().map(|(dof, _)| *dof).collect::<DofSet>();
+        if let Some(list) = self.reader.dofs(section, &keys::FREE) {
+            let empty = self
+                .reader
+                .raw(section, &keys::FREE)
+                .filter(|value| matches!(value.get_ref(), DeValue::Array(elements) if elements.is_empty()));
+            if let Some(value) = empty {
+                let complaint = Complaint::nothing_free(section.place(keys::FREE.name));
+                self.reader.complain(complaint, value.span());
+            }
+            for (dof, span) in &list {
+                if let Some(complaint) = Complaint::out_of_plane(*dof, owner.family()) {
+                    self.reader.complain(complaint, span.clone());
+                }
+            }
+            alignment.free = set(&list);
+            // A default gives way to what is written.
+            for (dof, _) in &list {
+                alignment.dont_care = alignment.dont_care.without(*dof);
+            }
+        }
+        if let Some(list) = self.reader.dofs(section, &keys::DONT_CARE) {
+            let free_is_written = section.has(&keys::FREE);
+            for (dof, span) in &list {
+                if !dof.is_rotation() {
+                    self.reader.complain(Complaint::DontCareTranslation { dof: *dof }, span.clone());
+                } else if free_is_written && alignment.free.contains(*dof) {
+                    self.reader.complain(Complaint::FreeAndDontCare { dof: *dof }, span.clone());
+                }
+            }
+            alignment.dont_care = set(&list);
+            for (dof, _) in &list {
+                alignment.free = alignment.free.without(*dof);
+            }
+        }
+    }
+}

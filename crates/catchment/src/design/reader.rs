@@ -1,0 +1,342 @@
+//! A typed walk over a TOML document that notes every problem and goes on.
+//!
+//! A getter returns `None` when the key is absent *or* its value is wrong; in the second case the problem is
+//! on the list, and a document with problems never becomes a design.
+
+use super::complaint::Complaint;
+use super::keys::{self, Key, Kind, Table};
+use super::problem::{Problems, Sources};
+use super::quantity::{Quantity, Scale, Unit, shortened};
+use super::suggest::nearest;
+use super::{Family, LengthUnit};
+use crate::pose::{Dof, Mount};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+/// One table of the document.
+#[derive(Clone)]
+pub(super) struct Section<'t> {
+    /// As in `connector.fixed`; empty for the file itself.
+    pub path: String,
+    /// Its header, or the key it is the value of.
+    pub span: Range<usize>,
+    table: &'t DeTable<'t>,
+}
+
+impl<'t> Section<'t> {
+    pub(super) fn root(document: &'t Spanned<DeTable<'t>>) -> Self {
+        Self { path: String::new(), span: document.span(), table: document.get_ref() }
+    }
+
+    fn entry(&self, name: &str) -> Option<(&'t Spanned<DeString<'t>>, &'t Spanned<DeValue<'t>>)> {
+        self.table.get_key_value(name)
+    }
+
+    /// Place of one of its keys.
+    pub(super) fn place(&self, name: &str) -> String {
+        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+    }
+
+    /// Where a key is written, if it is.
+    pub(super) fn key_span(&self, key: &Key) -> Option<Range<usize>> {
+        self.entry(key.name).map(|(name, _)| name.span())
+    }
+
+    pub(super) fn has(&self, key: &Key) -> bool {
+        self.table.contains_key(key.name)
+    }
+}
+
+/// Collects problems and sources.
+pub(super) struct Reader<'t> {
+    text: &'t str,
+    found: Vec<(Complaint, Range<usize>)>,
+    omitted: usize,
+    broken: Vec<Range<usize>>,
+    pub sources: Sources,
+}
+
+/// Problems kept before they are sorted: enough that the first [`Problems::MOST`] are among them unless the
+/// file is hopeless, few enough that a hopeless one costs nothing.
+const MOST_KEPT: usize = 1000;
+
+impl<'t> Reader<'t> {
+    pub(super) fn new(text: &'t str, syntax: Vec<toml::de::Error>) -> Self {
+        let mut reader =
+            Self { text, found: Vec::new(), omitted: 0, broken: Vec::new(), sources: Sources::default() };
+        for error in syntax {
+            let span = error.span().unwrap_or(0..0);
+            reader.note(Complaint::Syntax { message: error.message().to_owned() }, span.clone());
+            if reader.broken.len() < MOST_KEPT {
+                reader.broken.push(span);
+            }
+        }
+        reader
+    }
+
+    /// All problems, if any.
+    pub(super) fn finish(self) -> Result<Sources, Problems> {
+        if self.found.is_empty() {
+            Ok(self.sources)
+        } else {
+            Err(Problems::new(self.found, self.omitted, self.text))
+        }
+    }
+
+    fn note(&mut self, complaint: Complaint, span: Range<usize>) {
+        if self.found.len() < MOST_KEPT {
+            self.found.push((complaint, span));
+        } else {
+            self.omitted += 1;
+        }
+    }
+
+    /// Notes a problem, unless it is the echo of a syntax error at the same place.
+    pub(super) fn complain(&mut self, complaint: Complaint, span: Range<usize>) {
+        let echo = self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end);
+        if !echo {
+            self.note(complaint, span);
+        }
+    }
+
+    /// Notes that something is not there, unless syntax errors may have swallowed it.
+    pub(super) fn missing(&mut self, section: &Section<'t>, key: &Key, advice: &'static str) {
+        if self.broken.is_empty() {
+            let complaint = Complaint::Missing { key: section.place(key.name), advice };
+            self.complain(complaint, section.span.clone());
+        }
+    }
+
+    fn wrong_type(&mut self, place: String, expected: &'static str, value: &Spanned<DeValue<'t>>) {
+        let complaint = Complaint::WrongType { key: place, expected, found: value.get_ref().type_str() };
+        self.complain(complaint, value.span());
+    }
+
+    fn out_of_range(&mut self, key: &Key, found: String, range: keys::Range, span: Range<usize>) {
+        let complaint = Complaint::OutOfRange { key: key.name.to_owned(), found, range, doc: key.doc };
+        self.complain(complaint, span);
+    }
+
+    /// Complains about every key that `table` does not have.
+    pub(super) fn refuse_unknown_keys(&mut self, section: &Section<'t>, table: Table) {
+        for (name, _) in section.table {
+            let written: &str = name.get_ref();
+            if table.keys().any(|key| key.name == written) {
+                continue;
+            }
+            let complaint = Complaint::UnknownKey {
+                key: shortened(written),
+                table: table.name(),
+                meant: nearest(written, table.keys().map(|key| key.name)),
+                elsewhere: Table::ALL
+                    .into_iter()
+                    .find(|other| other.keys().any(|key| key.name == written))
+                    .map(Table::name),
+                known: table.keys().map(|key| key.name).collect(),
+            };
+            self.complain(complaint, name.span());
+        }
+    }
+
+    fn value(&mut self, section: &Section<'t>, key: &Key) -> Option<&'t Spanned<DeValue<'t>>> {
+        let (name, value) = section.entry(key.name)?;
+        // What follows a key with a syntax error may be an empty span: point at the key then.
+        let span = if value.span().is_empty() { name.span() } else { value.span() };
+        self.sources.insert(section.place(key.name), span);
+        Some(value)
+    }
+
+    pub(super) fn section(&mut self, parent: &Section<'t>, key: &Key) -> Option<Section<'t>> {
+        let value = self.value(parent, key)?;
+        let DeValue::Table(table) = value.get_ref() else {
+            self.wrong_type(parent.place(key.name), "a table", value);
+            return None;
+        };
+        Some(Section { path: parent.place(key.name), span: value.span(), table })
+    }
+
+    /// A string and its place.
+    pub(super) fn string(&mut self, section: &Section<'t>, key: &Key) -> Option<(&'t str, Range<usize>)> {
+        let value = self.value(section, key)?;
+        let DeValue::String(text) = value.get_ref() else {
+            self.wrong_type(section.place(key.name), "a string", value);
+            return None;
+        };
+        Some((text, value.span()))
+    }
+
+    /// A line for people.
+    pub(super) fn line(&mut self, section: &Section<'t>, key: &Key) -> Option<String> {
+        let (text, span) = self.string(section, key)?;
+        let place = section.place(key.name);
+        if text.trim().is_empty() {
+            self.complain(Complaint::Empty { key: place, advice: "write a name, or remove the key" }, span);
+            None
+        } else if text.chars().count() > keys::LONGEST_LINE || text.contains(char::is_control) {
+            self.complain(Complaint::NotALine { key: place, longest: keys::LONGEST_LINE }, span);
+            None
+        } else {
+            Some(text.to_owned())
+        }
+    }
+
+    pub(super) fn flag(&mut self, section: &Section<'t>, key: &Key) -> Option<bool> {
+        let value = self.value(section, key)?;
+        let DeValue::Boolean(flag) = value.get_ref() else {
+            self.wrong_type(section.place(key.name), "true or false", value);
+            return None;
+        };
+        Some(*flag)
+    }
+
+    /// A whole number and its place, unchecked.
+    pub(super) fn integer(&mut self, section: &Section<'t>, key: &Key) -> Option<(i64, Range<usize>)> {
+        let value = self.value(section, key)?;
+        let DeValue::Integer(integer) = value.get_ref() else {
+            self.wrong_type(section.place(key.name), "a whole number", value);
+            return None;
+        };
+        // Beyond 64 bits every range refuses it.
+        let number = i64::from_str_radix(integer.as_str(), integer.radix()).unwrap_or(i64::MAX);
+        Some((number, value.span()))
+    }
+
+    /// A whole number in the range of its key.
+    pub(super) fn whole(&mut self, section: &Section<'t>, key: &Key) -> Option<u32> {
+        let (number, span) = self.integer(section, key)?;
+        let Kind::Whole { min, max } = key.kind else { return None };
+        match u32::try_from(number) {
+            Ok(number) if (min..=max).contains(&number) => Some(number),
+            _ => {
+                let range = keys::Range { min: f64::from(min), max: f64::from(max), unit: "" };
+                self.out_of_range(key, number.to_string(), range, span);
+                None
+            }
+        }
+    }
+
+    /// A finite number, with a unit or bare.
+    pub(super) fn quantity(&mut self, place: &str, value: &Spanned<DeValue<'t>>) -> Option<Quantity> {
+        let number = match value.get_ref() {
+            DeValue::String(text) => {
+                let quantity = match text.parse::<Quantity>() {
+                    Ok(Quantity { unit: Unit::Bare, .. }) => Err(Complaint::NoUnit { text: shortened(text) }),
+                    other => other,
+                };
+                return quantity.map_err(|complaint| self.complain(complaint, value.span())).ok();
+            }
+            DeValue::Integer(integer) => {
+                i64::from_str_radix(integer.as_str(), integer.radix()).map_or(f64::INFINITY, |i| i as f64)
+            }
+            DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
+            _ => {
+                self.wrong_type(place.to_owned(), "a number, or a string such as \"5 mm\"", value);
+                return None;
+            }
+        };
+        if number.is_finite() {
+            return Some(Quantity { value: number, unit: Unit::Bare });
+        }
+        let text = shortened(&self.text[value.span()]);
+        self.complain(Complaint::NotFinite { text }, value.span());
+        None
+    }
+
+    /// The number of a key in the unit of its range (D, radians or none). `scale` is `None` when the width or
+    /// the unit of the design is wrong: what needs them is then let pass.
+    pub(super) fn number(&mut self, section: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<f64> {
+        let value = self.value(section, key)?;
+        let quantity = self.quantity(&section.place(key.name), value)?;
+        match key.checked(quantity, scale) {
+            Ok(number) => number,
+            Err(complaint) => {
+                self.complain(complaint, value.span());
+                None
+            }
+        }
+    }
+
+    fn name<T: Copy>(
+        &mut self,
+        what: &'static str,
+        known: &[(&'static str, T)],
+        (written, span): (&str, Range<usize>),
+    ) -> Option<T> {
+        if let Some((_, value)) = known.iter().find(|(name, _)| *name == written) {
+            return Some(*value);
+        }
+        self.complain(unknown_name(what, written, known.iter().map(|(name, _)| *name)), span);
+        None
+    }
+
+    pub(super) fn unit(&mut self, section: &Section<'t>, key: &Key) -> Option<LengthUnit> {
+        let written = self.string(section, key)?;
+        self.name("unit", &LengthUnit::ALL.map(|unit| (unit.symbol(), unit)), written)
+    }
+
+    pub(super) fn family(&mut self, section: &Section<'t>, key: &Key) -> Option<Family> {
+        let written = self.string(section, key)?;
+        self.name("family", &Family::ALL.map(|family| (family.name(), family)), written)
+    }
+
+    pub(super) fn mount(&mut self, section: &Section<'t>, key: &Key) -> Option<Mount> {
+        let written = self.string(section, key)?;
+        self.name("mount", &[("x", Mount::X), ("y", Mount::Y)], written)
+    }
+
+    /// The elements of an array.
+    pub(super) fn array(
+        &mut self,
+        place: &str,
+        expected: &'static str,
+        value: &'t Spanned<DeValue<'t>>,
+    ) -> Option<&'t [Spanned<DeValue<'t>>]> {
+        let DeValue::Array(array) = value.get_ref() else {
+            self.wrong_type(place.to_owned(), expected, value);
+            return None;
+        };
+        Some(array)
+    }
+
+    /// The value of a key that is read by the caller.
+    pub(super) fn raw(&mut self, section: &Section<'t>, key: &Key) -> Option<&'t Spanned<DeValue<'t>>> {
+        self.value(section, key)
+    }
+
+    /// A list of distinct degrees of freedom, each with its place.
+    pub(super) fn dofs(&mut self, section: &Section<'t>, key: &Key) -> Option<Vec<(Dof, Range<usize>)>> {
+        let value = self.value(section, key)?;
+        let place = section.place(key.name);
+        let elements = self.array(&place, "a list such as [\"x\", \"pitch\"]", value)?;
+        let known = Dof::ALL.map(|dof| (dof.name(), dof));
+        let mut list: Vec<(Dof, Range<usize>)> = Vec::new();
+        for element in elements {
+            let DeValue::String(text) = element.get_ref() else {
+                self.wrong_type(place.clone(), "a list of strings", element);
+                continue;
+            };
+            let Some(dof) = self.name("degree of freedom", &known, (text, element.span())) else { continue };
+            if list.iter().any(|(other, _)| *other == dof) {
+                self.complain(Complaint::Repeated { dof }, element.span());
+            } else {
+                list.push((dof, element.span()));
+            }
+        }
+        Some(list)
+    }
+}
+
+/// The complaint about a word that is none of `known`.
+pub(super) fn unknown_name(
+    what: &'static str,
+    written: &str,
+    known: impl Iterator<Item = &'static str> + Clone,
+) -> Complaint {
+    Complaint::UnknownName {
+        what,
+        name: shortened(written),
+        meant: nearest(written, known.clone()),
+        known: known.collect(),
+    }
+}

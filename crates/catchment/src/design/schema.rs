@@ -1,0 +1,116 @@
+//! The JSON schema of design files, for completion and checks in editors.
+
+use super::keys::{self, Applies, Key, Kind, Table};
+use super::{Family, LengthUnit};
+use crate::pose::Dof;
+use serde_json::{Map, Value, json};
+
+/// The schema (JSON Schema 2020-12), pretty-printed. It is generated from [`keys`], like the reader; what a
+/// schema cannot say (files that exist, keys that exclude each other) only the reader checks.
+pub fn json_schema() -> String {
+    let mut schema = Map::new();
+    schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
+    schema.insert("title".into(), json!("catchment design"));
+    schema.extend(table(Table::Root));
+    format!("{:#}\n", Value::Object(schema))
+}
+
+fn table(table: Table) -> Map<String, Value> {
+    let properties: Map<String, Value> = table
+        .keys()
+        .filter(|key| key.kind != Kind::Later)
+        .map(|key| (key.name.to_owned(), property(key)))
+        .collect();
+    let mut schema = Map::new();
+    schema.insert("type".into(), json!("object"));
+    schema.insert("additionalProperties".into(), json!(false));
+    if table == Table::Root {
+        schema.insert("required".into(), json!([keys::CONNECTOR.name]));
+    }
+    schema.insert("properties".into(), Value::Object(properties));
+    schema
+}
+
+fn property(key: &Key) -> Value {
+    let mut schema = match key.kind {
+        Kind::Table(inner) => Value::Object(table(inner)),
+        Kind::Line => json!({ "type": "string", "minLength": 1, "maxLength": keys::LONGEST_LINE }),
+        Kind::Path => json!({ "type": "string", "minLength": 1 }),
+        Kind::Ratio(range) => json!({ "type": "number", "minimum": range.min, "maximum": range.max }),
+        Kind::Whole { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        Kind::Flag => json!({ "type": "boolean" }),
+        Kind::Length(range) | Kind::Angle(range) | Kind::Width(range) => json!({ "anyOf": [
+            { "type": "number", "minimum": range.min, "maximum": range.max },
+            with_unit(key.kind),
+        ]}),
+        Kind::DrawnLength(_) => json!({ "anyOf": [{ "type": "number" }, with_unit(key.kind)] }),
+        Kind::Unit => json!({ "enum": LengthUnit::ALL.map(LengthUnit::symbol) }),
+        Kind::Family => json!({ "enum": Family::ALL.map(Family::name) }),
+        Kind::Mount => json!({ "enum": ["x", "y"] }),
+        Kind::Dofs => json!({
+            "type": "array",
+            "uniqueItems": true,
+            "items": { "enum": Dof::ALL.map(Dof::name) },
+        }),
+        Kind::Pieces => json!({
+            "type": "array",
+            "minItems": 1,
+            "items": {
+                "type": "array",
+                "minItems": 4,
+                "items": {
+                    "type": "array",
+                    "minItems": 3,
+                    "maxItems": 3,
+                    "items": { "anyOf": [{ "type": "number" }, with_unit(key.kind)] },
+                },
+            },
+        }),
+        Kind::Later => json!(false),
+    };
+    let doc = match key.applies {
+        Applies::Always => key.doc.to_owned(),
+        applies => format!("{} (Of {applies}.)", key.doc),
+    };
+    schema["description"] = json!(doc);
+    schema
+}
+
+/// A string that carries a unit.
+fn with_unit(kind: Kind) -> Value {
+    let units = match kind {
+        Kind::Angle(_) => "deg|°|rad",
+        Kind::Width(_) => "um|µm|mm|cm|m|in|inch",
+        _ => "D|um|µm|mm|cm|m|in|inch",
+    };
+    let number = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*";
+    json!({ "type": "string", "pattern": format!("{number}({units})\\s*$") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// The schema beside the example designs is the one this program generates. To renew it:
+    /// `catchment schema -o designs/schema.json`.
+    #[test]
+    fn the_committed_schema_is_current() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/schema.json");
+        let committed = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(committed, json_schema(), "run `catchment schema -o designs/schema.json`");
+    }
+
+    #[test]
+    fn the_schema_has_every_key() {
+        let schema: Value = serde_json::from_str(&json_schema()).unwrap();
+        let properties = |value: &Value| value["properties"].as_object().unwrap().len();
+        let connector = &schema["properties"]["connector"];
+        let counted = properties(&schema)
+            + properties(connector)
+            + properties(&connector["properties"]["fixed"])
+            + properties(&schema["properties"]["alignment"])
+            + properties(&schema["properties"]["errors"]);
+        assert_eq!(counted, keys::KEYS.iter().filter(|key| key.kind != Kind::Later).count());
+    }
+}

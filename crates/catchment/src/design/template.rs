@@ -1,0 +1,148 @@
+//! Commented starting points for `catchment new`.
+
+use super::keys::{self, Applies, Key, Kind, Table};
+use super::{Alignment, Family, FamilySpec};
+use crate::pose::{Dof, DofSet, Mount};
+use std::fmt::Write;
+
+/// A design file of this family with every key it may have: what is commented out shows the default.
+pub fn template(family: Family) -> String {
+    let mut text = String::from(
+        "#:schema schema.json\n\
+         # A docking connector. Bare numbers are in D (the width) and radians; strings carry a unit: \"5 mm\",\n\
+         # \"30 deg\". The first line is for editors; `catchment schema -o schema.json` writes the file it names.\n\n",
+    );
+    for table in [Table::Root, Table::Connector, Table::Alignment, Table::Errors] {
+        if table != Table::Root {
+            let _ = writeln!(text, "\n{}", table.name());
+        }
+        for key in table.keys().filter(|key| key.applies.to(Some(family))) {
+            let Some(value) = default_text(key, family) else { continue };
+            let active = is_active(key, family);
+            for line in wrapped(key.doc) {
+                let _ = writeln!(text, "# {line}");
+            }
+            let mark = if active { "" } else { "# " };
+            let _ = writeln!(text, "{mark}{} = {value}", key.name);
+        }
+    }
+    text
+}
+
+/// What a newcomer is likely to change first, and what the answer depends on most.
+fn is_active(key: &Key, family: Family) -> bool {
+    let free = Alignment::default_for(Some(family)).free;
+    match key.table {
+        Table::Root => true,
+        Table::Connector => {
+            [keys::FAMILY, keys::WIDTH, keys::ASPECT_RATIO].contains(key)
+                || matches!(key.applies, Applies::Families(_))
+        }
+        Table::Alignment => {
+            [keys::FREE, keys::CENTER_OF_ROTATION, keys::ROTATION_LENGTH].contains(key)
+                || (*key == keys::DONT_CARE && family == Family::Cone)
+        }
+        Table::Errors => free.iter().any(|dof| keys::ERROR_KEYS[dof.index()] == *key),
+        Table::Half => false,
+    }
+}
+
+/// The default of a key as TOML; `None` for tables, and for keys of own halves.
+fn default_text(key: &Key, family: Family) -> Option<String> {
+    let spec = FamilySpec::new(family);
+    let alignment = Alignment::default_for(Some(family));
+    let number = |value: f64| Some(format!("{value:?}"));
+    match *key {
+        keys::SCHEMA_KEY => Some(keys::SCHEMA.to_string()),
+        keys::NAME | keys::FAMILY => Some(format!("\"{}\"", family.name())),
+        keys::WIDTH => number(1.0),
+        keys::UNIT => Some("\"mm\"".to_owned()),
+        keys::ASPECT_RATIO => number(spec.aspect_ratio),
+        keys::BASE_THICKNESS => number(0.25),
+        keys::CHORD_ERROR => number(spec.chord_error),
+        keys::LIP_HEIGHT => number(spec.lip_height),
+        keys::DRAFT_ANGLE => Some(degrees(spec.draft_angle)),
+        keys::PINS => Some(spec.pins.to_string()),
+        keys::HERMAPHRODITIC => Some(spec.hermaphroditic.to_string()),
+        keys::PIN_RADIUS => number(spec.pin_radius),
+        keys::CLEARANCE => number(spec.clearance),
+        keys::CHAMFER => number(spec.chamfer),
+        keys::CIRCLE_RADIUS => number(spec.circle_radius),
+        keys::FREE => Some(list(alignment.free)),
+        keys::DONT_CARE => Some(list(alignment.dont_care)),
+        keys::CENTER_OF_ROTATION => number(alignment.center_of_rotation),
+        keys::ROTATION_LENGTH => number(alignment.rotation_length),
+        keys::MOUNT => Some(if alignment.mount == Mount::X { "\"x\"" } else { "\"y\"" }.to_owned()),
+        keys::SYMMETRY => Some(alignment.symmetry.to_string()),
+        _ if key.table == Table::Errors => {
+            let dof = Dof::ALL.into_iter().find(|dof| dof.name() == key.name)?;
+            let value = alignment.half_ranges[dof.index()];
+            if matches!(key.kind, Kind::Angle(_)) { Some(degrees(value)) } else { number(value) }
+        }
+        _ => None,
+    }
+}
+
+fn degrees(radians: f64) -> String {
+    format!("\"{} deg\"", radians.to_degrees())
+}
+
+fn list(set: DofSet) -> String {
+    let names: Vec<String> = set.iter().map(|dof| format!("\"{}\"", dof.name())).collect();
+    format!("[{}]", names.join(", "))
+}
+
+/// Lines of at most 100 characters.
+fn wrapped(text: &str) -> Vec<String> {
+    const WIDTH: usize = 100;
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.len() + 1 + word.len() <= WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::{ConnectorSpec, read};
+    use std::path::Path;
+
+    #[test]
+    fn every_template_reads_back_as_the_defaults_of_its_family() {
+        for family in Family::ALL {
+            let text = template(family);
+            let design = match read(&text, Path::new("")) {
+                Ok(file) => file.design,
+                Err(problems) => panic!("{}:\n{problems}\n{text}", family.name()),
+            };
+            assert_eq!(design.connector, ConnectorSpec::Family(FamilySpec::new(family)));
+            assert_eq!(design.alignment, Alignment::default_for(Some(family)));
+        }
+    }
+
+    /// What a comment shows is what holds: written out, nothing changes but the unit and the base thickness,
+    /// which have no value by default.
+    #[test]
+    fn commented_out_defaults_are_the_defaults() {
+        for family in Family::ALL {
+            let text = template(family);
+            let key_line = |line: &str| {
+                let (name, _) = line.strip_prefix("# ")?.split_once(" = ")?;
+                let is_key = keys::KEYS.iter().any(|key| key.name == name);
+                (is_key && !["unit", "base_thickness"].contains(&name)).then(|| line[2..].to_owned())
+            };
+            let lines: Vec<String> =
+                text.lines().map(|line| key_line(line).unwrap_or_else(|| line.to_owned())).collect();
+            assert_ne!(lines.join("\n"), text.trim_end());
+            let written_out = read(&lines.join("\n"), Path::new("")).unwrap().design;
+            assert_eq!(written_out, read(&text, Path::new("")).unwrap().design, "{}", family.name());
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Heights of first contact over the whole error grid.
+
+use super::{Grid, Resolution};
+use crate::contact::{Lattice, Pair};
+use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::pose::{self, Dof};
+use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// The height of first contact at every cell of an error grid.
+///
+/// The grid is over pose *errors* (offsets of the face centre); the heights are those of the centre of rotation,
+/// which is where the approach force acts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Landscape {
+    /// Where the heights were taken: at the cells' centres.
+    pub grid: Grid,
+    /// z of the COR at first contact, in D, one per cell, rounded to single precision; −∞ where the halves pass
+    /// each other by.
+    pub heights: Vec<f32>,
+}
+
+/// Why no landscape was computed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum LandscapeError {
+    /// A translation is sampled although the design locks it.
+    #[error("the grid samples {}, which this design locks; add it to `free`", .dof.name())]
+    LockedAxis {
+        /// Which.
+        dof: Dof,
+    },
+    /// An axis has no cell, or the number of cells overflows.
+    #[error("a grid of {shape:?} cells cannot be used")]
+    Unusable {
+        /// Cells per axis.
+        shape: Vec<usize>,
+    },
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Landscape {
+    /// Bytes that the heights of a grid of `cells` cells take.
+    pub const fn bytes(cells: u64) -> u64 {
+        cells.saturating_mul(size_of::<f32>() as u64)
+    }
+
+    /// Heights of `pair` over `grid`, one rotation at a time, in parallel.
+    ///
+    /// An error without an axis is 0; a translation that the design locks stays at the COR.
+    ///
+    /// # Errors
+    /// When the grid samples a locked translation or has no cell, does not fit into the memory budget, or when
+    /// the computation is cancelled.
+    pub fn compute(pair: &Pair, grid: &Grid, exec: &Exec) -> Result<Self, LandscapeError> {
+        let cells = usable(pair, grid)?;
+        let slab: usize = grid.axes.iter().filter(|a| !a.dof.is_rotation()).map(|a| a.cells).product();
+        let buffers = (exec.threads() * slab * size_of::<f64>()) as u64;
+        exec.reserve("the height landscape", Self::bytes(cells as u64).saturating_add(buffers), |budget| {
+            let largest = Resolution::largest_that_fits(budget, size_of::<f32>() as u64, grid.axes.len());
+            format!("use at most --resolution {largest}")
+        })?;
+        let mut heights = vec![0.0f32; cells];
+        exec.install(|| fill(pair, grid, slab, &mut heights, exec))?;
+        Ok(Self { grid: grid.clone(), heights })
+    }
+}
+
+/// The number of cells, if the grid suits the pair.
+fn usable(pair: &Pair, grid: &Grid) -> Result<usize, LandscapeError> {
+    for axis in &grid.axes {
+        if !axis.dof.is_rotation() && !pair.alignment.free.contains(axis.dof) {
+            return Err(LandscapeError::LockedAxis { dof: axis.dof });
+        }
+    }
+    grid.checked_len()
+        .filter(|cells| *cells > 0)
+        .ok_or_else(|| LandscapeError::Unusable { shape: grid.shape() })
+}
+
+/// Fills one slab of lateral positions per rotation. Slabs do not depend on each other, so neither does any
+/// height on the number of threads.
+fn fill(
+    pair: &Pair,
+    grid: &Grid,
+    slab: usize,
+    heights: &mut [f32],
+    exec: &Exec,
+) -> Result<(), LandscapeError> {
+    const STAGE: &str = "heights";
+    let rotations = heights.len() / slab;
+    let done = Mutex::new(0usize);
+    heights.par_chunks_exact_mut(slab).enumerate().try_for_each_init(
+        || vec![0.0f64; slab],
+        |buffer, (k, out)| {
+            exec.check()?;
+            let rotation = grid.pose(k * slab).rotation();
+            let face = pose::face_from_cor(&rotation, pair.alignment.center_of_rotation);
+            let lattice = |dof, face| lateral_lattice(pair, grid, dof, face);
+            pair.at_rotation(rotation).heights(lattice(Dof::X, face.x), lattice(Dof::Y, face.y), buffer);
+            for (out, height) in out.iter_mut().zip(&*buffer) {
+                *out = *height as f32;
+            }
+            // Reported under the lock, so that the fraction never goes back.
+            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+            *done += 1;
+            exec.report(*done as f64 / rotations as f64, STAGE);
+            Ok(())
+        },
+    )
+}
+
+/// COR positions along x or y at one rotation; `face` is the face centre's coordinate as seen from the COR.
+fn lateral_lattice(pair: &Pair, grid: &Grid, dof: Dof, face: f64) -> Lattice {
+    match grid.axis(dof) {
+        Some(axis) => Lattice { first: axis.center(0) - face, step: axis.step(), count: axis.cells },
+        None if pair.alignment.free.contains(dof) => Lattice { first: -face, step: 0.0, count: 1 },
+        None => Lattice { first: 0.0, step: 0.0, count: 1 },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::{Connector, Half, Surface};
+    use crate::design::Alignment;
+    use crate::pose::{CorPose, DofSet, Mount};
+    use glam::DVec3;
+
+    /// A square-based pyramid, apex up, 1 wide and 0.5 high, as fixed half and, turned over, as moving half.
+    fn two_pyramids(free: &[Dof], cor: f64) -> Pair {
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let mut vertices: Vec<DVec3> = corners.iter().map(|&(x, y)| DVec3::new(x, y, -0.25)).collect();
+        vertices.push(DVec3::new(0.0, 0.0, 0.25));
+        let facets = [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]];
+        let fixed = Half { surfaces: vec![Surface::from_polygons(vertices, &facets).unwrap()] };
+        let moving = fixed.mapped(|p| Mount::X.apply(p));
+        let mut alignment = Alignment::new(free.iter().copied().collect(), Mount::X);
+        alignment.center_of_rotation = cor;
+        Pair::new(&Connector { fixed, moving }, &alignment)
+    }
+
+    #[test]
+    fn every_cell_holds_the_height_of_its_own_pose() {
+        let cases: [&[Dof]; 4] =
+            [&[Dof::X, Dof::Pitch], &[Dof::Y, Dof::Roll, Dof::Yaw], &Dof::ALL, &[Dof::Pitch]];
+        for free in cases {
+            let pair = two_pyramids(free, 0.4);
+            let grid = Grid::over(&pair.alignment, |dof| 3 + dof.index() % 2);
+            let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
+            let mut contacts = 0;
+            for (index, height) in landscape.heights.iter().enumerate() {
+                let pose = CorPose::from_error(&grid.pose(index), 0.4, pair.alignment.free);
+                match pair.height(&pose) {
+                    // Single precision of a height below 2.
+                    Some(exact) => assert!((f64::from(*height) - exact).abs() < 2e-7),
+                    None => assert_eq!(*height, f32::NEG_INFINITY),
+                }
+                contacts += usize::from(height.is_finite());
+            }
+            assert!(contacts > 0);
+        }
+    }
+
+    #[test]
+    fn no_contact_is_minus_infinity() {
+        let pair = two_pyramids(&[Dof::X], 0.0);
+        let mut grid = Grid::over(&pair.alignment, |_| 4);
+        grid.axes[0].hi = 3.0; // centres at −0.5, 0.5, 1.5, 2.5; the halves meet below 1.
+        let heights = Landscape::compute(&pair, &grid, &Exec::new()).unwrap().heights;
+        // Slope 1 on both: half a width apart the tips pass at the height where they would stand level.
+        assert_eq!(heights, [0.0, 0.0, f32::NEG_INFINITY, f32::NEG_INFINITY]);
+    }
+
+    #[test]
+    fn threads_do_not_change_a_bit() {
+        let pair = two_pyramids(&Dof::ALL, -0.3);
+        let grid = Grid::over(&pair.alignment, |_| 3);
+        let with =
+            |threads| Landscape::compute(&pair, &grid, &Exec::new().with_threads(threads).unwrap()).unwrap();
+        assert_eq!(with(1), with(3));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_before_it_is_allocated() {
+        let pair = two_pyramids(&Dof::ALL, 0.0);
+        let grid = Grid::over(&pair.alignment, |_| 1000);
+        let exec = Exec::new().with_memory_budget(1 << 20);
+        let error = Landscape::compute(&pair, &grid, &exec).unwrap_err();
+        // 12⁵ × 4 B = 995 328 B fit into 1 MiB.
+        assert!(error.to_string().ends_with("use at most --resolution 12"), "{error}");
+        let grid = Grid::over(&pair.alignment, |_| 1_000_000);
+        assert!(matches!(Landscape::compute(&pair, &grid, &exec), Err(LandscapeError::Unusable { .. })));
+    }
+
+    #[test]
+    fn a_stop_is_obeyed_and_a_locked_axis_refused() {
+        let pair = two_pyramids(&[Dof::X], 0.0);
+        let exec = Exec::new();
+        let grid = Grid::over(&Alignment::new(DofSet::ALL, Mount::X), |_| 2);
+        assert_eq!(Landscape::compute(&pair, &grid, &exec), Err(LandscapeError::LockedAxis { dof: Dof::Y }));
+        exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+        let grid = Grid::over(&pair.alignment, |_| 2);
+        assert_eq!(Landscape::compute(&pair, &grid, &exec), Err(LandscapeError::Cancelled(Cancelled)));
+    }
+}

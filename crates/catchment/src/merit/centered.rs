@@ -1,0 +1,155 @@
+//! The largest box in the accepted set with its centre at zero: what a robot whose errors are centred can use.
+//!
+//! ```text
+//!        ░░░░░░░
+//!      ░░┌───┐░░░          s = min over rejected cells of  maxᵢ (gapᵢ / halfᵢ)
+//!      ░░│ 0 │░░░
+//!       ░└───┘░            gapᵢ: distance from zero to the cell along axis i
+//!          ░░░             halfᵢ: half-width of the wanted box
+//! ```
+//!
+//! The box grows from zero until it meets a rejected cell, or the border of the error box, beyond which nothing is
+//! known. It ends on cell borders, so its half-width is right to half a cell along the axis that stopped it. With
+//! an even number of cells no centre lies at zero; the cells that meet there all count.
+
+use super::{MeritError, advance, axis_number, gap, grid_of};
+use crate::acceptance::Acceptance;
+use crate::pose::{Dof, PoseError};
+
+/// A box with its centre at zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CenteredBox {
+    /// Its size relative to the wanted proportions; for the cube, its edge in [0, 1] of the error box.
+    pub scale: f64,
+    /// Half-width along each axis of the grid, in D and radians.
+    pub half_widths: Vec<(Dof, f64)>,
+    /// The border of the error box stopped it: it may be larger.
+    pub reaches_border: bool,
+}
+
+/// The largest centred cube after each axis is divided by its range: `scale` = 1 is the whole error box.
+///
+/// # Errors
+/// If the outcomes are of listed poses.
+pub fn centered_cube(acceptance: &Acceptance) -> Result<CenteredBox, MeritError> {
+    let halves: Vec<f64> = grid_of(acceptance)?.axes.iter().map(|a| 0.5 * (a.hi - a.lo)).collect();
+    grow_from_zero(acceptance, &halves)
+}
+
+/// The largest centred box with the given proportions: half-widths in D and radians (0: no error there).
+///
+/// # Errors
+/// If the outcomes are of listed poses, a proportion is negative, or one is given for an axis that was not sampled.
+pub fn centered_box(acceptance: &Acceptance, proportions: &PoseError) -> Result<CenteredBox, MeritError> {
+    let grid = grid_of(acceptance)?;
+    let mut halves = vec![0.0; grid.axes.len()];
+    for (dof, value) in Dof::ALL.into_iter().zip(proportions.to_array()) {
+        if !value.is_finite() || value < 0.0 {
+            return Err(MeritError::Negative { what: "a proportion", value });
+        }
+        if value > 0.0 {
+            halves[axis_number(grid, dof)?] = value;
+        }
+    }
+    grow_from_zero(acceptance, &halves)
+}
+
+fn grow_from_zero(acceptance: &Acceptance, halves: &[f64]) -> Result<CenteredBox, MeritError> {
+    let grid = grid_of(acceptance)?;
+    // Scale at which the box reaches cell k of axis i: never, if it has no width there and the cell is not at zero.
+    let reach = |gap: f64, half: f64| if gap == 0.0 { 0.0 } else { gap / half };
+    let table: Vec<Vec<f64>> = grid
+        .axes
+        .iter()
+        .zip(halves)
+        .map(|(axis, half)| (0..axis.cells).map(|k| reach(gap(axis, k), *half)).collect())
+        .collect();
+    let border = grid
+        .axes
+        .iter()
+        .zip(halves)
+        .map(|(axis, half)| if *half == 0.0 { f64::INFINITY } else { axis.hi.min(-axis.lo).max(0.0) / half })
+        .fold(f64::INFINITY, f64::min);
+    let mut scale = border;
+    let shape = grid.shape();
+    let mut cell = vec![0; shape.len()];
+    for accepted in acceptance.accepted() {
+        if !accepted {
+            let meets = table.iter().zip(&cell).map(|(reach, k)| reach[*k]).fold(0.0, f64::max);
+            scale = scale.min(meets);
+        }
+        advance(&mut cell, &shape);
+    }
+    // Without any width the box is a point: there or not.
+    let scale = if scale.is_finite() { scale } else { 1.0 };
+    Ok(CenteredBox {
+        scale,
+        half_widths: grid.axes.iter().zip(halves).map(|(axis, half)| (axis.dof, scale * half)).collect(),
+        reaches_border: scale >= border,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::*;
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Odd and even counts alike: every cell that the box meets is accepted, and no larger box can say so.
+        #[test]
+        fn the_box_holds_only_accepted_cells_and_a_larger_one_does_not(
+            shape in proptest::collection::vec(1usize..6, 1..4),
+            seed in proptest::collection::vec(prop::bool::weighted(0.9), 125),
+            widths in proptest::array::uniform3(0.2..2.0f64),
+        ) {
+            let g = grid(&shape, &vec![1.0; shape.len()]);
+            let mut accepted = accept(&g, |_| true);
+            for (outcome, keep) in accepted.outcomes.iter_mut().zip(&seed) {
+                if !keep { *outcome = crate::acceptance::Outcome::Missed; }
+            }
+            let mut proportions = [0.0; 5];
+            proportions[..shape.len()].copy_from_slice(&widths[..shape.len()]);
+            let found = centered_box(&accepted, &PoseError::from_array(proportions)).unwrap();
+            let clean = |scale: f64| (0..g.len()).all(|i| {
+                let cell = g.cell(i);
+                let meets = g.axes.iter().zip(&cell).zip(&widths).all(|((a, k), w)| {
+                    let (lo, hi) = (a.lo + *k as f64 * a.step(), a.lo + (*k as f64 + 1.0) * a.step());
+                    lo < scale * w - 1e-9 && hi > -scale * w + 1e-9
+                });
+                !meets || accepted.outcomes[i] == crate::acceptance::Outcome::Aligned
+            });
+            prop_assert!(found.scale == 0.0 || clean(found.scale));
+            prop_assert!(found.reaches_border || !clean(found.scale + 1e-6));
+        }
+    }
+
+    #[test]
+    fn of_a_ball_it_is_the_inscribed_cube() {
+        // Half edge r/√3; it stops at the border of a cell whose centre is outside the ball: within a cell of 0.04.
+        for cells in [50, 51] {
+            let cube = centered_cube(&ball(&grid(&[cells; 3], &[1.0; 3]), 0.9)).unwrap();
+            assert!((cube.scale - 0.9 / 3f64.sqrt()).abs() < 0.04, "{cells}: {}", cube.scale);
+            assert!(!cube.reaches_border);
+        }
+    }
+
+    #[test]
+    fn proportions_choose_the_axis_that_stops_the_box() {
+        let g = grid(&[40, 40], &[1.0, 1.0]);
+        let accepted = accept(&g, |e| e[0].abs() < 0.5 && e[1].abs() < 0.25);
+        let wide = PoseError { x: 4.0, y: 1.0, ..PoseError::default() };
+        let found = centered_box(&accepted, &wide).unwrap();
+        assert!((found.scale - 0.125).abs() < 1e-12);
+        let line = PoseError { x: 1.0, ..PoseError::default() };
+        assert!((centered_box(&accepted, &line).unwrap().scale - 0.5).abs() < 1e-12);
+        let unknown = PoseError { yaw: 1.0, ..PoseError::default() };
+        assert!(matches!(centered_box(&accepted, &unknown), Err(MeritError::NoAxis { dof: Dof::Yaw, .. })));
+    }
+
+    #[test]
+    fn a_box_stopped_by_the_error_box_says_so() {
+        let cube = centered_cube(&accept(&grid(&[6, 7], &[1.0, 1.5]), |_| true)).unwrap();
+        assert_eq!((cube.scale, cube.reaches_border), (1.0, true));
+    }
+}

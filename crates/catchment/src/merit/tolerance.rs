@@ -1,0 +1,140 @@
+//! Per-axis tolerance: how far one error alone may go, all others being zero. The "± 5 mm, ± 8°" of datasheets.
+//!
+//! ```text
+//!   x:  ✕ ✕ ░ ░ ░ ░ │ ░ ░ ░ ✕ ░ ✕       minus = 4 cells, plus = 3 cells
+//!                   0
+//! ```
+//!
+//! The contiguous accepted cells from zero outwards count, to the outer border of the last one: the true limit
+//! lies between the centres on either side of it, so within half a cell ([`Tolerance::half_cell`]). With an even
+//! number of cells no centre lies at zero; then a cell along the axis counts as accepted if it is so on every
+//! side of zero along the other axes.
+
+use super::{MeritError, gap, grid_of};
+use crate::acceptance::{Acceptance, Outcome};
+use crate::landscape::Grid;
+use crate::pose::Dof;
+
+/// Tolerance along one axis, in D or radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Which error.
+    pub dof: Dof,
+    /// How far it may go below zero; not negative.
+    pub minus: f64,
+    /// How far it may go above zero; not negative.
+    pub plus: f64,
+    /// The border of the error box stopped `minus`: it may be larger.
+    pub minus_reaches_border: bool,
+    /// The border of the error box stopped `plus`: it may be larger.
+    pub plus_reaches_border: bool,
+    /// Half the width of a cell: the uncertainty of `minus` and `plus`.
+    pub half_cell: f64,
+}
+
+impl Tolerance {
+    /// The smaller side: what holds for both signs.
+    pub const fn symmetric(&self) -> f64 {
+        self.minus.min(self.plus)
+    }
+}
+
+/// The tolerance along every axis of the grid, in its order. Empty accepted surroundings of zero give zeros; an
+/// axis whose range does not hold zero is left out.
+///
+/// # Errors
+/// If the outcomes are of listed poses.
+pub fn tolerances(acceptance: &Acceptance) -> Result<Vec<Tolerance>, MeritError> {
+    let grid = grid_of(acceptance)?;
+    Ok((0..grid.axes.len()).filter_map(|number| along(acceptance, grid, number)).collect())
+}
+
+fn along(acceptance: &Acceptance, grid: &Grid, number: usize) -> Option<Tolerance> {
+    let axis = &grid.axes[number];
+    let around = around_zero(grid);
+    let center = *around.first()?;
+    let stride: usize = grid.axes[..number].iter().map(|a| a.cells).product();
+    let home = grid.cell(center)[number];
+    // Whether cell `k` along the axis is accepted on every side of zero.
+    let accepted = |k: usize| {
+        around.iter().all(|cell| {
+            let first = cell - grid.cell(*cell)[number] * stride;
+            acceptance.outcomes[first + k * stride] == Outcome::Aligned
+        })
+    };
+    let at_zero: Vec<usize> = (home..axis.cells).take_while(|k| gap(axis, *k) == 0.0).collect();
+    let (lowest, highest) = (home, *at_zero.last()?);
+    let step = axis.step();
+    // With one cell at zero it must be accepted for either side to be; with two, each side has its own.
+    let below = (0..=lowest).rev().take_while(|k| accepted(*k)).last();
+    let above = (highest..axis.cells).take_while(|k| accepted(*k)).last();
+    Some(Tolerance {
+        dof: axis.dof,
+        minus: below.map_or(0.0, |k| -(axis.lo + k as f64 * step)).max(0.0),
+        plus: above.map_or(0.0, |k| axis.lo + (k as f64 + 1.0) * step).max(0.0),
+        minus_reaches_border: below == Some(0),
+        plus_reaches_border: above == Some(axis.cells - 1),
+        half_cell: 0.5 * step,
+    })
+}
+
+/// The cells that hold zero or have it on their border: one, or two per axis with an even number of cells. Empty if
+/// zero lies outside the grid. In memory order.
+pub(super) fn around_zero(grid: &Grid) -> Vec<usize> {
+    let mut cells = vec![0usize];
+    let mut stride = 1;
+    for axis in &grid.axes {
+        let near: Vec<usize> = (0..axis.cells).filter(|k| gap(axis, *k) == 0.0).collect();
+        cells = near.iter().flat_map(|k| cells.iter().map(move |c| c + k * stride)).collect();
+        stride *= axis.cells;
+    }
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::*;
+    use super::*;
+
+    #[test]
+    fn of_a_box_off_centre_both_sides_are_found() {
+        // Borders of the box lie on cell borders for 40 cells over [−1, 1], so the tolerances are exact.
+        let g = grid(&[40, 40], &[1.0, 1.0]);
+        let t = tolerances(&accept(&g, |e| (-0.5..0.3).contains(&e[0]) && e[1].abs() < 0.25)).unwrap();
+        assert_eq!((t[0].dof, t[1].dof), (Dof::X, Dof::Y));
+        for (found, exact) in
+            [(t[0].minus, 0.5), (t[0].plus, 0.3), (t[1].minus, 0.25), (t[1].symmetric(), 0.25)]
+        {
+            assert!((found - exact).abs() < 1e-12, "{found} for {exact}");
+        }
+    }
+
+    #[test]
+    fn of_an_ellipsoid_they_are_the_half_axes_within_half_a_cell() {
+        let half = [0.83, 0.61, 0.37, 0.9, 0.45];
+        for cells in [8, 9] {
+            let g = grid(&[cells; 5], &[1.0; 5]);
+            let inside = |e: [f64; 5]| e.iter().zip(&half).map(|(v, h)| (v / h).powi(2)).sum::<f64>() < 1.0;
+            for (t, exact) in tolerances(&accept(&g, inside)).unwrap().iter().zip(half) {
+                // An even grid looks half a cell (0.125) beside the axis in four directions: there the half-axis is
+                // shorter by the factor √(1 − Σ (0.125/h)²) ≥ √(1 − 0.25).
+                let shorter = if cells % 2 == 0 { exact * (1.0 - 0.75f64.sqrt()) } else { 0.0 };
+                assert!(
+                    t.plus <= exact + t.half_cell && t.plus >= exact - shorter - t.half_cell,
+                    "{t:?} {exact}"
+                );
+                assert!((t.minus - t.plus).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn gaps_end_a_tolerance_and_borders_are_named() {
+        let g = grid(&[9], &[0.9]);
+        let t = tolerances(&accept(&g, |e| !(0.5..0.7).contains(&e[0]))).unwrap()[0];
+        assert!((t.plus - 0.5).abs() < 1e-12 && !t.plus_reaches_border);
+        assert!((t.minus - 0.9).abs() < 1e-12 && t.minus_reaches_border);
+        let nothing = tolerances(&accept(&g, |e| e[0].abs() > 0.05)).unwrap()[0];
+        assert_eq!((nothing.minus, nothing.plus), (0.0, 0.0));
+    }
+}

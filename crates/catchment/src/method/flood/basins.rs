@@ -1,0 +1,247 @@
+//! Minima, and Meyer's flooding from them.
+
+use super::neighbourhood::Neighbourhood;
+use crate::exec::{Cancelled, Exec};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Not reached.
+pub(super) const UNSEEN: u32 = 0;
+/// The basin of every cell without contact, however many pieces it has.
+pub(super) const OUTSIDE: u32 = 1;
+/// Reached from two basins.
+pub(super) const DAM: u32 = u32::MAX;
+/// Waiting in the queue.
+const QUEUED: u32 = u32::MAX - 1;
+/// Equal to a neighbour, and known to be no minimum.
+const SLOPE: u32 = u32::MAX - 2;
+/// Basin numbers lie below this.
+pub(super) const LABEL_LIMIT: u32 = SLOPE;
+
+/// Whether a label names a basin.
+pub(super) const fn is_basin(label: u32) -> bool {
+    label != UNSEEN && label < LABEL_LIMIT
+}
+
+/// Where flooding may be read in two ways. The default is catchment's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rules {
+    /// Every cell without a lower neighbour is a minimum, even on a plateau that drains elsewhere.
+    pub flat_cells_are_minima: bool,
+    /// The neighbours of a dam cell are reached through it.
+    pub dams_pass_water_on: bool,
+}
+
+/// What the heights are stored as.
+pub(super) trait Height: Copy + PartialOrd + Into<f64> + Send + Sync {}
+impl Height for f32 {}
+impl Height for f64 {}
+
+/// Labels after flooding: `DAM` or a basin number per cell, `UNSEEN` for a cell walled in by dams.
+pub(super) struct Flooded {
+    /// One per cell.
+    pub(super) labels: Vec<u32>,
+    /// For every basin number the lowest cell, first in memory among equals; `None` for numbers not in use.
+    pub(super) minima: Vec<Option<usize>>,
+}
+
+/// Labels the minima and floods the rest. Minima that hold one of the `targets` become one basin.
+pub(super) fn flood<H: Height>(
+    heights: &[H],
+    around: &Neighbourhood,
+    targets: &[usize],
+    rules: Rules,
+    exec: &Exec,
+) -> Result<Flooded, Cancelled> {
+    let mut labels: Vec<u32> =
+        heights.iter().map(|h| if (*h).into() == f64::NEG_INFINITY { OUTSIDE } else { UNSEEN }).collect();
+    let outside = labels.iter().position(|l| *l == OUTSIDE);
+    let mut minima = vec![None, outside];
+    label_minima(heights, around, rules, &mut labels, &mut minima, exec)?;
+    join(&mut labels, &mut minima, heights, targets);
+    rise(heights, around, rules, &mut labels, exec)?;
+    Ok(Flooded { labels, minima })
+}
+
+/// How many cells are worked on between two looks at the cancel flag.
+const CELLS_PER_CHECK: usize = 1 << 14;
+
+/// A minimum is a connected set of equal cells without a lower neighbour; by the other rule, one of equal cells
+/// that each have none.
+fn label_minima<H: Height>(
+    heights: &[H],
+    around: &Neighbourhood,
+    rules: Rules,
+    labels: &mut [u32],
+    minima: &mut Vec<Option<usize>>,
+    exec: &Exec,
+) -> Result<(), Cancelled> {
+    let mut plateau = Vec::new();
+    for start in 0..heights.len() {
+        if start.is_multiple_of(CELLS_PER_CHECK) {
+            exec.check()?;
+        }
+        if labels[start] != UNSEEN {
+            continue;
+        }
+        let level = heights[start];
+        let mut flat = false;
+        let mut lowest = true;
+        for near in around.of(start) {
+            if heights[near] < level {
+                lowest = false;
+                break;
+            }
+            flat |= heights[near] == level;
+        }
+        if !lowest {
+            continue; // stays unseen: if it lies on a plateau, that plateau finds its way here
+        }
+        let number = minima.len() as u32;
+        labels[start] = number;
+        if flat {
+            plateau.clear();
+            plateau.push(start);
+            let mut next = 0;
+            while let Some(&cell) = plateau.get(next) {
+                next += 1;
+                for near in around.of(cell) {
+                    lowest &= heights[near] >= level;
+                    let minimal =
+                        |c| !rules.flat_cells_are_minima || around.of(c).all(|n| heights[n] >= level);
+                    if heights[near] == level && labels[near] == UNSEEN && minimal(near) {
+                        labels[near] = number;
+                        plateau.push(near);
+                    }
+                }
+            }
+            if !lowest {
+                for cell in &plateau {
+                    labels[*cell] = SLOPE;
+                }
+                continue;
+            }
+        }
+        minima.push(Some(start));
+    }
+    for label in labels {
+        if *label == SLOPE {
+            *label = UNSEEN;
+        }
+    }
+    Ok(())
+}
+
+/// Gives all minima that hold a target cell one number, the smallest.
+fn join<H: Height>(labels: &mut [u32], minima: &mut [Option<usize>], heights: &[H], targets: &[usize]) {
+    let mut numbers: Vec<u32> =
+        targets.iter().map(|t| labels[*t]).filter(|l| is_basin(*l) && *l != OUTSIDE).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let Some((&kept, others)) = numbers.split_first() else { return };
+    if others.is_empty() {
+        return;
+    }
+    for label in labels {
+        if others.contains(label) {
+            *label = kept;
+        }
+    }
+    for other in others {
+        let cell = minima[*other as usize].take();
+        if let (Some(a), Some(b)) = (minima[kept as usize], cell)
+            && heights[b] < heights[a]
+        {
+            minima[kept as usize] = cell;
+        }
+    }
+}
+
+/// A cell on the water line.
+struct Shore<H> {
+    height: H,
+    order: u32,
+    cell: u32,
+}
+
+impl<H: Height> Ord for Shore<H> {
+    /// The greatest is the lowest cell, and among equals the one that came first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other
+            .height
+            .partial_cmp(&self.height)
+            .unwrap_or(Ordering::Equal)
+            .then_with(|| other.order.cmp(&self.order))
+    }
+}
+
+impl<H: Height> PartialOrd for Shore<H> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<H: Height> PartialEq for Shore<H> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<H: Height> Eq for Shore<H> {}
+
+/// Meyer's flooding: the lowest cell on the water line joins the one basin it touches, or becomes a dam.
+fn rise<H: Height>(
+    heights: &[H],
+    around: &Neighbourhood,
+    rules: Rules,
+    labels: &mut [u32],
+    exec: &Exec,
+) -> Result<(), Cancelled> {
+    const STAGE: &str = "flooding";
+    let mut queue = BinaryHeap::new();
+    let mut order = 0u32;
+    for cell in 0..labels.len() {
+        if is_basin(labels[cell]) {
+            for near in around.of(cell) {
+                if labels[near] == UNSEEN {
+                    labels[near] = QUEUED;
+                    queue.push(Shore { height: heights[near], order, cell: near as u32 });
+                    order += 1;
+                }
+            }
+        }
+    }
+    let mut unseen = Vec::new();
+    let mut done = 0usize;
+    while let Some(Shore { cell, .. }) = queue.pop() {
+        if done.is_multiple_of(CELLS_PER_CHECK) {
+            exec.check()?;
+            exec.report(done as f64 / labels.len() as f64, STAGE);
+        }
+        done += 1;
+        let cell = cell as usize;
+        unseen.clear();
+        let mut basin = UNSEEN;
+        for near in around.of(cell) {
+            let label = labels[near];
+            if label == UNSEEN {
+                unseen.push(near);
+            } else if is_basin(label) && basin != label {
+                basin = if basin == UNSEEN { label } else { DAM };
+            }
+            if basin == DAM && !rules.dams_pass_water_on {
+                unseen.clear();
+                break;
+            }
+        }
+        // Reached through dams alone, a cell is a dam itself.
+        labels[cell] = if basin == UNSEEN { DAM } else { basin };
+        for near in &unseen {
+            labels[*near] = QUEUED;
+            queue.push(Shore { height: heights[*near], order, cell: *near as u32 });
+            order += 1;
+        }
+    }
+    exec.report(1.0, STAGE);
+    Ok(())
+}

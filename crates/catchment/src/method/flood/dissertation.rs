@@ -1,0 +1,343 @@
+//! The conventions behind the dissertation's printed tables 5.4 to 5.9.
+//!
+//! They were recovered from the printed numbers; several contradict the text, and most were fitted on these very
+//! tables, with no independent check. They reproduce; they are not physics, and never the default.
+//!
+//! - **Rotation point**: on the axis behind the mated apex plane, `lever·(1 − COR)` away. The planar bodies have a block
+//!   half a width thick behind the face, and their lever is the total height H + D/2; the pyramid's is D where
+//!   (x, y, pitch) is sampled and H where (x, pitch, roll) is. (The text: from the centre, in units of D.)
+//! - **Samples** are on the rotation point's own coordinates: x, y in [−2, 2] with both ends, 101 in the plane and 31
+//!   in space; angles over [−π/2, π/2] with both ends in the plane (101), without the lower end in space (30). A
+//!   sample counts range/100 per axis in the plane and range/31 in space.
+//! - **Pyramid angles**: pitch turns about x and roll about y, `R = Rx(pitch)·Ry(roll)`.
+//! - **Flooding**: basins below a depth of 0.1·AR are merged; dam cells pass water on (as the text says). In space each
+//!   cell without a lower neighbour is a minimum (as the text says); in the plane plateaus that drain are not, which
+//!   reproduces one entry more.
+//! - **Dams**: in the plane a dam cell goes to the neighbouring basin whose labelled cell is lowest, but never to one
+//!   that reaches below the docking height; in space dam cells count for no basin. (The text: steepest descent.)
+
+use super::basins::{Height, is_basin};
+use super::neighbourhood::Neighbourhood;
+use super::{Parts, Rules, divide};
+use crate::connector::{Connector, Problem};
+use crate::contact::{Lattice, Pair};
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::exec::{Cancelled, Exec};
+use crate::pose::{Dof, DofSet, Mount};
+use glam::DMat3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Which errors a table samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Errors {
+    /// x and the planar rotation: tables 5.4 to 5.7.
+    XTheta,
+    /// x, y and pitch: table 5.8.
+    XYPitch,
+    /// x, pitch and roll: table 5.9.
+    XPitchRoll,
+}
+
+/// One entry of a table: the connector and all that the answer depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// The connector: a planar family for [`Errors::XTheta`], the pyramid for the others.
+    pub family: Family,
+    /// H/D.
+    pub aspect_ratio: f64,
+    /// The dissertation's COR: 1 is the apex plane, 0 one lever behind it.
+    pub cor: f64,
+    /// Which errors are sampled.
+    pub errors: Errors,
+    /// Depth below which basins are merged, in D.
+    pub depth_tolerance: f64,
+}
+
+/// The samples and which of them the target basin holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampled {
+    /// Samples per axis; the first axis runs fastest.
+    pub shape: Vec<usize>,
+    /// Whether each sample is accepted.
+    pub accepted: Vec<bool>,
+    /// What a sample counts, Dᵃ·radᵇ.
+    pub cell_measure: f64,
+}
+
+impl Sampled {
+    /// Number of accepted samples.
+    pub fn count(&self) -> usize {
+        self.accepted.iter().filter(|a| **a).count()
+    }
+
+    /// The Sum area of acceptance, Dᵃ·radᵇ.
+    pub fn sum(&self) -> f64 {
+        self.count() as f64 * self.cell_measure
+    }
+}
+
+/// Why an entry cannot be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DissertationError {
+    /// The family cannot be drawn with this aspect ratio.
+    #[error("a {} of aspect ratio {aspect_ratio} cannot be drawn: {}", .family.name(), list(problems))]
+    Geometry {
+        /// Which family.
+        family: Family,
+        /// Its aspect ratio.
+        aspect_ratio: f64,
+        /// What is wrong with it.
+        problems: Vec<Problem>,
+    },
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+fn list(problems: &[Problem]) -> String {
+    problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
+/// Half-range of x and y, in D.
+const LATERAL: f64 = 2.0;
+/// Samples per axis in the plane, both ends included.
+const PLANAR: usize = 101;
+/// Samples of x and y in space, both ends included.
+const SPATIAL: usize = 31;
+/// Heights are rounded to this, in D, so that heights that are equal in exact arithmetic are equal here: flat cells
+/// count as minima, and rounding errors of 1e-16 must not decide which do.
+const HEIGHT_STEP: f64 = 1e-9;
+
+impl Settings {
+    /// Depth tolerance as a share of H.
+    pub const DEPTH_PER_FACE_HEIGHT: f64 = 0.1;
+
+    /// An entry with the tolerance that the text names.
+    pub fn new(family: Family, errors: Errors, aspect_ratio: f64, cor: f64) -> Self {
+        let depth_tolerance = Self::DEPTH_PER_FACE_HEIGHT * aspect_ratio;
+        Self { family, aspect_ratio, cor, errors, depth_tolerance }
+    }
+
+    /// Thickness of the block behind both planar faces, in D.
+    const fn base_thickness(&self) -> Option<f64> {
+        match self.errors {
+            Errors::XTheta => Some(0.5),
+            Errors::XYPitch | Errors::XPitchRoll => None,
+        }
+    }
+
+    /// The rotation point in catchment's convention: signed distance in front of the face centre, in D.
+    pub fn center_of_rotation(&self) -> f64 {
+        let lever = match self.errors {
+            Errors::XTheta => self.aspect_ratio + 0.5,
+            Errors::XYPitch => 1.0,
+            Errors::XPitchRoll => self.aspect_ratio,
+        };
+        self.aspect_ratio / 2.0 - lever * (1.0 - self.cor)
+    }
+
+    fn pair(&self) -> Result<Pair, DissertationError> {
+        let spec = FamilySpec {
+            aspect_ratio: self.aspect_ratio,
+            base_thickness: self.base_thickness(),
+            ..FamilySpec::new(self.family)
+        };
+        let (free, mount) = match self.errors {
+            Errors::XTheta => ([Dof::X, Dof::Pitch].into_iter().collect(), Mount::Y),
+            Errors::XYPitch | Errors::XPitchRoll => (DofSet::ALL, Mount::X),
+        };
+        let alignment =
+            Alignment { center_of_rotation: self.center_of_rotation(), ..Alignment::new(free, mount) };
+        let design = Design {
+            name: String::new(),
+            connector: ConnectorSpec::Family(spec),
+            width: 1.0,
+            unit: None,
+            alignment,
+        };
+        let connector = Connector::build(&design).map_err(|problems| DissertationError::Geometry {
+            family: self.family,
+            aspect_ratio: self.aspect_ratio,
+            problems,
+        })?;
+        Ok(Pair::new(&connector, &design.alignment))
+    }
+}
+
+/// Where the heights are taken: a lattice of rotation points at each of a list of rotations.
+struct Samples {
+    x: Lattice,
+    y: Lattice,
+    /// Numbers of angles per rotation axis, the first running fastest.
+    angles: Vec<usize>,
+    rotations: Vec<DMat3>,
+    cell_measure: f64,
+    /// The sample at the mated pose.
+    mated: usize,
+}
+
+impl Samples {
+    fn of(errors: Errors) -> Self {
+        let ends =
+            |count: usize| Lattice { first: -LATERAL, step: 2.0 * LATERAL / (count - 1) as f64, count };
+        let locked = Lattice { first: 0.0, step: 0.0, count: 1 };
+        let middle = |lattice: &Lattice| lattice.count / 2;
+        // Both ends in the plane; in space the lower end is left out.
+        let planar: Vec<f64> = (0..PLANAR).map(|k| PI * k as f64 / (PLANAR - 1) as f64 - FRAC_PI_2).collect();
+        let spatial: Vec<f64> =
+            (1..SPATIAL).map(|k| PI * k as f64 / (SPATIAL - 1) as f64 - FRAC_PI_2).collect();
+        let (x, y, angles, rotations): (_, _, _, Vec<DMat3>) = match errors {
+            Errors::XTheta => {
+                let rotations = planar.iter().map(|a| DMat3::from_rotation_y(*a)).collect();
+                (ends(PLANAR), locked, vec![PLANAR], rotations)
+            }
+            Errors::XYPitch => {
+                let rotations = spatial.iter().map(|a| DMat3::from_rotation_x(*a)).collect();
+                (ends(SPATIAL), ends(SPATIAL), vec![spatial.len()], rotations)
+            }
+            Errors::XPitchRoll => {
+                let rotations = spatial
+                    .iter()
+                    .flat_map(|roll| {
+                        let roll = DMat3::from_rotation_y(*roll);
+                        spatial.iter().map(move |pitch| DMat3::from_rotation_x(*pitch) * roll)
+                    })
+                    .collect();
+                (ends(SPATIAL), locked, vec![spatial.len(); 2], rotations)
+            }
+        };
+        let (weights, per_axis): (Vec<f64>, usize) = match errors {
+            Errors::XTheta => (vec![2.0 * LATERAL, PI], PLANAR - 1),
+            Errors::XYPitch => (vec![2.0 * LATERAL, 2.0 * LATERAL, PI], SPATIAL),
+            Errors::XPitchRoll => (vec![2.0 * LATERAL, PI, PI], SPATIAL),
+        };
+        let cell_measure = weights.iter().map(|range| range / per_axis as f64).product();
+        // Without the lower end the sample at 0 is the 15th of 30, number 14.
+        let zero = match errors {
+            Errors::XTheta => PLANAR / 2,
+            Errors::XYPitch | Errors::XPitchRoll => SPATIAL / 2 - 1,
+        };
+        let rotation = angles.iter().rev().fold(0, |index, count| index * count + zero);
+        let mated = middle(&x) + x.count * (middle(&y) + y.count * rotation);
+        Self { x, y, angles, rotations, cell_measure, mated }
+    }
+
+    fn shape(&self) -> Vec<usize> {
+        let lateral = [self.x.count, self.y.count].into_iter().filter(|count| *count > 1);
+        lateral.chain(self.angles.iter().copied()).collect()
+    }
+
+    fn heights(&self, pair: &Pair, exec: &Exec) -> Result<Vec<f64>, Cancelled> {
+        let slab = self.x.count * self.y.count;
+        let mut heights = vec![0.0f64; slab * self.rotations.len()];
+        for (rotation, out) in self.rotations.iter().zip(heights.chunks_exact_mut(slab)) {
+            exec.check()?;
+            pair.at_rotation(*rotation).heights(self.x, self.y, out);
+        }
+        for height in heights.iter_mut().filter(|h| h.is_finite()) {
+            *height = (*height / HEIGHT_STEP).round() * HEIGHT_STEP;
+        }
+        Ok(heights)
+    }
+}
+
+/// Computes one entry.
+///
+/// # Errors
+/// When the family cannot be drawn with this aspect ratio, or the computation is cancelled.
+pub fn accept(settings: &Settings, exec: &Exec) -> Result<Sampled, DissertationError> {
+    let pair = settings.pair()?;
+    let samples = Samples::of(settings.errors);
+    let heights = samples.heights(&pair, exec)?;
+    let shape = samples.shape();
+    let around = Neighbourhood::new(&shape);
+    let planar = settings.errors == Errors::XTheta;
+    let rules = Rules { flat_cells_are_minima: !planar, dams_pass_water_on: true };
+    let parts = divide(&heights, &around, &[samples.mated], settings.depth_tolerance, rules, exec)?;
+    let accepted = accepted(&heights, &around, samples.mated, &parts, planar);
+    Ok(Sampled { shape, accepted, cell_measure: samples.cell_measure })
+}
+
+/// Whether each sample belongs to the basin of the mated one; dam cells only if `dams_count`.
+fn accepted<H: Height>(
+    heights: &[H],
+    around: &Neighbourhood,
+    mated: usize,
+    parts: &Parts,
+    dams_count: bool,
+) -> Vec<bool> {
+    let Parts { labels, merged, .. } = parts;
+    let basin = |cell: usize| is_basin(labels[cell]).then(|| merged.into[labels[cell] as usize]);
+    let Some(target) = basin(mated) else { return vec![false; labels.len()] };
+    let docking: f64 = heights[mated].into();
+    let inside = |basin: u32| merged.bottom[basin as usize] >= docking;
+    let lowest_inside = |cell: usize| {
+        around
+            .of(cell)
+            .filter_map(|near| Some((basin(near)?, near)))
+            .filter(|(basin, _)| inside(*basin))
+            .reduce(|best, next| if heights[next.1] < heights[best.1] { next } else { best })
+            .map(|(basin, _)| basin)
+    };
+    (0..labels.len())
+        .map(|cell| {
+            basin(cell).or_else(|| if dams_count { lowest_inside(cell) } else { None }) == Some(target)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mated_sample_is_the_aligned_pose() {
+        for (errors, shape) in [
+            (Errors::XTheta, vec![101, 101]),
+            (Errors::XYPitch, vec![31, 31, 30]),
+            (Errors::XPitchRoll, vec![31, 30, 30]),
+        ] {
+            let samples = Samples::of(errors);
+            assert_eq!(samples.shape(), shape);
+            let slab = samples.x.count * samples.y.count;
+            let (lateral, rotation) = (samples.mated % slab, samples.rotations[samples.mated / slab]);
+            assert!((rotation - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < 1e-15));
+            assert!(samples.x.at(lateral % samples.x.count).abs() < 1e-15);
+            assert!(samples.y.at(lateral / samples.x.count).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn the_rotation_point_lies_behind_the_apex_plane() {
+        let at = |errors, cor| Settings::new(Family::VFace, errors, 2.0, cor).center_of_rotation();
+        // The apex plane is H/2 = 1 in front of the face centre; the planar body's back is 2.5 behind that.
+        assert_eq!(at(Errors::XTheta, 1.0), 1.0);
+        assert_eq!(at(Errors::XTheta, 0.0), -1.5);
+        assert_eq!(at(Errors::XYPitch, 0.0), 0.0);
+        assert_eq!(at(Errors::XPitchRoll, 0.0), -1.0);
+    }
+
+    #[test]
+    fn a_planar_cell_counts_four_pi_over_ten_thousand() {
+        let expected = 4.0 * PI / 1e4;
+        assert!((Samples::of(Errors::XTheta).cell_measure - expected).abs() < 1e-16);
+    }
+
+    #[test]
+    fn the_accepted_set_is_symmetric_like_the_connector() {
+        // Mirroring the V-Face maps (x, θ) to (−x, −θ): the samples in reverse.
+        let sampled = accept(&Settings::new(Family::VFace, Errors::XTheta, 1.0, 1.0), &Exec::new()).unwrap();
+        let mirrored = sampled.accepted.iter().rev();
+        let different = sampled.accepted.iter().zip(mirrored).filter(|(a, b)| a != b).count();
+        // First in, first out breaks ties at the dams.
+        assert!(different * 100 < sampled.count(), "{different} of {}", sampled.count());
+    }
+
+    #[test]
+    fn a_shape_that_cannot_be_drawn_is_an_error() {
+        let settings = Settings::new(Family::VFace, Errors::XTheta, -1.0, 0.0);
+        assert!(matches!(accept(&settings, &Exec::new()), Err(DissertationError::Geometry { .. })));
+    }
+}
