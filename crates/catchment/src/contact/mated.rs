@@ -148,7 +148,7 @@ mod tests {
                 .map(|f| FamilySpec { base_thickness: Some(0.5), ..coarse(f) }),
         );
         for spec in specs {
-            for cor in [0.0, 0.5] {
+            for cor in [-0.5, 0.0, 0.5, 1.0] {
                 assert_eq!(problems(&pair(&family(spec.clone(), cor))), [], "{spec:?} {cor}");
             }
         }
