@@ -38,9 +38,8 @@ fn families() -> impl Strategy<Value = Family> {
 }
 
 fn poses() -> impl Strategy<Value = CorPose> {
-    (-1.2..1.2f64, -1.2..1.2f64, proptest::array::uniform3(-1.5..1.5f64)).prop_map(|(x, y, [r, p, w])| {
-        CorPose { lateral: DVec2::new(x, y), rotation: rotation(r, p, w) }
-    })
+    (-1.2..1.2f64, -1.2..1.2f64, proptest::array::uniform3(-1.5..1.5f64))
+        .prop_map(|(x, y, [r, p, w])| CorPose { lateral: DVec2::new(x, y), rotation: rotation(r, p, w) })
 }
 
 /// Equal heights, or both none.
