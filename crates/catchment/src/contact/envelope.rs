@@ -9,6 +9,10 @@ use glam::{DMat3, DVec2, DVec3};
 /// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
 const VERTICAL: f64 = 1e-9;
 
+/// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
+/// Facets that lean further back belong to the undersides of the halves.
+const OVERHANG: f64 = 0.5;
+
 /// Sine of the angle by which a feature may fail to support a normal and still count: rounding only.
 const ROUNDING: f64 = 1e-9;
 
@@ -38,7 +42,7 @@ impl<'a> Envelope<'a> {
     /// Moves on to another rotation, and keeps walls and features that support a normal only within `slack` radians:
     /// what a motion that turns by up to `slack` may meet.
     pub fn turn_with_slack(&mut self, rotation: &DMat3, slack: f64) {
-        self.turn_within(rotation, slack.max(ROUNDING), -slack.max(ROUNDING));
+        self.turn_within(rotation, slack.max(ROUNDING), -OVERHANG);
     }
 
     fn turn_within(&mut self, rotation: &DMat3, slack: f64, lowest: f64) {
