@@ -12,6 +12,8 @@
 
 mod motion;
 mod projection;
+#[cfg(test)]
+mod tests;
 mod trajectory;
 
 pub use trajectory::{Touch, Trajectory, Waypoint};

@@ -51,6 +51,8 @@ const COARSE_SHARE: f64 = 1.0 / 64.0;
 const REST_SHARE: f64 = 1.0 / 256.0;
 /// A gentle slope: what a curvature of 1/(0.01 D) makes of the smallest such step.
 const GENTLE: f64 = 0.01;
+/// How many contacts one step may discover before it is halved: the facets around a corner.
+const MAX_CUTS: usize = 6;
 /// A fall of this many allowed surprises is a fall off an edge.
 const FALL: f64 = 1.0;
 /// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
@@ -150,7 +152,7 @@ impl<'a> Motion<'a> {
         let longest = self.settings.step;
         let (mut u, mut length) = self.displacement(pace);
         let mut fresh = true;
-        let mut last_rise = f64::INFINITY;
+        let mut cuts = 0;
         loop {
             if length <= REST * pace.step && pace.reach >= MAX_REACH {
                 return Advance::Ended(Outcome::Jammed, *state);
@@ -169,8 +171,8 @@ impl<'a> Motion<'a> {
             let climbs = z > state.cor.z + ROUNDING;
             let halve = if rise > allowed || climbs {
                 // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
-                if rise < 0.5 * last_rise && self.cut(&landed, rise, &u) {
-                    last_rise = rise;
+                if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
+                    cuts += 1;
                     fresh = false;
                     (u, length) = self.displacement(pace);
                     continue;
@@ -197,7 +199,7 @@ impl<'a> Motion<'a> {
             self.gather(state, pace.step);
             (u, length) = self.displacement(pace);
             fresh = true;
-            last_rise = f64::INFINITY;
+            cuts = 0;
         }
     }
 
@@ -237,19 +239,28 @@ impl<'a> Motion<'a> {
         self.rows.clear();
         self.gaps.clear();
         let axes = self.axes(state);
-        for contact in &self.contacts {
+        let contacts = std::mem::take(&mut self.contacts);
+        for contact in &contacts {
             let clear = if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 };
             let row = self.row(contact, state, &axes);
             let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
             // Corners, edges and facets that meet at one point say the same thing several times.
-            let known = self.rows.iter().zip(&self.gaps).any(|(r, g)| {
+            self.learn(row, gap);
+        }
+        self.contacts = contacts;
+    }
+
+    /// Adds a row unless it is known; says whether it was new.
+    fn learn(&mut self, row: Vector, gap: f64) -> bool {
+        let known =
+            self.rows.iter().zip(&self.gaps).any(|(r, g)| {
                 (g - gap).abs() < SAME && r.iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
             });
-            if !known {
-                self.rows.push(row);
-                self.gaps.push(gap);
-            }
+        if !known {
+            self.rows.push(row);
+            self.gaps.push(gap);
         }
+        !known
     }
 
     /// What a displacement does to the gap of a contact.
@@ -281,9 +292,7 @@ impl<'a> Motion<'a> {
             let here = there - dot(&row, u);
             // A contact this step already respects tells nothing new.
             if there < -OVERLAP && here > 0.25 * there {
-                self.rows.push(row);
-                self.gaps.push(here.max(0.0));
-                added = true;
+                added |= self.learn(row, here.max(0.0));
             }
         }
         self.carrying = carrying;

@@ -1,0 +1,193 @@
+//! Closed forms and invariants of single motions. Agreement with an independent engine: `tests/trials.rs`.
+
+use super::{Settings, outcome, run, trace};
+use crate::acceptance::{Domain, Outcome, Warning};
+use crate::connector::Connector;
+use crate::contact::Pair;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::exec::{Cancelled, Exec};
+use crate::pose::{CorPose, Dof, DofSet, PoseError, face_from_cor};
+use glam::DVec3;
+use proptest::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::atomic::Ordering;
+
+fn pair(family: Family, change: impl FnOnce(&mut Alignment)) -> Pair {
+    let mut alignment = Alignment::default_for(Some(family));
+    change(&mut alignment);
+    let connector = ConnectorSpec::Family(FamilySpec::new(family));
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
+fn at(x: f64, y: f64) -> PoseError {
+    PoseError { x, y, ..PoseError::default() }
+}
+
+fn lateral(alignment: &mut Alignment) {
+    alignment.free = [Dof::X, Dof::Y].into_iter().collect();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Rotations locked, the saddle's acceptance is the diamond |x| + |y| < 1 (spec 2; ZRAA 2).
+    #[test]
+    fn the_saddle_accepts_its_diamond(x in -1.2..1.2f64, y in -1.2..1.2f64) {
+        // Closer to the border than the alignment tolerance either answer is right.
+        prop_assume!((x.abs() + y.abs() - 1.0).abs() > 1e-3 && x.abs() > 1e-3 && y.abs() > 1e-3);
+        let pair = pair(Family::XFace3d, lateral);
+        let end = outcome(&pair, &at(x, y), &Settings::default()).outcome;
+        prop_assert_eq!(end == Outcome::Aligned, x.abs() + y.abs() < 1.0, "{:?}", end);
+    }
+
+    /// Rotations locked, the pyramid accepts where its apex is over the socket: |x|, |y| < ½.
+    #[test]
+    fn the_pyramid_accepts_its_socket(x in -0.9..0.9f64, y in -0.9..0.9f64) {
+        let reach = x.abs().max(y.abs());
+        prop_assume!((reach - 0.5).abs() > 1e-3);
+        let pair = pair(Family::Pyramid, lateral);
+        let end = outcome(&pair, &at(x, y), &Settings::default()).outcome;
+        prop_assert_eq!(end == Outcome::Aligned, reach < 0.5, "{:?}", end);
+    }
+
+    /// The height never rises along a motion, and every waypoint touches.
+    #[test]
+    fn motions_fall_in_contact(
+        family in proptest::sample::select(vec![Family::Pyramid, Family::XFace3d, Family::VFace, Family::XFace]),
+        error in proptest::array::uniform5(-0.7..0.7f64), cor in -0.7..0.7f64,
+    ) {
+        let pair = pair(family, |a| a.center_of_rotation = cor);
+        let free = pair.alignment.free;
+        let mut start = error;
+        for dof in Dof::ALL.into_iter().filter(|d| !free.contains(*d)) {
+            start[dof.index()] = 0.0;
+        }
+        let path = trace(&pair, &PoseError::from_array(start), &Settings::default());
+        for pairs in path.waypoints.windows(2) {
+            // Steps that fall off an edge or end at a wall may rise by no more than rounding.
+            prop_assert!(pairs[1].height <= pairs[0].height + 1e-6, "{pairs:?}");
+            prop_assert!(pairs[1].travelled >= pairs[0].travelled);
+        }
+        for waypoint in &path.waypoints {
+            let pose = CorPose::from_error(&waypoint.error, cor, free);
+            let height = pair.height(&pose).unwrap();
+            prop_assert!((height - waypoint.height).abs() < 1e-9, "{height} {waypoint:?}");
+        }
+    }
+
+    /// Mirrored poses of a mirrored pair end alike.
+    #[test]
+    fn a_mirrored_pose_ends_mirrored(x in -0.8..0.8f64, pitch in -1.4..1.4f64) {
+        let pair = pair(Family::VFace, |a| a.center_of_rotation = 0.5);
+        let settings = Settings::default();
+        let a = outcome(&pair, &PoseError { x, pitch, ..PoseError::default() }, &settings);
+        let b = outcome(&pair, &PoseError { x: -x, pitch: -pitch, ..PoseError::default() }, &settings);
+        prop_assert_eq!(a.outcome, b.outcome);
+        prop_assert!((a.error.x + b.error.x).abs() < 1e-6 && (a.error.pitch + b.error.pitch).abs() < 1e-6);
+    }
+}
+
+/// From a single contact the motion starts along −M⁻¹∇h: in (x, y, ρ·ω) opposite to (∂h/∂x, ∂h/∂y, ∂h/∂ω / ρ).
+#[test]
+fn the_first_step_is_the_steepest_in_the_metric() {
+    let error = PoseError { x: 0.21, y: 0.05, roll: 0.3, pitch: -0.2, yaw: 0.1 };
+    for rho in [0.3, 1.0] {
+        let pair = pair(Family::Pyramid, |a| {
+            a.center_of_rotation = 0.4;
+            a.rotation_length = rho;
+        });
+        let settings = Settings { step: 1e-4, ..Settings::default() };
+        let path = trace(&pair, &error, &settings);
+        let [first, second] = [&path.waypoints[0], &path.waypoints[1]];
+        assert_eq!(first.touches.len(), 1, "one contact to start from");
+        let pose = CorPose::from_error(&error, 0.4, DofSet::ALL);
+        let cor = pose.lateral.extend(first.height);
+        let touch = first.touches[0];
+        let contact = crate::contact::Contact { gap: 0.0, normal: touch.normal, point: touch.point };
+        let (slope, turn) = contact.gradient(cor);
+        let next = CorPose::from_error(&second.error, 0.4, DofSet::ALL);
+        let moved = next.lateral - pose.lateral;
+        // The rotation vector of a small turn is half the antisymmetric part of R' Rᵀ.
+        let r = next.rotation * pose.rotation.transpose();
+        let omega =
+            DVec3::new(r.y_axis.z - r.z_axis.y, r.z_axis.x - r.x_axis.z, r.x_axis.y - r.y_axis.x) * 0.5;
+        let went = [moved.x, moved.y, omega.x * rho, omega.y * rho, omega.z * rho];
+        let steepest = [-slope[0], -slope[1], -turn.x / rho, -turn.y / rho, -turn.z / rho];
+        let dot = |a: &[f64; 5], b: &[f64; 5]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let cosine = dot(&went, &steepest) / (dot(&went, &went) * dot(&steepest, &steepest)).sqrt();
+        // The direction turns by the curvature times the step, 1e-4 here: the cosine by its square.
+        assert!(cosine > 1.0 - 1e-6, "ρ = {rho}: {cosine}");
+    }
+}
+
+#[test]
+fn passing_by_is_missed_and_keeps_the_pose() {
+    let pair = pair(Family::Pyramid, lateral);
+    let end = outcome(&pair, &at(1.3, 0.0), &Settings::default());
+    assert_eq!(end.outcome, Outcome::Missed);
+    assert_eq!(end.error, at(1.3, 0.0));
+}
+
+#[test]
+fn a_quarter_turn_counts_where_declared() {
+    let quarter = PoseError { yaw: FRAC_PI_2, ..PoseError::default() };
+    let settings = Settings::default();
+    assert_eq!(outcome(&pair(Family::Pyramid, |_| ()), &quarter, &settings).outcome, Outcome::Jammed);
+    let fourfold = pair(Family::Pyramid, |a| a.symmetry = 4);
+    assert_eq!(outcome(&fourfold, &quarter, &settings).outcome, Outcome::Aligned);
+}
+
+#[test]
+fn a_locked_translation_stays_at_the_centre_of_rotation() {
+    let pair = pair(Family::Pyramid, |a| {
+        a.free = [Dof::X, Dof::Pitch].into_iter().collect();
+        a.center_of_rotation = 0.5;
+    });
+    let path = trace(&pair, &PoseError { x: 0.1, pitch: 0.3, ..PoseError::default() }, &Settings::default());
+    assert!(path.waypoints.len() > 5);
+    for waypoint in &path.waypoints {
+        let rotation = waypoint.error.rotation();
+        assert!((waypoint.error.y - face_from_cor(&rotation, 0.5).y).abs() < 1e-12);
+        assert_eq!((waypoint.error.roll, waypoint.error.yaw), (0.0, 0.0));
+    }
+}
+
+#[test]
+fn a_spent_budget_is_undecided_and_said() {
+    let pair = pair(Family::Pyramid, |_| ());
+    let settings = Settings { max_steps: 2, ..Settings::default() };
+    let domain = Domain::Poses(vec![at(0.3, 0.1), at(0.0, 0.0)]);
+    let (acceptance, _) = run(&pair, domain, &settings, &Exec::new()).unwrap();
+    assert_eq!(acceptance.outcomes, [Outcome::Undecided, Outcome::Aligned]);
+    assert_eq!(acceptance.warnings, [Warning::Undecided { cells: 1 }]);
+}
+
+#[test]
+fn a_stop_is_obeyed() {
+    let pair = pair(Family::Pyramid, |_| ());
+    let exec = Exec::new();
+    exec.cancel_flag().store(true, Ordering::Relaxed);
+    let domain = Domain::Poses(vec![at(0.3, 0.1)]);
+    assert_eq!(run(&pair, domain, &Settings::default(), &exec).err(), Some(Cancelled));
+}
+
+/// Lips and pins have vertical walls; a motion must be followed past them to its end.
+#[test]
+fn walls_are_followed_to_the_end() {
+    for family in [Family::XFace3dLocking, Family::PinHole] {
+        let pair = pair(family, |_| ());
+        for k in 0..12 {
+            let a = f64::from(k);
+            let error = PoseError {
+                x: 0.03 * a.sin(),
+                y: 0.03 * (1.7 * a).cos(),
+                roll: 0.06 * (2.1 * a).sin(),
+                pitch: 0.06 * (0.9 * a).cos(),
+                yaw: 0.05 * (1.3 * a).sin(),
+            };
+            let end = outcome(&pair, &error, &Settings::default());
+            assert_eq!(end.outcome, Outcome::Aligned, "{family:?} {error:?} ended at {:?}", end.error);
+        }
+    }
+}
