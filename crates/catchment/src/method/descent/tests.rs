@@ -65,8 +65,9 @@ proptest! {
         }
         let path = trace(&pair, &PoseError::from_array(start), &Settings::default());
         for pairs in path.waypoints.windows(2) {
-            // Steps that fall off an edge or end at a wall may rise by no more than rounding.
-            prop_assert!(pairs[1].height <= pairs[0].height + 1e-6, "{pairs:?}");
+            // Past a corner that no contact announced a motion is carried by the smallest step, 0.02/4096 D = 5e-6 D, up
+            // slopes of at most 20 (steeper ones are walls): 1e-4.
+            prop_assert!(pairs[1].height <= pairs[0].height + 1e-4, "{pairs:?}");
             prop_assert!(pairs[1].travelled >= pairs[0].travelled);
         }
         for waypoint in &path.waypoints {
