@@ -4,7 +4,9 @@ mod check;
 mod completions;
 mod man;
 mod new;
+mod reproduce;
 mod schema;
+mod zraa;
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -15,6 +17,8 @@ use clap::Subcommand;
 pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
+    Zraa(zraa::ZraaArgs),
+    Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
     Completions(completions::CompletionsArgs),
     Man(man::ManArgs),
@@ -26,6 +30,8 @@ impl Command {
         match self {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
+            Self::Zraa(args) => zraa::run(&args),
+            Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),
             Self::Completions(args) => completions::run(&args),
             Self::Man(args) => man::run(&args),
