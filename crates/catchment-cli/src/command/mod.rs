@@ -4,8 +4,10 @@ mod check;
 mod completions;
 mod man;
 mod new;
+mod outcome;
 mod reproduce;
 mod schema;
+mod trace;
 mod zraa;
 
 use crate::exit::ExitStatus;
@@ -17,6 +19,8 @@ use clap::Subcommand;
 pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
+    Outcome(outcome::OutcomeArgs),
+    Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
     Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
@@ -30,6 +34,8 @@ impl Command {
         match self {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
+            Self::Outcome(args) => outcome::run(&args),
+            Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),
