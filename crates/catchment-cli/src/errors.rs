@@ -29,20 +29,16 @@ impl Objection {
 pub(crate) fn checked(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Objection> {
     let read = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
     let value = read.map_err(|c| Objection { message: format!("{}: {c}", dof.name()), help: c.help() })?;
-    let (limit, unit, help) = if dof.is_rotation() {
-        (HALF_TURN, "rad", "angles lie between -pi and pi (-180 and 180 deg); a bare number is in radians")
-    } else {
-        (
-            FARTHEST,
-            "D",
-            "offsets lie between -100 and 100 D; a bare number is in D, the width of the connector",
-        )
-    };
-    if !(value.abs() <= limit) {
-        return Err(Objection::new(format!("{} = {value} {unit} is out of range", dof.name()), help));
-    }
     if value != 0.0 && !design.alignment.free.contains(dof) {
         return Err(locked(dof, quantity));
+    }
+    let (limit, help) = if dof.is_rotation() {
+        (HALF_TURN, "angles lie between -pi and pi (-180 and 180 deg); a bare number is in radians")
+    } else {
+        (FARTHEST, "offsets lie between -100 and 100 D; a bare number is in D, the width of the connector")
+    };
+    if value.abs() > limit {
+        return Err(Objection::new(format!("{} = {quantity} is out of range", dof.name()), help));
     }
     Ok(value)
 }

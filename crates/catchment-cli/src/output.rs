@@ -90,9 +90,19 @@ pub(crate) fn to_stdout(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Tells the person something that is no data. Nobody is left to tell when stderr itself is gone.
-pub(crate) fn to_stderr(text: &str) {
-    let _ = io::stderr().lock().write_all(text.as_bytes());
+/// Tells the person something beside the data, a line each.
+pub(crate) fn to_stderr(lines: &[String]) {
+    let mut stderr = io::stderr().lock();
+    for line in lines {
+        // Nobody is left to tell when stderr itself is gone.
+        let _ = writeln!(stderr, "{line}");
+    }
+}
+
+/// A number with all its digits, as tables for programs have it.
+pub(crate) fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
 }
 
 /// Writes a file under a temporary name beside its place and moves it there when it is complete.

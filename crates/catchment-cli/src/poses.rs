@@ -124,6 +124,7 @@ impl Poses {
             let help = "write a header such as x,pitch_deg and one row per pose";
             found.list.push(Finding { message: message.to_owned(), help: Some(help.to_owned()), span: None });
         }
+        found.list.sort_by_key(|finding| finding.span.as_ref().map(|span| span.start));
         if found.list.is_empty() {
             Ok(Self { source, columns, errors })
         } else {

@@ -4,7 +4,7 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{OutputArgs, to_stderr};
+use crate::output::{OutputArgs, number, to_stderr};
 use crate::poses::Poses;
 use catchment::acceptance::{Acceptance, Domain, Outcome};
 use catchment::design::Design;
@@ -73,10 +73,9 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     } else {
         args.output.write(&csv(design, &poses, &ends)?)?;
     }
-    for warning in &warnings {
-        to_stderr(&format!("warning: {warning}\n"));
-    }
-    to_stderr(&summary(&acceptance));
+    let mut said: Vec<String> = warnings.iter().map(|warning| format!("warning: {warning}")).collect();
+    said.push(summary(&acceptance));
+    to_stderr(&said);
     Ok(ExitStatus::Done)
 }
 
@@ -85,7 +84,7 @@ fn summary(acceptance: &Acceptance) -> String {
     let parts: Vec<String> =
         Outcome::ALL.iter().zip(acceptance.counts()).map(|(o, n)| format!("{n} {}", o.name())).collect();
     let poses = if count == 1 { "pose" } else { "poses" };
-    format!("{count} {poses}: {}\n", parts.join(", "))
+    format!("{count} {poses}: {}", parts.join(", "))
 }
 
 /// The table as it came, with the outcome and the final errors.
@@ -98,7 +97,7 @@ fn csv(design: &Design, poses: &Poses, ends: &[End]) -> Result<String, Failure> 
     writer.write_record(&header)?;
     for (mut record, end) in records.zip(ends) {
         record.push_field(end.outcome.name());
-        record.extend(poses.in_units(&end.error, design).map(|value| value.to_string()));
+        record.extend(poses.in_units(&end.error, design).map(number));
         writer.write_record(&record)?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)

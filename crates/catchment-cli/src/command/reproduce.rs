@@ -3,7 +3,7 @@
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{to_stderr, to_stdout};
+use crate::output::{number, to_stderr, to_stdout};
 use catchment::acceptance::Warning;
 use catchment::study::reproduce::{TABLES, TableComparison, reproduce};
 use clap::Args;
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         to_stdout(&text(&compared)?)?;
     }
     if fitted {
-        to_stderr(&format!("warning: {warning}\n"));
+        to_stderr(&[format!("warning: {warning}")]);
     }
     Ok(ExitStatus::Done)
 }
@@ -96,12 +96,12 @@ fn csv(tables: &[TableComparison]) -> Result<String, Failure> {
             for (column, entry) in table.columns.iter().zip(entries) {
                 writer.write_record([
                     table.table,
-                    &row.to_string(),
-                    &column.to_string(),
+                    &number(*row),
+                    &number(*column),
                     table.unit,
-                    &entry.published.to_string(),
-                    &entry.ours.to_string(),
-                    &entry.ratio.to_string(),
+                    &number(entry.published),
+                    &number(entry.ours),
+                    &number(entry.ratio),
                     &entry.exact.to_string(),
                     &entry.matches.to_string(),
                     entry.known_difference.unwrap_or(""),

@@ -4,7 +4,7 @@ use crate::args::DesignArgs;
 use crate::errors::{Objection, checked};
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stderr, to_stdout};
+use crate::output::{FileArgs, number, to_stderr, to_stdout};
 use catchment::design::{Design, Quantity, nearest};
 use catchment::method::descent::{self, Settings, Trajectory, Waypoint};
 use catchment::pose::{Dof, PoseError};
@@ -65,9 +65,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
         None => {}
     }
     to_stdout(&if args.json { json(design, &error, &path, &doubts) } else { table(design, &path)? })?;
-    for doubt in &doubts {
-        to_stderr(&format!("warning: {doubt}\n"));
-    }
+    to_stderr(&doubts.iter().map(|doubt| format!("warning: {doubt}")).collect::<Vec<_>>());
     Ok(ExitStatus::Done)
 }
 
@@ -223,12 +221,12 @@ fn csv(path: &Trajectory) -> Result<Vec<u8>, Failure> {
         "waypoint travelled x y roll pitch yaw height point_x point_y point_z normal_x normal_y normal_z";
     writer.write_record(head.split(' '))?;
     for (k, w) in path.waypoints.iter().enumerate() {
-        let mut line = vec![k.to_string(), w.travelled.to_string()];
-        line.extend(w.error.to_array().map(|value| value.to_string()));
-        line.push(w.height.to_string());
+        let mut line = vec![k.to_string(), number(w.travelled)];
+        line.extend(w.error.to_array().map(number));
+        line.push(number(w.height));
         for touch in &w.touches {
             let contact = touch.point.to_array().into_iter().chain(touch.normal.to_array());
-            writer.write_record(line.iter().cloned().chain(contact.map(|value| value.to_string())))?;
+            writer.write_record(line.iter().cloned().chain(contact.map(number)))?;
         }
         if w.touches.is_empty() {
             line.extend(std::iter::repeat_n(String::new(), 6));

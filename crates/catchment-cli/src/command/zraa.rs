@@ -4,7 +4,7 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stdout};
+use crate::output::{FileArgs, number, to_stdout};
 use catchment::design::Design;
 use catchment::method::zraa::{Settings, Zraa, circle_bounds, run as accepted_offsets};
 use catchment::report::figure;
@@ -127,14 +127,14 @@ fn csv(zraa: &Zraa) -> Result<Vec<u8>, Failure> {
         Zraa::Interval { axis, from, to } => {
             writer.write_record([axis.name()])?;
             for end in [from, to] {
-                writer.write_record([end.to_string()])?;
+                writer.write_record([number(*end)])?;
             }
         }
         Zraa::Region { polygons, .. } => {
             writer.write_record(["polygon", "x", "y"])?;
             for (k, polygon) in polygons.iter().enumerate() {
                 for corner in polygon {
-                    writer.write_record([k.to_string(), corner.x.to_string(), corner.y.to_string()])?;
+                    writer.write_record([k.to_string(), number(corner.x), number(corner.y)])?;
                 }
             }
         }

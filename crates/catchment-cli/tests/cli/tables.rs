@@ -48,7 +48,7 @@ fn zraa_for_people_and_its_files() {
     assert!(fs::read(dir.path().join("a.png")).unwrap().starts_with(b"\x89PNG"));
     let csv = fs::read_to_string(dir.path().join("a.csv")).unwrap();
     assert!(csv.starts_with("polygon,x,y\n0,") && csv.lines().count() >= 5, "{csv}");
-    assert!(with("a.svg").ends_with("cannot write a.svg: it exists\n  help: --force replaces it\n"));
+    insta::assert_snapshot!("zraa_over_a_file", with("a.svg"));
     assert!(with("a.jpg").contains("let its name end in .svg, .png, .csv"));
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
 }
