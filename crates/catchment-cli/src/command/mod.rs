@@ -6,6 +6,7 @@ mod man;
 mod new;
 mod outcome;
 mod reproduce;
+mod run;
 mod schema;
 mod trace;
 mod zraa;
@@ -19,6 +20,7 @@ use clap::Subcommand;
 pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
+    Run(Box<run::RunArgs>),
     Outcome(outcome::OutcomeArgs),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
@@ -34,6 +36,7 @@ impl Command {
         match self {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
+            Self::Run(args) => run::run(&args),
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),

@@ -38,8 +38,9 @@ const TRIANGLE: usize = 50;
 fn refused(name: &str, spoil: impl Fn(&Path), said: &str) {
     let dir = folder(spoil);
     fs::write(dir.path().join("poses.csv"), "x\n0.1\n").unwrap();
-    let commands: [&[&str]; 4] = [
+    let commands: [&[&str]; 5] = [
         &["check", "design.toml"],
+        &["run", "design.toml", "-o", "out"],
         &["zraa", "design.toml", "-o", "out.svg"],
         &["outcome", "design.toml", "--poses", "poses.csv", "-o", "out.csv"],
         &["trace", "design.toml", "--pose", "x=0.1", "-o", "out.png"],
