@@ -186,7 +186,7 @@ fn load(path: &Path) -> Result<SourceText, Failure> {
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
-        let line = 1 + error.as_bytes()[..valid].iter().filter(|b| **b == b'\n').count();
+        let line = error.as_bytes()[..valid].split(|b| *b == b'\n').count();
         let help = Some("save it as UTF-8".to_owned());
         Failure::with_help(format!("{}, line {line}: not UTF-8 text", shown.display()), help)
     })?;
@@ -265,8 +265,12 @@ fn header(
         }
     }
     if columns.iter().all(Option::is_none) && !wrong {
-        let help = "the first line names the columns: x, y, roll, pitch, yaw, in D and radians, or with a unit as \
-                    in x_mm and pitch_deg";
+        let help = if record.len() == 1 && record[0].contains([';', '\t']) {
+            "separate the columns with commas"
+        } else {
+            "the first line names the columns: x, y, roll, pitch, yaw, in D and radians, or with a unit as in \
+             x_mm and pitch_deg"
+        };
         found.push(
             span(0).start..span(record.len() - 1).end,
             Objection::new("no column is a pose error", help),

@@ -114,7 +114,7 @@ fn json(design: &Design, zraa: &Zraa) -> String {
             report["area_d2"] = (*area).into();
             report["circle_area_d2"] = bounds.into();
             report["polygons_d"] =
-                polygons.iter().map(|p| p.iter().map(|v| v.to_array()).collect::<Vec<_>>()).collect();
+                polygons.iter().map(|p| p.iter().map(|v| [v.x, v.y]).collect::<Vec<_>>()).collect();
         }
     }
     format!("{report:#}\n")

@@ -83,6 +83,7 @@ fn everything_that_is_wrong_with_a_table_at_once() {
     for (content, said) in [
         (&b""[..], "the table is empty"),
         (b"x,pitch\n", "the table has no rows"),
+        (b"x;pitch\n0,1;0,2\n", "separate the columns with commas"),
         (b"x\n\xff\xfe\n", "line 2: not UTF-8 text"),
     ] {
         fs::write(dir.path().join("poses.csv"), content).unwrap();
