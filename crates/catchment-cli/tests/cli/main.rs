@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up should stop")]
 
+mod area;
 mod check;
 mod meshes;
 mod new;

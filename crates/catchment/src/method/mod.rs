@@ -6,6 +6,8 @@ pub mod flood;
 pub mod kinematic;
 pub mod zraa;
 
+use crate::connector::Half;
+use crate::contact::Pair;
 use crate::landscape::Resolution;
 use serde::{Deserialize, Serialize};
 
@@ -40,19 +42,70 @@ impl Method {
     }
 
     /// Cells per axis when nothing was said, for one to five axes: an answer within seconds, at 0.1 to 0.5 ms per
-    /// descent and about 1 µs per flooded cell. Odd, so that a cell is centred on the mated pose.
-    pub const fn default_cells(self) -> [usize; 5] {
+    /// descent between simple halves and about 1 µs per flooded cell. Odd, so that a cell is centred on the mated
+    /// pose.
+    pub fn default_cells(self, pair: &Pair) -> [usize; 5] {
+        const SIMPLE: [usize; 5] = [1001, 101, 25, 11, 7];
         match self {
-            Self::Descent => [1001, 101, 25, 11, 7],
+            Self::Descent => {
+                let share = affordable(pair);
+                let mut axes = 0.0;
+                SIMPLE.map(|cells| {
+                    axes += 1.0;
+                    let cells = cells as f64 * share.powf(1.0 / axes);
+                    ((cells as usize).saturating_sub(1) / 2 * 2 + 1).max(3)
+                })
+            }
             Self::Flood => Resolution::DEFAULT_CELLS,
         }
     }
 
     /// Random poses followed exactly beside the grid when nothing was said. They cost a flooded run its speed.
-    pub const fn default_samples(self) -> usize {
+    pub fn default_samples(self, pair: &Pair) -> usize {
+        const SIMPLE: f64 = 4000.0;
+        const LEAST: f64 = 200.0;
         match self {
-            Self::Descent => 4000,
+            Self::Descent => (SIMPLE * affordable(pair)).max(LEAST) as usize,
             Self::Flood => 0,
         }
+    }
+}
+
+/// How many descents can be afforded, as a share of what simple halves allow: round ones have many facets, and the
+/// time of a descent grows with about the cube of their number.
+fn affordable(pair: &Pair) -> f64 {
+    const SIMPLE: f64 = 64.0;
+    let facets = |half: &Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
+    let facets = (facets(&pair.fixed) + facets(&pair.moving)) as f64;
+    (SIMPLE / facets.max(SIMPLE)).powi(3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+    use crate::pose::{DofSet, Mount};
+
+    fn pair(spec: FamilySpec) -> Pair {
+        let alignment = Alignment::new(DofSet::ALL, Mount::X);
+        let connector = ConnectorSpec::Family(spec);
+        let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+        Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+    }
+
+    #[test]
+    fn round_halves_get_fewer_descents_and_every_default_is_odd() {
+        let simple = pair(FamilySpec::new(Family::Pyramid));
+        let round = pair(FamilySpec { chord_error: 0.0005, ..FamilySpec::new(Family::Cone) });
+        assert_eq!(Method::Descent.default_cells(&simple), [1001, 101, 25, 11, 7]);
+        assert_eq!(Method::Descent.default_samples(&simple), 4000);
+        assert!(Method::Descent.default_samples(&round) < 4000);
+        for (few, many) in
+            Method::Descent.default_cells(&round).iter().zip(Method::Descent.default_cells(&simple))
+        {
+            assert!(*few < many && *few >= 3 && few % 2 == 1, "{few}");
+        }
+        assert_eq!(Method::Flood.default_cells(&round), Resolution::DEFAULT_CELLS);
     }
 }

@@ -66,7 +66,7 @@ struct HowArgs {
     /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
-    /// Random poses followed exactly beside the grid, 0 for none [default: 4000 with descent, 0 with flood]
+    /// Random poses followed exactly beside the grid, 0 for none [default: 4000 with descent (fewer for round halves), 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
     samples: Option<u32>,
     /// Seed of the random poses
@@ -112,7 +112,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let grid = how
         .resolution
         .unwrap_or_default()
-        .grid(&design.alignment, &how.method.default_cells())
+        .grid(&design.alignment, &how.method.default_cells(&pair))
         .map_err(|error| Failure::with_help(format!("--resolution: {error}"), None))?;
     let job = Job {
         design,
@@ -120,7 +120,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         grid,
         method: how.method,
         depth_tolerance: how.depth_tolerance,
-        samples: how.samples.map_or(how.method.default_samples(), |n| n as usize),
+        samples: how.samples.map_or_else(|| how.method.default_samples(&pair), |n| n as usize),
         seed: how.seed,
         heights: place.wants_heights(),
     };

@@ -16,8 +16,8 @@ pub(super) const NAMES: [&str; 5] = ["overview", "slices", "heights", "section",
 
 /// Cells per axis of the slice in the overview, and of the many in the slices, where the method decides each cell
 /// by itself and the grid is coarser.
-const OVERVIEW_CELLS: usize = 101;
-const SLICE_CELLS: usize = 41;
+const OVERVIEW_CELLS: usize = 71;
+const SLICE_CELLS: usize = 25;
 
 /// Draws all that the job has: maps need two free errors. Also the names of those left out, with the reason.
 pub(super) fn draw(
@@ -79,10 +79,12 @@ fn finer_slices(job: &Job, main: [Dof; 2], exec: &Exec) -> Result<Vec<Acceptance
     if job.method != Method::Descent || job.grid.axes.len() < 3 {
         return Ok(Vec::new());
     }
+    // Where descents are dear, so are their slices.
+    let affordable = job.method.default_cells(job.pair)[1];
     let mut slices = Vec::new();
     for pair in slice::pairs(&job.grid) {
         let least = if pair == main { OVERVIEW_CELLS } else { SLICE_CELLS };
-        let finer = |axis: &GridAxis| GridAxis { cells: axis.cells.max(least), ..*axis };
+        let finer = |axis: &GridAxis| GridAxis { cells: axis.cells.max(least.min(affordable)), ..*axis };
         let axes = job.grid.axes.iter().filter(|a| pair.contains(&a.dof)).map(finer).collect();
         slices.push(descend(job.pair, Domain::Grid(Grid { axes }), exec)?);
     }

@@ -93,7 +93,11 @@ impl Places<'_> {
         let heights = computed.landscape.as_ref().map(|landscape| &landscape.heights[..]);
         if let Some(path) = self.figures {
             write::folder(path, has_only_pictures, |folder| write_all(folder, &pictures, exec))?;
-            notes.push(format!("wrote {} pictures into {}", pictures.len(), path.display()));
+            notes.push(format!(
+                "wrote {} pictures as PNG and SVG into {}",
+                pictures.len() / 2,
+                path.display()
+            ));
         }
         if let Some(path) = self.group {
             exec.check()?;
@@ -109,7 +113,10 @@ impl Places<'_> {
                 Ok(exec.check()?)
             })?;
             let place = path.display();
-            notes.push(format!("wrote {place}: {REPORT}, {RESULT}, {} pictures", pictures.len()));
+            notes.push(format!(
+                "wrote {place}: {REPORT}, {RESULT}, {} pictures as PNG and SVG",
+                pictures.len() / 2
+            ));
         }
         Ok(notes)
     }
@@ -117,7 +124,7 @@ impl Places<'_> {
 
 /// Every picture as SVG and PNG, with the name of its file.
 fn encode(drawn: &[(&'static str, Picture)], exec: &Exec) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let mut files = Vec::new();
+    let mut files = Vec::with_capacity(2 * drawn.len());
     for (name, picture) in drawn {
         exec.check()?;
         files.push((format!("{name}.png"), picture.png(PNG_SCALE)?));

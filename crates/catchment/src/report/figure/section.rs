@@ -66,7 +66,11 @@ pub(super) fn describe(design: &Design, placement: &Placement) -> String {
         .filter(|(_, value)| value.abs() > 1e-9)
         .map(|(dof, value)| units.value(dof, value))
         .collect();
-    if words.is_empty() { "aligned".to_owned() } else { words.join(", ") }
+    if !words.is_empty() {
+        return words.join(", ");
+    }
+    let apart = placement.height + design.alignment.center_of_rotation;
+    if apart > 1e-9 { "aligned, drawn apart".to_owned() } else { "aligned".to_owned() }
 }
 
 /// A section with its extent: shared by the pictures that show one.

@@ -1,0 +1,218 @@
+//! `catchment run`: what it prints, what it writes, what it refuses.
+
+use super::{catchment, run};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+const V_FACE: &str =
+    "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+
+/// A folder with a design in it.
+fn home() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("v.toml"), V_FACE).unwrap();
+    dir
+}
+
+fn entries(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// Exit code and stdout.
+fn json(folder: &Path, args: &[&str]) -> (i32, String) {
+    let output = catchment(folder).args(args).output().unwrap();
+    (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+}
+
+#[test]
+fn the_table_is_printed_and_no_file_written() {
+    let home = home();
+    insta::assert_snapshot!(
+        "flood_table",
+        run(home.path(), &["run", "v.toml", "--method", "flood", "--resolution", "21"])
+    );
+    assert_eq!(entries(home.path()), ["v.toml"]);
+}
+
+#[test]
+fn json_is_the_same_for_any_number_of_threads() {
+    let home = home();
+    let report = |threads: &str| {
+        let args = ["run", "v.toml", "--resolution", "9", "--samples", "50", "--json", "--threads", threads];
+        let (code, text) = json(home.path(), &args);
+        assert_eq!(code, 0);
+        let mut report: Value = serde_json::from_str(&text).unwrap();
+        assert!(report["timing"].take()["total_s"].as_f64().unwrap() > 0.0);
+        (report["acceptance"].clone(), text.split("\"timing\"").next().unwrap().to_owned())
+    };
+    let (acceptance, one) = report("1");
+    assert_eq!(report("2").1, one);
+    assert_eq!(report("4").1, one);
+    assert_eq!(acceptance["cells"], 81);
+    assert_eq!(acceptance["sample"]["poses"], 50);
+    let [lo, hi] = [0, 1].map(|k| acceptance["sum_ci95"][k].as_f64().unwrap());
+    // The exact Sum is 2.39; the interval of fifty poses is wide, and that of this seed holds it.
+    assert!(lo < 2.39 && 2.39 < hi && hi - lo > 1.0, "{lo} {hi}");
+}
+
+#[test]
+fn another_seed_gives_another_sample() {
+    let home = home();
+    let sample = |seed: &str| {
+        let args = ["run", "v.toml", "--resolution", "3", "--samples", "300", "--json", "--seed", seed];
+        let report: Value = serde_json::from_str(&json(home.path(), &args).1).unwrap();
+        report["acceptance"]["sample"]["outcomes"].clone()
+    };
+    assert_ne!(sample("1"), sample("2"));
+}
+
+#[test]
+fn requirements_decide_the_exit_code() {
+    let home = home();
+    let outcome = |requirements: &[&str]| {
+        let mut args = vec!["run", "v.toml", "--method", "flood", "--resolution", "21"];
+        args.extend(["--error-uniform", "x=0.1", "--json"]);
+        args.extend(requirements.iter().flat_map(|r| ["--require", r]));
+        let output = catchment(home.path()).args(args).output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(outcome(&["onaa.edge>=0.1", "success.probability == 1", "tolerances.x.plus>0.1"]).0, 0);
+    let (code, stderr) = outcome(&["onaa.edge>=0.1", "onaa.edge>=0.9", "acceptance.sum<0"]);
+    assert_eq!(code, 1);
+    assert!(stderr.starts_with("not met: onaa.edge >= 0.9 (it is 0."), "{stderr}");
+    assert!(stderr.contains("\nnot met: acceptance.sum < 0 (it is 2."), "{stderr}");
+    let (code, stderr) = outcome(&["ona.edge>=0.1"]);
+    assert!(code == 2 && stderr.contains("did you mean `onaa`?"), "{stderr}");
+    let (code, stderr) = outcome(&["acceptance.sum_ci95.0>=0.1"]);
+    assert!(code == 2 && stderr.contains("the report has no `acceptance.sum_ci95.0`"), "{stderr}");
+    assert_eq!(outcome(&["onaa.edge"]).0, 2);
+}
+
+#[test]
+fn what_cannot_be_computed_is_refused_and_nothing_is_left() {
+    let home = home();
+    let refuse = |args: &[&str]| {
+        let mut all = vec!["run", "v.toml", "-o", "out"];
+        all.extend(args);
+        let text = run(home.path(), &all);
+        assert_eq!(entries(home.path()), ["v.toml"]);
+        text
+    };
+    insta::assert_snapshot!("too_large", refuse(&["--resolution", "100000", "--memory", "1 MB"]));
+    insta::assert_snapshot!("too_many_samples", refuse(&["--samples", "100000000", "--memory", "1 GB"]));
+    insta::assert_snapshot!("axis_not_free", refuse(&["--resolution", "9,yaw=5"]));
+    insta::assert_snapshot!("error_not_free", refuse(&["--error-sigma", "yaw=2 deg"]));
+    insta::assert_snapshot!("tolerance_of_descent", refuse(&["--depth-tolerance", "0.1"]));
+    insta::assert_snapshot!("no_such_method", refuse(&["--method", "flod"]));
+}
+
+#[test]
+fn halves_that_do_not_mate_are_refused_in_their_place() {
+    let cube = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]]";
+    let text = format!(
+        "[connector]\nface_height = 0.5\nfixed.pieces = [{cube}]\nmoving.pieces = [{cube}]\n\
+         [alignment]\nfree = [\"x\"]\n"
+    );
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("cubes.toml"), text).unwrap();
+    let report = run(home.path(), &["run", "cubes.toml", "-o", "out"]);
+    assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{report}");
+    assert!(report.contains("the halves overlap") && report.contains("cubes.toml:2"), "{report}");
+    assert_eq!(entries(home.path()), ["cubes.toml"]);
+}
+
+#[test]
+fn a_folder_holds_report_pictures_and_group() {
+    let home = home();
+    let args = ["run", "v.toml", "--resolution", "15", "--samples", "20", "-o", "out", "--json"];
+    for _ in 0..2 {
+        let (code, printed) = json(home.path(), &args);
+        assert_eq!(code, 0);
+        assert_eq!(fs::read_to_string(home.path().join("out/report.json")).unwrap(), printed);
+    }
+    assert_eq!(entries(home.path()), ["out", "v.toml"]);
+    let out = home.path().join("out");
+    let mut expected: Vec<String> = ["heights", "overview", "section", "slices", "solids"]
+        .iter()
+        .flat_map(|name| [format!("{name}.png"), format!("{name}.svg")])
+        .chain(["report.json".to_owned(), "result.zarr".to_owned()])
+        .collect();
+    expected.sort();
+    assert_eq!(entries(&out), expected);
+    for name in &expected[..] {
+        let bytes = || fs::read(out.join(name)).unwrap();
+        match name.rsplit_once('.').unwrap().1 {
+            "png" => {
+                assert!(bytes().starts_with(b"\x89PNG\r\n\x1a\n") && bytes().ends_with(b"IEND\xaeB`\x82"))
+            }
+            "svg" => assert!(bytes().starts_with(b"<svg") && bytes().trim_ascii_end().ends_with(b"</svg>")),
+            _ => {}
+        }
+    }
+    let root: Value = serde_json::from_slice(&fs::read(out.join("result.zarr/zarr.json")).unwrap()).unwrap();
+    assert_eq!(root["node_type"], "group");
+    assert!(out.join("result.zarr/outcome/zarr.json").exists() && out.join("result.zarr/height").exists());
+}
+
+#[test]
+fn what_is_not_ours_is_kept_and_found_before_anything_is_computed() {
+    let home = home();
+    fs::create_dir(home.path().join("thesis")).unwrap();
+    fs::write(home.path().join("thesis/chapter.tex"), "years of work").unwrap();
+    // A grid that would take hours: the refusal comes first.
+    for place in [["-o", "thesis"], ["--figures", "thesis"], ["-o", "no/where"], ["-o", "v.toml"]] {
+        let report = run(home.path(), &["run", "v.toml", "--resolution", "9999", place[0], place[1]]);
+        assert!(report.starts_with("exit 2\n") && report.contains("cannot write"), "{report}");
+    }
+    assert_eq!(entries(&home.path().join("thesis")), ["chapter.tex"]);
+}
+
+#[test]
+fn one_error_has_no_maps_but_the_halves() {
+    let home = home();
+    let report = run(
+        home.path(),
+        &["run", "v.toml", "--free", "x", "--resolution", "9", "--samples", "0", "--figures", "pictures"],
+    );
+    assert!(report.starts_with("exit 0\n"), "{report}");
+    assert_eq!(
+        entries(&home.path().join("pictures")),
+        ["section.png", "section.svg", "solids.png", "solids.svg"]
+    );
+}
+
+/// A run of hours is interrupted; when the signal comes does not matter.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_run_and_leaves_nothing() {
+    use std::io::Read;
+    use std::process::Stdio;
+    let home = home();
+    let mut child = catchment(home.path())
+        .args(["run", "v.toml", "--resolution", "3000", "-o", "out"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Until the handler stands the signal kills the process without a code: wait for its threads.
+    let tasks = format!("/proc/{}/task", child.id());
+    while Path::new(&tasks).exists() && fs::read_dir(&tasks).map_or(2, Iterator::count) < 3 {
+        std::thread::yield_now();
+    }
+    let pid = child.id().to_string();
+    let mut status = None;
+    while status.is_none() {
+        let sent = std::process::Command::new("kill").args(["-INT", &pid]).status().unwrap();
+        assert!(sent.success());
+        std::thread::sleep(std::time::Duration::from_millis(1000));
+        status = child.try_wait().unwrap();
+    }
+    let mut stderr = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
+    assert_eq!(status.unwrap().code(), Some(130), "{stderr}");
+    assert_eq!(entries(home.path()), ["v.toml"]);
+}
