@@ -1,7 +1,5 @@
 //! Every committed design builds, and its mated pose holds.
 
-#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
-
 use catchment::connector::Connector;
 use catchment::contact::{Pair, mated};
 use catchment::design;
