@@ -1,13 +1,17 @@
 //! All supported elements of a pair at one rotation: the upper envelope, and the contacts near a position.
 
 use super::element::{Element, Features};
-use super::shape::{Corner, Shape, Side};
+use super::shape::{Shape, Side};
 use super::{Contact, Lattice, Pair};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Below this z-component a normal counts as horizontal: such a facet has no height of its own, its rim
 /// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
 const VERTICAL: f64 = 1e-9;
+
+/// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
+/// Facets that lean further back belong to the undersides of the halves.
+const OVERHANG: f64 = 0.5;
 
 /// Sine of the angle by which a feature may fail to support a normal and still count: rounding only.
 const ROUNDING: f64 = 1e-9;
@@ -38,7 +42,7 @@ impl<'a> Envelope<'a> {
     /// Moves on to another rotation, and keeps walls and features that support a normal only within `slack` radians:
     /// what a motion that turns by up to `slack` may meet.
     pub fn turn_with_slack(&mut self, rotation: &DMat3, slack: f64) {
-        self.turn_within(rotation, slack.max(ROUNDING), -slack.max(ROUNDING));
+        self.turn_within(rotation, slack.max(ROUNDING), -OVERHANG);
     }
 
     fn turn_within(&mut self, rotation: &DMat3, slack: f64, lowest: f64) {
@@ -147,7 +151,7 @@ fn collect(
     for (facet, f) in fixed.facets.iter().enumerate().filter(|(_, f)| f.normal.z > lowest) {
         let level = f.normal.dot(fixed.at(f.corners[0]));
         for corner in &moving.corners {
-            if supports(moving, corner, f.normal, slack) {
+            if moving.supports(corner, f.normal, slack) {
                 let features = Features::FacetCorner { facet: facet as u32, vertex: corner.vertex };
                 visit(features, f.normal, f.normal.dot(moving.at(corner.vertex)) - level);
             }
@@ -156,28 +160,15 @@ fn collect(
     for (facet, m) in moving.facets.iter().enumerate().filter(|(_, m)| -m.normal.z > lowest) {
         let level = m.normal.dot(moving.at(m.corners[0]));
         for corner in &fixed.corners {
-            if supports(fixed, corner, m.normal, slack) {
+            if fixed.supports(corner, m.normal, slack) {
                 let features = Features::CornerFacet { vertex: corner.vertex, facet: facet as u32 };
                 visit(features, -m.normal, m.normal.dot(fixed.at(corner.vertex)) - level);
             }
         }
     }
-    for f in &fixed.sides {
-        if fixed.steepest(f).1 <= lowest {
-            continue;
-        }
-        let along = fixed.at(f.ends[1]) - fixed.at(f.ends[0]);
-        for m in &moving.sides {
-            if moving.steepest(m).0 >= -lowest {
-                continue;
-            }
-            let across = along.cross(moving.at(m.ends[1]) - moving.at(m.ends[0]));
-            let length = across.length();
-            // Parallel edges have no normal of their own: their ends speak for them.
-            if length <= ROUNDING {
-                continue;
-            }
-            if let Some(normal) = edge_normal(f, m, across / length, slack).filter(|n| n.z > lowest) {
+    for f in fixed.sides.iter().filter(|f| fixed.steepest(f).1 > lowest) {
+        for m in moving.sides.iter().filter(|m| moving.steepest(m).0 < -lowest) {
+            if let Some(normal) = edge_normal(f, m, slack).filter(|n| n.z > lowest) {
                 let offset = normal.dot(moving.at(m.ends[0]) - fixed.at(f.ends[0]));
                 visit(Features::EdgeEdge { fixed: f.ends, moving: m.ends }, normal, offset);
             }
@@ -185,18 +176,28 @@ fn collect(
     }
 }
 
-/// Whether a corner is its shape's locally extreme point against `toward`: no neighbour further along −`toward`.
-fn supports(shape: &Shape, corner: &Corner, toward: DVec3, slack: f64) -> bool {
-    let v = shape.at(corner.vertex);
-    corner.neighbors.iter().all(|&w| {
-        let d = shape.at(w) - v;
-        toward.dot(d) >= -slack * d.length()
-    })
-}
-
-/// The sense of the common normal that both edges support, if either does.
-fn edge_normal(fixed: &Side, moving: &Side, across: DVec3, slack: f64) -> Option<DVec3> {
-    [across, -across].into_iter().find(|n| {
-        fixed.into.iter().all(|s| n.dot(*s) <= slack) && moving.into.iter().all(|s| n.dot(*s) >= -slack)
-    })
+/// The unit common normal of two edges in the sense that both support, if either does.
+fn edge_normal(fixed: &Side, moving: &Side, slack: f64) -> Option<DVec3> {
+    let across = fixed.along.cross(moving.along);
+    let below = fixed.into.map(|s| across.dot(s));
+    let above = moving.into.map(|s| across.dot(s));
+    // `across` is at most 1 long, so this rejects nothing that the exact test below accepts.
+    let up = below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack);
+    let down = below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack);
+    if !(up || down) {
+        return None;
+    }
+    let length = across.length();
+    // Parallel edges have no normal of their own: their ends speak for them.
+    if length <= ROUNDING {
+        return None;
+    }
+    let slack = slack * length;
+    if up && below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack) {
+        Some(across / length)
+    } else if down && below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack) {
+        Some(across / -length)
+    } else {
+        None
+    }
 }

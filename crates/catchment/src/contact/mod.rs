@@ -17,6 +17,8 @@ mod envelope;
 pub mod mated;
 mod raster;
 mod shape;
+#[cfg(test)]
+mod tests;
 
 pub use envelope::Envelope;
 

@@ -13,14 +13,15 @@
 
 use crate::connector::{Facet, Surface};
 use glam::{DMat3, DVec3};
+use std::ops::Range;
 
 /// A corner that may touch.
 #[derive(Debug, Clone)]
 pub(super) struct Corner {
     /// Index into the vertices.
     pub(super) vertex: u32,
-    /// Its neighbours along edges.
-    pub(super) neighbors: Vec<u32>,
+    /// Which of [`Shape::spokes`] lead from it.
+    pub(super) spokes: Range<u32>,
 }
 
 /// A convex edge.
@@ -30,6 +31,8 @@ pub(super) struct Side {
     pub(super) ends: [u32; 2],
     /// Its two facets.
     pub(super) facets: [u32; 2],
+    /// Unit vector from its first end to its second.
+    pub(super) along: DVec3,
     /// Unit vectors from the edge into its two facets, perpendicular to it.
     pub(super) into: [DVec3; 2],
 }
@@ -40,6 +43,8 @@ pub(super) struct Shape {
     pub(super) vertices: Vec<DVec3>,
     pub(super) facets: Vec<Facet>,
     pub(super) corners: Vec<Corner>,
+    /// Unit vectors from the corners to their neighbours along edges.
+    pub(super) spokes: Vec<DVec3>,
     pub(super) sides: Vec<Side>,
     pub(super) convex: bool,
 }
@@ -63,20 +68,23 @@ impl Shape {
             // Counter-clockwise seen from outside, the inside of a facet lies to the left of its edges.
             let left = surface.facets[edge.facets[0] as usize].normal.cross(along);
             let right = along.cross(surface.facets[edge.facets[1] as usize].normal);
-            sides.push(Side { ends: edge.ends, facets: edge.facets, into: [left, right] });
+            sides.push(Side { ends: edge.ends, facets: edge.facets, along, into: [left, right] });
             pointed[a as usize] = true;
             pointed[b as usize] = true;
         }
-        let corners = neighbors
-            .into_iter()
-            .enumerate()
-            .filter(|(v, _)| pointed[*v])
-            .map(|(v, neighbors)| Corner { vertex: v as u32, neighbors })
-            .collect();
+        let mut corners = Vec::new();
+        let mut spokes = Vec::new();
+        for (v, neighbors) in neighbors.iter().enumerate().filter(|(v, _)| pointed[*v]) {
+            let first = spokes.len() as u32;
+            let from = surface.vertices[v];
+            spokes.extend(neighbors.iter().map(|&w| (at(w) - from).normalize_or_zero()));
+            corners.push(Corner { vertex: v as u32, spokes: first..spokes.len() as u32 });
+        }
         Self {
             vertices: surface.vertices.clone(),
             facets: surface.facets.clone(),
             corners,
+            spokes,
             sides,
             convex: surface.convex,
         }
@@ -91,8 +99,19 @@ impl Shape {
             o.normal = *rotation * f.normal;
         }
         for (o, s) in out.sides.iter_mut().zip(&self.sides) {
+            o.along = *rotation * s.along;
             o.into = [*rotation * s.into[0], *rotation * s.into[1]];
         }
+        for (o, s) in out.spokes.iter_mut().zip(&self.spokes) {
+            *o = *rotation * *s;
+        }
+    }
+
+    /// Whether a corner is locally extreme against `toward`: no neighbour lies further along −`toward`, up to
+    /// the sine `slack`.
+    pub(super) fn supports(&self, corner: &Corner, toward: DVec3, slack: f64) -> bool {
+        let spokes = &self.spokes[corner.spokes.start as usize..corner.spokes.end as usize];
+        spokes.iter().all(|s| toward.dot(*s) >= -slack)
     }
 
     pub(super) fn at(&self, vertex: u32) -> DVec3 {

@@ -1,0 +1,177 @@
+//! Fast paths against the judge, and the exact gradient against finite differences.
+
+use super::{Contact, Lattice, Pair, brute};
+use crate::connector::Connector;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::pose::{CorPose, DofSet, rotation};
+use glam::{DMat3, DVec2, DVec3};
+use proptest::prelude::*;
+
+/// A pair of a family, round shapes cut coarsely so that the judge stays affordable.
+fn pair(family: Family, aspect_ratio: f64, cor: f64) -> Pair {
+    let mut spec = FamilySpec::new(family);
+    spec.aspect_ratio = aspect_ratio;
+    spec.chord_error = 0.02;
+    let mut alignment = Alignment::default_for(Some(family));
+    alignment.center_of_rotation = cor;
+    alignment.free = DofSet::ALL;
+    let design = Design {
+        name: family.name().to_owned(),
+        connector: ConnectorSpec::Family(spec),
+        width: 1.0,
+        unit: None,
+        alignment,
+    };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
+fn families() -> impl Strategy<Value = Family> {
+    proptest::sample::select(vec![
+        Family::VFace,
+        Family::SFace,
+        Family::XFace,
+        Family::Pyramid,
+        Family::Cone,
+        Family::XFace3d,
+        Family::XFace3dLocking,
+    ])
+}
+
+fn poses() -> impl Strategy<Value = CorPose> {
+    (-1.2..1.2f64, -1.2..1.2f64, proptest::array::uniform3(-1.5..1.5f64))
+        .prop_map(|(x, y, [r, p, w])| CorPose { lateral: DVec2::new(x, y), rotation: rotation(r, p, w) })
+}
+
+/// Equal heights, or both none.
+fn same(fast: Option<f64>, slow: Option<f64>) -> bool {
+    match (fast, slow) {
+        // Slopes reach 10 for tilted facets, positions are exact to 1e-16: 1e-11 leaves four digits.
+        (Some(a), Some(b)) => (a - b).abs() < 1e-11,
+        (None, None) => true,
+        _ => false,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn one_height_equals_the_judges(
+        family in families(), ratio in 0.2..2.0f64, cor in -1.0..1.0f64, pose in poses(),
+    ) {
+        let pair = pair(family, ratio, cor);
+        let (fast, slow) = (pair.height(&pose), brute::height(&pair, &pose));
+        prop_assert!(same(fast, slow), "{family:?}: {fast:?} against {slow:?}");
+    }
+
+    #[test]
+    fn a_lattice_of_heights_equals_single_ones(
+        family in families(), ratio in 0.2..2.0f64, cor in -1.0..1.0f64, pose in poses(),
+        x in (-1.5..0.0f64, 0.01..0.3f64, 1..12usize), y in (-1.5..0.0f64, 0.01..0.3f64, 1..12usize),
+    ) {
+        let pair = pair(family, ratio, cor);
+        let envelope = pair.at_rotation(pose.rotation);
+        let lattice = |(first, step, count)| Lattice { first, step, count };
+        let (x, y) = (lattice(x), lattice(y));
+        let mut cells = vec![f64::NAN; x.count * y.count];
+        envelope.heights(x, y, &mut cells);
+        for (k, cell) in cells.iter().enumerate() {
+            let at = DVec2::new(x.at(k % x.count), y.at(k / x.count));
+            let single = envelope.height(at);
+            let cell = cell.is_finite().then_some(*cell);
+            prop_assert!(same(cell, single), "{family:?} at {at}: {cell:?} against {single:?}");
+        }
+    }
+
+    /// A turned envelope holds nothing of the rotation before.
+    #[test]
+    fn an_envelope_can_be_turned(family in families(), first in poses(), second in poses()) {
+        let pair = pair(family, 0.7, 0.3);
+        let mut envelope = pair.at_rotation(first.rotation);
+        envelope.turn(&second.rotation);
+        prop_assert_eq!(envelope.height(second.lateral), pair.height(&second));
+    }
+
+    /// Where one contact carries the body, its gradient is that of the height: differences over ±δ agree to O(δ).
+    #[test]
+    fn the_gradient_is_the_slope_of_the_height(
+        family in families(), ratio in 0.2..1.5f64, cor in -1.0..1.0f64, pose in poses(),
+        way in proptest::array::uniform5(-1.0..1.0f64),
+    ) {
+        const DELTA: f64 = 1e-5;
+        let pair = pair(family, ratio, cor);
+        let Some(z) = pair.height(&pose) else { return Ok(()) };
+        let position = pose.lateral.extend(z);
+        let mut touching: Vec<Contact> = Vec::new();
+        let mut envelope = pair.at_rotation(pose.rotation);
+        envelope.turn_with_slack(&pose.rotation, 1e-3);
+        envelope.contacts(position, 20.0 * DELTA, &mut touching);
+        // A crease is near when something else could touch within the differences; steep slopes bend faster.
+        prop_assume!(touching.len() == 1 && touching[0].normal.z > 0.2);
+        let (slope, turn_slope) = touching[0].gradient(position);
+        let turn = DVec3::new(way[2], way[3], way[4]);
+        let moved = |k: f64| CorPose {
+            lateral: pose.lateral + DVec2::new(way[0], way[1]) * (k * DELTA),
+            rotation: turned(turn * (k * DELTA)) * pose.rotation,
+        };
+        let (Some(ahead), Some(behind)) = (pair.height(&moved(1.0)), pair.height(&moved(-1.0))) else {
+            return Ok(());
+        };
+        let measured = (ahead - behind) / (2.0 * DELTA);
+        let exact = slope[0] * way[0] + slope[1] * way[1] + turn_slope.dot(turn);
+        // Central differences err by δ²·h'''/6 plus 1e-15/δ rounding; a contact that leaves within ±δ errs by its slope
+        // change, which the assumption above keeps out except next to convex edges.
+        let bend = (ahead + behind - 2.0 * z).abs() / (2.0 * DELTA);
+        prop_assert!((measured - exact).abs() < 1e-6 + 2.0 * bend, "{measured} against {exact}, bend {bend}");
+    }
+}
+
+fn turned(by: DVec3) -> DMat3 {
+    DMat3::from_quat(glam::DQuat::from_scaled_axis(by))
+}
+
+#[test]
+fn pins_in_their_holes_equal_the_judge() {
+    let pair = pair(Family::PinHole, 0.2, 0.0);
+    for k in 0..40 {
+        let a = f64::from(k) * 0.7;
+        let pose = CorPose {
+            lateral: DVec2::new(0.03 * a.cos(), 0.03 * a.sin()),
+            rotation: rotation(0.02 * (2.0 * a).sin(), 0.02 * (3.0 * a).cos(), 0.05 * a.sin()),
+        };
+        let (fast, slow) = (pair.height(&pose), brute::height(&pair, &pose));
+        assert!(same(fast, slow), "{fast:?} against {slow:?}");
+    }
+}
+
+#[test]
+fn a_pyramid_slides_down_its_socket() {
+    // AR ½: the plug's apex on the socket's facet, z rises by 2·H/D = 1 per D of offset; COR ½ in front of the face.
+    let pair = pair(Family::Pyramid, 0.5, 0.5);
+    for x in [0.0, 0.1, 0.3] {
+        let z = pair.height(&CorPose { lateral: DVec2::new(x, 0.0), rotation: DMat3::IDENTITY }).unwrap();
+        assert!((z - (x - 0.5)).abs() < 1e-15, "{z}");
+    }
+    assert_eq!(
+        pair.height(&CorPose { lateral: DVec2::new(1.01, 0.0), rotation: DMat3::IDENTITY }),
+        None,
+        "one width apart the halves pass each other"
+    );
+}
+
+#[test]
+fn a_half_turn_about_the_axis_changes_nothing_for_symmetric_halves() {
+    let pair = pair(Family::XFace3d, 0.577, 0.2);
+    let turn = DMat3::from_rotation_z(std::f64::consts::PI);
+    for k in 0..50 {
+        let a = f64::from(k);
+        let pose = CorPose {
+            lateral: DVec2::new(0.4 * a.sin(), 0.3 * (1.3 * a).cos()),
+            rotation: rotation(0.5 * (0.7 * a).sin(), 0.4 * (1.9 * a).cos(), 0.6 * (2.3 * a).sin()),
+        };
+        // The whole scene seen after a half turn about z: both halves map onto themselves.
+        let seen = CorPose { lateral: -pose.lateral, rotation: turn * pose.rotation * turn.transpose() };
+        let (a, b) = (pair.height(&pose), pair.height(&seen));
+        assert!(same(a, b), "{a:?} against {b:?}");
+    }
+}

@@ -1,0 +1,169 @@
+//! `descent` against an independent rigid-body engine: the committed trial sets of `reference/mujoco`.
+//!
+//! The engine integrates masses, soft contacts and time; catchment none of these. Where both describe frictionless,
+//! overdamped docking they must agree, up to poses that lie on the border of the accepted set.
+
+use catchment::acceptance::{Domain, Outcome};
+use catchment::connector::Connector;
+use catchment::contact::Pair;
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use catchment::exec::Exec;
+use catchment::method::descent::{self, Settings};
+use catchment::pose::{Dof, DofSet, PoseError};
+use std::path::Path;
+
+/// One set of trials: the pair, and per pose whether the engine says aligned (`None`: undecided).
+struct Trials {
+    name: String,
+    pair: Pair,
+    poses: Vec<PoseError>,
+    aligned: Vec<Option<bool>>,
+}
+
+fn read(file: &str) -> Trials {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../reference/mujoco").join(file);
+    let set: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let number = |key: &str| set[key].as_f64().unwrap();
+    let family = Family::ALL.into_iter().find(|f| f.name() == set["family"].as_str().unwrap()).unwrap();
+    let free: DofSet = set["free"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|name| Dof::ALL.into_iter().find(|d| d.name() == name.as_str().unwrap()).unwrap())
+        .collect();
+    let mut alignment = Alignment::default_for(Some(family));
+    alignment.free = free;
+    alignment.center_of_rotation = number("center_of_rotation");
+    alignment.rotation_length = number("rotation_length");
+    let mut spec = FamilySpec::new(family);
+    spec.aspect_ratio = number("aspect_ratio");
+    let name = set["name"].as_str().unwrap().to_owned();
+    let design = Design {
+        name: name.clone(),
+        connector: ConnectorSpec::Family(spec),
+        width: 1.0,
+        unit: None,
+        alignment,
+    };
+    let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
+    let rows = set["poses"].as_array().unwrap();
+    let poses = rows
+        .iter()
+        .map(|row| PoseError::from_array(std::array::from_fn(|k| row[k].as_f64().unwrap())))
+        .collect();
+    let aligned = rows
+        .iter()
+        .map(|row| match row[5].as_str().unwrap() {
+            "undecided" => None,
+            outcome => Some(outcome == "aligned"),
+        })
+        .collect();
+    Trials { name, pair, poses, aligned }
+}
+
+const SETS: [&str; 4] = [
+    "pyramid-ar0.5-cor0.5-5d.json",
+    "pyramid-ar1-cor0-xyyaw.json",
+    "x-face-3d-cor0-xy.json",
+    "x-face-3d-cor0.5-5d.json",
+];
+
+impl Trials {
+    fn outcomes(&self, settings: &Settings) -> Vec<Outcome> {
+        let domain = Domain::Poses(self.poses.clone());
+        descent::run(&self.pair, domain, settings, &Exec::new()).unwrap().0.outcomes
+    }
+
+    /// Agreeing, decided, and the numbers of the disagreeing poses.
+    fn compared(&self, outcomes: &[Outcome]) -> (usize, usize, Vec<usize>) {
+        let decided: Vec<usize> = (0..self.poses.len())
+            .filter(|&k| self.aligned[k].is_some() && outcomes[k] != Outcome::Undecided)
+            .collect();
+        let differing: Vec<usize> = decided
+            .iter()
+            .copied()
+            .filter(|&k| self.aligned[k] != Some(outcomes[k] == Outcome::Aligned))
+            .collect();
+        (decided.len() - differing.len(), decided.len(), differing)
+    }
+
+    /// Distance in normalised error (each axis over its half-range, Euclidean) within which the outcome of a pose flips.
+    fn flips_within(&self, k: usize, accepted: bool) -> Option<f64> {
+        let alignment = &self.pair.alignment;
+        let free: Vec<Dof> = alignment.free.iter().collect();
+        let mut found: Option<f64> = None;
+        // A low-discrepancy fan of directions (multiples of irrational numbers), at growing distances.
+        for radius in [0.003, 0.006, 0.01, 0.015, 0.02, 0.025, 0.03] {
+            let poses: Vec<PoseError> = (1..=96)
+                .map(|n| {
+                    let way: Vec<f64> = (0..free.len())
+                        .map(|axis| (f64::from(n) * [0.618, 0.414, 0.732, 0.236, 0.857][axis]).fract() - 0.5)
+                        .collect();
+                    let length = way.iter().map(|w| w * w).sum::<f64>().sqrt().max(1e-9);
+                    let mut error = self.poses[k].to_array();
+                    for (dof, w) in free.iter().zip(way) {
+                        error[dof.index()] += radius * w / length * alignment.half_range(*dof);
+                    }
+                    PoseError::from_array(error)
+                })
+                .collect();
+            let (near, _) =
+                descent::run(&self.pair, Domain::Poses(poses), &Settings::default(), &Exec::new()).unwrap();
+            if near.accepted().any(|a| a != accepted) {
+                found = Some(radius);
+                break;
+            }
+        }
+        found
+    }
+}
+
+#[test]
+fn descent_agrees_with_the_engine() {
+    let (mut agreed, mut decided) = (0, 0);
+    for file in SETS {
+        let trials = read(file);
+        let outcomes = trials.outcomes(&Settings::default());
+        let (same, of, differing) = trials.compared(&outcomes);
+        println!("{}: {same} of {of}", trials.name);
+        // Undecided poses leave the comparison: hardly any may.
+        assert!(of * 100 >= trials.poses.len() * 99, "{}: only {of} decided", trials.name);
+        assert!(same * 100 >= of * 96, "{}: {same} of {of}", trials.name);
+        for k in differing {
+            let flips = trials.flips_within(k, outcomes[k] == Outcome::Aligned);
+            println!("  pose {k} differs; its outcome flips within {flips:?}");
+            assert!(flips.is_some(), "{}: pose {k} differs far from the border", trials.name);
+        }
+        agreed += same;
+        decided += of;
+    }
+    println!("together {agreed} of {decided}");
+    assert!(agreed * 100 >= decided * 98, "{agreed} of {decided}");
+}
+
+#[test]
+fn the_outcome_does_not_hang_on_the_step() {
+    let (mut changed, mut tried) = (0, 0);
+    for file in SETS {
+        let trials = read(file);
+        let whole = Settings::default();
+        let half = Settings { step: whole.step / 2.0, ..whole.clone() };
+        let (a, b) = (trials.outcomes(&whole), trials.outcomes(&half));
+        changed += a.iter().zip(&b).filter(|(a, b)| a != b).count();
+        tried += a.len();
+    }
+    println!("{changed} of {tried} change when every step is halved");
+    // Less than 0.5 %.
+    assert!(changed * 200 < tried, "{changed} of {tried}");
+}
+
+/// The border of a thin ravine, cell by cell: the engine confirms the Sum that descent finds there.
+#[test]
+fn the_engine_confirms_the_v_face_border() {
+    let trials = read("v-face-ar0.5-cor-0.5-border.json");
+    let outcomes = trials.outcomes(&Settings::default());
+    let (same, of, _) = trials.compared(&outcomes);
+    println!("{same} of {of} border cells");
+    // Every one of these poses lies within two cells of the border, where agreement is hardest.
+    assert!(same * 100 >= of * 98, "{same} of {of}");
+}
