@@ -20,7 +20,8 @@ use std::path::PathBuf;
     after_help = "Exit codes: 0 done, 1 done but a requirement is not met, 2 could not compute, 130 interrupted.",
     after_long_help = "Examples:\n  \
         catchment new pyramid -o design.toml    a commented starting point\n  \
-        catchment check design.toml             everything that is wrong with it\n\n\
+        catchment check design.toml             everything that is wrong with it\n  \
+        catchment run design.toml -o out        its area of acceptance, with pictures\n\n\
         Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\
         Exit codes: 0 done, 1 done but a requirement is not met, 2 could not compute, 130 interrupted."
 )]

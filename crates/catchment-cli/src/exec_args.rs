@@ -32,7 +32,6 @@ pub(crate) struct ExecArgs {
 }
 
 /// An [`Exec`] that Ctrl-C cancels, with its progress bar, which goes away with it.
-#[cfg_attr(not(test), expect(dead_code, reason = "for the commands that compute"))]
 pub(crate) struct Running {
     /// Hand it to the library.
     pub exec: Exec,
@@ -47,7 +46,6 @@ impl Drop for Running {
 
 impl ExecArgs {
     /// Starts threads, the progress bar (on a terminal only) and the handling of Ctrl-C: once per process.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for the commands that compute"))]
     pub(crate) fn start(&self) -> Result<Running, Failure> {
         const STEPS: u64 = 1000;
         let mut exec = Exec::new().with_threads(usize::from(self.threads))?;

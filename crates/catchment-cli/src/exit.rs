@@ -8,7 +8,6 @@ pub(crate) enum ExitStatus {
     /// Done; every stated requirement is met.
     Done,
     /// Done, but a stated requirement is not met.
-    #[expect(dead_code, reason = "for the commands that compute")]
     RequirementNotMet,
     /// Could not compute: bad input, bad usage, no memory, no file.
     Failed,

@@ -29,6 +29,23 @@ impl Built {
         }
     }
 
+    /// The pair that moves, refused where the halves do not meet in the aligned pose, and the doubts about it.
+    pub(crate) fn into_pair(self) -> Result<(Self, Pair, Vec<String>), InputError> {
+        let pair = Pair::new(&self.connector, &self.input.design.alignment);
+        let found = mated::problems(&pair);
+        let (doubts, apart): (Vec<_>, Vec<_>) =
+            found.iter().partition(|problem| matches!(problem, MatedProblem::NotMinimum { .. }));
+        if apart.is_empty() {
+            let doubts = doubts.iter().map(ToString::to_string).collect();
+            return Ok((self, pair, doubts));
+        }
+        let findings = apart
+            .iter()
+            .map(|problem| self.input.finding(mated_place(problem), problem.to_string(), None))
+            .collect();
+        Err(self.input.refused(findings))
+    }
+
     /// What keeps the aligned pose from being a mated pose.
     pub(crate) fn mated_findings(&self) -> Vec<Finding> {
         let pair = Pair::new(&self.connector, &self.input.design.alignment);

@@ -36,6 +36,15 @@ pub(crate) fn to_stdout(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Tells the person something beside the data, a line each.
+pub(crate) fn to_stderr(lines: &[String]) {
+    let mut stderr = io::stderr().lock();
+    for line in lines {
+        // Nobody is left to tell when stderr itself is gone.
+        let _ = writeln!(stderr, "{line}");
+    }
+}
+
 /// Writes a file under a temporary name beside its place and moves it there when it is complete.
 fn write_file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), Failure> {
     let failed = |error: &io::Error| {

@@ -4,6 +4,7 @@ mod check;
 mod completions;
 mod man;
 mod new;
+mod run;
 mod schema;
 
 use crate::exit::ExitStatus;
@@ -15,6 +16,7 @@ use clap::Subcommand;
 pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
+    Run(Box<run::RunArgs>),
     Schema(schema::SchemaArgs),
     Completions(completions::CompletionsArgs),
     Man(man::ManArgs),
@@ -26,6 +28,7 @@ impl Command {
         match self {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
+            Self::Run(args) => run::run(&args),
             Self::Schema(args) => schema::run(&args),
             Self::Completions(args) => completions::run(&args),
             Self::Man(args) => man::run(&args),

@@ -37,4 +37,5 @@ pub use problem::{Problem, Problems, Sources, line_column};
 pub use quantity::{Quantity, Scale, Unit};
 pub use read::{DesignFile, LARGEST_FILE, read};
 pub use schema::json_schema;
+pub use suggest::nearest;
 pub use template::template;

@@ -2,7 +2,7 @@
 
 /// The word of `known` that `written` most likely stands for: at most one third of its letters wrong (and at
 /// least one is allowed). `None` when nothing is near; the first of equals wins.
-pub(crate) fn nearest<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 64;
     if written.len() > LONGEST {
         return None;

@@ -10,7 +10,7 @@ use std::str::FromStr;
 /// Number of cells per axis of the error grid.
 ///
 /// Written as comma-separated parts: a bare number for every axis that is not named, `axis=number` for one axis.
-/// Axes without a number get [`Resolution::DEFAULT_CELLS`] for the number of axes sampled.
+/// Axes without a number get the default of the method for the number of axes sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Resolution {
@@ -59,8 +59,8 @@ impl Resolution {
     /// Most cells per axis: beyond any memory in two dimensions.
     pub const MOST: usize = 1_000_000;
 
-    /// Cells per axis when nothing was said, for one to five axes. Odd, so that a cell is centred on the mated
-    /// pose, and small enough that every method answers in seconds.
+    /// Cells per axis when nothing was said, for one to five axes, where a cell costs microseconds. Odd, so that a
+    /// cell is centred on the mated pose.
     pub const DEFAULT_CELLS: [usize; 5] = [1001, 101, 41, 21, 13];
 
     /// The same number of cells on every axis.
@@ -74,23 +74,24 @@ impl Resolution {
         Ok(self)
     }
 
-    /// Cells on the axis of `dof` in a grid of `axes` axes (1 to 5).
-    pub fn cells(&self, dof: Dof, axes: usize) -> usize {
-        let default = Self::DEFAULT_CELLS[axes.clamp(1, 5) - 1];
+    /// Cells on the axis of `dof` in a grid of `axes` axes (1 to 5); `defaults` are those of the method for one to
+    /// five axes.
+    pub fn cells(&self, dof: Dof, axes: usize, defaults: &[usize; 5]) -> usize {
+        let default = defaults[axes.clamp(1, 5) - 1];
         self.named[dof.index()].or(self.every).unwrap_or(default)
     }
 
-    /// The grid of this resolution over the error box of `alignment`.
+    /// The grid of this resolution over the error box of `alignment`; `defaults` as in [`Resolution::cells`].
     ///
     /// # Errors
     /// When an axis is named that is not free.
-    pub fn grid(&self, alignment: &Alignment) -> Result<Grid, ResolutionError> {
+    pub fn grid(&self, alignment: &Alignment, defaults: &[usize; 5]) -> Result<Grid, ResolutionError> {
         for dof in Dof::ALL {
             if self.named[dof.index()].is_some() && !alignment.free.contains(dof) {
                 return Err(ResolutionError::NotFree { dof });
             }
         }
-        Ok(Grid::over(alignment, |dof| self.cells(dof, alignment.free.len())))
+        Ok(Grid::over(alignment, |dof| self.cells(dof, alignment.free.len(), defaults)))
     }
 
     /// The largest number of cells per axis whose `axes`-dimensional grid fits into `budget` bytes.
@@ -176,10 +177,10 @@ mod tests {
     #[test]
     fn a_bare_number_counts_for_every_axis_that_is_not_named() {
         let r: Resolution = "20, yaw=36".parse().unwrap();
-        assert_eq!(r.cells(Dof::X, 5), 20);
-        assert_eq!(r.cells(Dof::Yaw, 5), 36);
+        assert_eq!(r.cells(Dof::X, 5, &Resolution::DEFAULT_CELLS), 20);
+        assert_eq!(r.cells(Dof::Yaw, 5, &Resolution::DEFAULT_CELLS), 36);
         let r: Resolution = "x=40".parse().unwrap();
-        assert_eq!(r.grid(&planar()).unwrap().shape(), [40, 101]);
+        assert_eq!(r.grid(&planar(), &Resolution::DEFAULT_CELLS).unwrap().shape(), [40, 101]);
     }
 
     #[test]
@@ -198,7 +199,11 @@ mod tests {
         assert!(error("1").starts_with("1 cells per axis is out of range; choose 2 to"));
         assert!(error("z=4").starts_with("there is no axis `z`"));
         assert_eq!(error("x=4,x=5"), "the resolution of x is given twice");
-        let not_free = "30,yaw=8".parse::<Resolution>().unwrap().grid(&planar()).unwrap_err();
+        let not_free = "30,yaw=8"
+            .parse::<Resolution>()
+            .unwrap()
+            .grid(&planar(), &Resolution::DEFAULT_CELLS)
+            .unwrap_err();
         assert_eq!(not_free, ResolutionError::NotFree { dof: Dof::Yaw });
     }
 
@@ -216,7 +221,9 @@ mod tests {
     #[test]
     fn every_default_is_odd_and_all_free_axes_get_one() {
         assert!(Resolution::DEFAULT_CELLS.iter().all(|n| n % 2 == 1));
-        let grid = Resolution::default().grid(&Alignment::new(DofSet::ALL, Mount::X)).unwrap();
+        let grid = Resolution::default()
+            .grid(&Alignment::new(DofSet::ALL, Mount::X), &Resolution::DEFAULT_CELLS)
+            .unwrap();
         assert_eq!(grid.shape(), [13; 5]);
     }
 }

@@ -13,11 +13,13 @@
 
 #[cfg(feature = "figure")]
 pub mod figure;
+mod requirement;
 pub mod schema;
 mod table;
 pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
 
+pub use requirement::{Requirement, RequirementError};
 pub use schema::Report;
 pub use table::table;

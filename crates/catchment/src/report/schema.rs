@@ -3,7 +3,7 @@
 //! [`SCHEMA`] rises when a field changes its meaning or goes away; new fields may appear under the same number.
 //! The same run writes the same bytes but for `timing`.
 
-use crate::acceptance::{Acceptance, Outcome, Warning};
+use crate::acceptance::{Acceptance, Warning};
 use crate::design::{Alignment, Design};
 use crate::merit::MeritError;
 use crate::merit::centered::{CenteredBox, centered_cube};
@@ -92,7 +92,8 @@ pub struct AcceptanceReport {
     pub sum: f64,
     /// Unit of `sum`, like `D²·rad³`.
     pub unit: String,
-    /// 95 % interval of `sum`; null if nothing was sampled at random.
+    /// 95 % interval of the true measure, from random poses: the listed ones, or `sample` beside a grid. Null if
+    /// nothing was sampled at random.
     pub sum_ci95: Option<[f64; 2]>,
     /// `sum` without the accepted cells that touch a rejected one, and with the rejected cells that touch an
     /// accepted one: the doubt of resolution, no confidence interval. Null for listed poses.
@@ -103,6 +104,8 @@ pub struct AcceptanceReport {
     pub cells: usize,
     /// How many met each outcome.
     pub outcomes: Outcomes,
+    /// Random poses followed beside a grid; null if none were.
+    pub sample: Option<SampleReport>,
 }
 
 /// Poses per outcome.
@@ -225,7 +228,6 @@ impl Report {
         let mut warnings = acceptance.warnings.clone();
         let known = |w: &Warning| acceptance.warnings.iter().any(|o| discriminant(o) == discriminant(w));
         warnings.extend(doubts(acceptance).into_iter().filter(|w| !known(w)));
-        let message = |w: &Warning| WarningReport { warning: w.clone(), message: w.to_string() };
         Ok(Self {
             schema: SCHEMA,
             catchment: env!("CARGO_PKG_VERSION").to_owned(),
@@ -242,7 +244,7 @@ impl Report {
                 Vec::new()
             },
             success: None,
-            warnings: warnings.iter().map(message).collect(),
+            warnings: warnings.into_iter().map(WarningReport::from).collect(),
             timing,
         })
     }
@@ -295,7 +297,6 @@ fn axes(acceptance: &Acceptance) -> Vec<Axis> {
 impl AcceptanceReport {
     fn new(acceptance: &Acceptance, alignment: &Alignment) -> Self {
         let sum = Sum::of(acceptance, alignment);
-        let count = |o: Outcome| sum.counts[o as usize - 1];
         Self {
             sum: sum.sum,
             unit: sum.unit(),
@@ -303,13 +304,22 @@ impl AcceptanceReport {
             sum_bracket: sum.bracket,
             fraction: sum.fraction,
             cells: sum.tried,
-            outcomes: Outcomes {
-                aligned: count(Outcome::Aligned),
-                jammed: count(Outcome::Jammed),
-                missed: count(Outcome::Missed),
-                undecided: count(Outcome::Undecided),
-            },
+            outcomes: Outcomes::new(sum.counts),
+            sample: None,
         }
+    }
+}
+
+impl Outcomes {
+    /// From counts in the order of [`Outcome::ALL`].
+    const fn new([aligned, jammed, missed, undecided]: [usize; 4]) -> Self {
+        Self { aligned, jammed, missed, undecided }
+    }
+}
+
+impl From<Warning> for WarningReport {
+    fn from(warning: Warning) -> Self {
+        Self { message: warning.to_string(), warning }
     }
 }
 
@@ -342,14 +352,17 @@ impl From<Tolerance> for ToleranceReport {
     }
 }
 
+mod sample;
 #[cfg(test)]
 pub(crate) mod testing;
+
+pub use sample::SampleReport;
 
 #[cfg(test)]
 mod tests {
     use super::testing::*;
     use super::*;
-    use crate::acceptance::Domain;
+    use crate::acceptance::{Domain, Outcome};
     use crate::pose::{DofSet, PoseError};
 
     fn report() -> Report {

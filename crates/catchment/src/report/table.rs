@@ -93,7 +93,11 @@ fn acceptance(text: &mut String, report: &Report) {
         &format!("{} {}   ({} of the error box)", significant(a.sum), a.unit, percent(a.fraction)),
     );
     if let Some([lo, hi]) = a.sum_ci95 {
-        row(text, "", &format!("95 % interval {} … {}", significant(lo), significant(hi)));
+        let by = a
+            .sample
+            .as_ref()
+            .map_or_else(String::new, |s| format!("   ({} random poses by {})", grouped(s.poses), s.method));
+        row(text, "", &format!("95 % interval {} … {}{by}", significant(lo), significant(hi)));
     }
     if let Some([lo, hi]) = a.sum_bracket {
         row(text, "", &format!("one cell of doubt: {} … {}", significant(lo), significant(hi)));

@@ -124,6 +124,24 @@ pub fn file(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     Ok(())
 }
 
+/// Refuses a place for a folder as [`folder`] would, as far as can be seen without writing.
+///
+/// # Errors
+/// Something else is there, the path has no name, or its parent is no folder.
+pub fn check_folder(path: &Path, is_ours: impl Fn(&Path) -> bool) -> Result<(), WriteError> {
+    if fs::symlink_metadata(path).is_ok() && !is_ours(path) {
+        return Err(WriteError::NotAResult { path: path.to_owned() });
+    }
+    if path.file_name().is_none() {
+        return Err(WriteError::NoName { path: path.to_owned() });
+    }
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    if !parent.is_dir() {
+        return Err(WriteError::NoFolder { path: path.to_owned() });
+    }
+    Ok(())
+}
+
 /// Writes a folder: `fill` fills an empty one, which then takes the place of `path`. What is there already is
 /// replaced only if `is_ours` recognises it.
 ///

@@ -24,6 +24,16 @@ impl Map {
         Ok(Self { slice, outcomes })
     }
 
+    /// The same map as a part of `whole`, which may have more errors: those are fixed at zero.
+    pub(super) fn within(mut self, whole: &Acceptance, pair: [Dof; 2]) -> Result<Self, FigureError> {
+        let grid = whole.grid().ok_or(crate::merit::MeritError::NotAGrid)?;
+        let beside = |dof: Dof| !pair.contains(&dof) && self.slice.at.iter().all(|(d, _)| *d != dof);
+        let more: Vec<(Dof, f64)> =
+            grid.axes.iter().filter(|a| beside(a.dof)).map(|a| (a.dof, 0.0)).collect();
+        self.slice.at.extend(more);
+        Ok(self)
+    }
+
     pub(super) fn frame(&self, rect: Rect, units: &Units) -> Frame {
         Frame { rect, x: units.axis(&self.slice.axes[0]), y: units.axis(&self.slice.axes[1]) }
     }

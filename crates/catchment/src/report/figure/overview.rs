@@ -13,7 +13,9 @@ use crate::merit::onaa::Onaa;
 use crate::merit::sum::Sum;
 use crate::pose::{Dof, PoseError};
 
-/// Draws an overview over a pair of errors, the others zero. `height` as in [`super::heights()`].
+/// Draws an overview over a pair of errors, the others zero. The numbers are those of `acceptance`; the maps show
+/// `slice`, which may be the same, or a finer grid over the pair alone. `height` as in [`super::heights()`], for a cell
+/// of `slice`.
 ///
 /// # Errors
 /// Those of its parts.
@@ -21,12 +23,13 @@ pub fn overview(
     design: &Design,
     connector: &Connector,
     acceptance: &Acceptance,
+    slice: &Acceptance,
     height: &dyn Fn(usize) -> f64,
     pair: [Dof; 2],
 ) -> Result<Picture, FigureError> {
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
     let units = Units::of(design);
-    let map = Map::of(acceptance, pair, &PoseError::default())?;
+    let map = Map::of(slice, pair, &PoseError::default())?.within(acceptance, pair)?;
     let onaa = Onaa::of(acceptance)?;
     let sum = Sum::of(acceptance, &design.alignment);
     let (side, top) = (300.0, 96.0);
@@ -81,10 +84,12 @@ mod tests {
             let e = grid.pose(i);
             0.5 * e.x.abs() + 0.3 * (e.pitch + 0.4 * e.x).abs()
         };
-        let picture = overview(&design, &pyramid(), &acceptance, &height, [Dof::X, Dof::Pitch]).unwrap();
+        let picture =
+            overview(&design, &pyramid(), &acceptance, &acceptance, &height, [Dof::X, Dof::Pitch]).unwrap();
         look("overview", &picture);
         assert!(picture.svg().contains("Sum "));
-        let again = overview(&design, &pyramid(), &acceptance, &height, [Dof::X, Dof::Pitch]).unwrap();
+        let again =
+            overview(&design, &pyramid(), &acceptance, &acceptance, &height, [Dof::X, Dof::Pitch]).unwrap();
         assert_eq!(picture, again);
     }
 }

@@ -11,13 +11,15 @@ use crate::merit::onaa::Onaa;
 use crate::pose::{Dof, PoseError};
 
 /// Draws the outcomes over each pair of errors (all pairs if none is named), the others at the values of `at`, with the
-/// border of the accepted set and the largest axis-oriented cube, dashed where the slice misses it.
+/// border of the accepted set and the largest axis-oriented cube, dashed where the slice misses it. A pair that one of
+/// `finer` has for its only axes is drawn from that one: it must have been computed with the other errors zero.
 ///
 /// # Errors
 /// Fewer than two free errors, a pair that the grid does not have, listed poses instead of a grid.
 pub fn slices(
     design: &Design,
     acceptance: &Acceptance,
+    finer: &[Acceptance],
     pairs: &[[Dof; 2]],
     at: &PoseError,
 ) -> Result<Picture, FigureError> {
@@ -58,7 +60,11 @@ pub fn slices(
             w: side,
             h: side,
         };
-        let map = Map::of(acceptance, *pair, at)?;
+        let own = |a: &&Acceptance| a.grid().is_some_and(|g| g.axes.iter().map(|a| a.dof).eq(*pair));
+        let map = match finer.iter().find(own) {
+            Some(slice) => Map::of(slice, *pair, at)?.within(acceptance, *pair)?,
+            None => Map::of(acceptance, *pair, at)?,
+        };
         let frame = map.frame(rect, &units);
         map::outcomes(&mut svg, &map, &frame, &units, Some(&onaa))?;
         if *at != PoseError::default() {
@@ -84,7 +90,7 @@ mod tests {
             ("slices-5", DofSet::ALL, 12),
         ] {
             let design = design(free);
-            let picture = slices(&design, &blob(&design, cells), &[], &PoseError::default()).unwrap();
+            let picture = slices(&design, &blob(&design, cells), &[], &[], &PoseError::default()).unwrap();
             look(name, &picture);
             let pairs = free.len() * (free.len() - 1) / 2;
             assert_eq!(picture.svg().matches("<image").count(), pairs);
@@ -96,7 +102,7 @@ mod tests {
     fn a_slice_elsewhere_says_where() {
         let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
         let at = PoseError { yaw: 0.5, ..PoseError::default() };
-        let picture = slices(&design, &blob(&design, 10), &[[Dof::X, Dof::Y]], &at).unwrap();
+        let picture = slices(&design, &blob(&design, 10), &[], &[[Dof::X, Dof::Y]], &at).unwrap();
         assert!(picture.svg().contains("yaw = 27°"), "the cell of 0.5 rad is centred at 27°");
     }
 
@@ -106,7 +112,7 @@ mod tests {
         (design.unit, design.width) = (None, 1.0);
         let mut blob = blob(&design, 31);
         blob.outcomes[5] = crate::acceptance::Outcome::Undecided;
-        let picture = slices(&design, &blob, &[], &PoseError::default()).unwrap();
+        let picture = slices(&design, &blob, &[], &[], &PoseError::default()).unwrap();
         look("slices-dimensionless", &picture);
         assert!(picture.svg().contains("x [D]") && picture.svg().contains("undecided 0.1 %"));
     }
@@ -114,7 +120,7 @@ mod tests {
     #[test]
     fn one_error_has_no_map() {
         let design = design([Dof::X].into_iter().collect());
-        let error = slices(&design, &blob(&design, 10), &[], &PoseError::default()).unwrap_err();
+        let error = slices(&design, &blob(&design, 10), &[], &[], &PoseError::default()).unwrap_err();
         assert!(matches!(error, FigureError::Empty { .. }));
     }
 }

@@ -1,0 +1,205 @@
+//! `catchment run`: the area of acceptance of a design.
+//!
+//! ```text
+//!   design ──▶ halves, mated pose ──▶ outcomes over the error grid ──▶ report ──▶ table or JSON, files, requirements
+//!                                     random poses beside it ────────────┘
+//! ```
+
+mod compute;
+mod errors;
+mod pictures;
+mod place;
+
+use crate::args::DesignArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::to_stdout;
+use catchment::acceptance::{Acceptance, Outcome, Warning};
+use catchment::landscape::{Grid, Resolution};
+use catchment::merit::success::Distribution;
+use catchment::method::Method;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{Report, Requirement, table};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+use compute::{Computed, Job};
+use std::time::Instant;
+
+/// Compute the area of acceptance: which pose errors contact corrects
+///
+/// Every cell of a grid over the error box is decided by the method. Beside it, random poses are followed exactly:
+/// they give the Sum a 95 % interval that owes nothing to the grid.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment run design.toml\n  \
+    catchment run design.toml -o out                    table, pictures, report.json and result.zarr\n  \
+    catchment run design.toml --free x,y,yaw --resolution 41,yaw=61\n  \
+    catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' --require 'success.probability>=0.99'\n  \
+    catchment run design.toml --json | jq .onaa.edge\n\n\
+    The JSON of equal runs is equal byte for byte, whatever the number of threads, but for `timing`.")]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    #[command(flatten)]
+    how: HowArgs,
+    #[command(flatten)]
+    errors: errors::ErrorArgs,
+    #[command(flatten)]
+    place: place::PlaceArgs,
+    /// Print the report as JSON instead of the table
+    #[arg(long)]
+    json: bool,
+    /// End with exit code 1 unless this holds of the JSON report, such as "onaa.edge>=0.3"; may be repeated
+    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
+    require: Vec<Requirement>,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// What changes the answer, beside the design.
+#[derive(Debug, Args)]
+struct HowArgs {
+    /// How outcomes are decided
+    #[arg(long, value_name = "METHOD", default_value = Method::ALL[0].name(), value_parser = method_parser())]
+    method: Method,
+    /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
+    #[arg(long, value_name = "CELLS", value_parser = resolution)]
+    resolution: Option<Resolution>,
+    /// Random poses followed exactly beside the grid, 0 for none [default: 4000 with descent, 0 with flood]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
+    samples: Option<u32>,
+    /// Seed of the random poses
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Flooding: basins shallower than this are merged, in D [default: a tenth of the face's height]
+    #[arg(long, value_name = "DEPTH", value_parser = depth)]
+    depth_tolerance: Option<f64>,
+}
+
+fn method_parser() -> ValueParser {
+    let values = Method::ALL.map(|method| PossibleValue::new(method.name()).help(method.summary()));
+    PossibleValuesParser::new(values)
+        .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("no such method"))
+        .into()
+}
+
+fn resolution(text: &str) -> Result<Resolution, String> {
+    text.parse::<Resolution>().map_err(|error| error.to_string())
+}
+
+fn requirement(text: &str) -> Result<Requirement, String> {
+    text.parse::<Requirement>().map_err(|error| error.to_string())
+}
+
+fn depth(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(depth) if depth >= 0.0 && depth.is_finite() => Ok(depth),
+        _ => Err("a depth is a number of D, at least 0".to_owned()),
+    }
+}
+
+pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let how = &args.how;
+    if how.depth_tolerance.is_some() && how.method != Method::Flood {
+        let message = format!("--depth-tolerance is a setting of flooding; {} has none", how.method.name());
+        return Err(Failure::with_help(message, Some("add --method flood, or leave it out".to_owned())));
+    }
+    let place = args.place.checked()?;
+    let (built, pair, doubts) = args.design.build()?.into_pair()?;
+    let design = &built.input.design;
+    let grid = how
+        .resolution
+        .unwrap_or_default()
+        .grid(&design.alignment, &how.method.default_cells())
+        .map_err(|error| Failure::with_help(format!("--resolution: {error}"), None))?;
+    let job = Job {
+        design,
+        pair: &pair,
+        grid,
+        method: how.method,
+        depth_tolerance: how.depth_tolerance,
+        samples: how.samples.map_or(how.method.default_samples(), |n| n as usize),
+        seed: how.seed,
+        heights: place.wants_heights(),
+    };
+    let distribution = args.errors.distribution(design)?;
+    check_requirements(&args.require, &job, distribution.as_ref())?;
+
+    let running = args.exec.start()?;
+    let computed = compute::compute(&job, &running.exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    let report = report(&job, &computed, doubts, distribution, Some(timing))?;
+    let json = report.to_json()?;
+    let written = place.write(&job, &built, &computed, &report, &running.exec)?;
+    drop(running);
+
+    let printed = if args.json { to_stdout(&json) } else { to_stdout(&table(&report)) };
+    let mut notes = written;
+    let unmet = unmet(&args.require, &serde_json::from_str(&json)?)?;
+    let status = if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet };
+    notes.extend(unmet);
+    crate::output::to_stderr(&notes);
+    if status == ExitStatus::Done {
+        printed?;
+    }
+    Ok(status)
+}
+
+/// Everything that was found, evaluated.
+fn report(
+    job: &Job,
+    computed: &Computed,
+    doubts: Vec<String>,
+    distribution: Option<Distribution>,
+    timing: Option<Timing>,
+) -> Result<Report, Failure> {
+    let mut report = Report::new(job.design, &computed.acceptance, computed.settings.clone(), timing)?;
+    if let Some(sample) = &computed.sample {
+        report = report.with_sample(&sample.acceptance, job.seed, sample.settings.clone());
+    }
+    if let Some(distribution) = distribution {
+        report = report.with_success(&computed.acceptance, distribution)?;
+    }
+    report.warnings.extend(doubts.into_iter().map(|text| WarningReport::from(Warning::Note { text })));
+    Ok(report)
+}
+
+/// Refuses a requirement that no report of this job can answer, before anything is computed: they are tried on the
+/// report of an empty result.
+fn check_requirements(
+    requirements: &[Requirement],
+    job: &Job,
+    distribution: Option<&Distribution>,
+) -> Result<(), Failure> {
+    if requirements.is_empty() {
+        return Ok(());
+    }
+    let grid = Grid::over(&job.design.alignment, |_| Resolution::LEAST);
+    let acceptance = Acceptance {
+        method: job.method.name(),
+        outcomes: vec![Outcome::Aligned; grid.len()],
+        domain: catchment::acceptance::Domain::Grid(grid),
+        warnings: Vec::new(),
+    };
+    let sample = job.sample_of(|poses| vec![Outcome::Aligned; poses.min(1)])?;
+    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None };
+    let timing = Some(Timing { total_s: 0.0, threads: 1 });
+    let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing)?;
+    unmet(requirements, &serde_json::to_value(&empty)?).map(drop)
+}
+
+/// A line for every requirement that is not met.
+fn unmet(requirements: &[Requirement], report: &serde_json::Value) -> Result<Vec<String>, Failure> {
+    let mut lines = Vec::new();
+    for requirement in requirements {
+        let value = requirement
+            .value(report)
+            .map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
+        if !requirement.is_met_by(value) {
+            lines.push(format!("not met: {requirement} (it is {value})"));
+        }
+    }
+    Ok(lines)
+}

@@ -1,0 +1,90 @@
+//! The pictures of a run.
+
+use super::compute::{Computed, Job, descend};
+use crate::failure::Failure;
+use catchment::acceptance::{Acceptance, Domain};
+use catchment::connector::Connector;
+use catchment::exec::Exec;
+use catchment::landscape::{Grid, GridAxis, Landscape};
+use catchment::merit::slice;
+use catchment::method::Method;
+use catchment::pose::{Dof, PoseError};
+use catchment::report::figure::{self, FigureError, Picture, Placement};
+
+/// Names of all pictures there can be, without ending.
+pub(super) const NAMES: [&str; 5] = ["overview", "slices", "heights", "section", "solids"];
+
+/// Cells per axis of the slice in the overview, and of the many in the slices, where the method decides each cell
+/// by itself and the grid is coarser.
+const OVERVIEW_CELLS: usize = 101;
+const SLICE_CELLS: usize = 41;
+
+/// Draws all that the job has: maps need two free errors. Also the names of those left out, with the reason.
+pub(super) fn draw(
+    job: &Job,
+    connector: &Connector,
+    computed: &Computed,
+    exec: &Exec,
+) -> Result<(Vec<(&'static str, Picture)>, Vec<String>), Failure> {
+    let mut drawn = Vec::new();
+    let mut left_out = Vec::new();
+    let mut keep = |name: &'static str, picture: Result<Picture, FigureError>| match picture {
+        Ok(picture) => {
+            drawn.push((name, picture));
+            Ok(())
+        }
+        Err(FigureError::Empty { what }) => {
+            left_out.push(format!("no picture {name}: {what}"));
+            Ok(())
+        }
+        Err(error) => Err(Failure::from(error)),
+    };
+    let (design, acceptance) = (job.design, &computed.acceptance);
+    if let Some(pair) = main_pair(&job.grid) {
+        let finer = finer_slices(job, pair, exec)?;
+        let own =
+            finer.iter().find(|slice| slice.grid().is_some_and(|g| g.axes.iter().map(|a| a.dof).eq(pair)));
+        let map = own.unwrap_or(acceptance);
+        let landscape = match (&computed.landscape, map.grid()) {
+            (Some(landscape), Some(grid)) if landscape.grid == *grid => landscape.clone(),
+            (_, Some(grid)) => Landscape::compute(job.pair, grid, exec)?,
+            (_, None) => return Ok((drawn, left_out)),
+        };
+        let height = |cell: usize| f64::from(landscape.heights[cell]);
+        let zero = PoseError::default();
+        keep("overview", figure::overview(design, connector, acceptance, map, &height, pair))?;
+        keep("slices", figure::slices(design, acceptance, &finer, &[], &zero))?;
+        keep("heights", figure::heights(design, map, &height, pair, &zero))?;
+    }
+    exec.check()?;
+    let lifted = Placement::mated(design, LIFT);
+    keep("section", figure::section(design, connector, &lifted))?;
+    keep("solids", figure::solids(design, connector, &lifted))?;
+    exec.check()?;
+    Ok((drawn, left_out))
+}
+
+/// How far the halves are drawn apart, in D, so that both faces can be seen.
+const LIFT: f64 = 0.6;
+
+/// The two errors to show where only two can be: x with the rotation that goes with it.
+fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
+    let pairs = slice::pairs(grid);
+    let favourites = [[Dof::X, Dof::Pitch], [Dof::X, Dof::Yaw]];
+    favourites.into_iter().find(|pair| pairs.contains(pair)).or_else(|| pairs.first().copied())
+}
+
+/// Slices through zero, finer than the grid: only where cells are decided one by one, and some other error is free.
+fn finer_slices(job: &Job, main: [Dof; 2], exec: &Exec) -> Result<Vec<Acceptance>, Failure> {
+    if job.method != Method::Descent || job.grid.axes.len() < 3 {
+        return Ok(Vec::new());
+    }
+    let mut slices = Vec::new();
+    for pair in slice::pairs(&job.grid) {
+        let least = if pair == main { OVERVIEW_CELLS } else { SLICE_CELLS };
+        let finer = |axis: &GridAxis| GridAxis { cells: axis.cells.max(least), ..*axis };
+        let axes = job.grid.axes.iter().filter(|a| pair.contains(&a.dof)).map(finer).collect();
+        slices.push(descend(job.pair, Domain::Grid(Grid { axes }), exec)?);
+    }
+    Ok(slices)
+}

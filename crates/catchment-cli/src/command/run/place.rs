@@ -1,0 +1,190 @@
+//! Where the files of a run go: complete or not at all.
+//!
+//! ```text
+//!   -o DIR          DIR/report.json, DIR/result.zarr, and every picture as .png and .svg
+//!   -o NAME.zarr    the Zarr group alone
+//!   --figures DIR   every picture alone
+//! ```
+
+use super::compute::{Computed, Job};
+use super::pictures;
+use crate::failure::Failure;
+use crate::geometry::Built;
+use catchment::exec::Exec;
+use catchment::report::figure::Picture;
+use catchment::report::write;
+use catchment::report::{Report, zarr};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+const REPORT: &str = "report.json";
+const RESULT: &str = "result.zarr";
+
+/// Pixels per unit of the drawing in PNG files: sharp on screens and slides.
+const PNG_SCALE: f32 = 2.0;
+
+/// Where the files of a run go.
+#[derive(Debug, Args)]
+pub(crate) struct PlaceArgs {
+    /// Write pictures, report.json and result.zarr into this folder; NAME.zarr: only that group
+    #[arg(short, long, value_name = "DIR|NAME.zarr", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
+    output: Option<PathBuf>,
+    /// Write only the pictures into this folder
+    #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
+    figures: Option<PathBuf>,
+}
+
+/// Places that can be written, as far as can be known beforehand.
+pub(super) struct Places<'a> {
+    folder: Option<&'a Path>,
+    group: Option<&'a Path>,
+    figures: Option<&'a Path>,
+}
+
+impl PlaceArgs {
+    /// Refuses places that cannot be written, before anything is computed.
+    pub(super) fn checked(&self) -> Result<Places<'_>, Failure> {
+        let is_group = |path: &&Path| path.extension().is_some_and(|ending| ending == "zarr");
+        let output = self.output.as_deref();
+        let places = Places {
+            folder: output.filter(|path| !is_group(path)),
+            group: output.filter(is_group),
+            figures: self.figures.as_deref(),
+        };
+        if let (Some(folder), Some(figures)) = (output, places.figures)
+            && folder == figures
+        {
+            let help = Some("-o alone writes the pictures too".to_owned());
+            return Err(Failure::with_help("-o and --figures name the same folder".to_owned(), help));
+        }
+        let checks: [(Option<&Path>, fn(&Path) -> bool); 3] =
+            [(places.folder, is_result), (places.group, zarr::is_group), (places.figures, has_only_pictures)];
+        for (path, is_ours) in checks {
+            if let Some(path) = path {
+                write::check_folder(path, is_ours)?;
+            }
+        }
+        Ok(places)
+    }
+}
+
+impl Places<'_> {
+    /// Whether the heights over the grid are written.
+    pub(super) fn wants_heights(&self) -> bool {
+        self.folder.is_some() || self.group.is_some()
+    }
+
+    /// Writes everything and says what was written.
+    pub(super) fn write(
+        &self,
+        job: &Job,
+        built: &Built,
+        computed: &Computed,
+        report: &Report,
+        exec: &Exec,
+    ) -> Result<Vec<String>, Failure> {
+        let mut notes = Vec::new();
+        let mut pictures = Vec::new();
+        if self.folder.is_some() || self.figures.is_some() {
+            let (drawn, left_out) = pictures::draw(job, &built.connector, computed, exec)?;
+            pictures = encode(&drawn, exec)?;
+            notes = left_out;
+        }
+        let heights = computed.landscape.as_ref().map(|landscape| &landscape.heights[..]);
+        if let Some(path) = self.figures {
+            write::folder(path, has_only_pictures, |folder| write_all(folder, &pictures, exec))?;
+            notes.push(format!("wrote {} pictures into {}", pictures.len(), path.display()));
+        }
+        if let Some(path) = self.group {
+            exec.check()?;
+            zarr::write(path, report, &computed.acceptance, heights)?;
+            notes.push(format!("wrote {}", path.display()));
+        }
+        if let Some(path) = self.folder {
+            let json = report.to_json()?;
+            write::folder(path, is_result, |folder| -> Result<(), Failure> {
+                write_all(folder, &pictures, exec)?;
+                zarr::write(&folder.join(RESULT), report, &computed.acceptance, heights)?;
+                write::file(&folder.join(REPORT), json.as_bytes())?;
+                Ok(exec.check()?)
+            })?;
+            let place = path.display();
+            notes.push(format!("wrote {place}: {REPORT}, {RESULT}, {} pictures", pictures.len()));
+        }
+        Ok(notes)
+    }
+}
+
+/// Every picture as SVG and PNG, with the name of its file.
+fn encode(drawn: &[(&'static str, Picture)], exec: &Exec) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let mut files = Vec::new();
+    for (name, picture) in drawn {
+        exec.check()?;
+        files.push((format!("{name}.png"), picture.png(PNG_SCALE)?));
+        files.push((format!("{name}.svg"), picture.svg().as_bytes().to_vec()));
+    }
+    Ok(files)
+}
+
+fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Result<(), Failure> {
+    for (name, bytes) in files {
+        exec.check()?;
+        write::file(&folder.join(name), bytes)?;
+    }
+    Ok(())
+}
+
+/// Whether a folder holds pictures of a run, or nothing: replacing it loses nothing else.
+fn has_only_pictures(path: &Path) -> bool {
+    has_only(path, is_picture)
+}
+
+/// Whether a folder was written by `-o DIR`, or is empty: replacing it loses nothing else.
+fn is_result(path: &Path) -> bool {
+    let is_report = |path: &Path| {
+        let text = std::fs::read_to_string(path).unwrap_or_default();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        report["schema"].is_u64() && report["catchment"].is_string()
+    };
+    has_only(path, |name| {
+        is_picture(name)
+            || name == REPORT && is_report(&path.join(REPORT))
+            || name == RESULT && zarr::is_group(&path.join(RESULT))
+    })
+}
+
+fn is_picture(name: &str) -> bool {
+    pictures::NAMES
+        .iter()
+        .any(|picture| name.strip_prefix(picture).is_some_and(|ending| matches!(ending, ".png" | ".svg")))
+}
+
+/// Whether a folder holds only entries of known names.
+fn has_only(path: &Path, known: impl Fn(&str) -> bool) -> bool {
+    // A link may lead to a folder that other things rely on.
+    let is_folder = std::fs::symlink_metadata(path).is_ok_and(|meta| meta.is_dir());
+    let Ok(mut entries) = std::fs::read_dir(path) else { return false };
+    is_folder && entries.all(|entry| entry.is_ok_and(|e| e.file_name().to_str().is_some_and(&known)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_run_wrote_is_replaced() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        assert!(is_result(folder) && has_only_pictures(folder), "nothing is lost with an empty folder");
+        std::fs::write(folder.join("overview.png"), "").unwrap();
+        assert!(is_result(folder) && has_only_pictures(folder));
+        std::fs::write(folder.join(REPORT), r#"{ "schema": 1, "catchment": "0.1.0" }"#).unwrap();
+        assert!(is_result(folder) && !has_only_pictures(folder));
+        std::fs::write(folder.join(REPORT), "{}").unwrap();
+        assert!(!is_result(folder));
+        std::fs::remove_file(folder.join(REPORT)).unwrap();
+        std::fs::write(folder.join("holiday.png"), "").unwrap();
+        assert!(!is_result(folder) && !has_only_pictures(folder));
+        assert!(!is_result(&folder.join("holiday.png")) && !is_result(&folder.join("nowhere")));
+    }
+}

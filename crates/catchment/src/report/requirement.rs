@@ -1,0 +1,235 @@
+//! A demand on a report: `onaa.edge >= 0.3`.
+//!
+//! ```text
+//!   PATH OP NUMBER     PATH  keys of the JSON report, joined by dots; lists by number from 0, or by the name of
+//!                            the axis where they have one: tolerances.x.plus, acceptance.sum_ci95.0
+//!                      OP    >=  <=  >  <  ==
+//! ```
+
+use crate::design::nearest;
+use serde_json::Value;
+use std::fmt;
+use std::str::FromStr;
+
+/// How a value is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Relation {
+    AtLeast,
+    AtMost,
+    Equal,
+    Above,
+    Below,
+}
+
+/// Every relation with its sign; longer signs first, so that `>=` is not read as `>`.
+const RELATIONS: [(Relation, &str); 5] = [
+    (Relation::AtLeast, ">="),
+    (Relation::AtMost, "<="),
+    (Relation::Equal, "=="),
+    (Relation::Above, ">"),
+    (Relation::Below, "<"),
+];
+
+/// A demand on one number of a report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requirement {
+    path: String,
+    relation: Relation,
+    number: f64,
+}
+
+/// Why a requirement cannot be judged.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum RequirementError {
+    /// Not `PATH OP NUMBER`.
+    #[error(
+        "`{text}` is no requirement; write PATH OP NUMBER such as onaa.edge>=0.3, OP one of >= <= > < =="
+    )]
+    Syntax {
+        /// What was written.
+        text: String,
+    },
+    /// A report has no such place.
+    #[error("the report has no `{path}`{}", described(known, meant.as_deref()))]
+    NoSuchPath {
+        /// The path as far as it leads nowhere.
+        path: String,
+        /// What there is instead.
+        known: Vec<String>,
+        /// The nearest of these.
+        meant: Option<String>,
+    },
+    /// There is something else at the place.
+    #[error("`{path}` is {what} in this report, not a number")]
+    NotANumber {
+        /// The path.
+        path: String,
+        /// What it is.
+        what: &'static str,
+    },
+}
+
+fn described(known: &[String], meant: Option<&str>) -> String {
+    match meant {
+        Some(meant) => format!("; did you mean `{meant}`?"),
+        None if known.is_empty() => String::new(),
+        None => format!("; there are {}", known.join(", ")),
+    }
+}
+
+impl FromStr for Requirement {
+    type Err = RequirementError;
+
+    fn from_str(text: &str) -> Result<Self, RequirementError> {
+        let syntax = || RequirementError::Syntax { text: text.to_owned() };
+        let start = text.find(['<', '>', '=']).ok_or_else(syntax)?;
+        let (path, rest) = text.split_at(start);
+        let (relation, sign) = RELATIONS.into_iter().find(|(_, s)| rest.starts_with(s)).ok_or_else(syntax)?;
+        let number: f64 = rest[sign.len()..].trim().parse().map_err(|_| syntax())?;
+        let path = path.trim();
+        if path.is_empty() || !number.is_finite() {
+            return Err(syntax());
+        }
+        Ok(Self { path: path.to_owned(), relation, number })
+    }
+}
+
+impl fmt::Display for Requirement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = RELATIONS.iter().find(|(r, _)| *r == self.relation).map_or("", |(_, sign)| sign);
+        write!(f, "{} {sign} {}", self.path, self.number)
+    }
+}
+
+impl Requirement {
+    /// The number that the requirement is about.
+    ///
+    /// # Errors
+    /// If the report has no such place, or no number there.
+    pub fn value(&self, report: &Value) -> Result<f64, RequirementError> {
+        let what = match self.place(report)? {
+            Value::Number(number) => return Ok(number.as_f64().unwrap_or(f64::NAN)),
+            Value::Null => "null",
+            Value::Bool(_) => "true or false",
+            Value::String(_) => "a text",
+            Value::Array(_) => "a list",
+            Value::Object(_) => "an object",
+        };
+        Err(RequirementError::NotANumber { path: self.path.clone(), what })
+    }
+
+    /// Whether a number meets it.
+    pub fn is_met_by(&self, value: f64) -> bool {
+        match self.relation {
+            Relation::AtLeast => value >= self.number,
+            Relation::AtMost => value <= self.number,
+            Relation::Equal => value == self.number,
+            Relation::Above => value > self.number,
+            Relation::Below => value < self.number,
+        }
+    }
+
+    fn place<'a>(&self, report: &'a Value) -> Result<&'a Value, RequirementError> {
+        let mut here = report;
+        let mut walked = String::new();
+        for step in self.path.split('.') {
+            let before = if walked.is_empty() { String::new() } else { format!("{walked}.") };
+            walked = format!("{before}{step}");
+            let steps = steps(here);
+            here = match steps.iter().find(|(names, _)| names.iter().any(|name| name == step)) {
+                Some((_, next)) => next,
+                None => {
+                    let known: Vec<String> = steps.into_iter().filter_map(|(mut n, _)| n.pop()).collect();
+                    let meant = nearest(step, known.iter().map(String::as_str));
+                    let meant = meant.map(|word| format!("{before}{word}"));
+                    return Err(RequirementError::NoSuchPath { path: walked, known, meant });
+                }
+            };
+        }
+        Ok(here)
+    }
+}
+
+/// What can be stepped into, under each of its names, the one for messages last.
+fn steps(value: &Value) -> Vec<(Vec<String>, &Value)> {
+    match value {
+        Value::Object(map) => map.iter().map(|(key, next)| (vec![key.clone()], next)).collect(),
+        Value::Array(list) => list
+            .iter()
+            .enumerate()
+            .map(|(k, next)| {
+                let axis = next.get("axis").and_then(Value::as_str).map(str::to_owned);
+                (std::iter::once(k.to_string()).chain(axis).collect(), next)
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn report() -> Value {
+        json!({
+            "acceptance": { "sum": 2.5, "sum_ci95": [2.4, 2.6], "sample": null },
+            "tolerances": [{ "axis": "x", "plus": 0.5 }, { "axis": "yaw", "plus": 1.0 }],
+            "method": "descent",
+        })
+    }
+
+    fn judge(text: &str) -> Result<bool, RequirementError> {
+        let requirement: Requirement = text.parse()?;
+        Ok(requirement.is_met_by(requirement.value(&report())?))
+    }
+
+    #[test]
+    fn every_relation_on_both_sides() {
+        for (text, met) in [
+            ("acceptance.sum>=2.5", true),
+            ("acceptance.sum >= 2.6", false),
+            ("acceptance.sum<= 2.5", true),
+            ("acceptance.sum <=2.4", false),
+            ("acceptance.sum > 2.5", false),
+            ("acceptance.sum<2.6", true),
+            ("acceptance.sum == 2.5", true),
+            ("acceptance.sum == -2.5", false),
+            ("acceptance.sum_ci95.1 > 2.5", true),
+            ("tolerances.yaw.plus >= 1", true),
+            ("tolerances.0.plus >= 1", false),
+        ] {
+            assert_eq!(judge(text), Ok(met), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_judged_is_said() {
+        for text in ["", "sum", ">= 3", "sum = 3", "sum >= much", "sum >= nan", "sum >= 3 mm"] {
+            assert!(matches!(judge(text), Err(RequirementError::Syntax { .. })), "{text}");
+        }
+        let message = |text: &str| judge(text).unwrap_err().to_string();
+        assert_eq!(message("aceptance.sum > 1"), "the report has no `aceptance`; did you mean `acceptance`?");
+        assert_eq!(
+            message("tolerances.z.plus > 1"),
+            "the report has no `tolerances.z`; did you mean `tolerances.x`?"
+        );
+        assert_eq!(
+            message("acceptance.onaa > 1"),
+            "the report has no `acceptance.onaa`; there are sample, sum, sum_ci95"
+        );
+        assert_eq!(message("acceptance.sum.x > 1"), "the report has no `acceptance.sum.x`");
+        assert_eq!(
+            message("acceptance.sample > 1"),
+            "`acceptance.sample` is null in this report, not a number"
+        );
+        assert_eq!(message("method == 1"), "`method` is a text in this report, not a number");
+    }
+
+    #[test]
+    fn it_is_written_as_it_is_read() {
+        for text in ["onaa.edge >= 0.3", "a.0 == -1", "b < 2"] {
+            assert_eq!(text.parse::<Requirement>().unwrap().to_string(), text);
+        }
+    }
+}
