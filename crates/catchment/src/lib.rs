@@ -13,7 +13,7 @@
 //! use catchment::connector::Connector;
 //! use catchment::contact::Pair;
 //! use catchment::exec::Exec;
-//! use catchment::landscape::Resolution;
+//! use catchment::landscape::Grid;
 //! use catchment::merit::onaa::Onaa;
 //! use catchment::merit::sum::Sum;
 //! use catchment::method::descent;
@@ -44,7 +44,7 @@
 //! let pair = Pair::new(&connector, &design.alignment);
 //!
 //! // 3. Every cell of the error box is followed to its end, exactly and without a grid in between.
-//! let grid = Resolution::uniform(40)?.grid(&design.alignment)?;
+//! let grid = Grid::over(&design.alignment, |_| 40);
 //! let settings = descent::Settings::default();
 //! let (acceptance, _ends) = descent::run(&pair, Domain::Grid(grid), &settings, &Exec::new())?;
 //!
