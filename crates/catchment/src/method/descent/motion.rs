@@ -240,7 +240,7 @@ impl<'a> Motion<'a> {
         for contact in &self.contacts {
             let clear = if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 };
             let row = self.row(contact, state, &axes);
-            let gap = (contact.gap - clear).max(0.0);
+            let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
             // Corners, edges and facets that meet at one point say the same thing several times.
             let known = self.rows.iter().zip(&self.gaps).any(|(r, g)| {
                 (g - gap).abs() < SAME && r.iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
@@ -312,7 +312,11 @@ impl<'a> Motion<'a> {
         let solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;
-            let u = closest_allowed(&push, &self.rows, &self.gaps, step * reach);
+            // Squeezed between two walls there is no clearance to regain.
+            let u = closest_allowed(&push, &self.rows, &self.gaps, step * reach).unwrap_or_else(|| {
+                let gaps: Vec<f64> = self.gaps.iter().map(|g| g.max(0.0)).collect();
+                closest_allowed(&push, &self.rows, &gaps, step * reach).unwrap_or_default()
+            });
             let length = u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>();
             (u, length.sqrt())
         };

@@ -20,10 +20,11 @@ const ROWS: usize = MAX_COORDINATES + 1;
 /// A displacement, or the row of a contact; unused coordinates are 0.
 pub(super) type Vector = [f64; MAX_COORDINATES];
 
-/// The displacement closest to `push` that keeps every gap open: `rows[i]·u ≥ −gaps[i]`, gaps ≥ 0.
+/// The displacement closest to `push` that keeps every gap open: `rows[i]·u ≥ −gaps[i]`; `None` where negative gaps
+/// contradict each other.
 ///
 /// `scale` is the size of displacement of interest: gaps and push are measured in it for conditioning.
-pub(super) fn closest_allowed(push: &Vector, rows: &[Vector], gaps: &[f64], scale: f64) -> Vector {
+pub(super) fn closest_allowed(push: &Vector, rows: &[Vector], gaps: &[f64], scale: f64) -> Option<Vector> {
     let mut columns: Vec<[f64; ROWS]> = Vec::with_capacity(rows.len());
     for (row, gap) in rows.iter().zip(gaps) {
         // In v = (u − push)/scale:  row·v ≥ −(gap + row·push)/scale.
@@ -34,18 +35,18 @@ pub(super) fn closest_allowed(push: &Vector, rows: &[Vector], gaps: &[f64], scal
         columns.push(column);
     }
     if columns.iter().all(|c| c[MAX_COORDINATES] <= 0.0) {
-        return *push;
+        return Some(*push);
     }
     let residual = non_negative_residual(&columns);
     let mut u = *push;
-    // The last residual is 0 only if the constraints contradict each other; with gaps ≥ 0, u = 0 satisfies them all.
+    // The last residual is 0 only if the constraints contradict each other.
     if residual[MAX_COORDINATES].abs() > 1e-14 {
         for (u, r) in u.iter_mut().zip(residual) {
             *u -= scale * r / residual[MAX_COORDINATES];
         }
-        return u;
+        return Some(u);
     }
-    [0.0; MAX_COORDINATES]
+    None
 }
 
 /// Scalar product.
@@ -168,7 +169,8 @@ mod tests {
     fn a_plane_deflects_the_push_along_itself() {
         // A slope of 45°: pushed straight down by 1, the closest allowed displacement is (½, 0, −½).
         let s = 0.5f64.sqrt();
-        let u = closest_allowed(&[0.0, 0.0, -1.0, 0.0, 0.0, 0.0], &[[s, 0.0, s, 0.0, 0.0, 0.0]], &[0.0], 1.0);
+        let u = closest_allowed(&[0.0, 0.0, -1.0, 0.0, 0.0, 0.0], &[[s, 0.0, s, 0.0, 0.0, 0.0]], &[0.0], 1.0)
+            .unwrap();
         assert!((u[0] - 0.5).abs() < 1e-14 && (u[2] + 0.5).abs() < 1e-14, "{u:?}");
     }
 
@@ -176,8 +178,14 @@ mod tests {
     fn a_funnel_holds() {
         let s = 0.5f64.sqrt();
         let rows = [[s, 0.0, s, 0.0, 0.0, 0.0], [-s, 0.0, s, 0.0, 0.0, 0.0]];
-        let u = closest_allowed(&[0.0, 0.0, -1.0, 0.0, 0.0, 0.0], &rows, &[0.0, 0.0], 1.0);
+        let u = closest_allowed(&[0.0, 0.0, -1.0, 0.0, 0.0, 0.0], &rows, &[0.0, 0.0], 1.0).unwrap();
         assert!(u.iter().all(|x| x.abs() < 1e-14), "{u:?}");
+    }
+
+    #[test]
+    fn two_walls_that_overlap_leave_no_displacement() {
+        let rows = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+        assert_eq!(closest_allowed(&[0.0, 0.0, -1.0, 0.0, 0.0, 0.0], &rows, &[-1e-3, -1e-3], 1.0), None);
     }
 
     proptest! {
@@ -190,7 +198,7 @@ mod tests {
             others in proptest::collection::vec(proptest::array::uniform6(-1.0..1.0f64), 40),
         ) {
             let gaps = &gaps[..rows.len()];
-            let u = closest_allowed(&push, &rows, gaps, 1.0);
+            let u = closest_allowed(&push, &rows, gaps, 1.0).unwrap();
             for (row, gap) in rows.iter().zip(gaps) {
                 prop_assert!(dot(row, &u) >= -gap - 1e-9);
             }
