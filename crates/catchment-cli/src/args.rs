@@ -21,7 +21,11 @@ use std::path::PathBuf;
     after_long_help = "Examples:\n  \
         catchment new pyramid -o design.toml    a commented starting point\n  \
         catchment check design.toml             everything that is wrong with it\n  \
-        catchment run design.toml -o out        its area of acceptance, with pictures\n\n\
+        catchment run design.toml -o out        its area of acceptance, with pictures\n  \
+        catchment outcome design.toml --poses poses.csv\n                                          what becomes of listed errors\n  \
+        catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" -o trace.png\n                                          the way of one of them\n  \
+        catchment zraa design.toml              offsets corrected by sliding alone\n  \
+        catchment reproduce 5.7                 a published table beside ours\n\n\
         Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\
         Exit codes: 0 done, 1 done but a requirement is not met, 2 could not compute, 130 interrupted."
 )]

@@ -1,9 +1,11 @@
 //! From a design to its halves, with geometry's complaints placed in the design file.
 
 use crate::source::{Finding, Input, InputError};
+use catchment::connector::stl::StlProblem;
 use catchment::connector::{Connector, Problem, Side};
 use catchment::contact::Pair;
 use catchment::contact::mated::{self, MatedProblem};
+use std::mem::discriminant;
 
 /// A design and its halves.
 #[derive(Debug)]
@@ -21,8 +23,8 @@ impl Built {
             Ok(connector) => Ok(Self { input, connector }),
             Err(problems) => {
                 let findings = problems
-                    .iter()
-                    .map(|problem| input.finding(&place(problem), problem.to_string(), None))
+                    .chunk_by(same_kind)
+                    .map(|kind| input.finding(&place(&kind[0]), kind[0].to_string(), likewise(&kind[1..])))
                     .collect();
                 Err(input.refused(findings))
             }
@@ -55,6 +57,28 @@ impl Built {
             .map(|problem| self.input.finding(mated_place(problem), problem.to_string(), None))
             .collect()
     }
+}
+
+/// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.
+fn same_kind(a: &Problem, b: &Problem) -> bool {
+    match (a, b) {
+        (Problem::Stl { side: a, error: first, .. }, Problem::Stl { side: b, error, .. }) => {
+            a == b && (discriminant(first) == discriminant(error) || matches!(error, StlProblem::More { .. }))
+        }
+        _ => false,
+    }
+}
+
+/// The other places of one kind of problem.
+fn likewise(rest: &[Problem]) -> Option<String> {
+    let places: Vec<String> = rest
+        .iter()
+        .map(|problem| match problem {
+            Problem::Stl { error, .. } => error.to_string(),
+            other => other.to_string(),
+        })
+        .collect();
+    (!places.is_empty()).then(|| format!("likewise: {}", places.join("; ")))
 }
 
 /// The key that a geometric problem is about.

@@ -4,11 +4,13 @@
 
 mod args;
 mod command;
+mod errors;
 mod exec_args;
 mod exit;
 mod failure;
 mod geometry;
 mod output;
+mod poses;
 mod source;
 
 use args::Cli;

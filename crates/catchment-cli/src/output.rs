@@ -17,6 +17,11 @@ pub(crate) struct OutputArgs {
 }
 
 impl OutputArgs {
+    /// Refuses what cannot be written in the end, before anything is computed.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        self.output.as_deref().map_or(Ok(()), |path| check_place(path, self.force))
+    }
+
     /// Writes `text` where it should go.
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
         match &self.output {
@@ -24,6 +29,55 @@ impl OutputArgs {
             None => to_stdout(text),
         }
     }
+}
+
+/// A file beside what is printed; the end of its name says what is in it.
+#[derive(Debug, Args)]
+pub(crate) struct FileArgs {
+    /// Also write this file; the end of its name (such as .svg) says what is in it
+    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+impl FileArgs {
+    /// Which of the `known` endings the file has, where one is asked for. Refuses what cannot be written in the
+    /// end, before anything is computed.
+    pub(crate) fn kind(&self, known: &[&'static str]) -> Result<Option<&'static str>, Failure> {
+        let Some(path) = &self.output else { return Ok(None) };
+        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let Some(kind) = known.iter().find(|k| k.eq_ignore_ascii_case(ending)) else {
+            let help = format!("let its name end in .{}", known.join(", ."));
+            return Err(Failure::with_help(
+                format!("cannot tell what to write into {}", path.display()),
+                Some(help),
+            ));
+        };
+        check_place(path, self.force)?;
+        Ok(Some(kind))
+    }
+
+    /// Writes the file, if one is asked for.
+    pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
+        self.output.as_deref().map_or(Ok(()), |path| write_file(path, bytes, self.force))
+    }
+}
+
+/// Whether a file can be written at `path`, as far as can be seen beforehand.
+fn check_place(path: &Path, replace: bool) -> Result<(), Failure> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (reason, help) = if path.is_dir() {
+        ("it is a folder", None)
+    } else if !replace && path.symlink_metadata().is_ok() {
+        ("it exists", Some("--force replaces it".to_owned()))
+    } else if !folder.is_dir() {
+        ("its folder does not exist", Some("create it first".to_owned()))
+    } else {
+        return Ok(());
+    };
+    Err(Failure::with_help(format!("cannot write {}: {reason}", path.display()), help))
 }
 
 /// Prints data. A reader that went away (`| head`) ends the command quietly.
@@ -43,6 +97,12 @@ pub(crate) fn to_stderr(lines: &[String]) {
         // Nobody is left to tell when stderr itself is gone.
         let _ = writeln!(stderr, "{line}");
     }
+}
+
+/// A number with all its digits, as tables for programs have it.
+pub(crate) fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
 }
 
 /// Writes a file under a temporary name beside its place and moves it there when it is complete.

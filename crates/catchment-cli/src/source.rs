@@ -84,13 +84,19 @@ impl Input {
 }
 
 impl SourceText {
-    fn new(path: &Path, text: String) -> Self {
+    /// A text and the name to show it under.
+    pub(crate) fn new(path: &Path, text: String) -> Self {
         Self { path: path.to_path_buf(), shown: Arc::new(printable(&text)), text }
     }
 
     /// The file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The text.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
     }
 
     /// Line and column of a byte, from 1.

@@ -4,8 +4,12 @@ mod check;
 mod completions;
 mod man;
 mod new;
+mod outcome;
+mod reproduce;
 mod run;
 mod schema;
+mod trace;
+mod zraa;
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -17,6 +21,10 @@ pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
     Run(Box<run::RunArgs>),
+    Outcome(outcome::OutcomeArgs),
+    Trace(trace::TraceArgs),
+    Zraa(zraa::ZraaArgs),
+    Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
     Completions(completions::CompletionsArgs),
     Man(man::ManArgs),
@@ -29,6 +37,10 @@ impl Command {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
             Self::Run(args) => run::run(&args),
+            Self::Outcome(args) => outcome::run(&args),
+            Self::Trace(args) => trace::run(&args),
+            Self::Zraa(args) => zraa::run(&args),
+            Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),
             Self::Completions(args) => completions::run(&args),
             Self::Man(args) => man::run(&args),

@@ -3,10 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up should stop")]
 
 mod check;
+mod meshes;
 mod new;
 mod plumbing;
+mod poses;
+mod tables;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// The binary in a folder, with nothing of the tester's terminal.
@@ -31,4 +34,16 @@ fn run(folder: &Path, args: &[&str]) -> String {
         String::from_utf8(output.stdout).unwrap(),
         String::from_utf8(output.stderr).unwrap(),
     )
+}
+
+/// The committed designs.
+fn designs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs")
+}
+
+/// What a run of the binary prints, as JSON.
+fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
+    let output = catchment(folder).args(args).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
 }

@@ -20,7 +20,9 @@ fn scripts_and_pages_are_written_for_every_shell_and_subcommand() {
         let report = run(dir.path(), &["completions", shell]);
         assert!(report.starts_with("exit 0\n") && report.contains("check"), "{report}");
     }
-    for subcommand in ["new", "check", "schema", "completions", "man"] {
+    for subcommand in
+        ["new", "check", "run", "outcome", "trace", "zraa", "reproduce", "schema", "completions", "man"]
+    {
         let report = run(dir.path(), &["man", subcommand]);
         assert!(report.contains(&format!(".TH catchment-{subcommand}")), "{report}");
     }

@@ -15,9 +15,12 @@
 //! Nilsson for the bounds of planar faces.
 
 mod cells;
+mod circle;
 mod flow;
 mod line;
 mod patch;
+
+pub use circle::circle_bounds;
 
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};

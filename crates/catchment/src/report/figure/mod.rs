@@ -6,6 +6,7 @@
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
 //!   trajectory  the moving half along its path, and the errors it still has
+//!   region      offsets that are corrected without any rotation
 //!   overview    the picture of a design: halves, acceptance, heights
 //! ```
 //!
@@ -18,6 +19,7 @@ mod heights;
 mod map;
 mod overview;
 mod raster;
+mod region;
 mod section;
 mod slices;
 mod solid;
@@ -26,6 +28,7 @@ mod trajectory;
 
 pub use heights::heights;
 pub use overview::overview;
+pub use region::region;
 pub use section::{Placement, section};
 pub use slices::slices;
 pub use solid::solids;

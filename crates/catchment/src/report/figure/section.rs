@@ -1,6 +1,6 @@
 //! Both halves cut by a plane along the approach axis, y = constant in the world frame.
 //!
-//! The cut runs through y = 0, unless facets lie in that plane (a connector in two layers): then one cut through the
+//! The cut runs through y = 0, unless facets lie in that plane or nothing meets it (a connector in two layers): then one cut through the
 //! middle of either side is drawn, the farther one paler behind the nearer one.
 
 use super::axis::{Frame, Scale, Units};
@@ -217,13 +217,18 @@ pub(super) fn approach_axis(svg: &mut Svg, frame: &Frame) {
     svg.line([x, frame.rect.y], [x, frame.rect.y + frame.rect.h], &style);
 }
 
-/// Where to cut: y = 0, or either side of it if a half has facets there. From far (+y) to near.
+/// Where to cut: y = 0, or either side of it if a half has facets there or nothing at all. From far (+y) to near.
 fn cuts(connector: &Connector) -> Vec<f64> {
     const IN_PLANE: f64 = 1e-9;
     let lies_in = |s: &Surface| {
         s.facets.iter().any(|f| f.corners.iter().all(|i| s.vertices[*i as usize].y.abs() < IN_PLANE))
     };
-    if !connector.fixed.surfaces.iter().chain(&connector.moving.surfaces).any(lies_in) {
+    let meets = |s: &Surface| {
+        let (lo, hi) = s.bounds();
+        lo.y < -IN_PLANE && hi.y > IN_PLANE
+    };
+    let all = || connector.fixed.surfaces.iter().chain(&connector.moving.surfaces);
+    if all().any(meets) && !all().any(lies_in) {
         return vec![0.0];
     }
     let surfaces = &connector.fixed.surfaces;
@@ -308,6 +313,14 @@ mod tests {
     fn layers_are_cut_on_either_side() {
         assert_eq!(cuts(&v_face()), [0.0]);
         assert_eq!(cuts(&x_face()), [0.125, -0.125]);
+        // A gap between the layers.
+        let apart = |half: &Half| half.mapped(|p| DVec3::new(p.x, 2.0 * p.y + 0.05f64.copysign(p.y), p.z));
+        let mut layers = x_face();
+        for half in [&mut layers.fixed, &mut layers.moving] {
+            half.surfaces.retain(|s| s.bounds().1.y > 1e-9);
+            *half = apart(half);
+        }
+        assert_eq!(cuts(&layers), [0.275]);
     }
 
     #[test]

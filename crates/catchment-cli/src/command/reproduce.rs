@@ -1,0 +1,139 @@
+//! `catchment reproduce`: the dissertation's tables beside what this program computes.
+
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{number, to_stderr, to_stdout};
+use catchment::acceptance::Warning;
+use catchment::study::reproduce::{TABLES, TableComparison, reproduce};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use serde_json::json;
+use std::fmt::Write;
+
+/// Compute published tables and set them beside the printed ones
+///
+/// The kinematic bounds (3.3, 3.4) are exact. The discrete tables (5.4 to 5.9) are computed with conventions
+/// that were fitted to these very tables: that they agree shows that the conventions are understood, not that
+/// the numbers are right as physics.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment reproduce                     every table, and how well each agrees\n  \
+    catchment reproduce 5.7                 one of them\n  \
+    catchment reproduce 3.3 3.4 --csv > kinematic.csv")]
+pub(crate) struct ReproduceArgs {
+    /// Numbers of the tables in the dissertation; all of them when none is named
+    #[arg(value_name = "TABLE", value_parser = tables())]
+    tables: Vec<String>,
+    /// Print JSON
+    #[arg(long, conflicts_with = "csv")]
+    json: bool,
+    /// Print CSV, one line per entry
+    #[arg(long)]
+    csv: bool,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Version of the JSON that `--json` prints.
+const JSON_SCHEMA: u32 = 1;
+
+fn tables() -> PossibleValuesParser {
+    PossibleValuesParser::new(TABLES.iter().map(|table| PossibleValue::new(table.name).help(table.title)))
+}
+
+pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
+    let wanted = |name: &str| args.tables.is_empty() || args.tables.iter().any(|t| t == name);
+    let names: Vec<&str> = TABLES.iter().map(|table| table.name).filter(|name| wanted(name)).collect();
+    let running = args.exec.start()?;
+    let mut compared = Vec::new();
+    for (k, name) in names.iter().enumerate() {
+        running.exec.report(k as f64 / names.len() as f64, "tables");
+        compared.push(reproduce(name, &running.exec)?);
+    }
+    drop(running);
+    let fitted = compared.iter().any(is_fitted);
+    let warning = Warning::DissertationConventions;
+    if args.json {
+        let tables: Vec<_> = compared.iter().map(|table| json(table, &warning)).collect();
+        to_stdout(&format!("{:#}\n", json!({ "schema": JSON_SCHEMA, "tables": tables })))?;
+    } else if args.csv {
+        to_stdout(&csv(&compared)?)?;
+    } else {
+        to_stdout(&text(&compared)?)?;
+    }
+    if fitted {
+        to_stderr(&[format!("warning: {warning}")]);
+    }
+    Ok(ExitStatus::Done)
+}
+
+/// Whether the dissertation preset computed the table; the kinematic bounds need none.
+fn is_fitted(table: &TableComparison) -> bool {
+    table.table.starts_with("5.")
+}
+
+fn json(table: &TableComparison, warning: &Warning) -> serde_json::Value {
+    let mut value = json!(table);
+    let warnings = if is_fitted(table) { vec![warning] } else { Vec::new() };
+    value["warnings"] = warnings
+        .into_iter()
+        .map(|w| {
+            let mut doubt = json!(w);
+            doubt["message"] = w.to_string().into();
+            doubt
+        })
+        .collect();
+    value
+}
+
+fn csv(tables: &[TableComparison]) -> Result<String, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let head = "table row column unit published ours ratio exact matches known_difference";
+    writer.write_record(head.split(' '))?;
+    for table in tables {
+        for (row, entries) in table.rows.iter().zip(&table.entries) {
+            for (column, entry) in table.columns.iter().zip(entries) {
+                writer.write_record([
+                    table.table,
+                    &number(*row),
+                    &number(*column),
+                    table.unit,
+                    &number(entry.published),
+                    &number(entry.ours),
+                    &number(entry.ratio),
+                    &entry.exact.to_string(),
+                    &entry.matches.to_string(),
+                    entry.known_difference.unwrap_or(""),
+                ])?;
+            }
+        }
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// The tables, and a line for each at the end where there are several.
+fn text(tables: &[TableComparison]) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    for table in tables {
+        writeln!(text, "{table}")?;
+    }
+    if tables.len() > 1 {
+        writeln!(text, "Summary")?;
+        writeln!(text, "  table     exact  matching  median error  mean |ln ratio|  as")?;
+        for table in tables {
+            let s = &table.summary;
+            writeln!(
+                text,
+                "  {:<5}  {:>8}  {:>8}  {:>10.2} %  {:>15.3}  {}",
+                table.table,
+                format!("{}/{}", s.exact, s.entries),
+                format!("{}/{}", s.matching, s.entries),
+                100.0 * s.median_error,
+                s.mean_log_ratio,
+                if is_fitted(table) { "conventions fitted to the table" } else { "exact bound" },
+            )?;
+        }
+    }
+    Ok(text)
+}

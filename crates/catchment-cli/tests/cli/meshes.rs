@@ -1,0 +1,149 @@
+//! Bad geometry is refused with one clear message by every command, good meshes give the family's numbers.
+
+use super::{catchment, designs, run};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::Path;
+
+const DESIGN: &str = "[connector]\nwidth = 50\nunit = \"mm\"\nface_height = 12.5\n\
+                      fixed = { mesh = \"socket.stl\", unit = \"mm\" }\n\
+                      moving = { mesh = \"plug.stl\", unit = \"mm\" }\n";
+
+/// A folder with the committed pyramid pair, one of whose files `spoil` changes.
+fn folder(spoil: impl Fn(&Path)) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("design.toml"), DESIGN).unwrap();
+    for half in ["socket.stl", "plug.stl"] {
+        fs::copy(designs().join("meshes").join(half), dir.path().join(half)).unwrap();
+    }
+    spoil(dir.path());
+    dir
+}
+
+/// The committed plug, binary, with its bytes changed.
+fn plug(change: impl Fn(&mut Vec<u8>)) -> impl Fn(&Path) {
+    move |dir| {
+        let path = dir.join("plug.stl");
+        let mut bytes = fs::read(&path).unwrap();
+        change(&mut bytes);
+        fs::write(path, bytes).unwrap();
+    }
+}
+
+/// Bytes before the first triangle of a binary file, and of each triangle.
+const HEADER: usize = 84;
+const TRIANGLE: usize = 50;
+
+/// Asserts that checking and computing refuse the folder with `said`, once, and leave nothing behind.
+fn refused(name: &str, spoil: impl Fn(&Path), said: &str) {
+    let dir = folder(spoil);
+    fs::write(dir.path().join("poses.csv"), "x\n0.1\n").unwrap();
+    let commands: [&[&str]; 5] = [
+        &["check", "design.toml"],
+        &["run", "design.toml", "-o", "out"],
+        &["zraa", "design.toml", "-o", "out.svg"],
+        &["outcome", "design.toml", "--poses", "poses.csv", "-o", "out.csv"],
+        &["trace", "design.toml", "--pose", "x=0.1", "-o", "out.png"],
+    ];
+    let reports = commands.map(|args| run(dir.path(), args));
+    for report in &reports {
+        assert_eq!(*report, reports[0], "{name}");
+        // Long lines are broken between words.
+        let words = report.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
+        assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{name}: {report}");
+        assert_eq!(words.matches(said).count(), 1, "{name}: {words}");
+        assert_eq!(words.matches('×').count(), 1, "{name}: more than one message: {report}");
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 4, "{name}");
+}
+
+#[test]
+fn an_open_mesh() {
+    // Without its last triangle three edges are open: one hole, one message.
+    let open = |bytes: &mut Vec<u8>| {
+        bytes.truncate(bytes.len() - TRIANGLE);
+        bytes[80] -= 1;
+    };
+    refused("open", plug(open), "plug.stl: the mesh is open along the edge of");
+}
+
+#[test]
+fn a_vertex_that_is_no_number() {
+    let nan = |bytes: &mut Vec<u8>| bytes[HEADER + 12..HEADER + 16].copy_from_slice(&f32::NAN.to_le_bytes());
+    refused("nan", plug(nan), "has a corner that is not finite");
+}
+
+#[test]
+fn a_mesh_in_the_wrong_unit() {
+    let metres = |bytes: &mut Vec<u8>| {
+        for triangle in bytes[HEADER..].chunks_exact_mut(TRIANGLE) {
+            for value in triangle[12..48].chunks_exact_mut(4) {
+                let drawn = f32::from_le_bytes(value.try_into().unwrap());
+                value.copy_from_slice(&(drawn / 1000.0).to_le_bytes());
+            }
+        }
+    };
+    refused("metres", plug(metres), "check the mesh's unit and the design's width");
+}
+
+#[test]
+fn a_file_that_was_cut_off() {
+    refused("cut off", plug(|bytes| bytes.truncate(bytes.len() - 70)), "it was cut off; export it again");
+    refused("empty", plug(Vec::clear), "the file is empty");
+}
+
+#[test]
+fn three_million_triangles_are_refused_unread() {
+    const COUNT: u32 = 3_000_000;
+    let huge = |dir: &Path| {
+        let mut file = File::create(dir.join("plug.stl")).unwrap();
+        file.write_all(&[b' '; 80]).unwrap();
+        file.write_all(&COUNT.to_le_bytes()).unwrap();
+        file.set_len((HEADER + TRIANGLE * COUNT as usize) as u64).unwrap();
+    };
+    refused("huge", huge, "3000000 triangles, more than the 20000 that a half may have");
+}
+
+/// Final errors of 50 poses spread over the error box.
+fn finals(folder: &Path, design: &Path) -> Vec<(String, Vec<f64>)> {
+    let spread = |k: u32, step: f64, half: f64| ((f64::from(k) * step).fract() * 2.0 - 1.0) * half;
+    let mut poses = "x,y,roll,pitch,yaw\n".to_owned();
+    for k in 1..=50 {
+        let row = [(0.834_5, 0.5), (0.696_4, 0.5), (0.581_1, 0.7), (0.484_9, 0.7), (0.404_7, 0.7)];
+        let cells = row.map(|(step, half)| format!("{:.6}", spread(k, step, half)));
+        poses += &(cells.join(",") + "\n");
+    }
+    fs::write(folder.join("poses.csv"), poses).unwrap();
+    let output = catchment(folder)
+        .args(["outcome", design.to_str().unwrap(), "--poses", "poses.csv"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    csv::Reader::from_reader(&output.stdout[..])
+        .records()
+        .map(|record| {
+            let record = record.unwrap();
+            (record[5].to_owned(), record.iter().skip(6).map(|cell| cell.parse().unwrap()).collect())
+        })
+        .collect()
+}
+
+#[test]
+fn meshes_and_pieces_give_the_familys_outcomes() {
+    let dir = tempfile::tempdir().unwrap();
+    let family = finals(dir.path(), &designs().join("pyramid.toml"));
+    assert_eq!(family.len(), 50);
+    assert!(family.iter().any(|f| f.0 == "aligned") && family.iter().any(|f| f.0 != "aligned"));
+    let mesh = finals(dir.path(), &designs().join("pyramid-stl.toml"));
+    for (k, (a, b)) in family.iter().zip(&mesh).enumerate() {
+        assert_eq!(a.0, b.0, "pose {k}");
+        for (x, y) in a.1.iter().zip(&b.1) {
+            assert!((x - y).abs() < 1e-6, "pose {k}: {a:?} {b:?}");
+        }
+    }
+    // Pieces have corners where they meet, so the motion takes other steps and stops elsewhere within its tolerance.
+    let pieces = finals(dir.path(), &designs().join("pyramid-pieces.toml"));
+    for (k, (a, b)) in family.iter().zip(&pieces).enumerate() {
+        assert_eq!(a.0, b.0, "pose {k}");
+    }
+}

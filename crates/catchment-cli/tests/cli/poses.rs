@@ -1,0 +1,144 @@
+//! `catchment outcome` and `catchment trace`.
+
+use super::{catchment, designs, json, run};
+use std::fs;
+use std::io::Write;
+use std::process::Stdio;
+
+const TABLE: &str = "\
+part,pitch_deg,x_mm,y_in
+A1,0,0,0
+A2,10,5,-0.1
+\"A3, bent\",-60,20,0
+A4,0,90,0
+";
+
+/// Runs `outcome` on a table that stdin holds.
+fn outcome(table: &str, args: &[&str]) -> std::process::Output {
+    let mut child = catchment(&designs())
+        .args(["outcome", "pyramid-stl.toml", "--poses", "-"])
+        .args(args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(table.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+/// A table's cells.
+fn cells(csv: &[u8]) -> Vec<Vec<String>> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(csv);
+    reader.records().map(|r| r.unwrap().iter().map(ToOwned::to_owned).collect()).collect()
+}
+
+#[test]
+fn poses_with_units_come_back_with_their_outcomes() {
+    let output = outcome(TABLE, &[]);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    assert!(stderr.starts_with("4 poses: "), "{stderr}");
+    let table = cells(&output.stdout);
+    let added = ["outcome", "final_x_mm", "final_y_in", "final_roll", "final_pitch_deg", "final_yaw"];
+    assert_eq!(table[0][..4], ["part", "pitch_deg", "x_mm", "y_in"]);
+    assert_eq!(table[0][4..], added);
+    assert_eq!(table[3][0], "A3, bent");
+    let outcomes: Vec<&str> = table[1..].iter().map(|row| row[4].as_str()).collect();
+    assert_eq!([outcomes[0], outcomes[1], outcomes[3]], ["aligned", "aligned", "missed"]);
+    // Aligned means within 0.02 D = 1 mm.
+    assert!(table[2][5].parse::<f64>().unwrap().abs() < 1.0);
+    // What never meets stays where it was.
+    assert!((table[4][5].parse::<f64>().unwrap() - 90.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_same_poses_as_json_for_any_number_of_threads() {
+    let [one, two] = ["1", "2"].map(|threads| outcome(TABLE, &["--json", "--threads", threads]).stdout);
+    assert_eq!(one, two);
+    let report: serde_json::Value = serde_json::from_slice(&one).unwrap();
+    assert_eq!(report["method"], "descent");
+    assert_eq!(report["poses"][2]["carried"]["part"], "A3, bent");
+    // 5 mm of 50: one multiplication and one division.
+    assert!((report["poses"][1]["error"]["x"].as_f64().unwrap() - 0.1).abs() < 1e-15);
+    assert!(report["counts"]["aligned"].as_u64().unwrap() >= 2);
+}
+
+#[test]
+fn everything_that_is_wrong_with_a_table_at_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let table = "x,Pitch,rol,y_ft,x_mm,outcome\n0,0,0\n0.1,0,0,0,nan,0\n-5 mm,0,0,0,0,0\n";
+    fs::write(dir.path().join("poses.csv"), table).unwrap();
+    let design = designs().join("pyramid.toml");
+    let report = |more: &[&str]| {
+        let mut args = vec!["outcome", design.to_str().unwrap(), "--poses", "poses.csv", "-o", "out.csv"];
+        args.extend(more);
+        run(dir.path(), &args)
+    };
+    insta::assert_snapshot!("outcome_bad_header", report(&[]));
+    fs::write(dir.path().join("poses.csv"), "x,pitch\n1,2,3\n,inf\n0.1,30\n0.1,0.2\n1 mm,0\n").unwrap();
+    insta::assert_snapshot!("outcome_bad_rows", report(&["--free", "x,yaw"]));
+    fs::write(dir.path().join("poses.csv"), "0.1,0.2\n0.3,0.4\n").unwrap();
+    insta::assert_snapshot!("outcome_no_header", report(&[]));
+    for (content, said) in [
+        (&b""[..], "the table is empty"),
+        (b"x,pitch\n", "the table has no rows"),
+        (b"x\n\xff\xfe\n", "line 2: not UTF-8 text"),
+    ] {
+        fs::write(dir.path().join("poses.csv"), content).unwrap();
+        let report = report(&[]);
+        assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n") && report.contains(said), "{report}");
+    }
+    // A file of holes takes no room; it is refused after the limit, not after its end.
+    fs::File::create(dir.path().join("poses.csv")).unwrap().set_len(8 << 30).unwrap();
+    assert!(report(&[]).contains("poses.csv is larger than 64 MiB"));
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_trace_tells_the_whole_way() {
+    let folder = designs();
+    let pose = ["trace", "pyramid-stl.toml", "--pose", "x=8 mm,pitch=10 deg"];
+    let report = json(&folder, &[&pose[..], &["--json"]].concat());
+    assert_eq!((&report["outcome"], &report["method"]), (&"aligned".into(), &"descent".into()));
+    let waypoints = report["waypoints"].as_array().unwrap();
+    let heights: Vec<f64> = waypoints.iter().map(|w| w["height_d"].as_f64().unwrap()).collect();
+    // A pushed half never rises; heights are rounded to 1e-12 D.
+    assert!(heights.len() > 10 && heights.windows(2).all(|w| w[1] <= w[0] + 1e-9), "{heights:?}");
+    assert!(waypoints.iter().all(|w| !w["touches"].as_array().unwrap().is_empty()));
+    assert!((waypoints[0]["error"]["x"].as_f64().unwrap() - 0.16).abs() < 1e-12);
+    let text = run(&folder, &pose);
+    assert!(text.starts_with("exit 0\n") && text.contains("x [mm]"), "{text}");
+    assert!(text.ends_with("outcome: aligned\n--- stderr\n"), "{text}");
+    // Each printed line is one of the waypoints; there are at most a screenful.
+    assert!(text.lines().count() < 40, "{text}");
+}
+
+#[test]
+fn a_trace_is_drawn_and_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let design = designs().join("x-face.toml");
+    let with = |file: &str| {
+        run(dir.path(), &["trace", design.to_str().unwrap(), "--pose", "x=0.3,pitch=-0.2", "-o", file])
+    };
+    for file in ["a.png", "a.svg", "a.csv", "a.json"] {
+        assert!(with(file).starts_with("exit 0\n"), "{}", with(file));
+    }
+    let read = |file: &str| fs::read(dir.path().join(file)).unwrap();
+    assert!(read("a.png").starts_with(b"\x89PNG"));
+    assert!(read("a.svg").starts_with(b"<svg"));
+    let report: serde_json::Value = serde_json::from_slice(&read("a.json")).unwrap();
+    let touches: usize = report["waypoints"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|w| w["touches"].as_array().unwrap().len().max(1))
+        .sum();
+    assert_eq!(cells(&read("a.csv")).len(), 1 + touches);
+}
+
+#[test]
+fn everything_that_is_wrong_with_a_pose_at_once() {
+    let pose = "x=0.1,pich=3,yaw=0.2,pitch=400 deg,x=2,y,roll=1 mm";
+    insta::assert_snapshot!("trace_bad_pose", run(&designs(), &["trace", "v-face.toml", "--pose", pose]));
+}
