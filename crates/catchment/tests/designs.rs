@@ -23,3 +23,14 @@ fn every_committed_design_is_mated() {
         assert_eq!(mated::problems(&Pair::new(&connector, &design.alignment)), [], "{}", file.display());
     }
 }
+
+#[test]
+fn the_design_in_the_readme_is_mated() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    let (_, rest) = readme.split_once("```toml\n").unwrap();
+    let (text, _) = rest.split_once("```").unwrap();
+    let design = design::read(text, &root.join("designs/meshes")).unwrap_or_else(|e| panic!("{e:?}")).design;
+    let connector = Connector::build(&design).unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(mated::problems(&Pair::new(&connector, &design.alignment)), []);
+}
