@@ -1,7 +1,5 @@
 //! Every committed design builds, and its mated pose holds.
 
-#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
-
 use catchment::connector::Connector;
 use catchment::contact::{Pair, mated};
 use catchment::design;
@@ -24,4 +22,15 @@ fn every_committed_design_is_mated() {
         let connector = Connector::build(&design).unwrap_or_else(|e| panic!("{}: {e:?}", file.display()));
         assert_eq!(mated::problems(&Pair::new(&connector, &design.alignment)), [], "{}", file.display());
     }
+}
+
+#[test]
+fn the_design_in_the_readme_is_mated() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    let (_, rest) = readme.split_once("```toml\n").unwrap();
+    let (text, _) = rest.split_once("```").unwrap();
+    let design = design::read(text, &root.join("designs/meshes")).unwrap_or_else(|e| panic!("{e:?}")).design;
+    let connector = Connector::build(&design).unwrap_or_else(|e| panic!("{e:?}"));
+    assert_eq!(mated::problems(&Pair::new(&connector, &design.alignment)), []);
 }

@@ -1,0 +1,68 @@
+//! Threads never change a bit of a result, from the heights to the report's bytes.
+
+use catchment::acceptance::{Acceptance, Domain};
+use catchment::connector::Connector;
+use catchment::contact::Pair;
+use catchment::design::{self, Design};
+use catchment::exec::Exec;
+use catchment::landscape::{Grid, Landscape};
+use catchment::method::{descent, flood};
+use catchment::report::Report;
+use std::path::Path;
+
+const THREADS: [usize; 3] = [1, 2, 4];
+
+fn prepare(file: &str, cells: usize) -> (Design, Pair, Grid) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs");
+    let text = std::fs::read_to_string(folder.join(file)).unwrap();
+    let design = design::read(&text, &folder).unwrap().design;
+    let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
+    let grid = Grid::over(&design.alignment, |_| cells);
+    (design, pair, grid)
+}
+
+fn bytes(design: &Design, acceptance: &Acceptance) -> String {
+    let report = Report::new(design, acceptance, serde_json::Value::Null, None).unwrap();
+    serde_json::to_string(&report).unwrap()
+}
+
+/// One result per number of threads, compared with the first.
+fn same_for_all<T: PartialEq + std::fmt::Debug>(what: &str, result: impl Fn(&Exec) -> T) {
+    let of = |threads| result(&Exec::new().with_threads(threads).unwrap());
+    let first = of(THREADS[0]);
+    for threads in &THREADS[1..] {
+        assert!(of(*threads) == first, "{what}: {threads} threads give another result than {}", THREADS[0]);
+    }
+}
+
+#[test]
+fn heights() {
+    let (_, pair, grid) = prepare("pyramid.toml", 7);
+    same_for_all("heights", |exec| {
+        let landscape = Landscape::compute(&pair, &grid, exec).unwrap();
+        landscape.heights.iter().map(|h| h.to_bits()).collect::<Vec<_>>()
+    });
+}
+
+#[test]
+fn flooding() {
+    for (file, cells) in [("x-face.toml", 60), ("x-face-3d.toml", 7)] {
+        let (design, pair, grid) = prepare(file, cells);
+        let settings = flood::Settings::for_pair(&pair);
+        same_for_all(file, |exec| bytes(&design, &flood::accept(&pair, &grid, &settings, exec).unwrap()));
+    }
+}
+
+#[test]
+fn descents() {
+    for (file, cells) in [("v-face.toml", 30), ("pyramid.toml", 4)] {
+        let (design, pair, grid) = prepare(file, cells);
+        let settings = descent::Settings::default();
+        same_for_all(file, |exec| {
+            let domain = Domain::Grid(grid.clone());
+            let (acceptance, ends) = descent::run(&pair, domain, &settings, exec).unwrap();
+            let ends: Vec<_> = ends.into_iter().map(|end| end.error.to_array().map(f64::to_bits)).collect();
+            (bytes(&design, &acceptance), ends)
+        });
+    }
+}
