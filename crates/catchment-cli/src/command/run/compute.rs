@@ -101,7 +101,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             fits => format!("use at most --resolution {fits}, or allow more with --memory"),
         }
     })?;
-    exec.reserve("the random poses", (job.samples as u64).saturating_mul(SAMPLE_BYTES), |budget| {
+    exec.reserve("a sample of random poses", (job.samples as u64).saturating_mul(SAMPLE_BYTES), |budget| {
         format!("use at most --samples {}", budget / SAMPLE_BYTES)
     })?;
     let (acceptance, landscape) = match job.method {
