@@ -1,5 +1,7 @@
 //! Data walks through the rooms in one direction, and imports run against it: a room knows the rooms before it.
 
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
