@@ -1,5 +1,7 @@
 //! Exact Sums of planar connectors: 100 × 100 descents at ρ = 1.
 
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
 use catchment::acceptance::Domain;
 use catchment::connector::Connector;
 use catchment::contact::Pair;

@@ -1,5 +1,7 @@
 //! Threads never change a bit of a result, from the heights to the report's bytes.
 
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
 use catchment::acceptance::{Acceptance, Domain};
 use catchment::connector::Connector;
 use catchment::contact::Pair;

@@ -3,6 +3,8 @@
 //! The engine integrates masses, soft contacts and time; catchment none of these. Where both describe frictionless,
 //! overdamped docking they must agree, up to poses that lie on the border of the accepted set.
 
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
 use catchment::acceptance::{Domain, Outcome};
 use catchment::connector::Connector;
 use catchment::contact::Pair;

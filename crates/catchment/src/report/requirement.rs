@@ -136,15 +136,14 @@ impl Requirement {
             let before = if walked.is_empty() { String::new() } else { format!("{walked}.") };
             walked = format!("{before}{step}");
             let steps = steps(here);
-            here = match steps.iter().find(|(names, _)| names.iter().any(|name| name == step)) {
-                Some((_, next)) => next,
-                None => {
-                    let known: Vec<String> = steps.into_iter().filter_map(|(mut n, _)| n.pop()).collect();
-                    let meant = nearest(step, known.iter().map(String::as_str));
-                    let meant = meant.map(|word| format!("{before}{word}"));
-                    return Err(RequirementError::NoSuchPath { path: walked, known, meant });
-                }
+            let Some((_, next)) = steps.iter().find(|(names, _)| names.iter().any(|name| name == step))
+            else {
+                let known: Vec<String> = steps.into_iter().filter_map(|(mut n, _)| n.pop()).collect();
+                let meant = nearest(step, known.iter().map(String::as_str));
+                let meant = meant.map(|word| format!("{before}{word}"));
+                return Err(RequirementError::NoSuchPath { path: walked, known, meant });
             };
+            here = next;
         }
         Ok(here)
     }
