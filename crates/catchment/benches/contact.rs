@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 /// Cells per side of a slice.
 const SIDE: usize = 24;
 
+#[expect(clippy::print_stdout, reason = "a bench prints what it measures")]
 fn main() {
     for name in ["v-face.toml", "pyramid.toml", "x-face-3d.toml"] {
         let pair = pair(name);
