@@ -1,7 +1,7 @@
 //! A design and an acceptance to report on.
 
 use super::*;
-use crate::acceptance::Domain;
+use crate::acceptance::{Domain, Outcome};
 use crate::design::{ConnectorSpec, Family, FamilySpec, LengthUnit};
 use crate::landscape::Grid;
 use crate::pose::{DofSet, Mount};
