@@ -147,7 +147,7 @@ fn a_folder_holds_report_pictures_and_group() {
         let bytes = || fs::read(out.join(name)).unwrap();
         match name.rsplit_once('.').unwrap().1 {
             "png" => {
-                assert!(bytes().starts_with(b"\x89PNG\r\n\x1a\n") && bytes().ends_with(b"IEND\xaeB`\x82"))
+                assert!(bytes().starts_with(b"\x89PNG\r\n\x1a\n") && bytes().ends_with(b"IEND\xaeB`\x82"));
             }
             "svg" => assert!(bytes().starts_with(b"<svg") && bytes().trim_ascii_end().ends_with(b"</svg>")),
             _ => {}

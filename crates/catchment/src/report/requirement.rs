@@ -138,7 +138,8 @@ impl Requirement {
             let steps = steps(here);
             let Some((_, next)) = steps.iter().find(|(names, _)| names.iter().any(|name| name == step))
             else {
-                let known: Vec<String> = steps.into_iter().filter_map(|(mut n, _)| n.pop()).collect();
+                let mut known: Vec<String> = steps.into_iter().filter_map(|(mut n, _)| n.pop()).collect();
+                known.sort();
                 let meant = nearest(step, known.iter().map(String::as_str));
                 let meant = meant.map(|word| format!("{before}{word}"));
                 return Err(RequirementError::NoSuchPath { path: walked, known, meant });

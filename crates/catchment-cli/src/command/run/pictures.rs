@@ -19,13 +19,16 @@ pub(super) const NAMES: [&str; 5] = ["overview", "slices", "heights", "section",
 const OVERVIEW_CELLS: usize = 71;
 const SLICE_CELLS: usize = 25;
 
-/// Draws all that the job has: maps need two free errors. Also the names of those left out, with the reason.
+/// What was drawn, by name, and what was left out, with the reason.
+pub(super) type Drawn = (Vec<(&'static str, Picture)>, Vec<String>);
+
+/// Draws all that the job has: maps need two free errors.
 pub(super) fn draw(
     job: &Job,
     connector: &Connector,
     computed: &Computed,
     exec: &Exec,
-) -> Result<(Vec<(&'static str, Picture)>, Vec<String>), Failure> {
+) -> Result<Drawn, Failure> {
     let mut drawn = Vec::new();
     let mut left_out = Vec::new();
     let mut keep = |name: &'static str, picture: Result<Picture, FigureError>| match picture {

@@ -57,13 +57,9 @@ impl PlaceArgs {
             let help = Some("-o alone writes the pictures too".to_owned());
             return Err(Failure::with_help("-o and --figures name the same folder".to_owned(), help));
         }
-        let checks: [(Option<&Path>, fn(&Path) -> bool); 3] =
-            [(places.folder, is_result), (places.group, zarr::is_group), (places.figures, has_only_pictures)];
-        for (path, is_ours) in checks {
-            if let Some(path) = path {
-                write::check_folder(path, is_ours)?;
-            }
-        }
+        places.folder.map_or(Ok(()), |path| write::check_folder(path, is_result))?;
+        places.group.map_or(Ok(()), |path| write::check_folder(path, zarr::is_group))?;
+        places.figures.map_or(Ok(()), |path| write::check_folder(path, has_only_pictures))?;
         Ok(places)
     }
 }
