@@ -62,17 +62,29 @@ impl<'a> Envelope<'a> {
 
     /// z of the COR at first contact with the COR at `lateral`, in D; `None` where the halves pass each other.
     pub fn height(&self, lateral: DVec2) -> Option<f64> {
+        self.height_below(lateral, f64::INFINITY).0
+    }
+
+    /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
+    /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
+    pub fn height_below(&self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
         let mut highest = f64::NEG_INFINITY;
+        let mut covered = false;
         for element in &self.elements {
             if element.normal.z <= VERTICAL {
                 continue;
             }
             let z = element.height(lateral);
-            if z > highest && self.foot(element, lateral.extend(z)).is_some() {
-                highest = z;
+            let counts = if z > ceiling { !covered } else { z > highest };
+            if counts && self.foot(element, lateral.extend(z)).is_some() {
+                if z > ceiling {
+                    covered = true;
+                } else {
+                    highest = z;
+                }
             }
         }
-        highest.is_finite().then_some(highest)
+        (highest.is_finite().then_some(highest), covered)
     }
 
     /// Heights over a lattice of *COR* positions, x fastest; −∞ where the halves pass each other by.

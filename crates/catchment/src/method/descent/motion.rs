@@ -162,14 +162,24 @@ impl<'a> Motion<'a> {
             }
             let next = self.moved(state, &u);
             self.turn(&next.rotation, pace.step);
-            let Some(z) = self.envelope.height(next.cor.truncate()) else {
-                return Advance::Ended(Outcome::Missed, next);
-            };
+            let ceiling = state.cor.z.max(next.cor.z) + longest;
+            let (below, covered) = self.envelope.height_below(next.cor.truncate(), ceiling);
+            let z = below.unwrap_or(next.cor.z);
             let landed = State { cor: next.cor.truncate().extend(z), ..next };
+            let blocked = covered && self.overlaps(&landed, pace.step);
+            if below.is_none() && !blocked {
+                return Advance::Ended(Outcome::Missed, next);
+            }
             let rise = z - next.cor.z;
             let allowed = self.settings.surprise * pace.step;
             let climbs = z > state.cor.z + ROUNDING;
-            let halve = if rise > allowed || climbs {
+            let halve = if blocked {
+                if pace.step <= longest * SMALLEST_SHARE {
+                    // A wall that no contact announced: the motion cannot be followed further.
+                    return Advance::Ended(Outcome::Undecided, *state);
+                }
+                true
+            } else if rise > allowed || climbs {
                 // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
                 if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
                     cuts += 1;
@@ -187,10 +197,6 @@ impl<'a> Motion<'a> {
                 rise < -FALL * allowed && pace.step > longest * COARSE_SHARE
             };
             if !halve {
-                if z > state.cor.z + longest {
-                    // A wall that no contact announced: the motion cannot be followed further.
-                    return Advance::Ended(Outcome::Undecided, *state);
-                }
                 pace.step = (pace.step * 2.0).min(longest);
                 return Advance::Moved(landed, length);
             }
@@ -209,7 +215,8 @@ impl<'a> Motion<'a> {
         let mut half = u.map(|x| 0.5 * x);
         let mut middle = self.moved(state, &half);
         self.turn(&middle.rotation, pace.step);
-        let Some(z) = self.envelope.height(middle.cor.truncate()) else { return false };
+        let ceiling = state.cor.z + self.settings.step;
+        let (Some(z), _) = self.envelope.height_below(middle.cor.truncate(), ceiling) else { return false };
         let rise = z - middle.cor.z;
         if rise.abs() > self.settings.surprise * pace.step {
             return false;
@@ -223,6 +230,20 @@ impl<'a> Motion<'a> {
         true
     }
 
+    /// Whether the halves overlap at `state` by more than rounding, along some normal that a step may have closed.
+    fn overlaps(&mut self, state: &State, step: f64) -> bool {
+        let mut carrying = std::mem::take(&mut self.carrying);
+        self.envelope.contacts(state.cor, self.near(step), &mut carrying);
+        let deepest = carrying.iter().map(|c| c.gap).fold(0.0, f64::min);
+        self.carrying = carrying;
+        deepest < -OVERLAP
+    }
+
+    /// Gaps that a step may close: no point of the body moves further.
+    fn near(&self, step: f64) -> f64 {
+        step * (1.0 + self.radius / self.pair.alignment.rotation_length)
+    }
+
     /// Prepares the envelope for a step of length `step`.
     fn turn(&mut self, rotation: &DMat3, step: f64) {
         // A step turns by at most step/ρ; what it may bring into contact supports its normal within that angle.
@@ -232,8 +253,7 @@ impl<'a> Motion<'a> {
 
     /// Finds all contacts that a step may close, as rows of the projection.
     fn gather(&mut self, state: &State, step: f64) {
-        let rho = self.pair.alignment.rotation_length;
-        let near = step * (1.0 + self.radius / rho);
+        let near = self.near(step);
         self.envelope.contacts(state.cor, near, &mut self.contacts);
         self.contacts.retain(|c| c.gap > -OVERLAP);
         self.rows.clear();
