@@ -129,6 +129,18 @@ impl<'a> Envelope<'a> {
         }
     }
 
+    /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than
+    /// touching.
+    pub fn is_pierced(&self, position: DVec3) -> bool {
+        let fixed_in_moving = |p: DVec3| p - position;
+        let moving_in_fixed = |p: DVec3| p + position;
+        self.pair.fixed_shapes.iter().any(|fixed| {
+            self.moving.iter().any(|moving| {
+                fixed.pierces(moving, fixed_in_moving) || moving.pierces(fixed, moving_in_fixed)
+            })
+        })
+    }
+
     fn foot(&self, element: &Element, position: DVec3) -> Option<DVec3> {
         let [f, m] = element.shapes.map(|s| s as usize);
         element.foot(&self.pair.fixed_shapes[f], &self.moving[m], position)

@@ -114,6 +114,37 @@ impl Shape {
         spokes.iter().all(|s| toward.dot(*s) >= -slack)
     }
 
+    /// Whether an edge of this shape, moved by `seen` into the other's frame, passes through a facet of the other.
+    pub(super) fn pierces(&self, other: &Self, seen: impl Fn(DVec3) -> DVec3) -> bool {
+        /// What counts as through rather than touching, in D.
+        const THROUGH: f64 = 1e-6;
+        self.facets.iter().any(|own| {
+            let n = own.corners.len();
+            (0..n).any(|k| {
+                let (a, b) = (own.corners[k], own.corners[(k + 1) % n]);
+                // Every edge is met once in each direction.
+                if a > b {
+                    return false;
+                }
+                let (a, b) = (seen(self.at(a)), seen(self.at(b)));
+                other.facets.iter().any(|facet| {
+                    let origin = other.at(facet.corners[0]);
+                    let (above, below) = (facet.normal.dot(a - origin), facet.normal.dot(b - origin));
+                    if above.min(below) > -THROUGH || above.max(below) < THROUGH {
+                        return false;
+                    }
+                    let point = a + (b - a) * (above / (above - below));
+                    let m = facet.corners.len();
+                    (0..m).all(|k| {
+                        let (p, q) = (other.at(facet.corners[k]), other.at(facet.corners[(k + 1) % m]));
+                        let along = (q - p).normalize_or_zero();
+                        facet.normal.dot(along.cross(point - p)) > THROUGH
+                    })
+                })
+            })
+        })
+    }
+
     pub(super) fn at(&self, vertex: u32) -> DVec3 {
         self.vertices[vertex as usize]
     }

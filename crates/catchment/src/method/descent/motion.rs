@@ -166,7 +166,7 @@ impl<'a> Motion<'a> {
             let (below, covered) = self.envelope.height_below(next.cor.truncate(), ceiling);
             let z = below.unwrap_or(next.cor.z);
             let landed = State { cor: next.cor.truncate().extend(z), ..next };
-            let blocked = covered && self.overlaps(&landed, pace.step);
+            let blocked = covered && self.envelope.is_pierced(landed.cor);
             if below.is_none() && !blocked {
                 return Advance::Ended(Outcome::Missed, next);
             }
@@ -228,15 +228,6 @@ impl<'a> Motion<'a> {
             *gap -= dot(row, &half);
         }
         true
-    }
-
-    /// Whether the halves overlap at `state` by more than rounding, along some normal that a step may have closed.
-    fn overlaps(&mut self, state: &State, step: f64) -> bool {
-        let mut carrying = std::mem::take(&mut self.carrying);
-        self.envelope.contacts(state.cor, self.near(step), &mut carrying);
-        let deepest = carrying.iter().map(|c| c.gap).fold(0.0, f64::min);
-        self.carrying = carrying;
-        deepest < -OVERLAP
     }
 
     /// Gaps that a step may close: no point of the body moves further.
