@@ -131,7 +131,7 @@ impl fmt::Display for Warning {
                 axes.join(", ")
             ),
             Self::Undecided { cells } => {
-                write!(f, "{cells} poses undecided: their motion did not end within the step budget")
+                write!(f, "{cells} poses undecided: their motion could not be followed to its end")
             }
             Self::FloodingBias => write!(
                 f,
