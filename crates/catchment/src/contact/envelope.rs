@@ -1,7 +1,8 @@
 //! All supported elements of a pair at one rotation: the upper envelope, and the contacts near a position.
 
+use super::brute::SEAM;
 use super::element::{Element, Features};
-use super::shape::{Shape, Side};
+use super::shape::{Plan, Shape, Side};
 use super::{Contact, Lattice, Pair};
 use glam::{DMat3, DVec2, DVec3};
 
@@ -34,26 +35,30 @@ impl<'a> Envelope<'a> {
         envelope
     }
 
-    /// Moves on to another rotation: everything that can carry the moving half from below.
+    /// Moves on to another rotation: everything that can carry the moving half from below, wherever it is.
     pub fn turn(&mut self, rotation: &DMat3) {
-        self.turn_within(rotation, ROUNDING, VERTICAL);
+        self.turn_within(rotation, ROUNDING, VERTICAL, Window { lateral: DVec2::ZERO, reach: f64::INFINITY });
     }
 
-    /// Moves on to another rotation, and keeps walls and features that support a normal only within `slack` radians:
-    /// what a motion that turns by up to `slack` may meet.
-    pub fn turn_with_slack(&mut self, rotation: &DMat3, slack: f64) {
-        self.turn_within(rotation, slack.max(ROUNDING), -OVERHANG);
+    /// Moves on to another rotation for questions about the COR at `lateral` alone: keeps what is within `reach` of
+    /// touching there in plan view, also walls and features that support a normal only within `slack` radians: what a
+    /// motion that turns by up to `slack` may meet.
+    pub fn turn_near(&mut self, rotation: &DMat3, slack: f64, lateral: DVec2, reach: f64) {
+        self.turn_within(rotation, slack.max(ROUNDING), -OVERHANG, Window { lateral, reach: reach + SEAM });
     }
 
-    fn turn_within(&mut self, rotation: &DMat3, slack: f64, lowest: f64) {
+    fn turn_within(&mut self, rotation: &DMat3, slack: f64, lowest: f64, window: Window) {
         for (turned, shape) in self.moving.iter_mut().zip(&self.pair.moving_shapes) {
             shape.rotate_into(rotation, turned);
+            if window.reach.is_finite() {
+                turned.draw_plans();
+            }
         }
         self.elements.clear();
         for (f, fixed) in self.pair.fixed_shapes.iter().enumerate() {
             for (m, moving) in self.moving.iter().enumerate() {
                 let shapes = [f as u32, m as u32];
-                collect(fixed, moving, slack, lowest, |features, normal, offset| {
+                collect(fixed, moving, slack, lowest, window, |features, normal, offset| {
                     self.elements.push(Element { shapes, features, normal, offset });
                 });
             }
@@ -164,18 +169,28 @@ impl<'a> Envelope<'a> {
     }
 }
 
-/// Visits every supported element of two shapes whose normal has a z-component above `lowest`.
+/// Where the COR is in plan view, and how close features must come to count.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    lateral: DVec2,
+    reach: f64,
+}
+
+/// Visits every supported element of two shapes in the window whose normal has a z-component above `lowest`.
 fn collect(
     fixed: &Shape,
     moving: &Shape,
     slack: f64,
     lowest: f64,
+    window: Window,
     mut visit: impl FnMut(Features, DVec3, f64),
 ) {
+    let everywhere = window.reach.is_infinite();
+    let meet = |f: &Plan, m: &Plan| everywhere || f.meets(m, window.lateral, window.reach);
     for (facet, f) in fixed.facets.iter().enumerate().filter(|(_, f)| f.normal.z > lowest) {
         let level = f.normal.dot(fixed.at(f.corners[0]));
-        for corner in &moving.corners {
-            if moving.supports(corner, f.normal, slack) {
+        for (corner, plan) in moving.corners.iter().zip(&moving.plans.corners) {
+            if meet(&fixed.plans.facets[facet], plan) && moving.supports(corner, f.normal, slack) {
                 let features = Features::FacetCorner { facet: facet as u32, vertex: corner.vertex };
                 visit(features, f.normal, f.normal.dot(moving.at(corner.vertex)) - level);
             }
@@ -183,15 +198,19 @@ fn collect(
     }
     for (facet, m) in moving.facets.iter().enumerate().filter(|(_, m)| -m.normal.z > lowest) {
         let level = m.normal.dot(moving.at(m.corners[0]));
-        for corner in &fixed.corners {
-            if fixed.supports(corner, m.normal, slack) {
+        for (corner, plan) in fixed.corners.iter().zip(&fixed.plans.corners) {
+            if meet(plan, &moving.plans.facets[facet]) && fixed.supports(corner, m.normal, slack) {
                 let features = Features::CornerFacet { vertex: corner.vertex, facet: facet as u32 };
                 visit(features, -m.normal, m.normal.dot(fixed.at(corner.vertex)) - level);
             }
         }
     }
-    for f in fixed.sides.iter().filter(|f| fixed.steepest(f).1 > lowest) {
-        for m in moving.sides.iter().filter(|m| moving.steepest(m).0 < -lowest) {
+    let low = |m: &Side| moving.steepest(m).0 < -lowest;
+    for (f, at) in fixed.sides.iter().zip(&fixed.plans.sides).filter(|(f, _)| fixed.steepest(f).1 > lowest) {
+        for (m, plan) in moving.sides.iter().zip(&moving.plans.sides) {
+            if !meet(at, plan) || !low(m) {
+                continue;
+            }
             if let Some(normal) = edge_normal(f, m, slack).filter(|n| n.z > lowest) {
                 let offset = normal.dot(moving.at(m.ends[0]) - fixed.at(f.ends[0]));
                 visit(Features::EdgeEdge { fixed: f.ends, moving: m.ends }, normal, offset);

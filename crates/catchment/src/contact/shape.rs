@@ -12,7 +12,7 @@
 //! (for the fixed half; ≥ for the moving one). All other contacts are dominated by a supported one.
 
 use crate::connector::{Facet, Surface};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use std::ops::Range;
 
 /// A corner that may touch.
@@ -37,6 +37,36 @@ pub(super) struct Side {
     pub(super) into: [DVec3; 2],
 }
 
+/// Bounds of a feature in plan view.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plan {
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
+}
+
+impl Plan {
+    fn around(points: impl Iterator<Item = DVec3>) -> Self {
+        let nothing = Self { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY };
+        points.map(DVec3::truncate).fold(nothing, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
+    }
+
+    /// Whether the other, moved by `by`, comes within `reach`.
+    pub(super) fn meets(&self, other: &Self, by: DVec2, reach: f64) -> bool {
+        other.low.x + by.x <= self.high.x + reach
+            && other.high.x + by.x + reach >= self.low.x
+            && other.low.y + by.y <= self.high.y + reach
+            && other.high.y + by.y + reach >= self.low.y
+    }
+}
+
+/// Plan views of all features of a shape.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Plans {
+    pub(super) facets: Vec<Plan>,
+    pub(super) corners: Vec<Plan>,
+    pub(super) sides: Vec<Plan>,
+}
+
 /// A surface with its touching features.
 #[derive(Debug, Clone)]
 pub(super) struct Shape {
@@ -47,6 +77,7 @@ pub(super) struct Shape {
     pub(super) spokes: Vec<DVec3>,
     pub(super) sides: Vec<Side>,
     pub(super) convex: bool,
+    pub(super) plans: Plans,
 }
 
 impl Shape {
@@ -80,14 +111,30 @@ impl Shape {
             spokes.extend(neighbors.iter().map(|&w| (at(w) - from).normalize_or_zero()));
             corners.push(Corner { vertex: v as u32, spokes: first..spokes.len() as u32 });
         }
-        Self {
+        let mut shape = Self {
             vertices: surface.vertices.clone(),
             facets: surface.facets.clone(),
             corners,
             spokes,
             sides,
             convex: surface.convex,
-        }
+            plans: Plans::default(),
+        };
+        shape.draw_plans();
+        shape
+    }
+
+    /// Brings the plan views up to date.
+    pub(super) fn draw_plans(&mut self) {
+        let mut plans = std::mem::take(&mut self.plans);
+        let around = |ids: &[u32]| Plan::around(ids.iter().map(|&k| self.at(k)));
+        plans.facets.clear();
+        plans.facets.extend(self.facets.iter().map(|f| around(&f.corners)));
+        plans.corners.clear();
+        plans.corners.extend(self.corners.iter().map(|c| around(&[c.vertex])));
+        plans.sides.clear();
+        plans.sides.extend(self.sides.iter().map(|s| around(&s.ends)));
+        self.plans = plans;
     }
 
     /// Turns the shape about its origin, writing into `out` (same topology) without allocating.

@@ -83,6 +83,21 @@ proptest! {
         }
     }
 
+    /// What is left out far from a position changes nothing there.
+    #[test]
+    fn a_window_hides_nothing_that_touches(family in families(), ratio in 0.2..2.0f64, pose in poses()) {
+        let pair = pair(family, ratio, 0.2);
+        let (mut near, mut all) = (pair.at_rotation(pose.rotation), pair.at_rotation(pose.rotation));
+        near.turn_near(&pose.rotation, 0.05, pose.lateral, 0.03);
+        all.turn_near(&pose.rotation, 0.05, pose.lateral, 100.0);
+        prop_assert_eq!(near.height(pose.lateral), all.height(pose.lateral));
+        let position = pose.lateral.extend(all.height(pose.lateral).unwrap_or(0.0));
+        let (mut few, mut many) = (Vec::new(), Vec::new());
+        near.contacts(position, 0.03, &mut few);
+        all.contacts(position, 0.03, &mut many);
+        prop_assert_eq!(few, many);
+    }
+
     /// A turned envelope holds nothing of the rotation before.
     #[test]
     fn an_envelope_can_be_turned(family in families(), first in poses(), second in poses()) {
@@ -104,7 +119,7 @@ proptest! {
         let position = pose.lateral.extend(z);
         let mut touching: Vec<Contact> = Vec::new();
         let mut envelope = pair.at_rotation(pose.rotation);
-        envelope.turn_with_slack(&pose.rotation, 1e-3);
+        envelope.turn_near(&pose.rotation, 1e-3, pose.lateral, 20.0 * DELTA);
         envelope.contacts(position, 20.0 * DELTA, &mut touching);
         // A crease is near when something else could touch within the differences; steep slopes bend faster.
         prop_assume!(touching.len() == 1 && touching[0].normal.z > 0.2);

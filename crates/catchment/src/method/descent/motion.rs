@@ -113,7 +113,7 @@ impl<'a> Motion<'a> {
         let alignment = &self.pair.alignment;
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
         let mut pace = Pace { step: self.settings.step, reach: 1.0 };
-        self.turn(&start.rotation, pace.step);
+        self.turn(&start.rotation, start.lateral, pace.step);
         let Some(z) = self.envelope.height(start.lateral) else { return (Outcome::Missed, *error) };
         let mut state = State {
             cor: start.lateral.extend(z),
@@ -161,7 +161,7 @@ impl<'a> Motion<'a> {
                 (u, length) = self.displacement(pace);
             }
             let next = self.moved(state, &u);
-            self.turn(&next.rotation, pace.step);
+            self.turn(&next.rotation, next.cor.truncate(), pace.step);
             let ceiling = state.cor.z.max(next.cor.z) + longest;
             let (below, covered) = self.envelope.height_below(next.cor.truncate(), ceiling);
             let z = below.unwrap_or(next.cor.z);
@@ -201,7 +201,7 @@ impl<'a> Motion<'a> {
                 return Advance::Moved(landed, length);
             }
             pace.step *= 0.5;
-            self.turn(&state.rotation, pace.step);
+            self.turn(&state.rotation, state.cor.truncate(), pace.step);
             self.gather(state, pace.step);
             (u, length) = self.displacement(pace);
             fresh = true;
@@ -214,7 +214,7 @@ impl<'a> Motion<'a> {
     fn look_ahead(&mut self, state: &State, pace: &Pace, u: &Vector) -> bool {
         let mut half = u.map(|x| 0.5 * x);
         let mut middle = self.moved(state, &half);
-        self.turn(&middle.rotation, pace.step);
+        self.turn(&middle.rotation, middle.cor.truncate(), pace.step);
         let ceiling = state.cor.z + self.settings.step;
         let (Some(z), _) = self.envelope.height_below(middle.cor.truncate(), ceiling) else { return false };
         let rise = z - middle.cor.z;
@@ -235,11 +235,12 @@ impl<'a> Motion<'a> {
         step * (1.0 + self.radius / self.pair.alignment.rotation_length)
     }
 
-    /// Prepares the envelope for a step of length `step`.
-    fn turn(&mut self, rotation: &DMat3, step: f64) {
+    /// Prepares the envelope for questions at `lateral`, for a step of length `step`.
+    fn turn(&mut self, rotation: &DMat3, lateral: DVec2, step: f64) {
         // A step turns by at most step/ρ; what it may bring into contact supports its normal within that angle.
         let slack = (step / self.pair.alignment.rotation_length).min(0.2);
-        self.envelope.turn_with_slack(rotation, slack);
+        let near = self.near(step);
+        self.envelope.turn_near(rotation, slack, lateral, near);
     }
 
     /// Finds all contacts that a step may close, as rows of the projection.
