@@ -1,16 +1,16 @@
 //! Heights and descents of committed designs, with the judge beside the fast path in the same run. The brute/fast
 //! ratios are printed first: medians of alternating runs, so that a drifting machine cancels out.
 
+mod designs;
+
 use catchment::acceptance::Outcome;
-use catchment::connector::Connector;
 use catchment::contact::{Lattice, Pair, brute};
-use catchment::design::read;
 use catchment::method::descent;
 use catchment::pose::{CorPose, PoseError, rotation};
+use designs::pair;
 use divan::counter::ItemsCount;
 use glam::{DMat3, DVec2};
 use std::hint::black_box;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Cells per side of a slice.
@@ -24,13 +24,6 @@ fn main() {
         println!("{name:16} slice of {SIDE} × {SIDE} heights: brute / fast = {ratio:.0}");
     }
     divan::main();
-}
-
-fn pair(name: &str) -> Pair {
-    let designs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs");
-    let text = std::fs::read_to_string(designs.join(name)).expect("a committed design");
-    let design = read(&text, &designs).expect("a sound design").design;
-    Pair::new(&Connector::build(&design).expect("a sound connector"), &design.alignment)
 }
 
 /// A tilted half, so that no edge is parallel to another by accident.

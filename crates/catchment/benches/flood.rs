@@ -1,28 +1,21 @@
 //! Flooding of committed designs: floods per second, the judge beside the fast path in the same run, and peak memory
 //! (divan's `max alloc`) beside the estimate that is checked before allocating.
 
-use catchment::connector::Connector;
+mod designs;
+
 use catchment::contact::Pair;
-use catchment::design::read;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape};
 use catchment::method::flood::{self, Rules, Settings, brute};
+use designs::pair;
 use divan::AllocProfiler;
 use divan::counter::ItemsCount;
-use std::path::Path;
 
 #[global_allocator]
 static ALLOCATOR: AllocProfiler = AllocProfiler::system();
 
 fn main() {
     divan::main();
-}
-
-fn pair(name: &str) -> Pair {
-    let designs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs");
-    let text = std::fs::read_to_string(designs.join(name)).expect("a committed design");
-    let design = read(&text, &designs).expect("a sound design").design;
-    Pair::new(&Connector::build(&design).expect("a sound connector"), &design.alignment)
 }
 
 fn landscape(pair: &Pair, cells: usize) -> Landscape {

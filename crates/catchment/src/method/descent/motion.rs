@@ -230,7 +230,7 @@ impl<'a> Motion<'a> {
         true
     }
 
-    /// Gaps that a step may close: no point of the body moves further.
+    /// Gaps looked for: a step moves a point of the body by about as much. What it meets beyond them is cut off or halved.
     fn near(&self, step: f64) -> f64 {
         step * (1.0 + self.radius / self.pair.alignment.rotation_length)
     }
