@@ -102,6 +102,8 @@ pub enum Warning {
     },
     /// The method's direction is quantised by the grid, so its border does not converge to the true one.
     FloodingBias,
+    /// Motion that leaves the error box was not followed.
+    CutOff,
     /// The measure over the grid lies outside the interval of poses drawn at random and followed exactly.
     OutsideSample {
         /// Measure over the grid, Dᵃ·radᵇ.
@@ -137,6 +139,11 @@ impl fmt::Display for Warning {
                 f,
                 "flooding follows grid directions only: its Sum may be several percent off at any resolution, a \
                  quarter at worst so far; --method descent is exact at every pose"
+            ),
+            Self::CutOff => write!(
+                f,
+                "poses whose motion leaves the error box were not followed beyond it on this grid: they count as \
+                 missed at a border of x or y, as jammed at one of an angle"
             ),
             Self::OutsideSample { sum, ci95: [lo, hi], poses } => write!(
                 f,

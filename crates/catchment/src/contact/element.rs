@@ -79,6 +79,20 @@ impl Element {
         }
     }
 
+    /// The touching point with the COR at `c`, where the element is known to touch: affine in c.
+    pub(super) fn touch(&self, fixed: &Shape, moving: &Shape, c: DVec3) -> DVec3 {
+        match self.features {
+            Features::FacetCorner { vertex, .. } => c + moving.at(vertex),
+            Features::CornerFacet { vertex, .. } => fixed.at(vertex),
+            Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
+                let (a, p) = (fixed.at(a), moving.at(p));
+                let (u, w) = (fixed.at(b) - a, moving.at(q) - p);
+                let across = u.cross(w);
+                a + u * ((c + p - a).cross(w).dot(across) / across.length_squared())
+            }
+        }
+    }
+
     /// The lateral COR positions for which the element is valid, as the corners of a convex polygon.
     pub(super) fn footprint(&self, fixed: &Shape, moving: &Shape, out: &mut Vec<DVec2>) {
         out.clear();

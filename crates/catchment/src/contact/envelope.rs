@@ -5,6 +5,7 @@ use super::element::{Element, Features};
 use super::shape::{Plan, Shape, Side};
 use super::{Contact, Lattice, Pair};
 use glam::{DMat3, DVec2, DVec3};
+use std::ops::Range;
 
 /// Below this z-component a normal counts as horizontal: such a facet has no height of its own, its rim
 /// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
@@ -97,8 +98,50 @@ impl<'a> Envelope<'a> {
     /// `out` has `x.count · y.count` cells and is overwritten.
     pub fn heights(&self, x: Lattice, y: Lattice, out: &mut [f64]) {
         out.fill(f64::NEG_INFINITY);
+        self.rasterise(x, y, |_, plane, cells| {
+            for (k, cell) in out[cells].iter_mut().enumerate() {
+                *cell = cell.max(plane.at(k));
+            }
+        });
+    }
+
+    /// Heights as by [`Envelope::heights`], and for every cell the number of what carries the moving half there, for
+    /// [`Envelope::carried_by`]; [`Envelope::NOTHING`] where the halves pass each other by. Among equals the first
+    /// counts.
+    pub fn relief(&self, x: Lattice, y: Lattice, heights: &mut [f64], carriers: &mut [u32]) {
+        heights.fill(f64::NEG_INFINITY);
+        carriers.fill(Self::NOTHING);
+        self.rasterise(x, y, |number, plane, cells| {
+            let carriers = &mut carriers[cells.clone()];
+            for (k, (height, carrier)) in heights[cells].iter_mut().zip(carriers).enumerate() {
+                let z = plane.at(k);
+                let higher = z > *height;
+                *height = if higher { z } else { *height };
+                *carrier = if higher { number } else { *carrier };
+            }
+        });
+    }
+
+    /// No carrier: the halves pass each other by.
+    pub const NOTHING: u32 = u32::MAX;
+
+    /// The contact by which a carrier of [`Envelope::relief`] carries the moving half with the COR at `lateral`, and
+    /// the position of the COR. Both are affine in `lateral`, and defined beyond the cells that it carries.
+    ///
+    /// # Panics
+    /// When no relief at this rotation gave that number.
+    pub fn carried_by(&self, carrier: u32, lateral: DVec2) -> (Contact, DVec3) {
+        let element = &self.elements[carrier as usize];
+        let [f, m] = element.shapes.map(|s| s as usize);
+        let cor = lateral.extend(element.height(lateral));
+        let point = element.touch(&self.pair.fixed_shapes[f], &self.moving[m], cor);
+        (Contact { gap: 0.0, normal: element.normal, point }, cor)
+    }
+
+    /// Visits, for every element that faces up, the rows of cells it covers.
+    fn rasterise(&self, x: Lattice, y: Lattice, mut visit: impl FnMut(u32, Plane, Range<usize>)) {
         let mut polygon = Vec::new();
-        for element in &self.elements {
+        for (number, element) in self.elements.iter().enumerate() {
             if element.normal.z <= VERTICAL {
                 continue;
             }
@@ -107,12 +150,9 @@ impl<'a> Envelope<'a> {
             let slope = -element.normal.truncate() / element.normal.z;
             let level = -element.offset / element.normal.z;
             super::raster::fill_convex(&polygon, x, y, |row, columns| {
-                let base = slope.y.mul_add(y.at(row), level);
-                let cells = &mut out[row * x.count + columns.start..row * x.count + columns.end];
-                for (k, cell) in cells.iter_mut().enumerate() {
-                    let z = slope.x.mul_add(x.at(columns.start + k), base);
-                    *cell = cell.max(z);
-                }
+                let first = slope.x * x.at(columns.start) + (slope.y * y.at(row) + level);
+                let cells = row * x.count + columns.start..row * x.count + columns.end;
+                visit(number as u32, Plane { first, step: slope.x * x.step }, cells);
             });
         }
     }
@@ -166,6 +206,20 @@ impl<'a> Envelope<'a> {
         let seen = point + element.normal * element.gap(position) - position;
         !hidden(&self.pair.fixed_shapes, element.shapes[0], point + outward)
             && !hidden(&self.moving, element.shapes[1], seen - outward)
+    }
+}
+
+/// Heights along a row of cells.
+#[derive(Debug, Clone, Copy)]
+struct Plane {
+    first: f64,
+    step: f64,
+}
+
+impl Plane {
+    fn at(self, k: usize) -> f64 {
+        // A row has fewer than 2³² cells; the narrower conversion is a single instruction for several cells at once.
+        self.first + self.step * f64::from(k as u32 as i32)
     }
 }
 

@@ -15,12 +15,14 @@ pub mod brute;
 mod element;
 mod envelope;
 pub mod mated;
+mod mirror;
 mod raster;
 mod shape;
 #[cfg(test)]
 mod tests;
 
 pub use envelope::Envelope;
+pub use mirror::Mirror;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;
@@ -39,6 +41,7 @@ pub struct Pair {
     pub alignment: Alignment,
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
+    mirrors: Vec<Mirror>,
 }
 
 impl Pair {
@@ -49,7 +52,13 @@ impl Pair {
         let moving = connector.moving.mapped(|p| p + face_from_cor);
         let shapes = |half: &Half| half.surfaces.iter().map(Shape::new).collect();
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
-        Self { fixed, moving, alignment: alignment.clone(), fixed_shapes, moving_shapes }
+        let mirrors = mirror::of(&fixed, &moving);
+        Self { fixed, moving, alignment: alignment.clone(), fixed_shapes, moving_shapes, mirrors }
+    }
+
+    /// The reflections that map the pair onto itself: poses that are images of each other have the same fate.
+    pub fn mirrors(&self) -> &[Mirror] {
+        &self.mirrors
     }
 
     /// z of the COR at first contact, in D; `None` where the halves pass each other by.

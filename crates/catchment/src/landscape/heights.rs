@@ -35,6 +35,12 @@ pub enum LandscapeError {
         /// Cells per axis.
         shape: Vec<usize>,
     },
+    /// At one rotation more pairs of features carry the moving half than can be numbered.
+    #[error("more than {most} features touch at one rotation; use coarser halves, a coarser grid or --method descent")]
+    TooManyPatches {
+        /// How many can be numbered.
+        most: usize,
+    },
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
@@ -71,7 +77,7 @@ impl Landscape {
 }
 
 /// The number of cells, if the grid suits the pair.
-fn usable(pair: &Pair, grid: &Grid) -> Result<usize, LandscapeError> {
+pub(super) fn usable(pair: &Pair, grid: &Grid) -> Result<usize, LandscapeError> {
     for axis in &grid.axes {
         if !axis.dof.is_rotation() && !pair.alignment.free.contains(axis.dof) {
             return Err(LandscapeError::LockedAxis { dof: axis.dof });
@@ -115,7 +121,7 @@ fn fill(
 }
 
 /// COR positions along x or y at one rotation; `face` is the face centre's coordinate as seen from the COR.
-fn lateral_lattice(pair: &Pair, grid: &Grid, dof: Dof, face: f64) -> Lattice {
+pub(super) fn lateral_lattice(pair: &Pair, grid: &Grid, dof: Dof, face: f64) -> Lattice {
     match grid.axis(dof) {
         Some(axis) => Lattice { first: axis.center(0) - face, step: axis.step(), count: axis.cells },
         None if pair.alignment.free.contains(dof) => Lattice { first: -face, step: 0.0, count: 1 },

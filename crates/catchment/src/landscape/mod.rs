@@ -12,10 +12,14 @@
 //! Lengths in D, angles in radians. The heights are exact at the cells' centres up to single precision; nothing is
 //! promised about what lies between two centres.
 
+mod fold;
 mod grid;
 mod heights;
+mod relief;
 mod resolution;
 
+pub use fold::{Fold, Image};
 pub use grid::{Grid, GridAxis};
 pub use heights::{Landscape, LandscapeError};
+pub use relief::{Gradient, Patch, Relief};
 pub use resolution::{Resolution, ResolutionError};

@@ -4,6 +4,7 @@
 pub mod descent;
 pub mod flood;
 pub mod kinematic;
+pub mod transport;
 pub mod zraa;
 
 use crate::connector::Half;

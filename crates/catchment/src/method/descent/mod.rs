@@ -56,10 +56,25 @@ pub struct End {
     pub error: PoseError,
 }
 
+/// Follows one pose after another, keeping its buffers.
+pub struct Follower<'a>(Motion<'a>);
+
+impl<'a> Follower<'a> {
+    /// For the poses of a pair.
+    pub fn new(pair: &'a Pair, settings: &'a Settings) -> Self {
+        Self(Motion::new(pair, settings))
+    }
+
+    /// Follows one pose to its end.
+    pub fn follow(&mut self, error: &PoseError) -> End {
+        let (outcome, error) = self.0.follow(error, None);
+        End { outcome, error }
+    }
+}
+
 /// Follows one pose to its end.
 pub fn outcome(pair: &Pair, error: &PoseError, settings: &Settings) -> End {
-    let (outcome, error) = Motion::new(pair, settings).follow(error, None);
-    End { outcome, error }
+    Follower::new(pair, settings).follow(error)
 }
 
 /// Follows one pose and keeps its path.

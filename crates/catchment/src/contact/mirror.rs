@@ -1,0 +1,139 @@
+//! Mirror symmetries of a pair: poses that are mirror images of each other have the same height and the same fate.
+//!
+//! ```text
+//!   x → −x   (x, y, roll, pitch, yaw) → (−x,  y,  roll, −pitch, −yaw)
+//!   y → −y                            → ( x, −y, −roll,  pitch, −yaw)
+//!   both, a half turn about z         → (−x, −y, −roll, −pitch,  yaw)
+//! ```
+//!
+//! Found, not declared: a pair has a symmetry if each of its halves is the same set of facets after the reflection, to
+//! [`GRAIN`]. A half of which only the shape, not the division into facets, is symmetric (some meshes) is not
+//! recognised; nothing but time is lost by that. Symmetries that exchange x and y, or turn by other angles, do not
+//! map a grid over Euler angles onto itself and are not looked for.
+
+use crate::connector::{Half, Surface};
+use crate::pose::Dof;
+use glam::DVec3;
+
+/// Corners closer than this are one, in D: rounding of a computed vertex, far below any feature.
+const GRAIN: f64 = 1e-9;
+
+/// One of the three reflections.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mirror {
+    /// Whether x changes its sign.
+    pub x: bool,
+    /// Whether y changes its sign.
+    pub y: bool,
+}
+
+impl Mirror {
+    /// The reflections, without the identity.
+    pub const ALL: [Self; 3] =
+        [Self { x: true, y: false }, Self { x: false, y: true }, Self { x: true, y: true }];
+
+    /// Whether an error changes its sign.
+    pub const fn flips(self, dof: Dof) -> bool {
+        match dof {
+            Dof::X => self.x,
+            Dof::Y => self.y,
+            Dof::Roll => self.y,
+            Dof::Pitch => self.x,
+            Dof::Yaw => self.x != self.y,
+        }
+    }
+
+    fn apply(self, p: DVec3) -> DVec3 {
+        DVec3::new(if self.x { -p.x } else { p.x }, if self.y { -p.y } else { p.y }, p.z)
+    }
+}
+
+/// The reflections that map both halves onto themselves.
+pub(super) fn of(fixed: &Half, moving: &Half) -> Vec<Mirror> {
+    let halves = [fixed, moving].map(|half| (half, facets(half, |p| p)));
+    let keeps = |m: &Mirror| halves.iter().all(|(half, drawn)| facets(half, |p| m.apply(p)) == *drawn);
+    Mirror::ALL.into_iter().filter(keeps).collect()
+}
+
+type Corner = [i64; 3];
+
+/// The half as sorted surfaces of sorted facets of sorted corners: equal for equal solids.
+fn facets(half: &Half, place: impl Fn(DVec3) -> DVec3) -> Vec<Vec<Vec<Corner>>> {
+    let corner = |surface: &Surface, k: u32| -> Corner {
+        let p = place(surface.vertices[k as usize]);
+        // `as` saturates: what lies further than 10⁹ D away differs anyway.
+        [p.x, p.y, p.z].map(|v| (v / GRAIN).round() as i64)
+    };
+    let mut surfaces: Vec<Vec<Vec<Corner>>> = half
+        .surfaces
+        .iter()
+        .map(|surface| {
+            let mut facets: Vec<Vec<Corner>> = surface
+                .facets
+                .iter()
+                .map(|facet| {
+                    let mut corners: Vec<Corner> = facet.corners.iter().map(|k| corner(surface, *k)).collect();
+                    corners.sort_unstable();
+                    corners
+                })
+                .collect();
+            facets.sort_unstable();
+            facets
+        })
+        .collect();
+    surfaces.sort_unstable();
+    surfaces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::contact::Pair;
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+    use crate::pose::{CorPose, PoseError};
+    use proptest::prelude::*;
+
+    fn pair(family: Family) -> Pair {
+        let mut alignment = Alignment::default_for(Some(family));
+        alignment.center_of_rotation = 0.3;
+        let connector = ConnectorSpec::Family(FamilySpec::new(family));
+        let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+        Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+    }
+
+    #[test]
+    fn families_have_the_symmetries_they_are_drawn_with() {
+        let [x, y, both] = Mirror::ALL;
+        assert_eq!(pair(Family::Pyramid).mirrors(), [x, y, both]);
+        assert_eq!(pair(Family::VFace).mirrors(), [x, y, both]);
+        // A saddle: turned by half a turn it is itself, mirrored it is the other hand.
+        assert_eq!(pair(Family::XFace3d).mirrors(), [both]);
+        // A zigzag, extruded along y.
+        assert_eq!(pair(Family::SFace).mirrors(), [y]);
+    }
+
+    proptest! {
+        #[test]
+        fn mirrored_poses_have_equal_heights(e in proptest::array::uniform5(-0.8..0.8f64)) {
+            for family in [Family::Pyramid, Family::VFace, Family::XFace3d, Family::SFace, Family::Cone] {
+                let pair = pair(family);
+                let height = |e: [f64; 5]| {
+                    pair.height(&CorPose::from_error(&PoseError::from_array(e), 0.3, pair.alignment.free))
+                };
+                for mirror in pair.mirrors() {
+                    let mut image = e;
+                    for dof in Dof::ALL {
+                        if mirror.flips(dof) {
+                            image[dof.index()] = -e[dof.index()];
+                        }
+                    }
+                    match (height(e), height(image)) {
+                        (Some(a), Some(b)) => prop_assert!((a - b).abs() < 1e-9, "{family:?} {mirror:?}: {a} {b}"),
+                        (a, b) => prop_assert_eq!(a.is_some(), b.is_some()),
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! The landscape together with what carries the moving half at every cell: heights and their exact gradients.
+//!
+//! ```text
+//!   h │  ╲ patch 0                 At one rotation the height is piecewise linear in x and y. A cell keeps its height
+//!     │    ╲____╱ patch 2          and the number of its patch; a patch keeps the gradient of the height, which is
+//!     │   patch 1                  affine in x and y too:
+//!     └────┴────┴────▶ x
+//!                                  ∂h/∂(x, y, ω) = g₀ + k_x·g_x + k_y·g_y        k: cell numbers along x and y
+//! ```
+//!
+//! Six bytes per cell, and only one of every set of rotations that are mirror images ([`Fold`]). Where several contacts
+//! carry the half at once, a cell keeps the first of them.
+
+use super::heights::{lateral_lattice, usable};
+use super::{Fold, Grid, LandscapeError, Resolution};
+use crate::contact::{Envelope, Pair};
+use crate::exec::Exec;
+use crate::pose::{self, Dof};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::PoisonError;
+
+/// Five numbers of a gradient: ∂h/∂x and ∂h/∂y at the COR (D/D), ∂h/∂ω about the COR in world axes (D/rad); or
+/// what a method makes of them.
+pub type Gradient = [f64; 5];
+
+/// A gradient over one patch, affine in the cell numbers along x and y. Single precision: relative error 10⁻⁶.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Patch {
+    base: [f32; 5],
+    along_x: [f32; 5],
+    along_y: [f32; 5],
+}
+
+impl Patch {
+    /// The patch that takes these values at cells (0, 0), (1, 0) and (0, 1).
+    fn through([origin, x, y]: [Gradient; 3]) -> Self {
+        let single = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|k| f(k) as f32);
+        Self {
+            base: single(&|k| origin[k]),
+            along_x: single(&|k| x[k] - origin[k]),
+            along_y: single(&|k| y[k] - origin[k]),
+        }
+    }
+
+    /// The value at a cell.
+    pub fn at(&self, x: usize, y: usize) -> [f32; 5] {
+        let (x, y) = (x as f32, y as f32);
+        std::array::from_fn(|k| self.base[k] + x * self.along_x[k] + y * self.along_y[k])
+    }
+}
+
+/// Heights and gradients over the kept half, or quarter, of an error grid.
+#[derive(Debug, Clone)]
+pub struct Relief {
+    /// The whole grid.
+    pub grid: Grid,
+    /// Which cells are kept.
+    pub fold: Fold,
+    /// z of the COR at first contact at every kept cell, in D; −∞ where the halves pass each other by.
+    pub heights: Vec<f32>,
+    /// Per kept cell: number of its patch within its rotation; [`Relief::NOTHING`] without contact.
+    pub carriers: Vec<u16>,
+    /// Per representative rotation: its patches.
+    pub patches: Vec<Box<[Patch]>>,
+}
+
+impl Relief {
+    /// No patch: the halves pass each other by.
+    pub const NOTHING: u16 = u16::MAX;
+
+    /// Bytes per kept cell, beside the patches.
+    pub const BYTES_PER_CELL: u64 = (size_of::<f32>() + size_of::<u16>()) as u64;
+
+    /// The relief of `pair` over `grid`, one rotation at a time, in parallel. `linear(rotation)` gives, for the pose at
+    /// the first cell of a rotation, a linear map that is applied to its gradients before they are kept; a method
+    /// uses it to keep what it needs of them.
+    ///
+    /// # Errors
+    /// When the grid samples a locked translation or has no cell, does not fit into the memory budget, has too many
+    /// patches to number, or when the computation is cancelled.
+    pub fn compute<L>(
+        pair: &Pair,
+        grid: &Grid,
+        exec: &Exec,
+        linear: impl Fn(&pose::PoseError) -> L + Sync,
+    ) -> Result<Self, LandscapeError>
+    where
+        L: Fn(&Gradient) -> Gradient,
+    {
+        usable(pair, grid)?;
+        let unusable = || LandscapeError::Unusable { shape: grid.shape() };
+        let fold = Fold::new(grid, pair.mirrors()).ok_or_else(unusable)?;
+        let kept = fold.kept_cells();
+        exec.reserve("heights and their gradients", kept as u64 * Self::BYTES_PER_CELL, |budget| {
+            let share = kept as f64 / grid.len() as f64;
+            let budget = (budget as f64 / share) as u64;
+            let largest = Resolution::largest_that_fits(budget, Self::BYTES_PER_CELL, grid.axes.len());
+            format!("use at most --resolution {largest}")
+        })?;
+        let mut heights = vec![0f32; kept];
+        let mut carriers = vec![0u16; kept];
+        let slab = fold.slab();
+        let done = Mutex::new(0usize);
+        let patches = exec.install(|| {
+            heights
+                .par_chunks_exact_mut(slab)
+                .zip(carriers.par_chunks_exact_mut(slab))
+                .enumerate()
+                .map_init(
+                    || Slab::new(pair, slab),
+                    |buffer, (representative, (heights, carriers))| {
+                        exec.check()?;
+                        let rotation = grid.pose(fold.rotation(representative) * slab);
+                        let patches = buffer.fill(grid, &rotation, linear(&rotation), heights, carriers)?;
+                        let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+                        *done += 1;
+                        exec.report(*done as f64 / fold.representatives() as f64, "heights");
+                        Ok(patches)
+                    },
+                )
+                .collect::<Result<Vec<_>, LandscapeError>>()
+        })?;
+        Ok(Self { grid: grid.clone(), fold, heights, carriers, patches })
+    }
+}
+
+/// What one thread needs to fill slabs.
+struct Slab<'a> {
+    pair: &'a Pair,
+    envelope: Envelope<'a>,
+    heights: Vec<f64>,
+    carriers: Vec<u32>,
+    /// Per carrier of the envelope: its patch in this slab.
+    numbers: Vec<u16>,
+}
+
+impl<'a> Slab<'a> {
+    fn new(pair: &'a Pair, slab: usize) -> Self {
+        let envelope = pair.at_rotation(glam::DMat3::IDENTITY);
+        Self { pair, envelope, heights: vec![0.0; slab], carriers: vec![0; slab], numbers: Vec::new() }
+    }
+
+    fn fill<L: Fn(&Gradient) -> Gradient>(
+        &mut self,
+        grid: &Grid,
+        error: &pose::PoseError,
+        linear: L,
+        heights: &mut [f32],
+        carriers: &mut [u16],
+    ) -> Result<Box<[Patch]>, LandscapeError> {
+        let rotation = error.rotation();
+        let face = pose::face_from_cor(&rotation, self.pair.alignment.center_of_rotation);
+        let x = lateral_lattice(self.pair, grid, Dof::X, face.x);
+        let y = lateral_lattice(self.pair, grid, Dof::Y, face.y);
+        self.envelope.turn(&rotation);
+        self.envelope.relief(x, y, &mut self.heights, &mut self.carriers);
+        self.numbers.clear();
+        let mut patches = Vec::new();
+        for (k, carrier) in self.carriers.iter().enumerate() {
+            heights[k] = self.heights[k] as f32;
+            carriers[k] = if *carrier == Envelope::NOTHING {
+                Relief::NOTHING
+            } else {
+                let slot = *carrier as usize;
+                if slot >= self.numbers.len() {
+                    self.numbers.resize(slot + 1, Relief::NOTHING);
+                }
+                if self.numbers[slot] == Relief::NOTHING {
+                    if patches.len() >= usize::from(Relief::NOTHING) {
+                        return Err(LandscapeError::TooManyPatches { most: usize::from(Relief::NOTHING) });
+                    }
+                    self.numbers[slot] = patches.len() as u16;
+                    // One step of the lattice apart, or one D where it has no step: the patch is then constant.
+                    let at = |kx: f64, ky: f64| DVec2::new(x.first + kx * x.step, y.first + ky * y.step);
+                    let gradient = |lateral: DVec2| {
+                        let (contact, cor) = self.envelope.carried_by(*carrier, lateral);
+                        let ([gx, gy], turn) = contact.gradient(cor);
+                        linear(&[gx, gy, turn.x, turn.y, turn.z])
+                    };
+                    patches.push(Patch::through([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)].map(gradient)));
+                }
+                self.numbers[slot]
+            };
+        }
+        Ok(patches.into_boxed_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::contact::Contact;
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+    use crate::landscape::Landscape;
+    use crate::pose::CorPose;
+
+    fn pair(family: Family) -> Pair {
+        let mut alignment = Alignment::default_for(Some(family));
+        alignment.center_of_rotation = -0.4;
+        let connector = ConnectorSpec::Family(FamilySpec::new(family));
+        let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+        Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+    }
+
+    #[test]
+    fn heights_are_those_of_the_landscape_and_gradients_those_of_a_contact() {
+        for family in [Family::Pyramid, Family::XFace3d, Family::VFace, Family::SFace, Family::Cone] {
+            let pair = pair(family);
+            let cells = if pair.alignment.free.len() == 2 { 12 } else { 4 };
+            let grid = Grid::over(&pair.alignment, |_| cells);
+            let relief = Relief::compute(&pair, &grid, &Exec::new(), |_| |g: &Gradient| *g).unwrap();
+            let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
+            let mut contacts: Vec<Contact> = Vec::new();
+            let mut carried = 0;
+            for cell in 0..grid.len() {
+                let kept = relief.fold.kept_cell(cell);
+                let (a, b) = (relief.heights[kept], landscape.heights[cell]);
+                assert!(a == b || (a - b).abs() < 1e-6, "{family:?} {cell}: {a} {b}");
+                let slab = relief.fold.slab();
+                let representative = kept / slab;
+                if relief.fold.rotation(representative) * slab + kept % slab != cell || !a.is_finite() {
+                    continue;
+                }
+                carried += 1;
+                // The gradient of one of the contacts there; all are in the list, the carrier is one of them.
+                let error = grid.pose(cell);
+                let pose = CorPose::from_error(&error, -0.4, pair.alignment.free);
+                let envelope = pair.at_rotation(pose.rotation);
+                let cor = pose.lateral.extend(envelope.height(pose.lateral).unwrap());
+                envelope.contacts(cor, 1e-9, &mut contacts);
+                let nx = grid.axis(Dof::X).map_or(1, |a| a.cells);
+                let patch = relief.patches[representative][usize::from(relief.carriers[kept])];
+                let found = patch.at(kept % slab % nx, kept % slab / nx);
+                let near = contacts.iter().any(|c| {
+                    let ([gx, gy], turn) = c.gradient(cor);
+                    [gx, gy, turn.x, turn.y, turn.z]
+                        .iter()
+                        .zip(found)
+                        .all(|(a, b)| (a - f64::from(b)).abs() < 1e-4 * (1.0 + a.abs()))
+                });
+                assert!(near, "{family:?} {cell}: {found:?} is none of {contacts:?}");
+            }
+            assert!(carried > 10, "{family:?}: {carried}");
+        }
+    }
+
+    #[test]
+    fn threads_do_not_change_a_bit() {
+        let pair = pair(Family::Pyramid);
+        let grid = Grid::over(&pair.alignment, |_| 4);
+        let with = |threads| {
+            let exec = Exec::new().with_threads(threads).unwrap();
+            Relief::compute(&pair, &grid, &exec, |_| |g: &Gradient| *g).unwrap()
+        };
+        let (one, three) = (with(1), with(3));
+        assert_eq!(one.heights, three.heights);
+        assert_eq!(one.carriers, three.carriers);
+        assert_eq!(one.patches, three.patches);
+    }
+}
