@@ -72,7 +72,8 @@ fn facets(half: &Half, place: impl Fn(DVec3) -> DVec3) -> Vec<Vec<Vec<Corner>>> 
                 .facets
                 .iter()
                 .map(|facet| {
-                    let mut corners: Vec<Corner> = facet.corners.iter().map(|k| corner(surface, *k)).collect();
+                    let mut corners: Vec<Corner> =
+                        facet.corners.iter().map(|k| corner(surface, *k)).collect();
                     corners.sort_unstable();
                     corners
                 })

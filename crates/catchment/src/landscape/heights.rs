@@ -36,7 +36,9 @@ pub enum LandscapeError {
         shape: Vec<usize>,
     },
     /// At one rotation more pairs of features carry the moving half than can be numbered.
-    #[error("more than {most} features touch at one rotation; use coarser halves, a coarser grid or --method descent")]
+    #[error(
+        "more than {most} features touch at one rotation; use coarser halves, a coarser grid or --method descent"
+    )]
     TooManyPatches {
         /// How many can be numbered.
         most: usize,

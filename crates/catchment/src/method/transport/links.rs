@@ -14,6 +14,7 @@
 //! that keeps less than [`LEAST`] of its weight has no direction the grid could tell: it is an *end*, decided by
 //! exact physics.
 
+use crate::contact::Mirror;
 use crate::landscape::{Grid, Patch, Relief};
 
 /// How often a corner across a valley is replaced by where it leads.
@@ -74,6 +75,8 @@ pub(super) struct Links<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     place: Place,
+    /// The reflection between where it is kept and where it is, seen from the cell the links start from.
+    mirror: Mirror,
     weight: f32,
 }
 
@@ -89,8 +92,7 @@ impl<'a> Links<'a> {
         let grid: &Grid = &relief.grid;
         let axes = grid.axes.len();
         let lateral = grid.axes.iter().filter(|a| !a.dof.is_rotation()).count();
-        let number =
-            |dof| grid.axes.iter().position(|a| a.dof == dof).unwrap_or(axes);
+        let number = |dof| grid.axes.iter().position(|a| a.dof == dof).unwrap_or(axes);
         let mut cells = [1; 5];
         let mut strides = [0; 5];
         let mut stride = 1;
@@ -112,7 +114,7 @@ impl<'a> Links<'a> {
         let height = self.relief.heights[cell as usize];
         let Scratch { front, next } = scratch;
         front.clear();
-        front.push(Corner { place, weight: 1.0 });
+        front.push(Corner { place, mirror: Mirror { x: false, y: false }, weight: 1.0 });
         let (mut kept, mut lost, mut left) = (0.0f32, 0.0f32, None);
         for crossing in 0..=CROSSINGS {
             next.clear();
@@ -123,7 +125,8 @@ impl<'a> Links<'a> {
                 let leaves = self.corners(from, |corner| {
                     let to = corner.place.cell;
                     let h = self.relief.heights[to as usize];
-                    if to == cell {
+                    if to == cell && self.is_its_own_image(&corner) {
+                        // Back where it came from.
                     } else if h == f32::NEG_INFINITY {
                         lost += corner.weight;
                     } else if h < height {
@@ -133,7 +136,8 @@ impl<'a> Links<'a> {
                             None => out.push(Link { to, weight: corner.weight }),
                         }
                     } else if crossing < CROSSINGS {
-                        match next.iter_mut().find(|c: &&mut Corner| c.place.cell == to) {
+                        let same = |c: &&mut Corner| c.place.cell == to && c.mirror == corner.mirror;
+                        match next.iter_mut().find(same) {
                             Some(known) => known.weight += corner.weight,
                             None => next.push(corner),
                         }
@@ -194,14 +198,22 @@ impl<'a> Links<'a> {
             let next = order.get(k + 1).map_or(0.0, |a| velocity[*a].abs());
             let weight = (velocity[axis].abs() - next) * scale;
             if weight > 0.0 {
-                visit(Corner { place: self.folded(at, rotation), weight });
+                let (place, mirror) = self.folded(at, rotation);
+                let mirror = Mirror { x: mirror.x != from.mirror.x, y: mirror.y != from.mirror.y };
+                visit(Corner { place, mirror, weight });
             }
         }
         None
     }
 
-    /// The place where a cell of the grid is kept.
-    fn folded(&self, mut at: [u32; 5], rotation: u32) -> Place {
+    /// Whether a corner is the cell that is kept in its place, not a mirror image of it.
+    fn is_its_own_image(&self, corner: &Corner) -> bool {
+        let axes = self.relief.grid.axes.iter().zip(&corner.place.at).zip(&self.cells);
+        axes.filter(|((axis, _), _)| corner.mirror.flips(axis.dof)).all(|((_, k), n)| 2 * k + 1 == *n)
+    }
+
+    /// The place where a cell of the grid is kept, and the reflection that leads there.
+    fn folded(&self, mut at: [u32; 5], rotation: u32) -> (Place, Mirror) {
         let fold = &self.relief.fold;
         let image = fold.image(rotation as usize);
         let mut lateral = 0;
@@ -221,7 +233,7 @@ impl<'a> Links<'a> {
             self.turn_to(representative, &mut at);
         }
         let cell = image.representative as u32 * fold.slab() as u32 + lateral;
-        Place { cell, at, rotation: representative }
+        (Place { cell, at, rotation: representative }, image.mirror)
     }
 
     fn place(&self, cell: u32) -> Place {

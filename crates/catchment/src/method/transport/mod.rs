@@ -142,7 +142,10 @@ impl Arrival {
     /// Outcome of every cell: aligned above ½, else the larger of the shares that jam and that lose contact.
     pub fn acceptance(&self, exec: &Exec) -> Result<Acceptance, OutOfBudget> {
         exec.reserve("the outcome of every cell", self.grid.len() as u64, |budget| {
-            format!("use at most --resolution {}", Resolution::largest_that_fits(budget, 1, self.grid.axes.len()))
+            format!(
+                "use at most --resolution {}",
+                Resolution::largest_that_fits(budget, 1, self.grid.axes.len())
+            )
         })?;
         let slab = self.fold.slab();
         let mut outcomes = vec![Outcome::Missed; self.grid.len()];

@@ -54,7 +54,9 @@ pub(super) fn solve(relief: &Relief, judge: &Judge, exec: &Exec) -> Result<Vec<S
     let shares: Vec<AtomicU32> = relief
         .carriers
         .iter()
-        .map(|c| AtomicU32::new(if *c == Relief::NOTHING { Shares::new(0.0, 0.0) } else { Shares::UNKNOWN }.0))
+        .map(|c| {
+            AtomicU32::new(if *c == Relief::NOTHING { Shares::new(0.0, 0.0) } else { Shares::UNKNOWN }.0)
+        })
         .collect();
     let links = Links::new(relief);
     let done = AtomicUsize::new(0);
@@ -62,7 +64,14 @@ pub(super) fn solve(relief: &Relief, judge: &Judge, exec: &Exec) -> Result<Vec<S
     let slabs = relief.fold.representatives();
     exec.install(|| {
         (0..slabs).into_par_iter().try_for_each_init(
-            || Solver { links: &links, shares: &shares, judge: judge.start(), scratch: Scratch::default(), waiting: Vec::new(), found: Vec::new() },
+            || Solver {
+                links: &links,
+                shares: &shares,
+                judge: judge.start(),
+                scratch: Scratch::default(),
+                waiting: Vec::new(),
+                found: Vec::new(),
+            },
             |solver, number| {
                 for cell in number * slab..(number + 1) * slab {
                     solver.solve(cell as u32, exec)?;

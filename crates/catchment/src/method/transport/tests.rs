@@ -27,19 +27,28 @@ fn fast_and_brute_agree_cell_by_cell() {
     for (pair, cells) in [
         (pair(Family::VFace, 1.0, 0.0, 1.0, None), 40),
         (pair(Family::SFace, 1.0, -1.0, 1.0, None), 40),
-        (pair(Family::XFace, 0.5, -0.5, 1.0, None), 40),
+        (pair(Family::XFace, 0.5, -0.5, 1.0, None), 41),
         (pair(Family::Pyramid, 0.5, 0.5, 0.5, Some(&[X, Pitch, Yaw])), 14),
         (pair(Family::XFace3d, 0.577, 0.2, 0.5, Some(&[X, Y, Pitch])), 14),
         (pair(Family::Pyramid, 0.5, 0.5, 0.5, None), 6),
     ] {
-        let arrival = arrival(&pair, cells);
-        let landscape = Landscape::compute(&pair, arrival.grid(), &Exec::new()).unwrap();
+        let mut grid = Grid::over(&pair.alignment, |_| cells);
+        let folded = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+        for axis in &mut grid.axes {
+            axis.hi += 1e-6; // not symmetric: nothing is folded, and no cell lies on a ridge exactly
+        }
+        let arrival = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+        let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
         let brute = brute::fractions(&pair, &landscape, &Settings::default());
-        // Single precision may tip the choice of an end, or of the lower of two mirror images, here and there.
-        let differ = (0..brute.len()).filter(|c| (arrival.fraction(*c) - brute[*c]).abs() > 0.01).count();
-        assert!(differ * 50 <= brute.len(), "{differ} of {} cells", brute.len());
+        let differ = |arrival: &Arrival| {
+            (0..brute.len()).filter(|c| (arrival.fraction(*c) - brute[*c]).abs() > 0.002).count()
+        };
+        // Single precision may tip what is lower, here and there.
+        assert!(differ(&arrival) * 500 <= brute.len(), "{} of {} cells", differ(&arrival), brute.len());
+        // Folding changes nothing but ties.
+        assert!(differ(&folded) * 30 <= brute.len(), "{} of {} cells", differ(&folded), brute.len());
         let mean = brute.iter().sum::<f64>() / brute.len() as f64;
-        assert!((arrival.mean() - mean).abs() < 0.005 * (1.0 + mean), "{} {mean}", arrival.mean());
+        assert!((arrival.mean() / mean - 1.0).abs() < 0.002, "{} {mean}", arrival.mean());
     }
 }
 
