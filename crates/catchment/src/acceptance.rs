@@ -9,9 +9,12 @@
 //!
 //! Every method fills an [`Acceptance`], so that any two can be compared cell by cell.
 
+mod random;
+
 use crate::design::Alignment;
 use crate::landscape::Grid;
 use crate::pose::{Dof, PoseError};
+pub(crate) use random::Stream;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -59,8 +62,9 @@ impl Domain {
     /// `count` poses drawn independently and uniformly from the error box of `alignment`. Pose k depends on `seed`
     /// and k alone: a longer list starts with the shorter one.
     pub fn random(alignment: &Alignment, count: usize, seed: u64) -> Self {
+        let stream = Stream::new(seed);
         let pose = |k: usize| {
-            let number = |dof: Dof| uniform(seed, (Dof::ALL.len() * k + dof.index()) as u64);
+            let number = |dof: Dof| stream.uniform((Dof::ALL.len() * k + dof.index()) as u64);
             let mut error = [0.0; 5];
             for dof in alignment.free.iter() {
                 error[dof.index()] = alignment.half_range(dof) * (2.0 * number(dof) - 1.0);
@@ -69,21 +73,6 @@ impl Domain {
         };
         Self::Poses((0..count).map(pose).collect())
     }
-}
-
-/// Number `index` of the random sequence `seed`, in [0, 1): `SplitMix64` (Steele, Lea, Flood, OOPSLA 2014), whose
-/// state after any number of steps is known without taking them.
-fn uniform(seed: u64, index: u64) -> f64 {
-    const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
-    let mix = |mut z: u64| {
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    };
-    // Mixed, so that neighbouring seeds do not give sequences shifted by a step.
-    let start = mix(seed.wrapping_add(STEP));
-    let bits = mix(start.wrapping_add(STEP.wrapping_mul(index.wrapping_add(1))));
-    (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 
 /// A doubt about a result, carried inside the report.
@@ -104,14 +93,21 @@ pub enum Warning {
     FloodingBias,
     /// Motion that leaves the error box was not followed.
     CutOff,
-    /// The measure over the grid lies outside the interval of poses drawn at random and followed exactly.
+    /// The measure of the accepted cells lies outside the interval of the Sum from random exact descents.
     OutsideSample {
-        /// Measure over the grid, Dᵃ·radᵇ.
-        sum: f64,
-        /// 95 % interval of the random poses, Dᵃ·radᵇ.
+        /// Measure of the accepted cells, Dᵃ·radᵇ.
+        sum_grid: f64,
+        /// 95 % interval of the Sum, Dᵃ·radᵇ.
         ci95: [f64; 2],
-        /// How many they were.
-        poses: usize,
+    },
+    /// No random poses were followed: the Sum is the measure of the accepted cells, right or not.
+    NoInterval,
+    /// Cells that the method could not decide by itself, and that were too many to be followed exactly.
+    Ambiguous {
+        /// How many.
+        cells: usize,
+        /// Of how many.
+        of: usize,
     },
     /// Numbers of the dissertation's own conventions, fitted to its tables; not physics.
     DissertationConventions,
@@ -145,10 +141,20 @@ impl fmt::Display for Warning {
                 "poses whose motion leaves the error box were not followed beyond it on this grid: they count as \
                  missed at a border of x or y, as jammed at one of an angle"
             ),
-            Self::OutsideSample { sum, ci95: [lo, hi], poses } => write!(
+            Self::OutsideSample { sum_grid, ci95: [lo, hi] } => write!(
                 f,
-                "the Sum of the grid, {sum:.4}, lies outside the 95 % interval {lo:.4} … {hi:.4} of {poses} random \
-                 poses followed exactly: the grid is too coarse or the method biased; trust the interval"
+                "the accepted cells measure {sum_grid:.4}, outside the 95 % interval {lo:.4} … {hi:.4}: the grid is too \
+                 coarse or its method biased; the Sum does not rest on it, but ONAA, centred edge and tolerances do"
+            ),
+            Self::NoInterval => write!(
+                f,
+                "the Sum is the measure of the accepted cells, without an interval; --samples 4000, --budget 10s or \
+                 --tolerance 1% gives an unbiased Sum with one"
+            ),
+            Self::Ambiguous { cells, of } => write!(
+                f,
+                "{cells} of {of} cells are ambiguous, too many to follow each exactly: ONAA, centred edge and \
+                 tolerances rest on the method's guess there, the Sum with its interval does not"
             ),
             Self::DissertationConventions => {
                 write!(

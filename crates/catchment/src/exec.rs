@@ -114,6 +114,16 @@ impl Exec {
         }
     }
 
+    /// The same for a part of a stage: what it reports as [0, 1] is passed on as `span` of `stage`.
+    #[must_use]
+    pub fn part(&self, span: [f64; 2], stage: &'static str) -> Self {
+        let mut part = self.clone();
+        part.progress = self.progress.clone().map(|progress| -> Progress {
+            Arc::new(move |fraction, _| progress(span[0] + (span[1] - span[0]) * fraction, stage))
+        });
+        part
+    }
+
     /// Number of worker threads.
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or_else(rayon::current_num_threads, |p| p.current_num_threads())
@@ -170,6 +180,15 @@ mod tests {
             error.to_string(),
             "a grid needs 3.0 MiB of memory, more than the 1000 B allowed; use 1000 bytes"
         );
+    }
+
+    #[test]
+    fn a_part_reports_its_span_of_the_whole() {
+        let seen = Arc::new(std::sync::Mutex::new(Vec::new()));
+        let log = Arc::clone(&seen);
+        let exec = Exec::new().with_progress(Arc::new(move |f, stage| log.lock().unwrap().push((f, stage))));
+        exec.part([0.5, 0.75], "whole").report(0.5, "part");
+        assert_eq!(*seen.lock().unwrap(), [(0.625, "whole")]);
     }
 
     #[test]

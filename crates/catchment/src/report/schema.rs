@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use std::mem::discriminant;
 
 /// Version of the report's layout.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Everything one run has to say.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -88,23 +88,25 @@ impl Unit {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AcceptanceReport {
-    /// Its measure, in `unit`.
+    /// The measure of the accepted set, in `unit`: the unbiased estimate where there is a `sample`, else `sum_grid`.
     pub sum: f64,
     /// Unit of `sum`, like `D²·rad³`.
     pub unit: String,
-    /// 95 % interval of the true measure, from random poses: the listed ones, or `sample` beside a grid. Null if
-    /// nothing was sampled at random.
+    /// 95 % interval of the true measure, from the poses of `sample` or the listed ones, drawn at random. Null if
+    /// nothing was.
     pub sum_ci95: Option<[f64; 2]>,
-    /// `sum` without the accepted cells that touch a rejected one, and with the rejected cells that touch an
+    /// The measure of the accepted cells; of listed poses, their share of the error box.
+    pub sum_grid: f64,
+    /// `sum_grid` without the accepted cells that touch a rejected one, and with the rejected cells that touch an
     /// accepted one: the doubt of resolution, no confidence interval. Null for listed poses.
     pub sum_bracket: Option<[f64; 2]>,
-    /// Share of the error box, in [0, 1].
+    /// `sum` as a share of the error box, in [0, 1].
     pub fraction: f64,
     /// Cells or poses tried.
     pub cells: usize,
     /// How many met each outcome.
     pub outcomes: Outcomes,
-    /// Random poses followed beside a grid; null if none were.
+    /// Random poses, followed exactly, that correct the Sum; null if none were.
     pub sample: Option<SampleReport>,
 }
 
@@ -301,6 +303,7 @@ impl AcceptanceReport {
             sum: sum.sum,
             unit: sum.unit(),
             sum_ci95: sum.ci95,
+            sum_grid: sum.sum,
             sum_bracket: sum.bracket,
             fraction: sum.fraction,
             cells: sum.tried,
@@ -356,7 +359,7 @@ mod sample;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use sample::SampleReport;
+pub use sample::{SampleReport, StratumReport};
 
 #[cfg(test)]
 mod tests {
@@ -387,7 +390,8 @@ mod tests {
     #[test]
     fn the_contract_names_its_fields() {
         let value: serde_json::Value = serde_json::from_str(&report().to_json().unwrap()).unwrap();
-        assert_eq!(value["schema"], 1);
+        assert_eq!(value["schema"], 2);
+        assert_eq!(value["acceptance"]["sum"], value["acceptance"]["sum_grid"]);
         assert!(value["acceptance"]["sum_ci95"].is_null());
         assert_eq!(value["acceptance"]["unit"], "D²·rad");
         assert_eq!(value["acceptance"]["cells"], 12 * 12 * 12);

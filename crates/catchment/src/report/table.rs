@@ -87,20 +87,23 @@ fn tried(report: &Report) -> String {
 
 fn acceptance(text: &mut String, report: &Report) {
     let a = &report.acceptance;
-    row(
-        text,
-        "Sum",
-        &format!("{} {}   ({} of the error box)", significant(a.sum), a.unit, percent(a.fraction)),
-    );
-    if let Some([lo, hi]) = a.sum_ci95 {
-        let by = a
-            .sample
-            .as_ref()
-            .map_or_else(String::new, |s| format!("   ({} random poses by {})", grouped(s.poses), s.method));
-        row(text, "", &format!("95 % interval {} … {}{by}", significant(lo), significant(hi)));
+    let sum = a.sum_ci95.map_or_else(|| significant(a.sum), |ci95| with_error(a.sum, ci95));
+    row(text, "Sum", &format!("{sum} {}   ({} of the error box)", a.unit, percent(a.fraction)));
+    let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
+    if a.sum_ci95.is_some() {
+        row(
+            text,
+            "",
+            &format!("± is the 95 % interval of {} random poses, followed exactly", grouped(poses)),
+        );
     }
     if let Some([lo, hi]) = a.sum_bracket {
-        row(text, "", &format!("one cell of doubt: {} … {}", significant(lo), significant(hi)));
+        let cells = if a.sample.is_some() {
+            format!("accepted cells: {}, ", significant(a.sum_grid))
+        } else {
+            String::new()
+        };
+        row(text, "", &format!("{cells}one cell of doubt: {} … {}", significant(lo), significant(hi)));
     }
     let share =
         |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
@@ -210,6 +213,20 @@ fn significant(value: f64) -> String {
     format!("{value:.*}", (3.0 - magnitude).max(0.0) as usize)
 }
 
+/// `2.391 ± 0.013`: the farther end of the interval, rounded up to two digits, and the value to as many decimals.
+fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
+    let error = (hi - value).max(value - lo);
+    if !(error > 0.0 && error.is_finite()) {
+        return significant(value);
+    }
+    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 9.0);
+    let unit = 10f64.powf(-decimals);
+    // A little less than a whole unit, so that rounding of the division does not add one.
+    let up = ((error / unit - 1e-9).ceil()) * unit;
+    let decimals = decimals as usize;
+    format!("{value:.decimals$} ± {up:.decimals$}")
+}
+
 /// Thousands kept apart by thin gaps: 24 300 000.
 fn grouped(n: usize) -> String {
     let digits = n.to_string();
@@ -265,5 +282,9 @@ mod tests {
         assert_eq!(written, ["0", "0.01235", "2.346", "23.46", "12346", "1.500e-7"]);
         assert_eq!(grouped(24_300_000), "24 300 000");
         assert_eq!(number(-0.5), "-0.5");
+        assert_eq!(with_error(2.391_34, [2.380, 2.403_44]), "2.391 ± 0.013");
+        assert_eq!(with_error(31.42, [30.0, 32.0]), "31.4 ± 1.5");
+        assert_eq!(with_error(2.0, [1.5, 2.1]), "2.00 ± 0.50");
+        assert_eq!(with_error(0.0, [0.0, 0.000_961]), "0.00000 ± 0.00097");
     }
 }

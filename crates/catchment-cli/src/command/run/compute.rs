@@ -1,4 +1,4 @@
-//! From a job to outcomes: the grid by the method asked for, the random poses by descent.
+//! From a job to outcomes: the grid by the method asked for, its Sum corrected by exact descents.
 
 use crate::failure::Failure;
 use catchment::acceptance::{Acceptance, Domain, Outcome};
@@ -6,6 +6,7 @@ use catchment::contact::Pair;
 use catchment::design::Design;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape, Resolution};
+use catchment::method::correction::{self, ByNeighbours, Corrected, CorrectionError};
 use catchment::method::{Method, descent, flood};
 use serde_json::Value;
 
@@ -21,10 +22,8 @@ pub(super) struct Job<'a> {
     pub(super) method: Method,
     /// Flooding's tolerance, if not the default.
     pub(super) depth_tolerance: Option<f64>,
-    /// Random poses beside the grid.
-    pub(super) samples: usize,
-    /// Their seed.
-    pub(super) seed: u64,
+    /// Random poses that correct the Sum, if any shall.
+    pub(super) sample: Option<correction::Settings>,
     /// Whether the heights are wanted even where the method needs none.
     pub(super) heights: bool,
 }
@@ -35,16 +34,18 @@ pub(super) struct Computed {
     pub(super) acceptance: Acceptance,
     /// The settings of the method.
     pub(super) settings: Value,
-    /// Outcomes of the random poses, if any were drawn.
+    /// The corrected Sum, if random poses were drawn.
     pub(super) sample: Option<Sample>,
     /// Heights over the grid, if the method needed them or they were wanted.
     pub(super) landscape: Option<Landscape>,
 }
 
-/// Outcomes of random poses.
+/// The corrected Sum.
 pub(super) struct Sample {
-    /// The outcomes.
-    pub(super) acceptance: Acceptance,
+    /// What the poses say.
+    pub(super) corrected: Corrected,
+    /// The seed of their poses.
+    pub(super) seed: u64,
     /// The settings of the descents.
     pub(super) settings: Value,
 }
@@ -63,22 +64,16 @@ impl Job<'_> {
         })
     }
 
-    /// A sample, if one was asked for, with the outcomes that `decide` gives for a number of poses.
+    /// The corrected Sum, if one was asked for, as `correct` finds it for the strata of an answer over the grid.
     pub(super) fn sample_of(
         &self,
-        decide: impl FnOnce(usize) -> Vec<Outcome>,
+        acceptance: &Acceptance,
+        correct: impl FnOnce(&ByNeighbours, &correction::Settings) -> Result<Corrected, CorrectionError>,
     ) -> Result<Option<Sample>, Failure> {
-        if self.samples == 0 {
-            return Ok(None);
-        }
-        let outcomes = decide(self.samples);
-        let acceptance = Acceptance {
-            method: Method::Descent.name(),
-            domain: Domain::random(&self.design.alignment, outcomes.len(), self.seed),
-            outcomes,
-            warnings: Vec::new(),
-        };
-        Ok(Some(Sample { acceptance, settings: serde_json::to_value(descent::Settings::default())? }))
+        let (Some(settings), Some(grid)) = (&self.sample, acceptance.grid()) else { return Ok(None) };
+        let corrected = correct(&ByNeighbours::new(&acceptance.outcomes, grid.shape()), settings)?;
+        let descents = serde_json::to_value(descent::Settings::default())?;
+        Ok(Some(Sample { corrected, seed: settings.seed, settings: descents }))
     }
 }
 
@@ -101,9 +96,6 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             fits => format!("use at most --resolution {fits}, or allow more with --memory"),
         }
     })?;
-    exec.reserve("a sample of random poses", (job.samples as u64).saturating_mul(SAMPLE_BYTES), |budget| {
-        format!("use at most --samples {}", budget / SAMPLE_BYTES)
-    })?;
     let (acceptance, landscape) = match job.method {
         Method::Descent => {
             let acceptance = descend(job.pair, Domain::Grid(job.grid.clone()), exec)?;
@@ -116,22 +108,15 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             (flooding.acceptance, Some(landscape))
         }
     };
-    let sample = if job.samples == 0 {
-        None
-    } else {
-        let domain = Domain::random(&job.design.alignment, job.samples, job.seed);
-        let outcomes = descend(job.pair, domain, exec)?.outcomes;
-        job.sample_of(|_| outcomes)?
-    };
+    let sample = job.sample_of(&acceptance, |by, settings| {
+        correction::correct(job.pair, &job.grid, by, settings, &descent::Settings::default(), exec)
+    })?;
     Ok(Computed { acceptance, settings, sample, landscape })
 }
 
 /// Bytes per descent while they run: the end and the outcome of each, and the ends once more while the parts of
 /// the threads are put together.
 const DESCENT_BYTES: u64 = (2 * size_of::<descent::End>() + size_of::<Outcome>()) as u64;
-/// The same for a random pose, which is stored as well.
-const SAMPLE_BYTES: u64 = DESCENT_BYTES + size_of::<catchment::pose::PoseError>() as u64;
-
 /// Follows every pose of a domain exactly.
 pub(super) fn descend(pair: &Pair, domain: Domain, exec: &Exec) -> Result<Acceptance, Failure> {
     let (acceptance, _) = descent::run(pair, domain, &descent::Settings::default(), exec)?;

@@ -2,13 +2,14 @@
 //!
 //! ```text
 //!   design ──▶ halves, mated pose ──▶ outcomes over the error grid ──▶ report ──▶ table or JSON, files, requirements
-//!                                     random poses beside it ────────────┘
+//!                                       └──▶ random poses correct the Sum ──┘
 //! ```
 
 mod compute;
 mod errors;
 mod pictures;
 mod place;
+mod sample;
 
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
@@ -16,9 +17,11 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
 use catchment::acceptance::{Acceptance, Outcome, Warning};
+use catchment::exec::Exec;
 use catchment::landscape::{Grid, Resolution};
 use catchment::merit::success::Distribution;
 use catchment::method::Method;
+use catchment::method::correction::{self, Settings, Stop};
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Report, Requirement, table};
 use clap::Args;
@@ -28,13 +31,14 @@ use std::time::Instant;
 
 /// Compute the area of acceptance: which pose errors contact corrects
 ///
-/// Every cell of a grid over the error box is decided by the method. Beside it, random poses are followed exactly:
-/// they give the Sum a 95 % interval that owes nothing to the grid.
+/// Every cell of a grid over the error box is decided by the method. Random poses, most of them where the grid is in
+/// doubt, are then followed exactly: they make the Sum unbiased, whatever the grid, and give it a 95 % interval.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment run design.toml\n  \
     catchment run design.toml -o out                    table, pictures, report.json and result.zarr\n  \
     catchment run design.toml --free x,y,yaw --resolution 41,yaw=61\n  \
+    catchment run design.toml --tolerance 1%            until the Sum is known to ± 1 %\n  \
     catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' --require 'success.probability>=0.99'\n  \
     catchment run design.toml --json | jq .onaa.edge\n\n\
     The JSON of equal runs is equal byte for byte, whatever the number of threads, but for `timing`.")]
@@ -43,6 +47,8 @@ pub(crate) struct RunArgs {
     design: DesignArgs,
     #[command(flatten)]
     how: HowArgs,
+    #[command(flatten)]
+    sample: sample::SampleArgs,
     #[command(flatten)]
     errors: errors::ErrorArgs,
     #[command(flatten)]
@@ -66,12 +72,6 @@ struct HowArgs {
     /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
-    /// Random poses followed exactly beside the grid, 0 for none [default: 4000 with descent (fewer for round halves), 0 with flood]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
-    samples: Option<u32>,
-    /// Seed of the random poses
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
-    seed: u64,
     /// Flooding: basins shallower than this are merged, in D [default: a tenth of the face's height]
     #[arg(long, value_name = "DEPTH", value_parser = depth)]
     depth_tolerance: Option<f64>,
@@ -120,8 +120,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         grid,
         method: how.method,
         depth_tolerance: how.depth_tolerance,
-        samples: how.samples.map_or_else(|| how.method.default_samples(&pair), |n| n as usize),
-        seed: how.seed,
+        sample: args.sample.settings(how.method, &pair),
         heights: place.wants_heights(),
     };
     let distribution = args.errors.distribution(design)?;
@@ -157,7 +156,9 @@ fn report(
 ) -> Result<Report, Failure> {
     let mut report = Report::new(job.design, &computed.acceptance, computed.settings.clone(), timing)?;
     if let Some(sample) = &computed.sample {
-        report = report.with_sample(&sample.acceptance, job.seed, sample.settings.clone());
+        report = report.with_sample(&sample.corrected, sample.seed, sample.settings.clone());
+    } else if job.method != Method::Descent {
+        report.warnings.push(WarningReport::from(Warning::NoInterval));
     }
     if let Some(distribution) = distribution {
         report = report.with_success(&computed.acceptance, distribution)?;
@@ -180,10 +181,15 @@ fn check_requirements(
     let acceptance = Acceptance {
         method: job.method.name(),
         outcomes: vec![Outcome::Aligned; grid.len()],
-        domain: catchment::acceptance::Domain::Grid(grid),
+        domain: catchment::acceptance::Domain::Grid(grid.clone()),
         warnings: Vec::new(),
     };
-    let sample = job.sample_of(|poses| vec![Outcome::Aligned; poses.min(1)])?;
+    let sample = job.sample_of(&acceptance, |by, settings| {
+        let settings = Settings { stop: Stop::Samples(1), ..*settings };
+        correction::estimate(&grid, by, &settings, &Exec::new(), |poses, _| {
+            Ok(vec![Outcome::Aligned; poses.len()])
+        })
+    })?;
     let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None };
     let timing = Some(Timing { total_s: 0.0, threads: 1 });
     let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing)?;

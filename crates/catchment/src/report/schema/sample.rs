@@ -1,15 +1,15 @@
-//! Random poses beside a grid: an error bar that knows nothing of cells.
+//! The Sum corrected by exact descents: an estimate that owes its truth to no grid.
 //!
-//! The poses are drawn uniformly from the error box and followed exactly, so the share of those that align is an
-//! unbiased measure of the accepted set, with Wilson's interval. A grid whose Sum lies outside is too coarse, or
-//! its method biased; one time in twenty, the sample is at fault.
+//! A sample turns the report's Sum from the measure of the accepted cells into the unbiased estimate of
+//! [`crate::method::correction`], with its interval. The measure of the cells stays beside it, and becomes a doubt
+//! where it lies outside the interval; one time in twenty, the sample is at fault.
 
-use super::{Outcomes, Report, WarningReport};
-use crate::acceptance::{Acceptance, Warning};
-use crate::merit::sum::Sum;
+use super::{Report, WarningReport};
+use crate::acceptance::Warning;
+use crate::method::correction::{Corrected, Stratum};
 use serde::{Deserialize, Serialize};
 
-/// Random poses followed beside a grid.
+/// Random poses, followed exactly, that the Sum and its interval come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SampleReport {
@@ -19,37 +19,58 @@ pub struct SampleReport {
     pub settings: serde_json::Value,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Poses drawn.
-    pub poses: usize,
-    /// Measure of the accepted set by their share, in the unit of the grid's.
-    pub sum: f64,
-    /// How many met each outcome.
-    pub outcomes: Outcomes,
+    /// Poses followed.
+    pub descents: usize,
+    /// Where they lay.
+    pub strata: Vec<StratumReport>,
+}
+
+/// The poses of one stratum, a part of the error box.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StratumReport {
+    /// What it holds.
+    pub name: String,
+    /// Its share of the error box, exact.
+    pub share: f64,
+    /// Poses followed in it.
+    pub descents: usize,
+    /// How many aligned.
+    pub aligned: usize,
+    /// How many could not be followed to their end.
+    pub undecided: usize,
+    /// Estimated share of its poses that align: the mean over batches, near `aligned / descents`.
+    pub accepted: f64,
 }
 
 impl Report {
-    /// Adds poses drawn at random by [`Domain::random`](crate::acceptance::Domain::random) from `seed`; `settings`
-    /// are those of the method that followed them. A grid's Sum outside their interval becomes a doubt.
+    /// Replaces the Sum by the corrected one. `settings` are those of the descents, `seed` that of their poses.
     #[must_use]
-    pub fn with_sample(mut self, sample: &Acceptance, seed: u64, settings: serde_json::Value) -> Self {
-        let found = Sum::of(sample, &self.design.alignment);
-        let poses = found.tried;
-        if let Some(ci95 @ [lo, hi]) = found.ci95.filter(|_| poses > 0) {
-            let sum = self.acceptance.sum;
-            if !(lo..=hi).contains(&sum) {
-                self.warnings.push(WarningReport::from(Warning::OutsideSample { sum, ci95, poses }));
-            }
-            self.acceptance.sum_ci95 = Some(ci95);
+    pub fn with_sample(mut self, corrected: &Corrected, seed: u64, settings: serde_json::Value) -> Self {
+        let acceptance = &mut self.acceptance;
+        let Corrected { sum, ci95, fraction, descents, .. } = *corrected;
+        let sum_grid = acceptance.sum_grid;
+        if !(ci95[0]..=ci95[1]).contains(&sum_grid) {
+            self.warnings.push(WarningReport::from(Warning::OutsideSample { sum_grid, ci95 }));
         }
-        self.acceptance.sample = Some(SampleReport {
-            method: sample.method.to_owned(),
+        acceptance.sum = sum;
+        acceptance.sum_ci95 = Some(ci95);
+        acceptance.fraction = fraction;
+        acceptance.sample = Some(SampleReport {
+            method: "descent".to_owned(),
             settings,
             seed,
-            poses,
-            sum: found.sum,
-            outcomes: Outcomes::new(found.counts),
+            descents,
+            strata: corrected.strata.iter().cloned().map(StratumReport::from).collect(),
         });
         self
+    }
+}
+
+impl From<Stratum> for StratumReport {
+    fn from(stratum: Stratum) -> Self {
+        let Stratum { name, share, descents, aligned, undecided, accepted } = stratum;
+        Self { name, share, descents, aligned, undecided, accepted }
     }
 }
 
@@ -57,45 +78,40 @@ impl Report {
 mod tests {
     use super::super::testing::{blob, design};
     use super::*;
-    use crate::acceptance::{Domain, Outcome};
     use crate::pose::{Dof, DofSet};
 
-    /// 1000 poses of which `aligned` are.
-    fn sample(aligned: usize) -> Acceptance {
-        let design = design(DofSet::EMPTY.with(Dof::X).with(Dof::Y));
-        let outcome = |k| if k < aligned { Outcome::Aligned } else { Outcome::Jammed };
-        Acceptance {
-            method: "descent",
-            domain: Domain::random(&design.alignment, 1000, 5),
-            outcomes: (0..1000).map(outcome).collect(),
-            warnings: Vec::new(),
+    fn corrected(sum: f64) -> Corrected {
+        let stratum = Stratum {
+            name: "all".to_owned(),
+            share: 1.0,
+            descents: 9,
+            aligned: 4,
+            undecided: 1,
+            accepted: 0.4,
+        };
+        Corrected {
+            sum,
+            ci95: [sum - 0.1, sum + 0.2],
+            fraction: sum / 4.0,
+            descents: 9,
+            plain_descents: 9.0,
+            strata: vec![stratum],
         }
     }
 
     #[test]
-    fn a_sum_outside_the_interval_is_a_doubt_and_one_inside_is_none() {
+    fn the_sum_is_the_corrected_one_and_cells_outside_its_interval_are_a_doubt() {
         let design = design(DofSet::EMPTY.with(Dof::X).with(Dof::Y));
-        let grid = blob(&design, 40);
-        let share = grid.counts()[0] as f64 / grid.outcomes.len() as f64;
-        for (aligned, doubts) in [((1000.0 * share) as usize, 0), ((800.0 * share) as usize, 1)] {
-            let report = Report::new(&design, &grid, serde_json::Value::Null, None).unwrap();
-            let before = report.warnings.len();
-            let report = report.with_sample(&sample(aligned), 5, serde_json::Value::Null);
+        let report = Report::new(&design, &blob(&design, 40), serde_json::Value::Null, None).unwrap();
+        let (before, cells) = (report.warnings.len(), report.acceptance.sum);
+        for (sum, doubts) in [(cells + 0.05, 0), (cells + 0.15, 1)] {
+            let report = report.clone().with_sample(&corrected(sum), 5, serde_json::Value::Null);
             assert_eq!(report.warnings.len() - before, doubts);
-            let [lo, hi] = report.acceptance.sum_ci95.unwrap();
-            let found = report.acceptance.sample.unwrap();
-            assert!(lo < found.sum && found.sum < hi && (found.sum - aligned as f64 * 4e-3).abs() < 1e-12);
-            assert_eq!((found.outcomes.jammed, found.seed), (1000 - aligned, 5));
+            assert_eq!((report.acceptance.sum, report.acceptance.sum_grid), (sum, cells));
+            assert_eq!(report.acceptance.fraction, sum / 4.0);
+            assert_eq!(report.acceptance.sum_ci95, Some([sum - 0.1, sum + 0.2]));
+            let sample = report.acceptance.sample.unwrap();
+            assert_eq!((sample.seed, sample.descents, sample.strata[0].aligned), (5, 9, 4));
         }
-    }
-
-    #[test]
-    fn an_empty_sample_says_nothing() {
-        let design = design(DofSet::EMPTY.with(Dof::X));
-        let mut none = sample(0);
-        (none.domain, none.outcomes) = (Domain::Poses(Vec::new()), Vec::new());
-        let report = Report::new(&design, &blob(&design, 9), serde_json::Value::Null, None).unwrap();
-        let report = report.with_sample(&none, 5, serde_json::Value::Null);
-        assert_eq!(report.acceptance.sum_ci95, None);
     }
 }

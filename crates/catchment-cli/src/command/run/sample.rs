@@ -1,0 +1,95 @@
+//! How many random poses correct the Sum, as a person writes it.
+
+use catchment::contact::Pair;
+use catchment::method::Method;
+use catchment::method::correction::{Settings, Stop};
+use clap::Args;
+use std::time::Duration;
+
+/// When the sampling stops, and what it starts from.
+#[derive(Debug, Args)]
+pub(super) struct SampleArgs {
+    /// Random poses followed exactly to correct the Sum, 0 for none [default: 4000 with descent (fewer for round halves), 0 with flood]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
+    samples: Option<u32>,
+    /// As many as can be followed in this time, such as "20s" or "2 min"; the report says how many
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["samples", "tolerance"], help_heading = SUM)]
+    budget: Option<Duration>,
+    /// As many as it takes for a 95 % interval of ± this share of the Sum, such as 1% or 0.01
+    #[arg(long, value_name = "SHARE", value_parser = share, conflicts_with = "samples", help_heading = SUM)]
+    tolerance: Option<f64>,
+    /// Seed of the random poses
+    #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = SUM)]
+    seed: u64,
+}
+
+const SUM: &str = "How sure the Sum is";
+
+impl SampleArgs {
+    /// What was asked for; none where the Sum shall be that of the grid.
+    pub(super) fn settings(&self, method: Method, pair: &Pair) -> Option<Settings> {
+        let stop = match (self.samples, self.budget, self.tolerance) {
+            (_, Some(budget), _) => Stop::Budget(budget),
+            (_, _, Some(share)) => Stop::Tolerance(share),
+            (samples, None, None) => {
+                match samples.map_or_else(|| method.default_samples(pair), |n| n as usize) {
+                    0 => return None,
+                    samples => Stop::Samples(samples),
+                }
+            }
+        };
+        Some(Settings { seed: self.seed, stop })
+    }
+}
+
+/// A time such as `20s`, `2 min`, `0.5 h`.
+fn duration(text: &str) -> Result<Duration, String> {
+    const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("min", 60.0), ("h", 3600.0)];
+    const LONGEST_S: f64 = 1e7;
+    let number = text.trim().trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = &text.trim()[number.len()..];
+    let factor = UNITS.iter().find(|(name, _)| *name == unit).map(|(_, factor)| factor);
+    let value: Option<f64> = number.trim().parse().ok();
+    match value.zip(factor).map(|(value, factor)| value * factor) {
+        Some(seconds) if seconds > 0.0 && seconds <= LONGEST_S => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err("a time is a positive number and one of ms, s, min, h, such as 20s".to_owned()),
+    }
+}
+
+/// A share such as `1%`, `0.5 %`, `0.01`.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.trim().parse::<f64>().map(|value| value * unit) {
+        Ok(share) if share >= SMALLEST_SHARE && share < 1.0 => Ok(share),
+        _ => {
+            Err("a tolerance is a share of the Sum between 0.001 % and 100 %, such as 1% or 0.01".to_owned())
+        }
+    }
+}
+
+/// The smallest tolerance: 10¹⁰ descents would not reach it.
+const SMALLEST_SHARE: f64 = 1e-5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_shares_are_read() {
+        assert_eq!(duration("20s"), Ok(Duration::from_secs(20)));
+        assert_eq!(duration("2 min"), Ok(Duration::from_secs(120)));
+        assert_eq!(duration(" 250 ms"), Ok(Duration::from_millis(250)));
+        for wrong in ["", "20", "s", "-1s", "nan s", "inf h", "20 sec", "1e9 h", "0s"] {
+            assert!(duration(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(share("1%"), Ok(0.01));
+        assert_eq!(share("0.02"), Ok(0.02));
+        assert!((share("0.5 %").unwrap() - 0.005).abs() < 1e-15);
+        for wrong in ["", "%", "-1%", "0", "100%", "1", "nan", "one"] {
+            assert!(share(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Strata: the grid's cells, parted by how sure the method is of them; counted, and every cell found by its rank.
+//!
+//! ```text
+//!   cells      ░░█░▓▓░░ ░▓░░░░░█ █████▓░░ …      ░ █ ▓ strata
+//!   before ░   0        5        11       13 …   cells of the stratum before each block
+//!   cell 12 of ░:  the last block with before ≤ 12, then cell by cell
+//! ```
+//!
+//! A random cell of a stratum is thus found without a list of cells and without rejection, however rare the stratum.
+
+use super::CorrectionError;
+use crate::acceptance::Outcome;
+use crate::exec::Exec;
+use rayon::prelude::*;
+
+/// A partition of the cells of a grid into a few strata. Any partition keeps the Sum unbiased; a good one has strata
+/// in which nearly all poses fare alike.
+pub trait Stratify: Sync {
+    /// Number of strata, at most [`MOST_STRATA`].
+    fn strata(&self) -> usize;
+    /// The stratum of a cell, below [`Stratify::strata`].
+    fn stratum(&self, cell: usize) -> u8;
+    /// What a stratum holds, for people.
+    fn name(&self, stratum: usize) -> String;
+}
+
+/// Most strata of a partition: with more, too few poses fall into each.
+pub const MOST_STRATA: usize = 32;
+
+/// Blocks of cells at most: some 50 MB of counts for the largest grids.
+const MOST_BLOCKS: usize = 1 << 18;
+/// Cells per block at least: looking through one takes a microsecond, a hundredth of a descent.
+const LEAST_BLOCK: usize = 256;
+
+/// The strata of a grid, counted.
+pub(super) struct Strata<'a, S> {
+    by: &'a S,
+    cells: usize,
+    block: usize,
+    blocks: usize,
+    /// Per stratum and block, the cells of the stratum before the block; per stratum, all of them at the end.
+    before: Vec<u64>,
+}
+
+impl<'a, S: Stratify> Strata<'a, S> {
+    /// Counts the strata of `cells` cells.
+    pub(super) fn count(by: &'a S, cells: usize, exec: &Exec) -> Result<Self, CorrectionError> {
+        let strata = by.strata().clamp(1, MOST_STRATA);
+        let block = cells.div_ceil(MOST_BLOCKS).max(LEAST_BLOCK);
+        let blocks = cells.div_ceil(block);
+        let needed = (blocks + 1) * (strata * size_of::<u64>() + size_of::<[u32; MOST_STRATA]>());
+        exec.reserve("the strata of the grid", needed as u64, |_| "allow more with --memory".to_owned())?;
+        let counted: Vec<[u32; MOST_STRATA]> = exec.install(|| {
+            (0..blocks)
+                .into_par_iter()
+                .map(|b| {
+                    exec.check()?;
+                    let mut counts = [0; MOST_STRATA];
+                    for cell in b * block..cells.min((b + 1) * block) {
+                        counts[place(by, cell, strata)] += 1;
+                    }
+                    Ok(counts)
+                })
+                .collect::<Result<_, CorrectionError>>()
+        })?;
+        let mut before = Vec::with_capacity(strata * (blocks + 1));
+        for stratum in 0..strata {
+            let mut total = 0;
+            before.push(total);
+            before.extend(counted.iter().map(|counts| {
+                total += u64::from(counts[stratum]);
+                total
+            }));
+        }
+        Ok(Self { by, cells, block, blocks, before })
+    }
+
+    fn before(&self, stratum: usize) -> &[u64] {
+        &self.before[stratum * (self.blocks + 1)..][..=self.blocks]
+    }
+
+    /// Number of strata, empty ones included.
+    pub(super) fn len(&self) -> usize {
+        self.before.len() / (self.blocks + 1)
+    }
+
+    /// Number of cells of a stratum.
+    pub(super) fn cells(&self, stratum: usize) -> u64 {
+        self.before(stratum)[self.blocks]
+    }
+
+    /// What a stratum holds.
+    pub(super) fn name(&self, stratum: usize) -> String {
+        self.by.name(stratum)
+    }
+
+    /// Cell number `rank` of a stratum, in the order of the grid.
+    pub(super) fn cell(&self, stratum: usize, rank: u64) -> usize {
+        let before = self.before(stratum);
+        let block =
+            before.partition_point(|n| *n <= rank).saturating_sub(1).min(self.blocks.saturating_sub(1));
+        let mut left = rank - before[block];
+        let first = block * self.block;
+        let last = self.cells.min(first + self.block).saturating_sub(1);
+        for cell in first..last {
+            if place(self.by, cell, self.len()) == stratum {
+                if left == 0 {
+                    return cell;
+                }
+                left -= 1;
+            }
+        }
+        last
+    }
+}
+
+fn place(by: &impl Stratify, cell: usize, strata: usize) -> usize {
+    usize::from(by.stratum(cell)).min(strata - 1)
+}
+
+/// How many neighbours of a cell along the axes are accepted where it is not, or the other way round. Where several
+/// differ, the border of the accepted set cuts the cell.
+fn differing(shape: &[usize], cell: usize, accepted: impl Fn(usize) -> bool) -> usize {
+    let own = accepted(cell);
+    let (mut differ, mut stride, mut rest) = (0, 1, cell);
+    for cells in shape {
+        let k = rest % cells;
+        rest /= cells;
+        differ += usize::from(k > 0 && accepted(cell - stride) != own);
+        differ += usize::from(k + 1 < *cells && accepted(cell + stride) != own);
+        stride *= cells;
+    }
+    differ
+}
+
+/// The partition for a method that gives outcomes alone: whether a cell is accepted, and how many of its neighbours
+/// along the axes are not like it.
+#[derive(Debug, Clone)]
+pub struct ByNeighbours<'a> {
+    outcomes: &'a [Outcome],
+    shape: Vec<usize>,
+}
+
+impl<'a> ByNeighbours<'a> {
+    /// For outcomes over a grid of this shape, first axis fastest.
+    pub fn new(outcomes: &'a [Outcome], shape: Vec<usize>) -> Self {
+        Self { outcomes, shape }
+    }
+
+    fn accepted(&self, cell: usize) -> bool {
+        self.outcomes.get(cell) == Some(&Outcome::Aligned)
+    }
+
+    /// Numbers of neighbours that may differ, none included.
+    fn levels(&self) -> usize {
+        2 * self.shape.len() + 1
+    }
+}
+
+impl Stratify for ByNeighbours<'_> {
+    fn strata(&self) -> usize {
+        2 * self.levels()
+    }
+
+    fn stratum(&self, cell: usize) -> u8 {
+        let differ = differing(&self.shape, cell, |cell| self.accepted(cell));
+        let side = if self.accepted(cell) { 0 } else { self.levels() };
+        (side + differ) as u8
+    }
+
+    fn name(&self, stratum: usize) -> String {
+        let own = if stratum < self.levels() { "accepted" } else { "rejected" };
+        match stratum % self.levels() {
+            1 => format!("{own}, 1 neighbour differs"),
+            differ => format!("{own}, {differ} neighbours differ"),
+        }
+    }
+}
+
+/// The partition for a method that gives every cell a fraction in [0, 1], accepted above ½, such as the arrival
+/// fraction of transport: by bands of the fraction, and how many neighbours along the axes differ in being accepted.
+#[derive(Debug, Clone)]
+pub struct ByFraction<F> {
+    fraction: F,
+    shape: Vec<usize>,
+}
+
+/// Upper ends of the bands below ½; those above mirror them. Narrow at the ends, where most cells are.
+const BANDS: [f64; 4] = [0.02, 0.1, 0.25, 0.5];
+/// Differing neighbours are told apart as none, one or two, more.
+const SIDES: [(usize, &str); 3] = [(0, "0"), (2, "1 or 2"), (usize::MAX, "3 or more")];
+
+impl<F: Fn(usize) -> f64 + Sync> ByFraction<F> {
+    /// For the fractions of the cells of a grid of this shape, first axis fastest.
+    pub fn new(fraction: F, shape: Vec<usize>) -> Self {
+        Self { fraction, shape }
+    }
+}
+
+impl<F: Fn(usize) -> f64 + Sync> Stratify for ByFraction<F> {
+    fn strata(&self) -> usize {
+        2 * BANDS.len() * SIDES.len()
+    }
+
+    fn stratum(&self, cell: usize) -> u8 {
+        let fraction = (self.fraction)(cell);
+        let band = if fraction > 0.5 {
+            BANDS.len() + BANDS.iter().rev().skip(1).filter(|end| 1.0 - fraction <= **end).count()
+        } else {
+            BANDS.iter().take(BANDS.len() - 1).filter(|end| fraction > **end).count()
+        };
+        let differ = differing(&self.shape, cell, |cell| (self.fraction)(cell) > 0.5);
+        let side = SIDES.iter().position(|(most, _)| differ <= *most).unwrap_or(0);
+        (band * SIDES.len() + side) as u8
+    }
+
+    fn name(&self, stratum: usize) -> String {
+        let (band, side) = (stratum / SIDES.len() % (2 * BANDS.len()), stratum % SIDES.len());
+        let end = |k: usize| match k {
+            0 => 0.0,
+            k if k <= BANDS.len() => BANDS[k - 1],
+            k => 1.0 - BANDS.get(2 * BANDS.len() - 1 - k).copied().unwrap_or(0.0),
+        };
+        format!("fraction {} … {}, {} neighbours differ", end(band), end(band + 1), SIDES[side].1)
+    }
+}
