@@ -1,10 +1,12 @@
-//! `catchment reproduce`: the dissertation's tables beside what this program computes.
+//! `catchment reproduce`: the dissertation's tables beside what this program computes, and how often its own
+//! intervals hold.
 
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{number, to_stderr, to_stdout};
 use catchment::acceptance::Warning;
+use catchment::study::coverage::{Settings, coverage};
 use catchment::study::reproduce::{TABLES, TableComparison, reproduce};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -20,9 +22,10 @@ use std::fmt::Write;
 #[command(after_long_help = "Examples:\n  \
     catchment reproduce                     every table, and how well each agrees\n  \
     catchment reproduce 5.7                 one of them\n  \
-    catchment reproduce 3.3 3.4 --csv > kinematic.csv")]
+    catchment reproduce 3.3 3.4 --csv > kinematic.csv\n  \
+    catchment reproduce coverage            how often the 95 % intervals of `run` hold (minutes)")]
 pub(crate) struct ReproduceArgs {
-    /// Numbers of the tables in the dissertation; all of them when none is named
+    /// Numbers of the tables in the dissertation, all of them when none is named; or `coverage`
     #[arg(value_name = "TABLE", value_parser = tables())]
     tables: Vec<String>,
     /// Print JSON
@@ -35,32 +38,48 @@ pub(crate) struct ReproduceArgs {
     exec: ExecArgs,
 }
 
+/// The study of this program's own intervals: takes minutes, so only when it is named.
+const COVERAGE: &str = "coverage";
+
 /// Version of the JSON that `--json` prints.
 const JSON_SCHEMA: u32 = 1;
 
 fn tables() -> PossibleValuesParser {
-    PossibleValuesParser::new(TABLES.iter().map(|table| PossibleValue::new(table.name).help(table.title)))
+    let published = TABLES.iter().map(|table| PossibleValue::new(table.name).help(table.title));
+    let own =
+        PossibleValue::new(COVERAGE).help("Share of repeated runs whose 95 % interval holds the exact Sum");
+    PossibleValuesParser::new(published.chain([own]))
 }
 
 pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     let wanted = |name: &str| args.tables.is_empty() || args.tables.iter().any(|t| t == name);
     let names: Vec<&str> = TABLES.iter().map(|table| table.name).filter(|name| wanted(name)).collect();
+    let own = args.tables.iter().any(|t| t == COVERAGE);
+    if own && args.csv {
+        let help = Some("use --json, or leave --csv out".to_owned());
+        return Err(Failure::with_help(format!("{COVERAGE} is no table of published entries"), help));
+    }
     let running = args.exec.start()?;
     let mut compared = Vec::new();
     for (k, name) in names.iter().enumerate() {
         running.exec.report(k as f64 / names.len() as f64, "tables");
         compared.push(reproduce(name, &running.exec)?);
     }
+    let coverage = own.then(|| coverage(&Settings::default(), &running.exec)).transpose()?;
     drop(running);
     let fitted = compared.iter().any(is_fitted);
     let warning = Warning::DissertationConventions;
     if args.json {
         let tables: Vec<_> = compared.iter().map(|table| json(table, &warning)).collect();
-        to_stdout(&format!("{:#}\n", json!({ "schema": JSON_SCHEMA, "tables": tables })))?;
+        let mut value = json!({ "schema": JSON_SCHEMA, "tables": tables });
+        if let Some(coverage) = coverage {
+            value[COVERAGE] = json!(coverage);
+        }
+        to_stdout(&format!("{value:#}\n"))?;
     } else if args.csv {
         to_stdout(&csv(&compared)?)?;
     } else {
-        to_stdout(&text(&compared)?)?;
+        to_stdout(&(text(&compared)? + &coverage.map_or_else(String::new, |c| c.to_string())))?;
     }
     if fitted {
         to_stderr(&[format!("warning: {warning}")]);

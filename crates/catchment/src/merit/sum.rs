@@ -15,6 +15,7 @@
 use super::morphology::{grow, shrink};
 use crate::acceptance::{Acceptance, Domain};
 use crate::design::Alignment;
+use crate::method::correction;
 use crate::pose::Dof;
 
 /// Measure of the accepted set.
@@ -101,23 +102,11 @@ impl Sum {
     }
 }
 
-/// Two-sided 95 % quantile of the standard normal distribution.
-const Z95: f64 = 1.959_963_984_540_054;
-
 /// Wilson's 95 % interval of a probability of which `hits` of `trials` were seen; [0, 1] without trials.
 ///
-/// Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209. Unlike the textbook interval it holds for shares near
-/// 0 and 1.
+/// See [`correction::wilson95`].
 pub fn wilson95(hits: usize, trials: usize) -> [f64; 2] {
-    if trials == 0 {
-        return [0.0, 1.0];
-    }
-    let n = trials as f64;
-    let p = hits as f64 / n;
-    let z2 = Z95 * Z95;
-    let center = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
-    let half = Z95 / (1.0 + z2 / n) * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();
-    [(center - half).max(0.0), (center + half).min(1.0)]
+    correction::wilson95(hits as f64 / trials.max(1) as f64, trials as f64)
 }
 
 #[cfg(test)]

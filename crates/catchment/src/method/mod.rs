@@ -19,18 +19,21 @@ use serde::{Deserialize, Serialize};
 pub enum Method {
     /// [`descent`]: exact motion of every cell's centre.
     Descent,
+    /// [`transport`]: arrival fractions along exact directions of descent.
+    Transport,
     /// [`flood`]: flooding of the heights over the grid.
     Flood,
 }
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 2] = [Self::Descent, Self::Flood];
+    pub const ALL: [Self; 3] = [Self::Descent, Self::Transport, Self::Flood];
 
     /// The lower-case name used in files, reports and options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Descent => "descent",
+            Self::Transport => "transport",
             Self::Flood => "flood",
         }
     }
@@ -39,12 +42,15 @@ impl Method {
     pub const fn summary(self) -> &'static str {
         match self {
             Self::Descent => "exact frictionless motion of every cell's centre",
+            Self::Transport => {
+                "arrival fractions over the grid along exact directions; ambiguous cells by descent"
+            }
             Self::Flood => "fast flooding of the heights over the grid; biased, made for comparisons",
         }
     }
 
     /// Cells per axis when nothing was said, for one to five axes: an answer within seconds, at 0.1 to 0.5 ms per
-    /// descent between simple halves and about 1 µs per flooded cell. Odd, so that a cell is centred on the mated
+    /// descent between simple halves and about 1 µs per cell of the other methods. Odd, so that a cell is centred on the mated
     /// pose.
     pub fn default_cells(self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1001, 101, 25, 11, 7];
@@ -58,16 +64,16 @@ impl Method {
                     ((cells as usize).saturating_sub(1) / 2 * 2 + 1).max(3)
                 })
             }
-            Self::Flood => Resolution::DEFAULT_CELLS,
+            Self::Transport | Self::Flood => Resolution::DEFAULT_CELLS,
         }
     }
 
-    /// Random poses followed exactly beside the grid when nothing was said. They cost a flooded run its speed.
+    /// Random poses followed exactly to correct the Sum when nothing was said. They would cost a flooded run its speed.
     pub fn default_samples(self, pair: &Pair) -> usize {
         const SIMPLE: f64 = 4000.0;
         const LEAST: f64 = 200.0;
         match self {
-            Self::Descent => (SIMPLE * affordable(pair)).max(LEAST) as usize,
+            Self::Descent | Self::Transport => (SIMPLE * affordable(pair)).max(LEAST) as usize,
             Self::Flood => 0,
         }
     }

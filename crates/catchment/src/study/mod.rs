@@ -1,3 +1,4 @@
-//! Studies over many designs: reproduction of published tables.
+//! Studies over many designs: reproduction of published tables, and whether stated intervals hold.
 
+pub mod coverage;
 pub mod reproduce;

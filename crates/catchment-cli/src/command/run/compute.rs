@@ -1,12 +1,13 @@
 //! From a job to outcomes: the grid by the method asked for, its Sum corrected by exact descents.
 
 use crate::failure::Failure;
-use catchment::acceptance::{Acceptance, Domain, Outcome};
+use catchment::acceptance::{Acceptance, Domain, Outcome, Warning};
 use catchment::contact::Pair;
 use catchment::design::Design;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape, Resolution};
-use catchment::method::correction::{self, ByNeighbours, Corrected, CorrectionError};
+use catchment::method::correction::{self, ByFraction, ByNeighbours, Corrected, CorrectionError};
+use catchment::method::transport::{self, Arrival};
 use catchment::method::{Method, descent, flood};
 use serde_json::Value;
 
@@ -60,18 +61,18 @@ impl Job<'_> {
     pub(super) fn settings(&self) -> Result<Value, Failure> {
         Ok(match self.method {
             Method::Descent => serde_json::to_value(descent::Settings::default())?,
+            Method::Transport => serde_json::to_value(transport::Settings::default())?,
             Method::Flood => serde_json::to_value(self.flood_settings())?,
         })
     }
 
-    /// The corrected Sum, if one was asked for, as `correct` finds it for the strata of an answer over the grid.
+    /// The corrected Sum, if one was asked for, as `correct` finds it.
     pub(super) fn sample_of(
         &self,
-        acceptance: &Acceptance,
-        correct: impl FnOnce(&ByNeighbours, &correction::Settings) -> Result<Corrected, CorrectionError>,
+        correct: impl FnOnce(&correction::Settings) -> Result<Corrected, CorrectionError>,
     ) -> Result<Option<Sample>, Failure> {
-        let (Some(settings), Some(grid)) = (&self.sample, acceptance.grid()) else { return Ok(None) };
-        let corrected = correct(&ByNeighbours::new(&acceptance.outcomes, grid.shape()), settings)?;
+        let Some(settings) = &self.sample else { return Ok(None) };
+        let corrected = correct(settings)?;
         let descents = serde_json::to_value(descent::Settings::default())?;
         Ok(Some(Sample { corrected, seed: settings.seed, settings: descents }))
     }
@@ -82,25 +83,25 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
     let settings = job.settings()?;
     let cells = job.grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let axes = job.grid.axes.len();
-    let per_cell = match job.method {
-        Method::Descent => DESCENT_BYTES + if job.heights { Landscape::bytes(1) } else { 0 },
-        Method::Flood => flood::bytes(1),
+    let (what, per_cell) = match job.method {
+        Method::Descent => ("the outcome of every cell", DESCENT_BYTES),
+        Method::Transport => ("transport", transport::bytes(job.pair, &job.grid).div_ceil(cells.max(1))),
+        Method::Flood => ("flooding", flood::bytes(1)),
     };
-    let what = match job.method {
-        Method::Descent => "the outcome of every cell",
-        Method::Flood => "flooding",
-    };
+    let heights = job.heights && job.method != Method::Flood;
+    let per_cell = per_cell + if heights { Landscape::bytes(1) } else { 0 };
     exec.reserve(what, cells.saturating_mul(per_cell), |budget| {
         match Resolution::largest_that_fits(budget, per_cell, axes) {
             fits if fits < Resolution::LEAST => "allow more with --memory".to_owned(),
             fits => format!("use at most --resolution {fits}, or allow more with --memory"),
         }
     })?;
-    let (acceptance, landscape) = match job.method {
-        Method::Descent => {
-            let acceptance = descend(job.pair, Domain::Grid(job.grid.clone()), exec)?;
-            let heights = job.heights.then(|| Landscape::compute(job.pair, &job.grid, exec));
-            (acceptance, heights.transpose()?)
+    let mut arrival = None;
+    let (mut acceptance, flooded) = match job.method {
+        Method::Descent => (descend(job.pair, Domain::Grid(job.grid.clone()), exec)?, None),
+        Method::Transport => {
+            let found = transport::run(job.pair, &job.grid, &transport::Settings::default(), exec)?;
+            (arrival.insert(found).acceptance(exec)?, None)
         }
         Method::Flood => {
             let landscape = Landscape::compute(job.pair, &job.grid, exec)?;
@@ -108,15 +109,52 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             (flooding.acceptance, Some(landscape))
         }
     };
-    let sample = job.sample_of(&acceptance, |by, settings| {
-        correction::correct(job.pair, &job.grid, by, settings, &descent::Settings::default(), exec)
+    let landscape = match flooded {
+        None if heights => Some(Landscape::compute(job.pair, &job.grid, exec)?),
+        flooded => flooded,
+    };
+    let descents = descent::Settings::default();
+    let sample = job.sample_of(|settings| {
+        let shape = job.grid.shape();
+        if let Some(arrival) = &arrival {
+            let by = ByFraction::new(|cell| arrival.fraction(cell), shape);
+            correction::correct(job.pair, &job.grid, &by, settings, &descents, exec)
+        } else {
+            let by = ByNeighbours::new(&acceptance.outcomes, shape);
+            correction::correct(job.pair, &job.grid, &by, settings, &descents, exec)
+        }
     })?;
+    if let Some(arrival) = &arrival {
+        // Which cells are settled depends on the number of descents, not on the time they took.
+        let most = sample.as_ref().map_or(0, |sample| sample.corrected.descents);
+        settle(job, arrival, &mut acceptance, most, exec)?;
+    }
     Ok(Computed { acceptance, settings, sample, landscape })
+}
+
+/// Follows the ambiguous cells exactly if they are at most `most`, else warns.
+fn settle(
+    job: &Job,
+    arrival: &Arrival,
+    acceptance: &mut Acceptance,
+    most: usize,
+    exec: &Exec,
+) -> Result<(), Failure> {
+    let of = acceptance.outcomes.len();
+    let (cells, listed) = correction::ambiguous(of, |cell| arrival.is_ambiguous(cell), most, exec)?;
+    if cells > most {
+        acceptance.warnings.push(Warning::Ambiguous { cells, of });
+        return Ok(());
+    }
+    let settings = descent::Settings::default();
+    correction::settle(job.pair, &job.grid, &listed, &mut acceptance.outcomes, &settings, exec)?;
+    Ok(())
 }
 
 /// Bytes per descent while they run: the end and the outcome of each, and the ends once more while the parts of
 /// the threads are put together.
 const DESCENT_BYTES: u64 = (2 * size_of::<descent::End>() + size_of::<Outcome>()) as u64;
+
 /// Follows every pose of a domain exactly.
 pub(super) fn descend(pair: &Pair, domain: Domain, exec: &Exec) -> Result<Acceptance, Failure> {
     let (acceptance, _) = descent::run(pair, domain, &descent::Settings::default(), exec)?;

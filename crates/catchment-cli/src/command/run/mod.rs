@@ -21,7 +21,7 @@ use catchment::exec::Exec;
 use catchment::landscape::{Grid, Resolution};
 use catchment::merit::success::Distribution;
 use catchment::method::Method;
-use catchment::method::correction::{self, Settings, Stop};
+use catchment::method::correction::{self, ByNeighbours, Settings, Stop};
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Report, Requirement, table};
 use clap::Args;
@@ -184,11 +184,11 @@ fn check_requirements(
         domain: catchment::acceptance::Domain::Grid(grid.clone()),
         warnings: Vec::new(),
     };
-    let sample = job.sample_of(&acceptance, |by, settings| {
+    let sample = job.sample_of(|settings| {
+        let by = ByNeighbours::new(&acceptance.outcomes, grid.shape());
         let settings = Settings { stop: Stop::Samples(1), ..*settings };
-        correction::estimate(&grid, by, &settings, &Exec::new(), |poses, _| {
-            Ok(vec![Outcome::Aligned; poses.len()])
-        })
+        let aligned = |poses: Vec<_>, _: &_| Ok(vec![Outcome::Aligned; poses.len()]);
+        correction::estimate(&grid, &by, &settings, &Exec::new(), aligned)
     })?;
     let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None };
     let timing = Some(Timing { total_s: 0.0, threads: 1 });

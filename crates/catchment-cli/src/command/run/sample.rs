@@ -9,7 +9,7 @@ use std::time::Duration;
 /// When the sampling stops, and what it starts from.
 #[derive(Debug, Args)]
 pub(super) struct SampleArgs {
-    /// Random poses followed exactly to correct the Sum, 0 for none [default: 4000 with descent (fewer for round halves), 0 with flood]
+    /// Random poses followed exactly to correct the Sum, 0 for none [default: 4000, fewer for round halves; 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
     samples: Option<u32>,
     /// As many as can be followed in this time, such as "20s" or "2 min"; the report says how many

@@ -28,7 +28,7 @@ mod tests;
 
 pub use interval::wilson95;
 pub use schedule::{FAINT, Stop};
-pub use settle::settle;
+pub use settle::{ambiguous, settle};
 pub use strata::{ByFraction, ByNeighbours, MOST_STRATA, Stratify};
 
 use crate::acceptance::{Domain, Outcome, Stream};

@@ -5,9 +5,41 @@ use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
 use crate::method::descent;
+use rayon::prelude::*;
 
-/// Cells followed between two looks at the memory they need: what is kept of each is small, of all at once is not.
-const BATCH: usize = 1 << 16;
+/// Cells looked at between two questions whether to stop.
+const BLOCK: usize = 1 << 16;
+
+/// How many of `cells` cells are ambiguous, and which, in ascending order; no list if they are more than `most`.
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop.
+pub fn ambiguous(
+    cells: usize,
+    is_ambiguous: impl Fn(usize) -> bool + Sync,
+    most: usize,
+    exec: &Exec,
+) -> Result<(usize, Vec<usize>), Cancelled> {
+    let blocks = cells.div_ceil(BLOCK);
+    let within = |block: usize| block * BLOCK..cells.min((block + 1) * BLOCK);
+    exec.install(|| {
+        let count = |block| {
+            exec.check()?;
+            Ok(within(block).filter(|cell| is_ambiguous(*cell)).count())
+        };
+        let counts: Vec<usize> = (0..blocks).into_par_iter().map(count).collect::<Result<_, _>>()?;
+        let count = counts.iter().sum();
+        if count > most {
+            return Ok((count, Vec::new()));
+        }
+        let listed = |block| {
+            exec.check()?;
+            Ok(within(block).filter(|cell| is_ambiguous(*cell)).collect::<Vec<_>>())
+        };
+        let lists: Vec<_> = (0..blocks).into_par_iter().map(listed).collect::<Result<_, _>>()?;
+        Ok((count, lists.concat()))
+    })
+}
 
 /// Follows the centres of `cells` exactly and overwrites their outcomes; cells beyond the grid are left alone.
 ///
@@ -22,17 +54,18 @@ pub fn settle(
     exec: &Exec,
 ) -> Result<(), Cancelled> {
     let (mut done, all) = (0.0, cells.len() as f64);
-    for batch in cells.chunks(BATCH) {
-        let poses = batch.iter().map(|cell| grid.pose(*cell)).collect();
-        let span = [done, done + batch.len() as f64].map(|n| n / all);
-        let part = exec.part(span, "ambiguous cells");
+    // In blocks, so that the ends of few descents are kept at a time.
+    for block in cells.chunks(BLOCK) {
+        let poses = block.iter().map(|cell| grid.pose(*cell)).collect();
+        let next = done + block.len() as f64;
+        let part = exec.part([done / all, next / all], "ambiguous cells");
         let (settled, _) = descent::run(pair, Domain::Poses(poses), settings, &part)?;
-        for (cell, outcome) in batch.iter().zip(settled.outcomes) {
+        for (cell, outcome) in block.iter().zip(settled.outcomes) {
             if let Some(place) = outcomes.get_mut(*cell) {
                 *place = outcome;
             }
         }
-        done += batch.len() as f64;
+        done = next;
     }
     Ok(())
 }

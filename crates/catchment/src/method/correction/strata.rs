@@ -185,8 +185,8 @@ pub struct ByFraction<F> {
     shape: Vec<usize>,
 }
 
-/// Upper ends of the bands below ½; those above mirror them. Narrow at the ends, where most cells are.
-const BANDS: [f64; 4] = [0.02, 0.1, 0.25, 0.5];
+/// Borders of the bands. Narrow at the ends, where most cells are; ½ is one of them.
+const BORDERS: [f64; 9] = [0.0, 0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98, 1.0];
 /// Differing neighbours are told apart as none, one or two, more.
 const SIDES: [(usize, &str); 3] = [(0, "0"), (2, "1 or 2"), (usize::MAX, "3 or more")];
 
@@ -199,28 +199,20 @@ impl<F: Fn(usize) -> f64 + Sync> ByFraction<F> {
 
 impl<F: Fn(usize) -> f64 + Sync> Stratify for ByFraction<F> {
     fn strata(&self) -> usize {
-        2 * BANDS.len() * SIDES.len()
+        (BORDERS.len() - 1) * SIDES.len()
     }
 
     fn stratum(&self, cell: usize) -> u8 {
         let fraction = (self.fraction)(cell);
-        let band = if fraction > 0.5 {
-            BANDS.len() + BANDS.iter().rev().skip(1).filter(|end| 1.0 - fraction <= **end).count()
-        } else {
-            BANDS.iter().take(BANDS.len() - 1).filter(|end| fraction > **end).count()
-        };
+        let band = BORDERS[1..BORDERS.len() - 1].iter().filter(|border| fraction > **border).count();
         let differ = differing(&self.shape, cell, |cell| (self.fraction)(cell) > 0.5);
         let side = SIDES.iter().position(|(most, _)| differ <= *most).unwrap_or(0);
         (band * SIDES.len() + side) as u8
     }
 
     fn name(&self, stratum: usize) -> String {
-        let (band, side) = (stratum / SIDES.len() % (2 * BANDS.len()), stratum % SIDES.len());
-        let end = |k: usize| match k {
-            0 => 0.0,
-            k if k <= BANDS.len() => BANDS[k - 1],
-            k => 1.0 - BANDS.get(2 * BANDS.len() - 1 - k).copied().unwrap_or(0.0),
-        };
-        format!("fraction {} … {}, {} neighbours differ", end(band), end(band + 1), SIDES[side].1)
+        let (_, differ) = SIDES[stratum % SIDES.len()];
+        let band = (stratum / SIDES.len()).min(BORDERS.len() - 2);
+        format!("fraction {} to {}, {differ} neighbours differ", BORDERS[band], BORDERS[band + 1])
     }
 }

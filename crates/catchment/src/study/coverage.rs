@@ -1,0 +1,295 @@
+//! Do 95 % intervals hold the truth 95 times in 100, on real designs?
+//!
+//! ```text
+//!   exact  ────────────┼────────────   a large plain sample of exact descents; its own error is folded in
+//!   repeat 1      ├────┼──────┤        held
+//!   repeat 2  ├──────┤ │               missed
+//!   …
+//! ```
+//!
+//! Every design is tried with three partitions of its error box: none at all, which is plain sampling; by accepted
+//! cells and their neighbours; and by arrival fraction, which is what `run` uses. The same number of descents each,
+//! so the widths of the intervals compare the partitions.
+//!
+//! Not promised: a share of 100 repeats is itself known to ± 4 % only.
+
+use crate::acceptance::{Domain, Outcome};
+use crate::connector::Connector;
+use crate::contact::Pair;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::landscape::Grid;
+use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop, Stratify};
+use crate::method::descent;
+use crate::method::transport::{self, TransportError};
+use crate::pose::{Dof, DofSet};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::fmt;
+
+/// What changes the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Settings {
+    /// Intervals per design and partition.
+    pub repeats: u64,
+    /// Descents per interval.
+    pub descents: usize,
+    /// Descents of the plain sample that stands for the exact value.
+    pub exact: usize,
+}
+
+impl Default for Settings {
+    /// Some minutes on two cores.
+    fn default() -> Self {
+        Self { repeats: 100, descents: 1000, exact: 400_000 }
+    }
+}
+
+/// Why the study could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum CoverageError {
+    /// A design has no halves.
+    #[error("{design}: {problem}")]
+    Design {
+        /// Which.
+        design: &'static str,
+        /// Its first problem.
+        problem: String,
+    },
+    /// No grid.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+    /// No interval.
+    #[error(transparent)]
+    Correction(#[from] CorrectionError),
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// One design with one partition.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The design.
+    pub design: &'static str,
+    /// How its error box is parted.
+    pub strata: &'static str,
+    /// The share of the error box that is accepted, from the plain sample.
+    pub exact: f64,
+    /// Half the 95 % interval of `exact`.
+    pub exact_error: f64,
+    /// Share of the repeats whose interval, widened by `exact_error`, holds `exact`.
+    pub held: f64,
+    /// Mean of the estimates over `exact`, less 1.
+    pub bias: f64,
+    /// Mean half-width of the intervals over `exact`.
+    pub half_width: f64,
+    /// How many plain descents one of these is worth, by the spread of the estimates.
+    pub worth: f64,
+}
+
+/// The whole study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Coverage {
+    /// Its settings.
+    pub settings: Settings,
+    /// Its rows.
+    pub rows: Vec<Row>,
+}
+
+/// A design and how finely its error box is parted.
+struct Case {
+    name: &'static str,
+    family: Family,
+    aspect_ratio: f64,
+    cor: f64,
+    rotation_length: f64,
+    free: DofSet,
+    cells: usize,
+}
+
+/// A planar design, one with three free errors and one with five.
+fn cases() -> [Case; 3] {
+    let case = |name, free, cells| Case {
+        name,
+        family: Family::Pyramid,
+        aspect_ratio: 0.5,
+        cor: 0.5,
+        rotation_length: 0.5,
+        free,
+        cells,
+    };
+    let planar = DofSet::EMPTY.with(Dof::X).with(Dof::Pitch);
+    [
+        Case {
+            family: Family::VFace,
+            aspect_ratio: 1.0,
+            cor: 0.0,
+            rotation_length: 1.0,
+            ..case("v-face, x pitch, 101² cells", planar, 101)
+        },
+        case("pyramid, x y yaw, 41³ cells", DofSet::EMPTY.with(Dof::X).with(Dof::Y).with(Dof::Yaw), 41),
+        case("pyramid, all five, 13⁵ cells", DofSet::ALL, 13),
+    ]
+}
+
+impl Case {
+    fn pair(&self) -> Result<Pair, CoverageError> {
+        let mut alignment = Alignment::default_for(Some(self.family));
+        alignment.free = self.free;
+        alignment.center_of_rotation = self.cor;
+        alignment.rotation_length = self.rotation_length;
+        let spec = FamilySpec { aspect_ratio: self.aspect_ratio, ..FamilySpec::new(self.family) };
+        let connector = ConnectorSpec::Family(spec);
+        let design = Design { name: self.name.to_owned(), connector, width: 1.0, unit: None, alignment };
+        let built = Connector::build(&design).map_err(|problems| CoverageError::Design {
+            design: self.name,
+            problem: problems.first().map_or_else(String::new, ToString::to_string),
+        })?;
+        Ok(Pair::new(&built, &design.alignment))
+    }
+}
+
+/// Repeats the correction of every design and counts the intervals that hold the exact value.
+///
+/// # Errors
+/// See [`CoverageError`].
+pub fn coverage(settings: &Settings, exec: &Exec) -> Result<Coverage, CoverageError> {
+    let cases = cases();
+    let mut rows = Vec::new();
+    for (k, case) in cases.iter().enumerate() {
+        let at = |part: f64| (k as f64 + part / 4.0) / cases.len() as f64;
+        let pair = case.pair()?;
+        let grid = Grid::over(&pair.alignment, |_| case.cells);
+        let arrival =
+            transport::run(&pair, &grid, &transport::Settings::default(), &exec.part([at(0.0); 2], STAGE))?;
+        let outcomes = arrival.acceptance(exec)?.outcomes;
+        let exact = plain(&pair, settings.exact, &exec.part([at(0.0), at(1.0)], STAGE))?;
+        let nothing = vec![Outcome::Missed; grid.len()];
+        let plain = ByNeighbours::new(&nothing, grid.shape());
+        let neighbours = ByNeighbours::new(&outcomes, grid.shape());
+        let fraction = ByFraction::new(|cell| arrival.fraction(cell), grid.shape());
+        let try_out = Trial { case, pair: &pair, grid: &grid, settings, exact, exec };
+        rows.push(try_out.row("none", &plain, at(1.0))?);
+        rows.push(try_out.row("neighbours", &neighbours, at(2.0))?);
+        rows.push(try_out.row("fraction", &fraction, at(3.0))?);
+    }
+    Ok(Coverage { settings: *settings, rows })
+}
+
+const STAGE: &str = "coverage";
+/// Seed of the plain samples; those of the repeats are 1, 2, 3, …
+const EXACT_SEED: u64 = 0;
+/// Poses of a plain sample that are drawn at a time: what is kept in memory.
+const CHUNK: usize = 10_000;
+
+/// Share of the error box that is accepted, by `count` plain random poses.
+fn plain(pair: &Pair, count: usize, exec: &Exec) -> Result<f64, Cancelled> {
+    let settings = descent::Settings::default();
+    let chunks = count.div_ceil(CHUNK);
+    let mut aligned = 0;
+    for chunk in 0..chunks {
+        // Seeds that no repeat uses.
+        let domain = Domain::random(&pair.alignment, CHUNK, EXACT_SEED.wrapping_sub(chunk as u64));
+        let span = [chunk, chunk + 1].map(|k| k as f64 / chunks as f64);
+        aligned += descent::run(pair, domain, &settings, &exec.part(span, STAGE))?.0.counts()[0];
+    }
+    Ok(aligned as f64 / (chunks * CHUNK) as f64)
+}
+
+struct Trial<'a> {
+    case: &'a Case,
+    pair: &'a Pair,
+    grid: &'a Grid,
+    settings: &'a Settings,
+    exact: f64,
+    exec: &'a Exec,
+}
+
+impl Trial<'_> {
+    fn row(&self, strata: &'static str, by: &impl Stratify, at: f64) -> Result<Row, CoverageError> {
+        let Settings { repeats, descents, exact: plain } = *self.settings;
+        let silent = self.exec.part([at; 2], STAGE);
+        silent.report(0.0, STAGE);
+        let one = |seed| {
+            let stop = Stop::Samples(descents);
+            let settings = correction::Settings { seed, stop };
+            correction::correct(self.pair, self.grid, by, &settings, &descent::Settings::default(), &silent)
+        };
+        let found: Vec<_> =
+            self.exec.install(|| (1..=repeats).into_par_iter().map(one).collect::<Result<_, _>>())?;
+        let exact = self.exact;
+        let exact_error = Z95 * (exact * (1.0 - exact) / plain as f64).sqrt();
+        let measure = self.grid.measure();
+        let mean =
+            |f: &dyn Fn(&correction::Corrected) -> f64| found.iter().map(f).sum::<f64>() / repeats as f64;
+        let held = mean(&|c| {
+            let [down, up] = [c.sum - c.ci95[0], c.ci95[1] - c.sum].map(|w| (w / measure).hypot(exact_error));
+            f64::from(u8::from(c.fraction - down <= exact && exact <= c.fraction + up))
+        });
+        let average = mean(&|c| c.fraction);
+        let variance = mean(&|c| (c.fraction - average).powi(2)) * repeats as f64 / (repeats as f64 - 1.0);
+        Ok(Row {
+            design: self.case.name,
+            strata,
+            exact,
+            exact_error,
+            held,
+            bias: average / exact - 1.0,
+            half_width: mean(&|c| (c.ci95[1] - c.ci95[0]) / 2.0 / measure) / exact,
+            worth: exact * (1.0 - exact) / (variance * mean(&|c| c.descents as f64)),
+        })
+    }
+}
+
+/// Two-sided 95 % quantile of the standard normal distribution.
+const Z95: f64 = 1.96;
+
+impl fmt::Display for Coverage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Settings { repeats, descents, exact } = self.settings;
+        writeln!(
+            f,
+            "Coverage: {repeats} intervals of {descents} descents each, against {exact} plain descents"
+        )?;
+        writeln!(
+            f,
+            "  design                        strata      accepted          held    bias   ± of Sum  worth"
+        )?;
+        for r in &self.rows {
+            writeln!(
+                f,
+                "  {:<28}  {:<10}  {:.4} ± {:.4}  {:>4.0} %  {:+.2} %  {:>7.2} %  {:>5.1}",
+                r.design,
+                r.strata,
+                r.exact,
+                r.exact_error,
+                100.0 * r.held,
+                100.0 * r.bias,
+                100.0 * r.half_width,
+                r.worth,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_study_has_a_row_for_every_partition_and_says_the_same_again() {
+        let settings = Settings { repeats: 3, descents: 100, exact: 10_000 };
+        let of = |threads| coverage(&settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
+        let found = of(1);
+        assert_eq!(found.rows.len(), 9);
+        // Intervals of a hundred descents are wide, and three of three may miss by chance once in 10⁴.
+        assert!(found.rows.iter().all(|r| r.held > 0.0 && r.half_width < 1.0), "{found}");
+        assert_eq!(of(2), found);
+        assert_eq!(found.to_string().lines().count(), 11);
+    }
+}
