@@ -58,6 +58,7 @@ mod tests {
     use super::super::testing::{blob, design};
     use super::*;
     use crate::acceptance::{Domain, Outcome};
+    use crate::exec::Exec;
     use crate::pose::{Dof, DofSet};
 
     /// 1000 poses of which `aligned` are.
@@ -78,7 +79,7 @@ mod tests {
         let grid = blob(&design, 40);
         let share = grid.counts()[0] as f64 / grid.outcomes.len() as f64;
         for (aligned, doubts) in [((1000.0 * share) as usize, 0), ((800.0 * share) as usize, 1)] {
-            let report = Report::new(&design, &grid, serde_json::Value::Null, None).unwrap();
+            let report = Report::new(&design, &grid, serde_json::Value::Null, None, &Exec::new()).unwrap();
             let before = report.warnings.len();
             let report = report.with_sample(&sample(aligned), 5, serde_json::Value::Null);
             assert_eq!(report.warnings.len() - before, doubts);
@@ -94,7 +95,8 @@ mod tests {
         let design = design(DofSet::EMPTY.with(Dof::X));
         let mut none = sample(0);
         (none.domain, none.outcomes) = (Domain::Poses(Vec::new()), Vec::new());
-        let report = Report::new(&design, &blob(&design, 9), serde_json::Value::Null, None).unwrap();
+        let report =
+            Report::new(&design, &blob(&design, 9), serde_json::Value::Null, None, &Exec::new()).unwrap();
         let report = report.with_sample(&none, 5, serde_json::Value::Null);
         assert_eq!(report.acceptance.sum_ci95, None);
     }
