@@ -45,17 +45,17 @@
 //!
 //! // 3. Every cell of the error box is followed to its end, exactly and without a grid in between.
 //! let grid = Grid::over(&design.alignment, |_| 40);
-//! let settings = descent::Settings::default();
-//! let (acceptance, _ends) = descent::run(&pair, Domain::Grid(grid), &settings, &Exec::new())?;
+//! let (settings, exec) = (descent::Settings::default(), Exec::new());
+//! let (acceptance, _ends) = descent::run(&pair, Domain::Grid(grid), &settings, &exec)?;
 //!
 //! // 4. What the accepted set is worth: 2.39 D·rad at full resolution, 38 % of the error box.
 //! let sum = Sum::of(&acceptance, &design.alignment);
 //! assert!((sum.sum - 2.39).abs() < 0.05, "{}", sum.sum);
 //! assert_eq!(sum.unit(), "D·rad");
-//! assert!((Onaa::of(&acceptance)?.edge - 0.3).abs() < 0.03);
+//! assert!((Onaa::of(&acceptance, &exec)?.edge - 0.3).abs() < 0.03);
 //!
 //! // 5. For people, in their own units.
-//! let report = Report::new(&design, &acceptance, serde_json::to_value(&settings)?, None)?;
+//! let report = Report::new(&design, &acceptance, serde_json::to_value(&settings)?, None, &exec)?;
 //! let table = report::table(&report);
 //! assert!(table.contains("mm") && table.contains("deg"), "{table}");
 //! # println!("{table}");

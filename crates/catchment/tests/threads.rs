@@ -23,8 +23,8 @@ fn prepare(file: &str, cells: usize) -> (Design, Pair, Grid) {
     (design, pair, grid)
 }
 
-fn bytes(design: &Design, acceptance: &Acceptance) -> String {
-    let report = Report::new(design, acceptance, serde_json::Value::Null, None).unwrap();
+fn bytes(design: &Design, acceptance: &Acceptance, exec: &Exec) -> String {
+    let report = Report::new(design, acceptance, serde_json::Value::Null, None, exec).unwrap();
     serde_json::to_string(&report).unwrap()
 }
 
@@ -51,7 +51,9 @@ fn flooding() {
     for (file, cells) in [("x-face.toml", 60), ("x-face-3d.toml", 7)] {
         let (design, pair, grid) = prepare(file, cells);
         let settings = flood::Settings::for_pair(&pair);
-        same_for_all(file, |exec| bytes(&design, &flood::accept(&pair, &grid, &settings, exec).unwrap()));
+        same_for_all(file, |exec| {
+            bytes(&design, &flood::accept(&pair, &grid, &settings, exec).unwrap(), exec)
+        });
     }
 }
 
@@ -64,7 +66,7 @@ fn descents() {
             let domain = Domain::Grid(grid.clone());
             let (acceptance, ends) = descent::run(&pair, domain, &settings, exec).unwrap();
             let ends: Vec<_> = ends.into_iter().map(|end| end.error.to_array().map(f64::to_bits)).collect();
-            (bytes(&design, &acceptance), ends)
+            (bytes(&design, &acceptance, exec), ends)
         });
     }
 }

@@ -13,8 +13,10 @@
 //! an even number of cells no centre lies at zero; the cells that meet there all count.
 
 use super::{MeritError, advance, axis_number, gap, grid_of};
-use crate::acceptance::Acceptance;
+use crate::acceptance::{Acceptance, Outcome};
+use crate::exec::{Cancelled, Exec};
 use crate::pose::{Dof, PoseError};
+use rayon::prelude::*;
 
 /// A box with its centre at zero.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,17 +32,22 @@ pub struct CenteredBox {
 /// The largest centred cube after each axis is divided by its range: `scale` = 1 is the whole error box.
 ///
 /// # Errors
-/// If the outcomes are of listed poses.
-pub fn centered_cube(acceptance: &Acceptance) -> Result<CenteredBox, MeritError> {
+/// If the outcomes are of listed poses, or it is cancelled.
+pub fn centered_cube(acceptance: &Acceptance, exec: &Exec) -> Result<CenteredBox, MeritError> {
     let halves: Vec<f64> = grid_of(acceptance)?.axes.iter().map(|a| 0.5 * (a.hi - a.lo)).collect();
-    grow_from_zero(acceptance, &halves)
+    grow_from_zero(acceptance, &halves, exec)
 }
 
 /// The largest centred box with the given proportions: half-widths in D and radians (0: no error there).
 ///
 /// # Errors
-/// If the outcomes are of listed poses, a proportion is negative, or one is given for an axis that was not sampled.
-pub fn centered_box(acceptance: &Acceptance, proportions: &PoseError) -> Result<CenteredBox, MeritError> {
+/// If the outcomes are of listed poses, a proportion is negative, one is given for an axis that was not sampled, or
+/// it is cancelled.
+pub fn centered_box(
+    acceptance: &Acceptance,
+    proportions: &PoseError,
+    exec: &Exec,
+) -> Result<CenteredBox, MeritError> {
     let grid = grid_of(acceptance)?;
     let mut halves = vec![0.0; grid.axes.len()];
     for (dof, value) in Dof::ALL.into_iter().zip(proportions.to_array()) {
@@ -51,10 +58,10 @@ pub fn centered_box(acceptance: &Acceptance, proportions: &PoseError) -> Result<
             halves[axis_number(grid, dof)?] = value;
         }
     }
-    grow_from_zero(acceptance, &halves)
+    grow_from_zero(acceptance, &halves, exec)
 }
 
-fn grow_from_zero(acceptance: &Acceptance, halves: &[f64]) -> Result<CenteredBox, MeritError> {
+fn grow_from_zero(acceptance: &Acceptance, halves: &[f64], exec: &Exec) -> Result<CenteredBox, MeritError> {
     let grid = grid_of(acceptance)?;
     // Scale at which the box reaches cell k of axis i: never, if it has no width there and the cell is not at zero.
     let reach = |gap: f64, half: f64| if gap == 0.0 { 0.0 } else { gap / half };
@@ -70,16 +77,7 @@ fn grow_from_zero(acceptance: &Acceptance, halves: &[f64]) -> Result<CenteredBox
         .zip(halves)
         .map(|(axis, half)| if *half == 0.0 { f64::INFINITY } else { axis.hi.min(-axis.lo).max(0.0) / half })
         .fold(f64::INFINITY, f64::min);
-    let mut scale = border;
-    let shape = grid.shape();
-    let mut cell = vec![0; shape.len()];
-    for accepted in acceptance.accepted() {
-        if !accepted {
-            let meets = table.iter().zip(&cell).map(|(reach, k)| reach[*k]).fold(0.0, f64::max);
-            scale = scale.min(meets);
-        }
-        advance(&mut cell, &shape);
-    }
+    let scale = exec.install(|| first_rejected(acceptance, &table, border, exec))?;
     // Without any width the box is a point: there or not.
     let scale = if scale.is_finite() { scale } else { 1.0 };
     Ok(CenteredBox {
@@ -87,6 +85,43 @@ fn grow_from_zero(acceptance: &Acceptance, halves: &[f64]) -> Result<CenteredBox
         half_widths: grid.axes.iter().zip(halves).map(|(axis, half)| (axis.dof, scale * half)).collect(),
         reaches_border: scale >= border,
     })
+}
+
+/// The least scale, up to `border`, at which the box meets a rejected cell; `table` has the scale at which it
+/// reaches each cell of each axis. Slabs of the last axis in parallel; each reads only the cells that its box may
+/// still reach.
+fn first_rejected(
+    acceptance: &Acceptance,
+    table: &[Vec<f64>],
+    border: f64,
+    exec: &Exec,
+) -> Result<f64, Cancelled> {
+    // A grid without axes is one cell, at zero.
+    let zero = vec![0.0];
+    let (first, others) = table.split_first().map_or((&zero, table), |(first, others)| (first, others));
+    let (inner, slabs) = others.split_last().map_or((others, &zero), |(last, inner)| (inner, last));
+    let shape: Vec<usize> = inner.iter().map(Vec::len).collect();
+    let slab = first.len() * shape.iter().product::<usize>();
+    if slab == 0 {
+        return Ok(border);
+    }
+    let in_slab = |(outcomes, at): (&[Outcome], &f64)| -> Result<f64, Cancelled> {
+        exec.check()?;
+        let mut scale = border;
+        let mut cell = vec![0; shape.len()];
+        for row in outcomes.chunks_exact(first.len()) {
+            let others = inner.iter().zip(&cell).map(|(reach, k)| reach[*k]).fold(*at, f64::max);
+            if others < scale {
+                for (_, along) in row.iter().zip(first).filter(|(outcome, _)| **outcome != Outcome::Aligned) {
+                    scale = scale.min(along.max(others));
+                }
+            }
+            advance(&mut cell, &shape);
+        }
+        Ok(scale)
+    };
+    let slabs = acceptance.outcomes.par_chunks_exact(slab).zip(slabs);
+    slabs.map(in_slab).try_reduce(|| border, |a, b| Ok(a.min(b)))
 }
 
 #[cfg(test)]
@@ -110,7 +145,7 @@ mod tests {
             }
             let mut proportions = [0.0; 5];
             proportions[..shape.len()].copy_from_slice(&widths[..shape.len()]);
-            let found = centered_box(&accepted, &PoseError::from_array(proportions)).unwrap();
+            let found = centered_box(&accepted, &PoseError::from_array(proportions), &Exec::new()).unwrap();
             let clean = |scale: f64| (0..g.len()).all(|i| {
                 let cell = g.cell(i);
                 let meets = g.axes.iter().zip(&cell).zip(&widths).all(|((a, k), w)| {
@@ -128,7 +163,7 @@ mod tests {
     fn of_a_ball_it_is_the_inscribed_cube() {
         // Half edge r/√3; it stops at the border of a cell whose centre is outside the ball: within a cell of 0.04.
         for cells in [50, 51] {
-            let cube = centered_cube(&ball(&grid(&[cells; 3], &[1.0; 3]), 0.9)).unwrap();
+            let cube = centered_cube(&ball(&grid(&[cells; 3], &[1.0; 3]), 0.9), &Exec::new()).unwrap();
             assert!((cube.scale - 0.9 / 3f64.sqrt()).abs() < 0.04, "{cells}: {}", cube.scale);
             assert!(!cube.reaches_border);
         }
@@ -139,17 +174,20 @@ mod tests {
         let g = grid(&[40, 40], &[1.0, 1.0]);
         let accepted = accept(&g, |e| e[0].abs() < 0.5 && e[1].abs() < 0.25);
         let wide = PoseError { x: 4.0, y: 1.0, ..PoseError::default() };
-        let found = centered_box(&accepted, &wide).unwrap();
+        let found = centered_box(&accepted, &wide, &Exec::new()).unwrap();
         assert!((found.scale - 0.125).abs() < 1e-12);
         let line = PoseError { x: 1.0, ..PoseError::default() };
-        assert!((centered_box(&accepted, &line).unwrap().scale - 0.5).abs() < 1e-12);
+        assert!((centered_box(&accepted, &line, &Exec::new()).unwrap().scale - 0.5).abs() < 1e-12);
         let unknown = PoseError { yaw: 1.0, ..PoseError::default() };
-        assert!(matches!(centered_box(&accepted, &unknown), Err(MeritError::NoAxis { dof: Dof::Yaw, .. })));
+        assert!(matches!(
+            centered_box(&accepted, &unknown, &Exec::new()),
+            Err(MeritError::NoAxis { dof: Dof::Yaw, .. })
+        ));
     }
 
     #[test]
     fn a_box_stopped_by_the_error_box_says_so() {
-        let cube = centered_cube(&accept(&grid(&[6, 7], &[1.0, 1.5]), |_| true)).unwrap();
+        let cube = centered_cube(&accept(&grid(&[6, 7], &[1.0, 1.5]), |_| true), &Exec::new()).unwrap();
         assert_eq!((cube.scale, cube.reaches_border), (1.0, true));
     }
 }

@@ -13,10 +13,11 @@
 //! right to about half a cell. Lengths are in D, angles in radians.
 //!
 //! What is *not* promised: that the grid saw everything. A jam thinner than a cell can hide between centres.
-//! [`sum::Sum::bracket`] says how much one cell of doubt on either side of the border amounts to.
+//! [`sum::bracket()`] says how much one cell of doubt on either side of the border amounts to.
 
+pub mod brute;
 pub mod centered;
-mod morphology;
+mod mask;
 pub mod onaa;
 pub mod slice;
 pub mod success;
@@ -24,8 +25,10 @@ pub mod sum;
 pub mod tolerance;
 
 use crate::acceptance::{Acceptance, Outcome, Warning};
+use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
+use rayon::prelude::*;
 
 /// Why a figure of merit cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -73,6 +76,12 @@ pub enum MeritError {
         /// The first row where it shows, from 1.
         row: usize,
     },
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// The grid of an acceptance.
@@ -100,10 +109,13 @@ fn gap(axis: &GridAxis, k: usize) -> f64 {
 
 /// Doubts that the accepted set itself raises: it reaches the border of the error box, it does not hold the
 /// mated pose, some poses are undecided.
-pub fn doubts(acceptance: &Acceptance) -> Vec<Warning> {
+///
+/// # Errors
+/// When asked to stop.
+pub fn doubts(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Warning>, Cancelled> {
     let mut warnings = Vec::new();
     if let Some(grid) = acceptance.grid() {
-        let axes = border_axes(acceptance, grid);
+        let axes = border_axes(acceptance, grid, exec)?;
         if !axes.is_empty() {
             let axes = axes.iter().map(|d| d.name().to_owned()).collect();
             warnings.push(Warning::TouchesBorder { axes });
@@ -118,23 +130,26 @@ pub fn doubts(acceptance: &Acceptance) -> Vec<Warning> {
     if undecided > 0 {
         warnings.push(Warning::Undecided { cells: undecided });
     }
-    warnings
+    Ok(warnings)
 }
 
 /// The axes at whose border an accepted cell lies.
-fn border_axes(acceptance: &Acceptance, grid: &Grid) -> Vec<Dof> {
-    let shape = grid.shape();
-    let mut touched = vec![false; shape.len()];
-    let mut cell = vec![0; shape.len()];
-    for accepted in acceptance.accepted() {
-        if accepted {
-            for ((touched, k), n) in touched.iter_mut().zip(&cell).zip(&shape) {
-                *touched |= *k == 0 || k + 1 == *n;
-            }
+fn border_axes(acceptance: &Acceptance, grid: &Grid, exec: &Exec) -> Result<Vec<Dof>, Cancelled> {
+    let holds = |cells: &[Outcome]| cells.contains(&Outcome::Aligned);
+    let mut touched = Vec::new();
+    let mut stride = 1;
+    for axis in &grid.axes {
+        exec.check()?;
+        let block = stride * axis.cells;
+        // Whole lines along the axis: its first and its last layer.
+        let touches = |block: &[Outcome]| holds(&block[..stride]) || holds(&block[block.len() - stride..]);
+        let blocks = acceptance.outcomes.par_chunks_exact(block.max(1));
+        if block > 0 && exec.install(|| blocks.any(touches)) {
+            touched.push(axis.dof);
         }
-        advance(&mut cell, &shape);
+        stride = block;
     }
-    grid.axes.iter().zip(touched).filter_map(|(a, t)| t.then_some(a.dof)).collect()
+    Ok(touched)
 }
 
 /// Steps per-axis cell numbers to the next cell in memory order, the first axis fastest.
@@ -202,6 +217,7 @@ mod tests {
     fn a_set_cut_off_by_the_box_says_along_which_axes() {
         let grid = grid(&[8, 8, 8], &[1.0, 1.0, 1.0]);
         let slab = accept(&grid, |e| e[1].abs() < 0.5);
+        let doubts = |acceptance| super::doubts(acceptance, &Exec::new()).unwrap();
         assert_eq!(doubts(&slab), [Warning::TouchesBorder { axes: vec!["x".into(), "roll".into()] }]);
         assert_eq!(doubts(&ball(&grid, 0.5)), []);
     }
@@ -210,6 +226,6 @@ mod tests {
     fn a_set_beside_the_mated_pose_is_doubtful() {
         let grid = grid(&[9, 9], &[1.0, 1.0]);
         let beside = accept(&grid, |e| (0.2..0.8).contains(&e[0]) && e[1].abs() < 0.5);
-        assert_eq!(doubts(&beside), [Warning::MatedPoseNotAccepted]);
+        assert_eq!(doubts(&beside, &Exec::new()).unwrap(), [Warning::MatedPoseNotAccepted]);
     }
 }

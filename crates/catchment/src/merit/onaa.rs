@@ -11,14 +11,16 @@
 //!
 //! A cube of edge e needs ⌈e·nᵢ⌉ cells along an axis of nᵢ cells, wherever it lies, and a box of that many
 //! accepted cells holds it. So e is the largest k/nᵢ for which such a box exists: found exactly, by bisection
-//! over those values. Where all nᵢ are equal, dynamic programming finds it in one pass: the largest cube with
-//! its last corner in a cell is one larger than the smallest at the preceding corner neighbours.
+//! over those values. Boxes that fit are fitted together from the smaller ones that were found to fit, 64 cells at
+//! once. [`super::brute::largest_cube`] is the slow way.
 
-use super::morphology::fit_boxes;
+use super::mask::Mask;
 use super::{MeritError, grid_of};
-use crate::acceptance::Acceptance;
+use crate::acceptance::{Acceptance, Outcome};
+use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::Dof;
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// The largest axis-oriented cube.
@@ -35,71 +37,18 @@ impl Onaa {
     /// The largest cube in the accepted cells of a grid.
     ///
     /// # Errors
-    /// If the outcomes are of listed poses.
-    pub fn of(acceptance: &Acceptance) -> Result<Self, MeritError> {
+    /// If the outcomes are of listed poses, the cells do not fit into memory as bits, or it is cancelled.
+    pub fn of(acceptance: &Acceptance, exec: &Exec) -> Result<Self, MeritError> {
         let grid = grid_of(acceptance)?;
-        let accepted: Vec<bool> = acceptance.accepted().collect();
-        let shape = grid.shape();
-        let edge = edge(&shape, &accepted);
-        Ok(Self { edge: edge.value(), bounds: locate(grid, edge, accepted) })
+        let accepted = Mask::of(&grid.shape(), &acceptance.outcomes, |o| o == Outcome::Aligned, exec)?;
+        let fitting = Fitting::largest(&grid.shape(), accepted, exec)?;
+        Ok(Self { edge: fitting.edge.value(), bounds: fitting.nearest_to_zero(grid, exec) })
     }
 
     /// The form that the dissertation's planar tables print.
     pub fn pi_edge_squared(&self) -> f64 {
         PI * self.edge * self.edge
     }
-}
-
-/// Edge, in cells, of the largest cube of accepted cells: dynamic programming in O(2ⁿ · cells) time and two
-/// slabs of memory.
-///
-/// `shape` is the number of cells per axis, `accepted` one flag per cell, first axis fastest; their lengths must
-/// agree.
-pub fn largest_cube(shape: &[usize], accepted: &[bool]) -> usize {
-    let Some((&slabs, face)) = shape.split_last() else { return 0 };
-    let slab: usize = face.iter().product();
-    debug_assert_eq!(slab * slabs, accepted.len());
-    if slab == 0 {
-        return 0;
-    }
-    // Offsets, inside a slab, to the preceding corner neighbours: every combination of stepping back or not.
-    let mut corners = vec![(0usize, 0usize)];
-    let mut stride = 1;
-    for (axis, cells) in face.iter().enumerate() {
-        let stepped: Vec<_> =
-            corners.iter().map(|(offset, axes)| (offset + stride, axes | 1 << axis)).collect();
-        corners.extend(stepped);
-        stride *= cells;
-    }
-    let (mut before, mut here) = (vec![0usize; slab], vec![0usize; slab]);
-    let mut largest = 0;
-    for (number, flags) in accepted.chunks_exact(slab).enumerate() {
-        let mut cell = vec![0; face.len()];
-        for (index, flag) in flags.iter().enumerate() {
-            here[index] = if *flag {
-                let first =
-                    cell.iter().enumerate().fold(0, |set, (axis, k)| set | usize::from(*k == 0) << axis);
-                let mut smallest = if number == 0 { 0 } else { usize::MAX };
-                for &(offset, axes) in &corners {
-                    if axes & first != 0 {
-                        smallest = 0;
-                        break;
-                    }
-                    if axes != 0 {
-                        smallest = smallest.min(here[index - offset]);
-                    }
-                    smallest = smallest.min(before[index - offset]);
-                }
-                smallest + 1
-            } else {
-                0
-            };
-            largest = largest.max(here[index]);
-            super::advance(&mut cell, face);
-        }
-        std::mem::swap(&mut before, &mut here);
-    }
-    largest
 }
 
 /// An edge as an exact fraction, so that ⌈e·n⌉ is not a matter of rounding.
@@ -120,67 +69,92 @@ impl Edge {
     }
 }
 
-/// The largest edge for which a box of ⌈e·nᵢ⌉ accepted cells exists.
-fn edge(shape: &[usize], accepted: &[bool]) -> Edge {
-    let none = Edge { cells: 0, of: 1 };
-    let Some(&first) = shape.first() else { return none };
-    if accepted.is_empty() {
-        return none;
-    }
-    if shape.iter().all(|n| *n == first) {
-        return Edge { cells: largest_cube(shape, accepted), of: first };
-    }
-    let mut candidates: Vec<Edge> =
-        shape.iter().flat_map(|n| (1..=*n).map(|cells| Edge { cells, of: *n })).collect();
-    candidates.sort_by(|a, b| (a.cells * b.of).cmp(&(b.cells * a.of)));
-    candidates.dedup_by(|a, b| a.cells * b.of == b.cells * a.of);
-    let fits = |e: &Edge| {
-        let mut mask = accepted.to_vec();
-        fit_boxes(shape, &shape.iter().map(|n| e.cells_of(*n)).collect::<Vec<_>>(), &mut mask);
-        mask.contains(&true)
-    };
-    match candidates.partition_point(fits) {
-        0 => none,
-        fitting => candidates[fitting - 1],
-    }
+/// The boxes of accepted cells that hold a cube of one edge.
+#[derive(Debug, Clone)]
+struct Fitting {
+    edge: Edge,
+    /// Cells of a box along each axis.
+    window: Vec<usize>,
+    /// First corners of the boxes.
+    corners: Mask,
 }
 
-/// The place of a cube of this edge nearest to zero.
-fn locate(grid: &Grid, edge: Edge, mut accepted: Vec<bool>) -> Vec<(Dof, f64, f64)> {
-    if edge.cells == 0 {
-        return Vec::new();
-    }
-    let shape = grid.shape();
-    let window: Vec<usize> = shape.iter().map(|n| edge.cells_of(*n)).collect();
-    fit_boxes(&shape, &window, &mut accepted);
-    // Centre of the box of cells that ends with cell `last`; a cube narrower than its cells sits in their middle.
-    let center = |axis: &GridAxis, last: usize, cells: usize| {
-        axis.lo + (last as f64 + 1.0 - 0.5 * cells as f64) * axis.step()
-    };
-    let mut cell = vec![0; shape.len()];
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    for fits in accepted {
-        if fits {
-            let centers: Vec<f64> =
-                grid.axes.iter().zip(&cell).zip(&window).map(|((a, k), w)| center(a, *k, *w)).collect();
-            let distance: f64 =
-                grid.axes.iter().zip(&centers).map(|(a, c)| (c / (a.hi - a.lo)).powi(2)).sum();
-            // Symmetric places are equally far but for rounding: the first one wins.
-            if best.as_ref().is_none_or(|(nearest, _)| distance < nearest - 1e-12) {
-                best = Some((distance, centers));
+impl Fitting {
+    /// The boxes of the largest edge for which there are any; of edge 0 if no cell is accepted.
+    fn largest(shape: &[usize], accepted: Mask, exec: &Exec) -> Result<Self, Cancelled> {
+        let mut edges: Vec<Edge> =
+            shape.iter().flat_map(|n| (1..=*n).map(|cells| Edge { cells, of: *n })).collect();
+        edges.sort_by(|a, b| (a.cells * b.of).cmp(&(b.cells * a.of)));
+        edges.dedup_by(|a, b| a.cells * b.of == b.cells * a.of);
+        let none = Edge { cells: 0, of: 1 };
+        // The smallest edge of all needs a single cell.
+        let smallest = if accepted.is_empty() { none } else { edges.first().copied().unwrap_or(none) };
+        let mut best = Self { edge: smallest, window: vec![1; shape.len()], corners: accepted };
+        let (mut fits, mut too_large) = (0, if smallest.cells == 0 { 0 } else { edges.len() });
+        while fits + 1 < too_large {
+            let middle = usize::midpoint(fits, too_large);
+            let edge = edges[middle];
+            let window: Vec<usize> = shape.iter().map(|n| edge.cells_of(*n)).collect();
+            let mut corners = best.corners.clone();
+            corners.widen_boxes(&best.window, &window, exec)?;
+            if corners.is_empty() {
+                too_large = middle;
+            } else {
+                fits = middle;
+                best = Self { edge, window, corners };
             }
         }
-        super::advance(&mut cell, &shape);
+        Ok(best)
     }
-    let bounds = |(axis, center): (&GridAxis, f64)| {
-        let half = 0.5 * edge.value() * (axis.hi - axis.lo);
-        (axis.dof, center - half, center + half)
-    };
-    best.map_or_else(Vec::new, |(_, centers)| grid.axes.iter().zip(centers).map(bounds).collect())
+
+    /// The place of the cube nearest to zero: of the nearest ones, the first in memory.
+    fn nearest_to_zero(&self, grid: &Grid, exec: &Exec) -> Vec<(Dof, f64, f64)> {
+        // Symmetric places are equally far but for rounding of numbers of order 1.
+        const EQUALLY_FAR: f64 = 1e-12;
+        if self.edge.cells == 0 {
+            return Vec::new();
+        }
+        // Centre of a box by its first cell; a cube narrower than its cells sits in their middle.
+        let centers: Vec<Vec<f64>> = grid
+            .axes
+            .iter()
+            .zip(&self.window)
+            .map(|(axis, cells)| {
+                let center = |k: usize| axis.lo + (k as f64 + 0.5 * *cells as f64) * axis.step();
+                (0..axis.cells).map(center).collect()
+            })
+            .collect();
+        let squares: Vec<Vec<f64>> = grid
+            .axes
+            .iter()
+            .zip(&centers)
+            .map(|(axis, centers)| centers.iter().map(|c| (c / (axis.hi - axis.lo)).powi(2)).collect())
+            .collect();
+        let distance = |mut index: usize| -> f64 {
+            let mut sum = 0.0;
+            for square in &squares {
+                sum += square[index % square.len()];
+                index /= square.len();
+            }
+            sum
+        };
+        let corner = exec.install(|| {
+            let nearest = self.corners.marked().map(distance).min_by(f64::total_cmp)?;
+            let limit = nearest + EQUALLY_FAR;
+            self.corners.marked().find_first(|index| distance(*index).total_cmp(&limit).is_le())
+        });
+        let bounds = |((axis, centers), k): ((&GridAxis, &Vec<f64>), usize)| {
+            let half = 0.5 * self.edge.value() * (axis.hi - axis.lo);
+            (axis.dof, centers[k] - half, centers[k] + half)
+        };
+        let cell = corner.map(|index| grid.cell(index)).unwrap_or_default();
+        grid.axes.iter().zip(&centers).zip(cell).map(bounds).collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::brute::largest_cube;
     use super::super::testing::*;
     use super::*;
     use proptest::prelude::*;
@@ -218,10 +192,38 @@ mod tests {
         })
     }
 
+    /// One outcome per flag over [−1, 1] along each axis.
+    fn accepting(shape: &[usize], accepted: &[bool]) -> Acceptance {
+        let mut acceptance = accept(&grid(shape, &vec![1.0; shape.len()]), |_| true);
+        for (outcome, _) in acceptance.outcomes.iter_mut().zip(accepted).filter(|(_, accepted)| !**accepted) {
+            *outcome = Outcome::Jammed;
+        }
+        acceptance
+    }
+
     proptest! {
         #[test]
         fn the_edge_is_that_of_the_definition((shape, accepted) in masks()) {
-            prop_assert_eq!(edge(&shape, &accepted).value(), brute(&shape, &accepted));
+            let onaa = Onaa::of(&accepting(&shape, &accepted), &Exec::new()).unwrap();
+            prop_assert_eq!(onaa.edge, brute(&shape, &accepted));
+            if shape.iter().all(|n| *n == shape[0]) {
+                prop_assert_eq!(onaa.edge, largest_cube(&shape, &accepted) as f64 / shape[0] as f64);
+            }
+        }
+
+        /// Every cell that the cube meets is accepted; what it touches within rounding it does not meet.
+        #[test]
+        fn the_cube_lies_in_the_accepted_cells((shape, accepted) in masks()) {
+            let acceptance = accepting(&shape, &accepted);
+            let onaa = Onaa::of(&acceptance, &Exec::new()).unwrap();
+            prop_assert_eq!(onaa.bounds.is_empty(), onaa.edge == 0.0);
+            let g = acceptance.grid().unwrap();
+            for index in (0..accepted.len()).filter(|_| onaa.edge > 0.0) {
+                let meets = g.axes.iter().zip(g.cell(index)).zip(&onaa.bounds).all(|((a, k), (_, lo, hi))| {
+                    *lo < a.lo + (k + 1) as f64 * a.step() - 1e-9 && *hi > a.lo + k as f64 * a.step() + 1e-9
+                });
+                prop_assert!(!meets || accepted[index]);
+            }
         }
     }
 
@@ -230,7 +232,7 @@ mod tests {
         // Borders of the box lie on cell borders, so the edge is exact: 2·0.3/2 = 0.3 of x is the smallest.
         let g = grid(&[20, 40, 40], &[1.0, 1.0, 1.5]);
         let accepted = accept(&g, |e| e[0].abs() < 0.3 && e[1].abs() < 0.7 && e[2].abs() < 0.9);
-        let onaa = Onaa::of(&accepted).unwrap();
+        let onaa = Onaa::of(&accepted, &Exec::new()).unwrap();
         assert!((onaa.edge - 0.3).abs() < 1e-15);
         let (dof, lo, hi) = onaa.bounds[2];
         assert_eq!(dof, Dof::Roll);
@@ -240,7 +242,7 @@ mod tests {
     #[test]
     fn of_a_disc_it_is_the_inscribed_square() {
         // r·√2 of a range of 2; the cube ends on cell borders inside, at most two cells short.
-        let onaa = Onaa::of(&ball(&grid(&[200, 200], &[1.0, 1.0]), 0.8)).unwrap();
+        let onaa = Onaa::of(&ball(&grid(&[200, 200], &[1.0, 1.0]), 0.8), &Exec::new()).unwrap();
         let exact = 0.8 / 2f64.sqrt();
         assert!(onaa.edge <= exact + 0.005 && onaa.edge > exact - 0.01, "{}", onaa.edge);
         assert!((onaa.pi_edge_squared() - PI * onaa.edge.powi(2)).abs() < 1e-15);
@@ -249,7 +251,8 @@ mod tests {
     #[test]
     fn nothing_accepted_has_no_cube_and_everything_is_the_whole_box() {
         let g = grid(&[5, 5], &[1.0, 1.0]);
-        assert_eq!(Onaa::of(&accept(&g, |_| false)).unwrap(), Onaa { edge: 0.0, bounds: Vec::new() });
-        assert_eq!(Onaa::of(&accept(&g, |_| true)).unwrap().edge, 1.0);
+        let of = |all| Onaa::of(&accept(&g, |_| all), &Exec::new()).unwrap();
+        assert_eq!(of(false), Onaa { edge: 0.0, bounds: Vec::new() });
+        assert_eq!(of(true).edge, 1.0);
     }
 }

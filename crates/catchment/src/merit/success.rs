@@ -11,12 +11,14 @@
 //! adds its own doubt: [`Success::bracket`] counts the border cells as failures, and as successes (undecided ones
 //! too). Errors along axes that were not sampled cannot be judged and are refused.
 
-use super::morphology::{grow, shrink};
+use super::mask::{Mask, bits};
 use super::sum::wilson95;
 use super::{MeritError, advance, axis_number, grid_of};
 use crate::acceptance::{Acceptance, Outcome};
+use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -68,68 +70,60 @@ pub struct Success {
 /// The success probability of an acceptance over a grid.
 ///
 /// # Errors
-/// If the outcomes are of listed poses, if the distribution has errors along axes that were not sampled, or if its
-/// numbers make no distribution.
-pub fn success(acceptance: &Acceptance, distribution: &Distribution) -> Result<Success, MeritError> {
+/// If the outcomes are of listed poses, if the distribution has errors along axes that were not sampled, if its
+/// numbers make no distribution, if the cells do not fit into memory as bits, or if it is cancelled.
+pub fn success(
+    acceptance: &Acceptance,
+    distribution: &Distribution,
+    exec: &Exec,
+) -> Result<Success, MeritError> {
     let grid = grid_of(acceptance)?;
-    let masks = Masks::of(acceptance, grid);
+    let masks = Masks::of(acceptance, grid, exec)?;
     match distribution {
         Distribution::Normal { mean, sigma } => {
             let cdf = |z: f64| 0.5 * (1.0 + libm::erf(z / SQRT_2));
-            Ok(masks.integrate(grid, &cell_weights(grid, mean, sigma, "a standard deviation", cdf)?))
+            let weights = cell_weights(grid, mean, sigma, "a standard deviation", cdf)?;
+            Ok(masks.integrate(&weights, exec)?)
         }
         Distribution::Uniform { mean, half_width } => {
             let cdf = |z: f64| (0.5 * (z + 1.0)).clamp(0.0, 1.0);
-            Ok(masks.integrate(grid, &cell_weights(grid, mean, half_width, "a half-width", cdf)?))
+            let weights = cell_weights(grid, mean, half_width, "a half-width", cdf)?;
+            Ok(masks.integrate(&weights, exec)?)
         }
         Distribution::Correlated { mean, covariance, samples, seed } => {
-            masks.sample(grid, mean, covariance, *samples, *seed)
+            masks.sample(grid, mean, covariance, *samples, *seed, exec)
         }
     }
 }
 
 /// The cells that count as success: as decided, at least, at most.
 struct Masks {
-    decided: Vec<bool>,
-    inner: Vec<bool>,
-    outer: Vec<bool>,
+    decided: Mask,
+    inner: Mask,
+    outer: Mask,
 }
 
 impl Masks {
-    fn of(acceptance: &Acceptance, grid: &Grid) -> Self {
-        let shape = grid.shape();
-        let decided: Vec<bool> = acceptance.accepted().collect();
+    fn of(acceptance: &Acceptance, grid: &Grid, exec: &Exec) -> Result<Self, MeritError> {
+        let mask = |wanted: fn(Outcome) -> bool| Mask::of(&grid.shape(), &acceptance.outcomes, wanted, exec);
+        let decided = mask(|o| o == Outcome::Aligned)?;
         let mut inner = decided.clone();
-        shrink(&shape, &mut inner);
-        let maybe = |o: &Outcome| matches!(o, Outcome::Aligned | Outcome::Undecided);
-        let mut outer: Vec<bool> = acceptance.outcomes.iter().map(maybe).collect();
-        grow(&shape, &mut outer);
-        Self { decided, inner, outer }
+        inner.invert();
+        inner.grow(exec)?;
+        inner.invert();
+        let mut outer = mask(|o| matches!(o, Outcome::Aligned | Outcome::Undecided))?;
+        outer.grow(exec)?;
+        Ok(Self { decided, inner, outer })
     }
 
-    /// Sums the product weights of the cells, the first axis innermost.
-    fn integrate(&self, grid: &Grid, weights: &[Vec<f64>]) -> Success {
+    fn integrate(&self, weights: &[Vec<f64>], exec: &Exec) -> Result<Success, Cancelled> {
         let in_box: f64 = weights.iter().map(|w| w.iter().sum::<f64>()).product();
-        let total = |mask: &[bool]| {
-            let Some((first, others)) = weights.split_first() else {
-                return if mask.first() == Some(&true) { 1.0 } else { 0.0 };
-            };
-            let shape: Vec<usize> = grid.axes[1..].iter().map(|a| a.cells).collect();
-            let mut cell = vec![0; shape.len()];
-            let mut sum = 0.0;
-            for row in mask.chunks_exact(first.len().max(1)) {
-                let along: f64 = row.iter().zip(first).map(|(m, w)| if *m { *w } else { 0.0 }).sum();
-                sum += along * others.iter().zip(&cell).map(|(w, k)| w[*k]).product::<f64>();
-                advance(&mut cell, &shape);
-            }
-            sum
-        };
-        Success {
-            probability: total(&self.decided),
-            bracket: [total(&self.inner), total(&self.outer)],
+        Ok(Success {
+            probability: weigh(&self.decided, weights, exec)?,
+            bracket: [weigh(&self.inner, weights, exec)?, weigh(&self.outer, weights, exec)?],
             ci95: None,
             outside: (1.0 - in_box).max(0.0),
-        }
+        })
     }
 
     fn sample(
@@ -139,6 +133,7 @@ impl Masks {
         covariance: &[[f64; 5]; 5],
         samples: u32,
         seed: u64,
+        exec: &Exec,
     ) -> Result<Success, MeritError> {
         for (dof, row) in Dof::ALL.into_iter().zip(covariance) {
             if mean.to_array()[dof.index()] != 0.0 || row.iter().any(|c| *c != 0.0) {
@@ -148,7 +143,10 @@ impl Masks {
         let factor = cholesky(covariance)?;
         let mut random = Random(seed);
         let [mut decided, mut inner, mut outer, mut outside] = [0usize; 4];
-        for _ in 0..samples {
+        for number in 0..samples {
+            if number.is_multiple_of(SAMPLES_BETWEEN_CHECKS) {
+                exec.check()?;
+            }
             let z = random.normals();
             let mut error = mean.to_array();
             for (value, row) in error.iter_mut().zip(&factor) {
@@ -158,9 +156,9 @@ impl Masks {
                 grid.axes.iter().map(|a| a.cell_of(error[a.dof.index()])).collect();
             match cell.map(|c| grid.index(&c)) {
                 Some(index) => {
-                    decided += usize::from(self.decided[index]);
-                    inner += usize::from(self.inner[index]);
-                    outer += usize::from(self.outer[index]);
+                    decided += usize::from(self.decided.holds(index));
+                    inner += usize::from(self.inner.holds(index));
+                    outer += usize::from(self.outer.holds(index));
                 }
                 None => outside += 1,
             }
@@ -174,6 +172,43 @@ impl Masks {
             outside: share(outside),
         })
     }
+}
+
+/// Random poses between two looks at whether to stop: well below a millisecond.
+const SAMPLES_BETWEEN_CHECKS: u32 = 4096;
+
+/// Sums the product weights of the marked cells: rows first, then slabs of the last axis, then their sums in order, so
+/// that rounding does not depend on threads.
+fn weigh(mask: &Mask, weights: &[Vec<f64>], exec: &Exec) -> Result<f64, Cancelled> {
+    // A grid without axes is one cell of probability 1.
+    let one = vec![1.0];
+    let (first, others) = weights.split_first().map_or((&one, weights), |(first, others)| (first, others));
+    let (inner, slabs) = others.split_last().map_or((others, &one), |(last, inner)| (inner, last));
+    let shape: Vec<usize> = inner.iter().map(Vec::len).collect();
+    let rows: usize = shape.iter().product();
+    let whole: f64 = first.iter().sum();
+    let row = |words: &[u64]| match words.iter().map(|word| word.count_ones() as usize).sum() {
+        0 => 0.0,
+        marked if marked == first.len() => whole,
+        _ => words
+            .iter()
+            .zip(first.chunks(u64::BITS as usize))
+            .flat_map(|(word, weights)| bits(*word).map(|bit| weights[bit]))
+            .sum(),
+    };
+    let in_slab = |(number, weight): (usize, &f64)| -> Result<f64, Cancelled> {
+        exec.check()?;
+        let mut cell = vec![0; shape.len()];
+        let mut sum = 0.0;
+        for words in mask.rows().skip(number * rows).take(rows) {
+            sum += row(words) * inner.iter().zip(&cell).map(|(w, k)| w[*k]).product::<f64>();
+            advance(&mut cell, &shape);
+        }
+        Ok(sum * weight)
+    };
+    let sums: Vec<f64> =
+        exec.install(|| slabs.par_iter().enumerate().map(in_slab).collect::<Result<_, Cancelled>>())?;
+    Ok(sums.iter().sum())
 }
 
 /// Probability of each cell along each axis, for independent errors with the standard distribution function `cdf`.
@@ -275,6 +310,10 @@ mod tests {
 
     const SIGMA: PoseError = PoseError { x: 0.3, y: 0.2, roll: 0.5, pitch: 0.0, yaw: 0.0 };
     const ZERO: PoseError = PoseError { x: 0.0, y: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
+
+    fn success(acceptance: &Acceptance, distribution: &Distribution) -> Result<Success, MeritError> {
+        super::success(acceptance, distribution, &Exec::new())
+    }
 
     fn boxed() -> Acceptance {
         // Borders on cell borders: the union of the accepted cells is the box itself.

@@ -4,7 +4,7 @@
 //!   Sum = (accepted cells) · (measure of a cell)
 //! ```
 //!
-//! Over a grid, [`Sum::bracket`] encloses it: inside, the accepted cells without a rejected neighbour; outside,
+//! Over a grid, [`bracket()`] encloses it: inside, the accepted cells without a rejected neighbour; outside,
 //! those and every cell with an accepted neighbour. For a *convex* set larger than a cell the true measure lies
 //! in the bracket; for others it does as long as nothing thinner than a cell was missed. It bounds the error of
 //! resolution. It is no confidence interval, and says nothing about the method that decided the cells.
@@ -12,9 +12,11 @@
 //! Over poses drawn at random, uniformly in the error box, [`Sum::ci95`] is Wilson's 95 % interval, widened
 //! above by the undecided poses.
 
-use super::morphology::{grow, shrink};
-use crate::acceptance::{Acceptance, Domain};
+use super::mask::Mask;
+use super::{MeritError, grid_of};
+use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::design::Alignment;
+use crate::exec::Exec;
 use crate::method::correction;
 use crate::pose::Dof;
 
@@ -33,9 +35,6 @@ pub struct Sum {
     pub tried: usize,
     /// How many met each outcome, in the order of `Outcome::ALL`; undecided ones are not in `sum`.
     pub counts: [usize; 4],
-    /// Over a grid: measure of the accepted cells without a rejected neighbour, and of those with an accepted
-    /// one.
-    pub bracket: Option<[f64; 2]>,
     /// Over random poses: the 95 % interval of `sum`.
     pub ci95: Option<[f64; 2]>,
 }
@@ -55,14 +54,6 @@ impl Sum {
         };
         let angles = dofs.iter().filter(|d| d.is_rotation()).count();
         let [aligned, _, _, undecided] = counts;
-        let bracket = acceptance.grid().map(|grid| {
-            let shape = grid.shape();
-            let mut inner: Vec<bool> = acceptance.accepted().collect();
-            let mut outer = inner.clone();
-            shrink(&shape, &mut inner);
-            grow(&shape, &mut outer);
-            [inner, outer].map(|mask| share(mask.iter().filter(|m| **m).count()) * measure)
-        });
         let ci95 = match acceptance.domain {
             Domain::Grid(_) => None,
             Domain::Poses(_) => {
@@ -72,16 +63,7 @@ impl Sum {
             }
         };
         let fraction = share(aligned);
-        Self {
-            sum: fraction * measure,
-            fraction,
-            lengths: dofs.len() - angles,
-            angles,
-            tried,
-            counts,
-            bracket,
-            ci95,
-        }
+        Self { sum: fraction * measure, fraction, lengths: dofs.len() - angles, angles, tried, counts, ci95 }
     }
 
     /// The unit of the measure, like `D²·rad³`; `1` where there is no axis.
@@ -102,6 +84,25 @@ impl Sum {
     }
 }
 
+/// Measure of the accepted cells of a grid without a rejected neighbour, and of those that are accepted or have an
+/// accepted neighbour, in [`Sum::unit`].
+///
+/// # Errors
+/// If the outcomes are of listed poses, the cells do not fit into memory as bits, or it is cancelled.
+pub fn bracket(acceptance: &Acceptance, exec: &Exec) -> Result<[f64; 2], MeritError> {
+    let grid = grid_of(acceptance)?;
+    // Not in the inner part are the rejected cells and their neighbours.
+    let count_grown = |accepted: bool| -> Result<usize, MeritError> {
+        let wanted = |outcome| (outcome == Outcome::Aligned) == accepted;
+        let mut mask = Mask::of(&grid.shape(), &acceptance.outcomes, wanted, exec)?;
+        mask.grow(exec)?;
+        Ok(mask.count(exec))
+    };
+    let cells = acceptance.outcomes.len();
+    let share = |count: usize| if cells == 0 { 0.0 } else { count as f64 / cells as f64 };
+    Ok([cells - count_grown(false)?, count_grown(true)?].map(|count| share(count) * grid.measure()))
+}
+
 /// Wilson's 95 % interval of a probability of which `hits` of `trials` were seen; [0, 1] without trials.
 ///
 /// See [`correction::wilson95`].
@@ -111,10 +112,11 @@ pub fn wilson95(hits: usize, trials: usize) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::brute::inner_and_outer;
     use super::super::testing::*;
     use super::*;
-    use crate::acceptance::Outcome;
     use crate::pose::{DofSet, Mount, PoseError};
+    use proptest::prelude::*;
     use std::f64::consts::PI;
 
     fn alignment() -> Alignment {
@@ -129,12 +131,30 @@ mod tests {
         for (n, unit_ball) in (1..=5).zip(volumes) {
             let cells = [200, 100, 60, 28, 16][n - 1];
             let averaged = [0.01, 0.005, 0.005, 0.02, 0.05][n - 1];
-            let sum = Sum::of(&ball(&grid(&vec![cells; n], &vec![1.0; n]), r), &alignment());
+            let ball = ball(&grid(&vec![cells; n], &vec![1.0; n]), r);
+            let sum = Sum::of(&ball, &alignment());
             let exact = unit_ball * r.powf(n as f64);
-            let [lo, hi] = sum.bracket.unwrap();
+            let [lo, hi] = bracket(&ball, &Exec::new()).unwrap();
             assert!(lo < exact && exact < hi, "n = {n}: {lo} < {exact} < {hi}");
             assert!((sum.sum / exact - 1.0).abs() < averaged, "n = {n}: {} for {exact}", sum.sum);
             assert!((sum.fraction - sum.sum / 2f64.powf(n as f64)).abs() < 1e-12);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_bracket_is_that_of_the_definition(
+            shape in proptest::collection::vec(1usize..6, 1..5),
+            seed in proptest::collection::vec(prop::bool::weighted(0.8), 625),
+        ) {
+            let g = grid(&shape, &vec![1.0; shape.len()]);
+            let mut acceptance = accept(&g, |_| true);
+            for (outcome, keep) in acceptance.outcomes.iter_mut().zip(&seed) {
+                if !keep { *outcome = Outcome::Missed; }
+            }
+            let accepted: Vec<bool> = acceptance.accepted().collect();
+            let defined = inner_and_outer(&g, &accepted).map(|n| n as f64 / g.len() as f64 * g.measure());
+            prop_assert_eq!(bracket(&acceptance, &Exec::new()).unwrap(), defined);
         }
     }
 

@@ -5,12 +5,13 @@
 
 use crate::acceptance::{Acceptance, Warning};
 use crate::design::{Alignment, Design};
+use crate::exec::Exec;
 use crate::merit::MeritError;
 use crate::merit::centered::{CenteredBox, centered_cube};
 use crate::merit::doubts;
 use crate::merit::onaa::Onaa;
 use crate::merit::success::{Distribution, success};
-use crate::merit::sum::Sum;
+use crate::merit::sum::{Sum, bracket};
 use crate::merit::tolerance::{Tolerance, tolerances};
 use crate::pose::Dof;
 use serde::{Deserialize, Serialize};
@@ -219,17 +220,29 @@ impl Report {
     /// itself raises are added to the method's own.
     ///
     /// # Errors
-    /// None at present for a well-formed acceptance; the figures of merit may name a missing axis.
+    /// When the figures of merit do not fit into memory, or are cancelled.
     pub fn new(
         design: &Design,
         acceptance: &Acceptance,
         settings: serde_json::Value,
         timing: Option<Timing>,
+        exec: &Exec,
     ) -> Result<Self, MeritError> {
-        let has_grid = acceptance.grid().is_some();
+        const STAGE: &str = "figures of merit";
+        let mut acceptance_report = AcceptanceReport::new(acceptance, &design.alignment);
+        let (mut onaa, mut centered, mut tolerable) = (None, None, Vec::new());
+        if acceptance.grid().is_some() {
+            exec.report(0.0, STAGE);
+            acceptance_report.sum_bracket = Some(bracket(acceptance, exec)?);
+            exec.report(0.3, STAGE);
+            onaa = Some(OnaaReport::from(Onaa::of(acceptance, exec)?));
+            exec.report(0.8, STAGE);
+            centered = Some(CenteredReport::from(centered_cube(acceptance, exec)?));
+            tolerable = tolerances(acceptance)?.into_iter().map(ToleranceReport::from).collect();
+        }
         let mut warnings = acceptance.warnings.clone();
         let known = |w: &Warning| acceptance.warnings.iter().any(|o| discriminant(o) == discriminant(w));
-        warnings.extend(doubts(acceptance).into_iter().filter(|w| !known(w)));
+        warnings.extend(doubts(acceptance, exec)?.into_iter().filter(|w| !known(w)));
         Ok(Self {
             schema: SCHEMA,
             catchment: env!("CARGO_PKG_VERSION").to_owned(),
@@ -237,14 +250,10 @@ impl Report {
             method: acceptance.method.to_owned(),
             settings,
             axes: axes(acceptance),
-            acceptance: AcceptanceReport::new(acceptance, &design.alignment),
-            onaa: has_grid.then(|| Onaa::of(acceptance)).transpose()?.map(OnaaReport::from),
-            centered: has_grid.then(|| centered_cube(acceptance)).transpose()?.map(CenteredReport::from),
-            tolerances: if has_grid {
-                tolerances(acceptance)?.into_iter().map(ToleranceReport::from).collect()
-            } else {
-                Vec::new()
-            },
+            acceptance: acceptance_report,
+            onaa,
+            centered,
+            tolerances: tolerable,
             success: None,
             warnings: warnings.into_iter().map(WarningReport::from).collect(),
             timing,
@@ -259,8 +268,9 @@ impl Report {
         mut self,
         acceptance: &Acceptance,
         distribution: Distribution,
+        exec: &Exec,
     ) -> Result<Self, MeritError> {
-        let found = success(acceptance, &distribution)?;
+        let found = success(acceptance, &distribution, exec)?;
         self.success = Some(SuccessReport {
             distribution,
             probability: found.probability,
@@ -304,7 +314,7 @@ impl AcceptanceReport {
             unit: sum.unit(),
             sum_ci95: sum.ci95,
             sum_grid: sum.sum,
-            sum_bracket: sum.bracket,
+            sum_bracket: None,
             fraction: sum.fraction,
             cells: sum.tried,
             outcomes: Outcomes::new(sum.counts),
@@ -374,8 +384,8 @@ mod tests {
         let blob = blob(&design, 12);
         let sigma = PoseError { x: 0.1, yaw: 0.2, ..PoseError::default() };
         let normal = Distribution::Normal { mean: PoseError::default(), sigma };
-        Report::new(&design, &blob, settings, Some(Timing { total_s: 0.25, threads: 2 }))
-            .and_then(|r| r.with_success(&blob, normal))
+        Report::new(&design, &blob, settings, Some(Timing { total_s: 0.25, threads: 2 }), &Exec::new())
+            .and_then(|r| r.with_success(&blob, normal, &Exec::new()))
             .unwrap()
     }
 
@@ -411,7 +421,7 @@ mod tests {
         all.outcomes.fill(Outcome::Aligned);
         all.outcomes[0] = Outcome::Undecided;
         all.warnings.push(Warning::Undecided { cells: 1 });
-        let report = Report::new(&design, &all, serde_json::Value::Null, None).unwrap();
+        let report = Report::new(&design, &all, serde_json::Value::Null, None, &Exec::new()).unwrap();
         let kinds: Vec<_> = report.warnings.iter().map(|w| w.warning.clone()).collect();
         let border = Warning::TouchesBorder { axes: vec!["x".to_owned(), "y".to_owned()] };
         assert_eq!(kinds, [Warning::FloodingBias, Warning::Undecided { cells: 1 }, border]);
@@ -432,7 +442,7 @@ mod tests {
             outcomes: vec![Outcome::Aligned, Outcome::Jammed, Outcome::Aligned, Outcome::Undecided],
             warnings: Vec::new(),
         };
-        let report = Report::new(&design, &sample, serde_json::Value::Null, None).unwrap();
+        let report = Report::new(&design, &sample, serde_json::Value::Null, None, &Exec::new()).unwrap();
         assert!(report.acceptance.sum_ci95.is_some() && report.onaa.is_none() && report.axes.is_empty());
         assert_eq!(Report::from_json(&report.to_json().unwrap()).unwrap(), report);
     }

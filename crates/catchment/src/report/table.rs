@@ -246,13 +246,14 @@ mod tests {
     use super::super::schema::testing::*;
     use super::*;
     use crate::acceptance::Warning;
+    use crate::exec::Exec;
     use crate::pose::{Dof, DofSet};
 
     fn text(free: DofSet, cells: usize) -> String {
         let design = design(free);
         let mut blob = blob(&design, cells);
         blob.warnings.push(Warning::Undecided { cells: 3 });
-        table(&Report::new(&design, &blob, serde_json::Value::Null, None).unwrap())
+        table(&Report::new(&design, &blob, serde_json::Value::Null, None, &Exec::new()).unwrap())
     }
 
     #[test]

@@ -260,6 +260,7 @@ fn gather(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exec::Exec;
     use crate::pose::Dof;
     use crate::report::schema::testing::{blob, design};
 
@@ -269,7 +270,7 @@ mod tests {
         let heights: Vec<f32> = (0..acceptance.outcomes.len())
             .map(|i| if i == 7 { f32::NEG_INFINITY } else { i as f32 })
             .collect();
-        let report = Report::new(&design, &acceptance, Value::Null, None).unwrap();
+        let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
         write(folder, &report, &acceptance, Some(&heights)).unwrap();
         (acceptance, heights)
     }
@@ -330,7 +331,7 @@ mod tests {
         std::fs::write(home.path().join("zarr.json"), text).unwrap();
         let design = design([Dof::X].into_iter().collect());
         let acceptance = blob(&design, 4);
-        let report = Report::new(&design, &acceptance, Value::Null, None).unwrap();
+        let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
         let refused = write(home.path(), &report, &acceptance, None);
         assert!(matches!(refused, Err(ZarrError::Write(WriteError::NotAResult { .. }))));
         let short = write(&home.path().join("new.zarr"), &report, &acceptance, Some(&[0.0]));

@@ -129,7 +129,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let running = args.exec.start()?;
     let computed = compute::compute(&job, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    let report = report(&job, &computed, doubts, distribution, Some(timing))?;
+    let report = report(&job, &computed, doubts, distribution, Some(timing), &running.exec)?;
     let json = report.to_json()?;
     let written = place.write(&job, &built, &computed, &report, &running.exec)?;
     drop(running);
@@ -153,15 +153,16 @@ fn report(
     doubts: Vec<String>,
     distribution: Option<Distribution>,
     timing: Option<Timing>,
+    exec: &Exec,
 ) -> Result<Report, Failure> {
-    let mut report = Report::new(job.design, &computed.acceptance, computed.settings.clone(), timing)?;
+    let mut report = Report::new(job.design, &computed.acceptance, computed.settings.clone(), timing, exec)?;
     if let Some(sample) = &computed.sample {
         report = report.with_sample(&sample.corrected, sample.seed, sample.settings.clone());
     } else if job.method != Method::Descent {
         report.warnings.push(WarningReport::from(Warning::NoInterval));
     }
     if let Some(distribution) = distribution {
-        report = report.with_success(&computed.acceptance, distribution)?;
+        report = report.with_success(&computed.acceptance, distribution, exec)?;
     }
     report.warnings.extend(doubts.into_iter().map(|text| WarningReport::from(Warning::Note { text })));
     Ok(report)
@@ -192,7 +193,7 @@ fn check_requirements(
     })?;
     let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None };
     let timing = Some(Timing { total_s: 0.0, threads: 1 });
-    let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing)?;
+    let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing, &Exec::new())?;
     unmet(requirements, &serde_json::to_value(&empty)?).map(drop)
 }
 

@@ -6,6 +6,7 @@ use catchment::acceptance::{Acceptance, Domain};
 use catchment::connector::Connector;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, GridAxis, Landscape};
+use catchment::merit::onaa::Onaa;
 use catchment::merit::slice;
 use catchment::method::Method;
 use catchment::pose::{Dof, PoseError};
@@ -53,10 +54,11 @@ pub(super) fn draw(
             (_, Some(grid)) => Landscape::compute(job.pair, grid, exec)?,
             (_, None) => return Ok((drawn, left_out)),
         };
+        let onaa = Onaa::of(acceptance, exec)?;
         let height = |cell: usize| f64::from(landscape.heights[cell]);
         let zero = PoseError::default();
-        keep("overview", figure::overview(design, connector, acceptance, map, &height, pair))?;
-        keep("slices", figure::slices(design, acceptance, &finer, &[], &zero))?;
+        keep("overview", figure::overview(design, connector, acceptance, &onaa, map, &height, pair))?;
+        keep("slices", figure::slices(design, acceptance, &onaa, &finer, &[], &zero))?;
         keep("heights", figure::heights(design, map, &height, pair, &zero))?;
     }
     exec.check()?;

@@ -13,8 +13,8 @@ use crate::merit::onaa::Onaa;
 use crate::merit::sum::Sum;
 use crate::pose::{Dof, PoseError};
 
-/// Draws an overview over a pair of errors, the others zero. The numbers are those of `acceptance`; the maps show
-/// `slice`, which may be the same, or a finer grid over the pair alone. `height` as in [`super::heights()`], for a cell
+/// Draws an overview over a pair of errors, the others zero. The numbers are those of `acceptance` and its largest
+/// cube; the maps show `slice`, which may be the same, or a finer grid over the pair alone. `height` as in [`super::heights()`], for a cell
 /// of `slice`.
 ///
 /// # Errors
@@ -23,6 +23,7 @@ pub fn overview(
     design: &Design,
     connector: &Connector,
     acceptance: &Acceptance,
+    onaa: &Onaa,
     slice: &Acceptance,
     height: &dyn Fn(usize) -> f64,
     pair: [Dof; 2],
@@ -30,7 +31,6 @@ pub fn overview(
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
     let units = Units::of(design);
     let map = Map::of(slice, pair, &PoseError::default())?.within(acceptance, pair)?;
-    let onaa = Onaa::of(acceptance)?;
     let sum = Sum::of(acceptance, &design.alignment);
     let (side, top) = (300.0, 96.0);
     let (total_width, total_height) = (1130.0, top + side + 84.0);
@@ -60,7 +60,7 @@ pub fn overview(
     let sliced = if grid.axes.len() > 2 { ", slice through zero" } else { "" };
     let middle = Rect { x: 392.0, y: top, w: side, h: side };
     heading(&mut svg, middle.x, &format!("area of acceptance{sliced}"));
-    map::outcomes(&mut svg, &map, &map.frame(middle, &units), &units, Some(&onaa))?;
+    map::outcomes(&mut svg, &map, &map.frame(middle, &units), &units, Some(onaa))?;
     map::legend(&mut svg, acceptance, !onaa.bounds.is_empty(), [middle.x, total_height - 22.0]);
 
     let right = Rect { x: 762.0, y: top, w: side, h: side };
@@ -84,12 +84,14 @@ mod tests {
             let e = grid.pose(i);
             0.5 * e.x.abs() + 0.3 * (e.pitch + 0.4 * e.x).abs()
         };
-        let picture =
-            overview(&design, &pyramid(), &acceptance, &acceptance, &height, [Dof::X, Dof::Pitch]).unwrap();
+        let onaa = Onaa::of(&acceptance, &crate::exec::Exec::new()).unwrap();
+        let drawn = || {
+            let pair = [Dof::X, Dof::Pitch];
+            overview(&design, &pyramid(), &acceptance, &onaa, &acceptance, &height, pair).unwrap()
+        };
+        let picture = drawn();
         look("overview", &picture);
         assert!(picture.svg().contains("Sum "));
-        let again =
-            overview(&design, &pyramid(), &acceptance, &acceptance, &height, [Dof::X, Dof::Pitch]).unwrap();
-        assert_eq!(picture, again);
+        assert_eq!(picture, drawn());
     }
 }

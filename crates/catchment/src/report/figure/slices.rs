@@ -11,7 +11,7 @@ use crate::merit::onaa::Onaa;
 use crate::pose::{Dof, PoseError};
 
 /// Draws the outcomes over each pair of errors (all pairs if none is named), the others at the values of `at`, with the
-/// border of the accepted set and the largest axis-oriented cube, dashed where the slice misses it. A pair that one of
+/// border of the accepted set and its largest axis-oriented cube, dashed where the slice misses it. A pair that one of
 /// `finer` has for its only axes is drawn from that one: it must have been computed with the other errors zero.
 ///
 /// # Errors
@@ -19,6 +19,7 @@ use crate::pose::{Dof, PoseError};
 pub fn slices(
     design: &Design,
     acceptance: &Acceptance,
+    onaa: &Onaa,
     finer: &[Acceptance],
     pairs: &[[Dof; 2]],
     at: &PoseError,
@@ -26,7 +27,6 @@ pub fn slices(
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
     let pairs = pairs_or_all(grid, pairs)?;
     let units = Units::of(design);
-    let onaa = Onaa::of(acceptance)?;
     let columns = match pairs.len() {
         1 => 1,
         2 | 4 => 2,
@@ -66,7 +66,7 @@ pub fn slices(
             None => Map::of(acceptance, *pair, at)?,
         };
         let frame = map.frame(rect, &units);
-        map::outcomes(&mut svg, &map, &frame, &units, Some(&onaa))?;
+        map::outcomes(&mut svg, &map, &frame, &units, Some(onaa))?;
         if *at != PoseError::default() {
             svg.text([rect.x + rect.w, rect.y - 6.0], LABEL - 1.5, Anchor::End, SOFT, &map.fixed(&units));
         }
@@ -79,8 +79,18 @@ pub fn slices(
 mod tests {
     use super::super::testing::look;
     use super::*;
+    use crate::exec::Exec;
     use crate::pose::DofSet;
     use crate::report::schema::testing::{blob, design};
+
+    fn drawn(
+        design: &Design,
+        acceptance: &Acceptance,
+        pairs: &[[Dof; 2]],
+        at: &PoseError,
+    ) -> Result<Picture, FigureError> {
+        slices(design, acceptance, &Onaa::of(acceptance, &Exec::new())?, &[], pairs, at)
+    }
 
     #[test]
     fn one_pair_three_pairs_and_ten() {
@@ -90,7 +100,7 @@ mod tests {
             ("slices-5", DofSet::ALL, 12),
         ] {
             let design = design(free);
-            let picture = slices(&design, &blob(&design, cells), &[], &[], &PoseError::default()).unwrap();
+            let picture = drawn(&design, &blob(&design, cells), &[], &PoseError::default()).unwrap();
             look(name, &picture);
             let pairs = free.len() * (free.len() - 1) / 2;
             assert_eq!(picture.svg().matches("<image").count(), pairs);
@@ -102,7 +112,7 @@ mod tests {
     fn a_slice_elsewhere_says_where() {
         let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
         let at = PoseError { yaw: 0.5, ..PoseError::default() };
-        let picture = slices(&design, &blob(&design, 10), &[], &[[Dof::X, Dof::Y]], &at).unwrap();
+        let picture = drawn(&design, &blob(&design, 10), &[[Dof::X, Dof::Y]], &at).unwrap();
         assert!(picture.svg().contains("yaw = 27°"), "the cell of 0.5 rad is centred at 27°");
     }
 
@@ -112,7 +122,7 @@ mod tests {
         (design.unit, design.width) = (None, 1.0);
         let mut blob = blob(&design, 31);
         blob.outcomes[5] = crate::acceptance::Outcome::Undecided;
-        let picture = slices(&design, &blob, &[], &[], &PoseError::default()).unwrap();
+        let picture = drawn(&design, &blob, &[], &PoseError::default()).unwrap();
         look("slices-dimensionless", &picture);
         assert!(picture.svg().contains("x [D]") && picture.svg().contains("undecided 0.1 %"));
     }
@@ -120,7 +130,7 @@ mod tests {
     #[test]
     fn one_error_has_no_map() {
         let design = design([Dof::X].into_iter().collect());
-        let error = slices(&design, &blob(&design, 10), &[], &[], &PoseError::default()).unwrap_err();
+        let error = drawn(&design, &blob(&design, 10), &[], &PoseError::default()).unwrap_err();
         assert!(matches!(error, FigureError::Empty { .. }));
     }
 }

@@ -78,6 +78,7 @@ impl From<Stratum> for StratumReport {
 mod tests {
     use super::super::testing::{blob, design};
     use super::*;
+    use crate::exec::Exec;
     use crate::pose::{Dof, DofSet};
 
     fn corrected(sum: f64) -> Corrected {
@@ -102,7 +103,8 @@ mod tests {
     #[test]
     fn the_sum_is_the_corrected_one_and_cells_outside_its_interval_are_a_doubt() {
         let design = design(DofSet::EMPTY.with(Dof::X).with(Dof::Y));
-        let report = Report::new(&design, &blob(&design, 40), serde_json::Value::Null, None).unwrap();
+        let report =
+            Report::new(&design, &blob(&design, 40), serde_json::Value::Null, None, &Exec::new()).unwrap();
         let (before, cells) = (report.warnings.len(), report.acceptance.sum);
         for (sum, doubts) in [(cells + 0.05, 0), (cells + 0.15, 1)] {
             let report = report.clone().with_sample(&corrected(sum), 5, serde_json::Value::Null);

@@ -3,7 +3,7 @@
 use super::ReproduceError;
 use crate::design::Family;
 use crate::exec::Exec;
-use crate::merit::onaa::largest_cube;
+use crate::merit::brute::largest_cube;
 use crate::method::flood::dissertation::{self, Errors};
 use crate::method::kinematic::{self, Face};
 
