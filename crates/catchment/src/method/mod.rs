@@ -17,17 +17,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// [`descent`]: exact motion of every cell's centre.
-    Descent,
     /// [`transport`]: arrival fractions along exact directions of descent.
     Transport,
+    /// [`descent`]: exact motion of every cell's centre.
+    Descent,
     /// [`flood`]: flooding of the heights over the grid.
     Flood,
 }
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 3] = [Self::Descent, Self::Transport, Self::Flood];
+    pub const ALL: [Self; 3] = [Self::Transport, Self::Descent, Self::Flood];
 
     /// The lower-case name used in files, reports and options.
     pub const fn name(self) -> &'static str {
@@ -64,7 +64,8 @@ impl Method {
                     ((cells as usize).saturating_sub(1) / 2 * 2 + 1).max(3)
                 })
             }
-            Self::Transport | Self::Flood => Resolution::DEFAULT_CELLS,
+            Self::Transport => [1001, 201, 51, 31, 21],
+            Self::Flood => Resolution::DEFAULT_CELLS,
         }
     }
 
