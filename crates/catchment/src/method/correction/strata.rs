@@ -186,7 +186,7 @@ pub struct ByFraction<F> {
 }
 
 /// Borders of the bands. Narrow at the ends, where most cells are; ½ is one of them.
-const BORDERS: [f64; 9] = [0.0, 0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98, 1.0];
+const BORDERS: [f64; 11] = [0.0, 0.002, 0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98, 0.998, 1.0];
 /// Differing neighbours are told apart as none, one or two, more.
 const SIDES: [(usize, &str); 3] = [(0, "0"), (2, "1 or 2"), (usize::MAX, "3 or more")];
 
