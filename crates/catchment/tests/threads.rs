@@ -8,7 +8,8 @@ use catchment::contact::Pair;
 use catchment::design::{self, Design};
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape};
-use catchment::method::{descent, flood};
+use catchment::method::correction::{self, ByFraction, Stop};
+use catchment::method::{descent, flood, transport};
 use catchment::report::Report;
 use std::path::Path;
 
@@ -67,6 +68,31 @@ fn descents() {
             let (acceptance, ends) = descent::run(&pair, domain, &settings, exec).unwrap();
             let ends: Vec<_> = ends.into_iter().map(|end| end.error.to_array().map(f64::to_bits)).collect();
             (bytes(&design, &acceptance, exec), ends)
+        });
+    }
+}
+
+#[test]
+fn corrected_sums() {
+    for (file, cells) in [("v-face.toml", 30), ("pyramid.toml", 5)] {
+        let (_, pair, grid) = prepare(file, cells);
+        let settings = correction::Settings { seed: 1, stop: Stop::Samples(600) };
+        same_for_all(file, |exec| {
+            let arrival = transport::run(&pair, &grid, &transport::Settings::default(), exec).unwrap();
+            let by = ByFraction::new(|cell| arrival.fraction(cell), grid.shape());
+            let descents = descent::Settings::default();
+            let found = correction::correct(&pair, &grid, &by, &settings, &descents, exec).unwrap();
+            let listed = |most| correction::ambiguous(grid.len(), |c| arrival.is_ambiguous(c), most, exec);
+            let (count, cells) = listed(grid.len()).unwrap();
+            assert!(count == cells.len() && listed(count - 1).unwrap() == (count, Vec::new()));
+            let mut outcomes = arrival.acceptance(exec).unwrap().outcomes;
+            let some = &cells[..count.min(300)];
+            correction::settle(&pair, &grid, some, &mut outcomes, &descents, exec).unwrap();
+            assert!(
+                some.iter()
+                    .all(|c| outcomes[*c] == descent::outcome(&pair, &grid.pose(*c), &descents).outcome)
+            );
+            ([found.sum, found.ci95[0], found.ci95[1]].map(f64::to_bits), found, outcomes)
         });
     }
 }

@@ -53,10 +53,63 @@ fn json_is_the_same_for_any_number_of_threads() {
     assert_eq!(report("2").1, one);
     assert_eq!(report("4").1, one);
     assert_eq!(acceptance["cells"], 81);
-    assert_eq!(acceptance["sample"]["poses"], 50);
+    assert_eq!(acceptance["sample"]["descents"], 50);
     let [lo, hi] = [0, 1].map(|k| acceptance["sum_ci95"][k].as_f64().unwrap());
     // The exact Sum is 2.39; the interval of fifty poses is wide, and that of this seed holds it.
-    assert!(lo < 2.39 && 2.39 < hi && hi - lo > 1.0, "{lo} {hi}");
+    assert!(lo < 2.39 && 2.39 < hi && hi - lo > 0.5, "{lo} {hi}");
+    let of_strata = |key: &str| {
+        let strata = acceptance["sample"]["strata"].as_array().unwrap();
+        strata.iter().map(|stratum| stratum[key].as_f64().unwrap()).sum::<f64>()
+    };
+    assert!((of_strata("share") - 1.0).abs() < 1e-12 && of_strata("descents") == 50.0);
+    assert!(acceptance["sum"] != acceptance["sum_grid"] && acceptance["sum_grid"].is_f64());
+}
+
+/// A time is a number of descents that depends on the machine, and nothing else.
+#[test]
+fn a_budget_or_a_tolerance_gives_what_as_many_samples_give() {
+    let home = home();
+    let report = |how: [&str; 2], method: &str| {
+        let args = [
+            "run",
+            "v.toml",
+            "--resolution",
+            "15",
+            "--method",
+            method,
+            "--json",
+            how[0],
+            how[1],
+            "--seed",
+            "3",
+        ];
+        let (code, text) = json(home.path(), &args);
+        assert_eq!(code, 0, "{text}");
+        let value: Value = serde_json::from_str(&text).unwrap();
+        let descents = value["acceptance"]["sample"]["descents"].to_string();
+        (descents, text.split("\"timing\"").next().unwrap().to_owned())
+    };
+    for method in ["descent", "transport", "flood"] {
+        for how in [["--budget", "60 ms"], ["--tolerance", "10%"]] {
+            let (descents, first) = report(how, method);
+            assert!(report(["--samples", &descents], method).1 == first, "{how:?} with {method}: {descents}");
+        }
+    }
+}
+
+#[test]
+fn ambiguous_cells_are_followed_where_they_are_no_more_than_the_samples() {
+    let home = home();
+    let warnings = |samples: &str| {
+        let args =
+            ["run", "v.toml", "--resolution", "31", "--method", "transport", "--json", "--samples", samples];
+        let report: Value = serde_json::from_str(&json(home.path(), &args).1).unwrap();
+        let warnings = report["warnings"].as_array().unwrap().clone();
+        warnings.iter().map(|w| w["warning"]["kind"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert!(!warnings("500").contains(&"ambiguous".to_owned()));
+    let without = warnings("0");
+    assert!(without.contains(&"ambiguous".to_owned()) && without.contains(&"no-interval".to_owned()));
 }
 
 #[test]
@@ -65,7 +118,7 @@ fn another_seed_gives_another_sample() {
     let sample = |seed: &str| {
         let args = ["run", "v.toml", "--resolution", "3", "--samples", "300", "--json", "--seed", seed];
         let report: Value = serde_json::from_str(&json(home.path(), &args).1).unwrap();
-        report["acceptance"]["sample"]["outcomes"].clone()
+        report["acceptance"]["sample"]["strata"].clone()
     };
     assert_ne!(sample("1"), sample("2"));
 }
@@ -103,7 +156,9 @@ fn what_cannot_be_computed_is_refused_and_nothing_is_left() {
         text
     };
     insta::assert_snapshot!("too_large", refuse(&["--resolution", "100000", "--memory", "1 MB"]));
-    insta::assert_snapshot!("too_many_samples", refuse(&["--samples", "100000000", "--memory", "1 GB"]));
+    insta::assert_snapshot!("two_ends_of_sampling", refuse(&["--samples", "9", "--budget", "20s"]));
+    insta::assert_snapshot!("no_such_time", refuse(&["--budget", "20 sec"]));
+    insta::assert_snapshot!("no_such_share", refuse(&["--tolerance", "200%"]));
     insta::assert_snapshot!("axis_not_free", refuse(&["--resolution", "9,yaw=5"]));
     insta::assert_snapshot!("error_not_free", refuse(&["--error-sigma", "yaw=2 deg"]));
     insta::assert_snapshot!("tolerance_of_descent", refuse(&["--depth-tolerance", "0.1"]));

@@ -63,7 +63,7 @@ fn share(text: &str) -> Result<f64, String> {
         None => (text, 1.0),
     };
     match number.trim().parse::<f64>().map(|value| value * unit) {
-        Ok(share) if share >= SMALLEST_SHARE && share < 1.0 => Ok(share),
+        Ok(share) if (SMALLEST_SHARE..1.0).contains(&share) => Ok(share),
         _ => {
             Err("a tolerance is a share of the Sum between 0.001 % and 100 %, such as 1% or 0.01".to_owned())
         }
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn times_and_shares_are_read() {
         assert_eq!(duration("20s"), Ok(Duration::from_secs(20)));
-        assert_eq!(duration("2 min"), Ok(Duration::from_secs(120)));
+        assert_eq!(duration("2 min"), Ok(Duration::from_mins(2)));
         assert_eq!(duration(" 250 ms"), Ok(Duration::from_millis(250)));
         for wrong in ["", "20", "s", "-1s", "nan s", "inf h", "20 sec", "1e9 h", "0s"] {
             assert!(duration(wrong).is_err(), "{wrong}");

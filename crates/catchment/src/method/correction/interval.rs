@@ -13,8 +13,8 @@
 //! The combination of intervals is MOVER (Zou and Donner, Stat. Med. 27 (2008) 1693). With Wilson's intervals it holds
 //! where strata are nearly pure: 0 of n poses aligned leaves the stratum 3.8/n of doubt, not none.
 //!
-//! Unbiased, although later batches are drawn where earlier ones saw most doubt: the numbers n_sb are fixed before
-//! batch b is drawn, so each batch is an unbiased estimate whatever went before, and its weight N_b is fixed in advance.
+//! Unbiased, although later batches are drawn where earlier ones saw most doubt: the numbers `n_sb` are fixed before
+//! batch b is drawn, so each batch is an unbiased estimate whatever went before, and its weight `N_b` is fixed in advance.
 
 /// Two-sided 95 % quantile of the standard normal distribution.
 const Z95: f64 = 1.959_963_984_540_054;

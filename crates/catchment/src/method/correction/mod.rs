@@ -136,7 +136,7 @@ pub fn estimate(
 ) -> Result<Corrected, CorrectionError> {
     let Settings { seed, stop } = *settings;
     if let Stop::Tolerance(share) = stop
-        && !(share > 0.0)
+        && (share <= 0.0 || share.is_nan())
     {
         return Err(CorrectionError::Tolerance { share });
     }

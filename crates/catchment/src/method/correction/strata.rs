@@ -27,10 +27,11 @@ pub trait Stratify: Sync {
 /// Most strata of a partition: with more, too few poses fall into each.
 pub const MOST_STRATA: usize = 32;
 
-/// Blocks of cells at most: some 50 MB of counts for the largest grids.
-const MOST_BLOCKS: usize = 1 << 18;
-/// Cells per block at least: looking through one takes a microsecond, a hundredth of a descent.
-const LEAST_BLOCK: usize = 256;
+/// Cells per block at least: looking through them takes some microseconds, a small part of a descent.
+const LEAST_BLOCK: usize = 64;
+/// Cells per block, as a share of the square root of all: the time to look through a block and the memory for the counts
+/// grow alike. 30 MB for 24 million cells, 200 MB for a thousand million.
+const BLOCK_PER_ROOT: usize = 16;
 
 /// The strata of a grid, counted.
 pub(super) struct Strata<'a, S> {
@@ -46,7 +47,7 @@ impl<'a, S: Stratify> Strata<'a, S> {
     /// Counts the strata of `cells` cells.
     pub(super) fn count(by: &'a S, cells: usize, exec: &Exec) -> Result<Self, CorrectionError> {
         let strata = by.strata().clamp(1, MOST_STRATA);
-        let block = cells.div_ceil(MOST_BLOCKS).max(LEAST_BLOCK);
+        let block = (cells.isqrt() / BLOCK_PER_ROOT).max(LEAST_BLOCK);
         let blocks = cells.div_ceil(block);
         let needed = (blocks + 1) * (strata * size_of::<u64>() + size_of::<[u32; MOST_STRATA]>());
         exec.reserve("the strata of the grid", needed as u64, |_| "allow more with --memory".to_owned())?;
@@ -186,7 +187,7 @@ pub struct ByFraction<F> {
 }
 
 /// Borders of the bands. Narrow at the ends, where most cells are; ½ is one of them.
-const BORDERS: [f64; 9] = [0.0, 0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98, 1.0];
+const BORDERS: [f64; 11] = [0.0, 0.002, 0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98, 0.998, 1.0];
 /// Differing neighbours are told apart as none, one or two, more.
 const SIDES: [(usize, &str); 3] = [(0, "0"), (2, "1 or 2"), (usize::MAX, "3 or more")];
 

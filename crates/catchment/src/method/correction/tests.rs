@@ -41,7 +41,7 @@ impl Case {
         let grid = grid(cells);
         let outcome = |i| if guess(i, &grid.pose(i)) { Outcome::Aligned } else { Outcome::Jammed };
         let outcomes = (0..grid.len()).map(outcome).collect();
-        let fraction = ball * (radius / 2.0).powi(n as i32);
+        let fraction = ball * (radius / 2.0).powf(n as f64);
         Self { name, radius, fraction, outcomes, grid, nearly_pure: false }
     }
 
