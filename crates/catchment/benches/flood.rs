@@ -1,21 +1,36 @@
-//! Flooding of committed designs: floods per second, the judge beside the fast path in the same run, and peak memory
-//! (divan's `max alloc`) beside the estimate that is checked before allocating.
+//! Flooding: committed designs, the judges beside the fast path, a smooth random landscape of 8 million cells in three
+//! and in five dimensions, and scikit-image on the very same landscape.
+//!
+//! The comparison needs a Python with scikit-image: name it in `CATCHMENT_PYTHON`, or put it into `.venv`. Both sides
+//! run on one thread; the fastest of several runs counts, since the machine may be busy.
 
 mod designs;
 
 use catchment::contact::Pair;
+use catchment::design::Alignment;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape};
-use catchment::method::flood::{self, Rules, Settings, brute};
+use catchment::method::flood::{self, Flooding, Rule, Settings, brute};
+use catchment::pose::{Dof, Mount};
 use designs::pair;
 use divan::AllocProfiler;
 use divan::counter::ItemsCount;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
 
 #[global_allocator]
 static ALLOCATOR: AllocProfiler = AllocProfiler::system();
 
+#[expect(clippy::print_stdout, reason = "a bench prints its figures")]
 fn main() {
     divan::main();
+    let wants = |word: &str| std::env::args().any(|arg| arg == word);
+    if !wants("--test") && !wants("--list") {
+        for smooth in [SPACE, FIVE] {
+            println!("{}", against_scikit_image(smooth));
+        }
+    }
 }
 
 fn landscape(pair: &Pair, cells: usize) -> Landscape {
@@ -23,14 +38,126 @@ fn landscape(pair: &Pair, cells: usize) -> Landscape {
     Landscape::compute(pair, &grid, &Exec::new()).expect("heights")
 }
 
-/// Heights alone.
-#[divan::bench(sample_count = 10, args = [("v-face.toml", 100), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
-fn heights(bencher: divan::Bencher, (name, cells): (&str, usize)) {
-    let pair = pair(name);
-    let grid = Grid::over(&pair.alignment, |_| cells);
-    bencher
-        .counter(ItemsCount::new(grid.len()))
-        .bench_local(|| Landscape::compute(&pair, &grid, &Exec::new()).expect("heights"));
+/// A cube of smooth random heights: white noise, averaged three times over a box along every axis.
+#[derive(Debug, Clone, Copy)]
+struct Smooth {
+    axes: usize,
+    cells: usize,
+    /// Cells of the box: σ² = (box² − 1)/4 of the bell curve that three averages make.
+    window: usize,
+}
+
+/// σ = 8 cells.
+const SPACE: Smooth = Smooth { axes: 3, cells: 200, window: 16 };
+/// σ = 1.5 cells; nearly every cell lies beside a border.
+const FIVE: Smooth = Smooth { axes: 5, cells: 24, window: 3 };
+
+impl Smooth {
+    fn landscape(self) -> (Landscape, Alignment) {
+        let dofs = Dof::ALL.into_iter().take(self.axes);
+        let alignment = Alignment::new(dofs.collect(), Mount::X);
+        let grid = Grid::over(&alignment, |_| self.cells);
+        let mut state = 1u64;
+        // A linear congruential generator (Knuth, MMIX); its upper bits are good enough for noise.
+        let mut noise = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1u64 << 24) as f32
+        };
+        let mut heights: Vec<f32> = (0..grid.len()).map(|_| noise()).collect();
+        let mut line = vec![0.0f32; self.cells];
+        for axis in 0..self.axes {
+            let stride = self.cells.pow(axis as u32);
+            for first in (0..heights.len()).filter(|at| at / stride % self.cells == 0) {
+                for _ in 0..3 {
+                    for (k, entry) in line.iter_mut().enumerate() {
+                        let near = |j: usize| heights[first + (k + j) % self.cells * stride];
+                        *entry = (0..self.window).map(near).sum::<f32>() / self.window as f32;
+                    }
+                    for (k, entry) in line.iter().enumerate() {
+                        heights[first + k * stride] = *entry;
+                    }
+                }
+            }
+        }
+        (Landscape { grid, heights }, alignment)
+    }
+
+    fn flood(landscape: &Landscape, alignment: &Alignment, threads: usize) -> Flooding {
+        let exec = Exec::new().with_threads(threads).expect("threads");
+        flood::flood(landscape, alignment, &Settings::default(), &exec).expect("flooded")
+    }
+}
+
+/// Basins, tree, tolerance and outcomes of 8 million cells.
+#[divan::bench(sample_count = 5, sample_size = 1, args = [(3, 1), (3, 2), (5, 1), (5, 2)])]
+fn smooth(bencher: divan::Bencher, (axes, threads): (usize, usize)) {
+    let smooth = if axes == SPACE.axes { SPACE } else { FIVE };
+    let (landscape, alignment) = smooth.landscape();
+    bencher.counter(ItemsCount::new(landscape.heights.len())).bench_local(|| {
+        let found = Smooth::flood(&landscape, &alignment, threads);
+        assert_eq!(found.hierarchy.tree.minima.len(), found.hierarchy.tree.links.len() + 1, "a tree");
+        found
+    });
+}
+
+/// Both on the very same heights, in the same run.
+fn against_scikit_image(smooth: Smooth) -> String {
+    const ROUNDS: usize = 5;
+    let (landscape, alignment) = smooth.landscape();
+    let cells = landscape.heights.len() as f64;
+    let mut fastest = f64::INFINITY;
+    let mut minima = 0;
+    for _ in 0..ROUNDS {
+        let start = Instant::now();
+        minima = Smooth::flood(&landscape, &alignment, 1).hierarchy.tree.minima.len();
+        fastest = fastest.min(start.elapsed().as_secs_f64());
+    }
+    let ours = format!(
+        "{}-D, {} cells, 1 thread: {fastest:.3} s, {:.1} Mcell/s, {minima} minima",
+        smooth.axes,
+        landscape.heights.len(),
+        cells / fastest / 1e6
+    );
+    match scikit_image(&landscape, smooth) {
+        Err(reason) => format!("{ours}\n  scikit-image: skipped, {reason}"),
+        Ok(lines) => {
+            let mut lines = lines.lines();
+            let version = lines.next().unwrap_or_default();
+            let mut text = ours;
+            for line in lines {
+                let fields: Vec<&str> = line.split_whitespace().collect();
+                let [neighbours, basins, seconds] = fields[..] else { continue };
+                let seconds: f64 = seconds.parse().expect("seconds");
+                let times = seconds / fastest;
+                text += &format!(
+                    "\n  scikit-image {version}, connectivity {neighbours}: {seconds:.3} s, {basins} basins: \
+                     {times:.1} times as long"
+                );
+            }
+            text
+        }
+    }
+}
+
+fn scikit_image(landscape: &Landscape, smooth: Smooth) -> Result<String, String> {
+    let crate_root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let python = std::env::var_os("CATCHMENT_PYTHON")
+        .map_or_else(|| crate_root.join("../../.venv/bin/python"), PathBuf::from);
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let path = folder.path().join("heights.f32");
+    let bytes: Vec<u8> = landscape.heights.iter().flat_map(|h| h.to_le_bytes()).collect();
+    std::fs::write(&path, bytes).map_err(|e| e.to_string())?;
+    let output = Command::new(&python)
+        .arg(crate_root.join("benches/peers/watershed.py"))
+        .arg(&path)
+        .args([smooth.cells.to_string(), smooth.axes.to_string()])
+        .output()
+        .map_err(|e| format!("{}: {e}", python.display()))?;
+    if !output.status.success() {
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        return Err(complaint.lines().last().unwrap_or("it failed").to_owned());
+    }
+    String::from_utf8(output.stdout).map_err(|e| e.to_string())
 }
 
 /// The whole method, heights included.
@@ -38,9 +165,8 @@ fn heights(bencher: divan::Bencher, (name, cells): (&str, usize)) {
 fn accept(bencher: divan::Bencher, (name, cells): (&str, usize)) {
     let pair = pair(name);
     let grid = Grid::over(&pair.alignment, |_| cells);
-    let settings = Settings::for_pair(&pair);
     bencher.counter(ItemsCount::new(grid.len())).bench_local(|| {
-        let acceptance = flood::accept(&pair, &grid, &settings, &Exec::new()).expect("flooded");
+        let acceptance = flood::accept(&pair, &grid, &Settings::default(), &Exec::new()).expect("flooded");
         let share = acceptance.counts()[0] as f64 / grid.len() as f64;
         // Loose: a bench guards against computing nothing or everything, the tests hold the numbers.
         assert!((0.05..0.9).contains(&share), "{name}: {share} of the box accepted");
@@ -48,55 +174,38 @@ fn accept(bencher: divan::Bencher, (name, cells): (&str, usize)) {
     });
 }
 
-/// Flooding alone. Its peak memory (`max alloc`) stays below the estimate checked before allocating, which is
-/// [`flood::bytes`] less the heights: 17 bytes per cell.
-#[divan::bench(sample_count = 10, args = [("v-face.toml", 100), ("v-face.toml", 1000), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
-fn flooding(bencher: divan::Bencher, (name, cells): (&str, usize)) {
-    let pair = pair(name);
-    let landscape = landscape(&pair, cells);
-    let settings = Settings::for_pair(&pair);
-    let count = landscape.heights.len();
+/// Flooding alone, by either rule. Its peak memory (`max alloc`) is 5 bytes per cell ([`flood::bytes`] less the
+/// heights), the slabs of the threads, and what the basins need.
+#[divan::bench(sample_count = 10, args = [Rule::Lowest, Rule::Steepest], consts = [8, 12, 16])]
+fn pyramid<const CELLS: usize>(bencher: divan::Bencher, rule: Rule) {
+    let pair = pair("pyramid.toml");
+    let landscape = landscape(&pair, CELLS);
+    let settings = Settings { rule, ..Settings::default() };
     bencher
-        .counter(ItemsCount::new(count))
+        .counter(ItemsCount::new(landscape.heights.len()))
         .bench_local(|| flood::flood(&landscape, &pair.alignment, &settings, &Exec::new()).expect("flooded"));
 }
 
-/// Grid on which the judge is measured against the fast path.
+/// Grid on which the judges are measured against the fast path.
 const SMALL: usize = 24;
 
 #[divan::bench(sample_count = 10)]
 fn small_fast(bencher: divan::Bencher) {
     let pair = pair("v-face.toml");
     let landscape = landscape(&pair, SMALL);
-    let settings = Settings::for_pair(&pair);
-    bencher
-        .bench_local(|| flood::flood(&landscape, &pair.alignment, &settings, &Exec::new()).expect("flooded"));
+    bencher.bench_local(|| {
+        flood::flood(&landscape, &pair.alignment, &Settings::default(), &Exec::new()).expect("flooded")
+    });
 }
 
 #[divan::bench(sample_count = 10)]
 fn small_brute(bencher: divan::Bencher) {
     let pair = pair("v-face.toml");
-    let landscape = landscape(&pair, SMALL);
-    let settings = Settings::for_pair(&pair);
-    let heights: Vec<f64> = landscape.heights.iter().map(|h| f64::from(*h)).collect();
-    let middle = SMALL / 2;
-    let targets = [0, 1, SMALL, SMALL + 1].map(|d| (middle - 1) * (SMALL + 1) + d);
-    bencher.bench_local(|| {
-        let basins = brute::divide(
-            &landscape.grid.shape(),
-            &heights,
-            &targets,
-            settings.depth_tolerance,
-            Rules::default(),
-        );
-        let fast = flood::flood(&landscape, &pair.alignment, &settings, &Exec::new()).expect("flooded");
-        let target = fast.acceptance.outcomes[targets[0]];
-        let same = |(b, o): (&u32, _)| (*b == basins[targets[0]]) == (o == &target);
-        assert!(basins.iter().zip(&fast.acceptance.outcomes).all(same), "the judge disagrees");
-    });
+    let Landscape { grid, heights } = landscape(&pair, SMALL);
+    bencher.bench_local(|| (brute::tree(&grid.shape(), &heights), brute::basins(&grid.shape(), &heights)));
 }
 
-/// A whole published table: 25 designs of 101 × 101 samples.
+/// A whole published table: 25 designs of 101 × 101 samples, by Meyer's queue.
 #[divan::bench(sample_count = 10)]
 fn table_5_7() {
     let table = catchment::study::reproduce::reproduce("5.7", &Exec::new()).expect("a known table");

@@ -51,7 +51,7 @@ fn heights() {
 fn flooding() {
     for (file, cells) in [("x-face.toml", 60), ("x-face-3d.toml", 7)] {
         let (design, pair, grid) = prepare(file, cells);
-        let settings = flood::Settings::for_pair(&pair);
+        let settings = flood::Settings::default();
         same_for_all(file, |exec| {
             bytes(&design, &flood::accept(&pair, &grid, &settings, exec).unwrap(), exec)
         });

@@ -46,6 +46,8 @@ pub struct Report {
     pub tolerances: Vec<ToleranceReport>,
     /// Success probability for the errors asked about; null if none were.
     pub success: Option<SuccessReport>,
+    /// The basins behind the outcomes; null for methods that know none.
+    pub basins: Option<BasinsReport>,
     /// Doubts.
     pub warnings: Vec<WarningReport>,
     /// How long it took; null where equal runs must write equal bytes.
@@ -255,6 +257,7 @@ impl Report {
             centered,
             tolerances: tolerable,
             success: None,
+            basins: None,
             warnings: warnings.into_iter().map(WarningReport::from).collect(),
             timing,
         })
@@ -365,10 +368,12 @@ impl From<Tolerance> for ToleranceReport {
     }
 }
 
+pub(crate) mod basins;
 mod sample;
 #[cfg(test)]
 pub(crate) mod testing;
 
+pub use basins::{BasinReport, BasinsReport, StepReport};
 pub use sample::{SampleReport, StratumReport};
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The report as aligned text, 80 columns wide, without colour.
 
+mod basins;
+
 use super::schema::{OnaaReport, Report, ToleranceReport};
 use crate::design::{ConnectorSpec, Design};
 use std::fmt::Write;
@@ -34,6 +36,10 @@ pub fn table(report: &Report) -> String {
     if !report.tolerances.is_empty() {
         text.push('\n');
         tolerances(&mut text, report);
+    }
+    if let Some(found) = &report.basins {
+        text.push('\n');
+        basins::lines(&mut text, found, report);
     }
     if !report.warnings.is_empty() {
         text.push('\n');

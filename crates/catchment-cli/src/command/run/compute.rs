@@ -7,8 +7,9 @@ use catchment::design::Design;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape, Resolution};
 use catchment::method::correction::{self, ByFraction, ByNeighbours, Corrected, CorrectionError};
+use catchment::method::flood::{self, Hierarchy};
 use catchment::method::transport::{self, Arrival};
-use catchment::method::{Method, descent, flood};
+use catchment::method::{Method, descent};
 use serde_json::Value;
 
 /// What to compute.
@@ -39,6 +40,8 @@ pub(super) struct Computed {
     pub(super) sample: Option<Sample>,
     /// Heights over the grid, if the method needed them or they were wanted.
     pub(super) landscape: Option<Landscape>,
+    /// The basins, if the method knows any.
+    pub(super) basins: Option<Hierarchy>,
 }
 
 /// The corrected Sum.
@@ -53,8 +56,7 @@ pub(super) struct Sample {
 
 impl Job<'_> {
     fn flood_settings(&self) -> flood::Settings {
-        let default = flood::Settings::for_pair(self.pair);
-        self.depth_tolerance.map_or(default, |depth_tolerance| flood::Settings { depth_tolerance })
+        flood::Settings { depth_tolerance: self.depth_tolerance, ..flood::Settings::default() }
     }
 
     /// The settings of the method, as they stand in the report.
@@ -80,7 +82,7 @@ impl Job<'_> {
 
 /// Computes all that the report and the pictures need.
 pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
-    let settings = job.settings()?;
+    let mut settings = job.settings()?;
     let cells = job.grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let axes = job.grid.axes.len();
     let (what, per_cell) = match job.method {
@@ -96,7 +98,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             fits => format!("use at most --resolution {fits}, or allow more with --memory"),
         }
     })?;
-    let mut arrival = None;
+    let (mut arrival, mut basins) = (None, None);
     let (mut acceptance, flooded) = match job.method {
         Method::Descent => (descend(job.pair, Domain::Grid(job.grid.clone()), exec)?, None),
         Method::Transport => {
@@ -106,6 +108,9 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
         Method::Flood => {
             let landscape = Landscape::compute(job.pair, &job.grid, exec)?;
             let flooding = flood::flood(&landscape, &job.design.alignment, &job.flood_settings(), exec)?;
+            let used = Some(flooding.hierarchy.tolerance.depth);
+            settings = serde_json::to_value(flood::Settings { depth_tolerance: used, ..job.flood_settings() })?;
+            basins = Some(flooding.hierarchy);
             (flooding.acceptance, Some(landscape))
         }
     };
@@ -129,7 +134,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
         let most = sample.as_ref().map_or(0, |sample| sample.corrected.descents);
         settle(job, arrival, &mut acceptance, most, exec)?;
     }
-    Ok(Computed { acceptance, settings, sample, landscape })
+    Ok(Computed { acceptance, settings, sample, landscape, basins })
 }
 
 /// Follows the ambiguous cells exactly if they are at most `most`, else warns.

@@ -72,7 +72,7 @@ struct HowArgs {
     /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
-    /// Flooding: basins shallower than this are merged, in D [default: a tenth of the face's height]
+    /// Flooding: basins shallower than this are merged, in D [default: in the widest gap between the depths of the basins]
     #[arg(long, value_name = "DEPTH", value_parser = depth)]
     depth_tolerance: Option<f64>,
 }
@@ -161,6 +161,9 @@ fn report(
     } else if job.method != Method::Descent {
         report.warnings.push(WarningReport::from(Warning::NoInterval));
     }
+    if let Some(basins) = &computed.basins {
+        report = report.with_basins(&computed.acceptance, basins);
+    }
     if let Some(distribution) = distribution {
         report = report.with_success(&computed.acceptance, distribution, exec)?;
     }
@@ -191,7 +194,7 @@ fn check_requirements(
         let aligned = |poses: Vec<_>, _: &_| Ok(vec![Outcome::Aligned; poses.len()]);
         correction::estimate(&grid, &by, &settings, &Exec::new(), aligned)
     })?;
-    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None };
+    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None, basins: None };
     let timing = Some(Timing { total_s: 0.0, threads: 1 });
     let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing, &Exec::new())?;
     unmet(requirements, &serde_json::to_value(&empty)?).map(drop)

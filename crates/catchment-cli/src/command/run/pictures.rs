@@ -13,7 +13,7 @@ use catchment::pose::{Dof, PoseError};
 use catchment::report::figure::{self, FigureError, Picture, Placement};
 
 /// Names of all pictures there can be, without ending.
-pub(super) const NAMES: [&str; 5] = ["overview", "slices", "heights", "section", "solids"];
+pub(super) const NAMES: [&str; 6] = ["overview", "slices", "heights", "basins", "section", "solids"];
 
 /// Cells per axis of the slice in the overview, and of the many in the slices, where the method decides each cell
 /// by itself and the grid is coarser.
@@ -60,6 +60,9 @@ pub(super) fn draw(
         keep("overview", figure::overview(design, connector, acceptance, &onaa, map, &height, pair))?;
         keep("slices", figure::slices(design, acceptance, &onaa, &finer, &[], &zero))?;
         keep("heights", figure::heights(design, map, &height, pair, &zero))?;
+    }
+    if let Some(basins) = &computed.basins {
+        keep("basins", figure::basins(design, acceptance, basins))?;
     }
     exec.check()?;
     let lifted = Placement::mated(design, LIFT);

@@ -16,9 +16,8 @@
 //! - **Dams**: in the plane a dam cell goes to the neighbouring basin whose labelled cell is lowest, but never to one
 //!   that reaches below the docking height; in space dam cells count for no basin. (The text: steepest descent.)
 
-use super::basins::{Height, is_basin};
-use super::neighbourhood::Neighbourhood;
-use super::{Parts, Rules, divide};
+use super::meyer::neighbourhood::Neighbourhood;
+use super::meyer::{Height, Parts, Rules, divide, is_basin};
 use crate::connector::{Connector, Problem};
 use crate::contact::{Lattice, Pair};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
@@ -268,7 +267,7 @@ fn accepted<H: Height>(
     parts: &Parts,
     dams_count: bool,
 ) -> Vec<bool> {
-    let Parts { labels, merged, .. } = parts;
+    let Parts { labels, merged } = parts;
     let basin = |cell: usize| is_basin(labels[cell]).then(|| merged.into[labels[cell] as usize]);
     let Some(target) = basin(mated) else { return vec![false; labels.len()] };
     let docking: f64 = heights[mated].into();

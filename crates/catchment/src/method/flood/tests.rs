@@ -1,81 +1,78 @@
-//! The fast path against the judge, and closed forms.
+//! Closed forms, and what the documentation says of the results.
 
 use super::*;
 use crate::connector::Connector;
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::acceptance::Warning;
 use crate::pose::{Dof, DofSet, Mount};
 use proptest::prelude::*;
 
-/// Random landscapes of one to four axes: few levels, so that plateaus, ties and cells without contact abound.
-fn rules() -> impl Strategy<Value = Rules> {
-    (any::<bool>(), any::<bool>()).prop_map(|(flat_cells_are_minima, dams_pass_water_on)| Rules {
-        flat_cells_are_minima,
-        dams_pass_water_on,
-    })
-}
-
-fn landscapes() -> impl Strategy<Value = (Vec<usize>, Vec<f64>, Vec<usize>, f64)> {
+/// Random landscapes of one to five axes: few levels, so that plateaus, ties and cells without contact abound.
+fn landscapes() -> impl Strategy<Value = (Vec<usize>, Vec<f32>)> {
     let shapes = prop_oneof![
-        prop::collection::vec(1..40usize, 1),
-        prop::collection::vec(1..10usize, 2),
+        prop::collection::vec(1..60usize, 1),
+        prop::collection::vec(1..12usize, 2),
         prop::collection::vec(1..6usize, 3),
-        prop::collection::vec(1..4usize, 4),
+        prop::collection::vec(1..5usize, 4),
+        prop::collection::vec(1..4usize, 5),
     ];
-    (shapes, 2..40i32, 0..6i32).prop_flat_map(|(shape, levels, tolerance)| {
+    (shapes, 2..60i8).prop_flat_map(|(shape, levels)| {
         let cells: usize = shape.iter().product();
-        let heights = prop::collection::vec(0..levels, cells).prop_map(move |levels| {
-            levels.into_iter().map(|l| if l == 0 { f64::NEG_INFINITY } else { f64::from(l) }).collect()
-        });
-        let targets = prop::collection::vec(0..cells, 0..3);
-        (Just(shape), heights, targets, Just(f64::from(tolerance)))
+        let height = |level| if level == 0 { NONE } else { f32::from(level) - 3.0 };
+        let heights = prop::collection::vec(0..levels, cells);
+        (Just(shape), heights.prop_map(move |levels| levels.into_iter().map(height).collect()))
     })
 }
 
-/// The basin of every cell, dams assigned, and what became of the basins.
-fn fast<H: Height>(
-    shape: &[usize],
-    heights: &[H],
-    targets: &[usize],
-    tolerance: f64,
-    rules: Rules,
-) -> Vec<u32> {
-    let around = Neighbourhood::new(shape);
-    let mut parts = divide(heights, &around, targets, tolerance, rules, &Exec::new()).unwrap();
-    dams::assign(heights, &around, &mut parts.labels);
-    parts.labels.iter().map(|l| parts.merged.into[*l as usize]).collect()
+/// Basins and tree by the rule of the lowest neighbour.
+fn fast(shape: &[usize], heights: &[f32], threads: usize) -> (Vec<u32>, MergeTree) {
+    let alignment = Alignment::new(DofSet::EMPTY, Mount::X);
+    let metric = Metric { grid: &Grid { axes: Vec::new() }, alignment: &alignment };
+    let exec = Exec::new().with_threads(threads).unwrap();
+    divide(shape, heights, &[], Rule::Lowest, &metric, &exec).unwrap()
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn the_fast_path_equals_the_judge((shape, heights, targets, tolerance) in landscapes(), rules in rules()) {
-        prop_assert_eq!(
-            fast(&shape, &heights, &targets, tolerance, rules),
-            brute::divide(&shape, &heights, &targets, tolerance, rules)
-        );
+    fn the_tree_is_that_of_all_cells_by_height((shape, heights) in landscapes(), threads in 1..4usize) {
+        let (labels, tree) = fast(&shape, &heights, threads);
+        let found: Vec<_> = tree.minima.iter().map(|m| (m.cell, m.height, m.depth)).collect();
+        prop_assert_eq!(found, brute::tree(&shape, &heights));
+        let basins: Vec<_> = labels.iter().map(|label| tree.minima[*label as usize].cell).collect();
+        prop_assert_eq!(basins, brute::basins(&shape, &heights));
+        prop_assert_eq!(tree.minima.iter().map(|m| m.cells).sum::<usize>(), heights.len());
     }
 
+    /// Merging at a tolerance leaves one basin per minimum at least as deep, which is the lowest of its own.
     #[test]
-    fn single_and_double_precision_agree((shape, heights, targets, tolerance) in landscapes()) {
-        let single: Vec<f32> = heights.iter().map(|h| *h as f32).collect();
-        prop_assert_eq!(
-            fast(&shape, &heights, &targets, tolerance, Rules::default()),
-            fast(&shape, &single, &targets, tolerance, Rules::default())
-        );
+    fn merged_basins_are_those_deeper_than_the_tolerance((shape, heights) in landscapes(), tolerance in 0..40i8) {
+        let (_, tree) = fast(&shape, &heights, 1);
+        let tolerance = f64::from(tolerance);
+        let into = tree.merged(tolerance);
+        for (basin, minimum) in tree.minima.iter().enumerate() {
+            prop_assert_eq!(into[basin] as usize == basin, minimum.depth >= tolerance);
+            prop_assert!(tree.minima[into[basin] as usize].height <= minimum.height);
+        }
     }
 
-    /// A higher tolerance never tells more basins apart.
+    /// The staircase, in one pass, says what merging at every single tolerance says.
     #[test]
-    fn merging_is_monotone((shape, heights, targets, tolerance) in landscapes()) {
-        let basins = |tolerance| {
-            let mut last = fast(&shape, &heights, &targets, tolerance, Rules::default());
-            last.sort_unstable();
-            last.dedup();
-            last.len()
-        };
-        prop_assert!(basins(tolerance + 1.0) <= basins(tolerance));
-        prop_assert!(basins(f64::INFINITY) <= 1 + usize::from(heights.contains(&f64::NEG_INFINITY)));
+    fn the_staircase_is_merging_at_every_tolerance((shape, heights) in landscapes(), at in any::<prop::sample::Index>()) {
+        let target = at.index(heights.len());
+        let (labels, tree) = fast(&shape, &heights, 1);
+        let steps = tree.staircase(labels[target], heights[target].into());
+        prop_assert!(steps.is_sorted_by(|a, b| a.above < b.above && a.cells != b.cells));
+        for tolerance in (0..130).map(|k| 0.5 * f64::from(k)) {
+            let into = tree.merged(tolerance);
+            let basin = into[labels[target] as usize];
+            let cells: usize = (0..into.len()).filter(|k| into[*k] == basin).map(|k| tree.minima[k].cells).sum();
+            let below = f64::from(heights[target]) - tree.minima[basin as usize].height;
+            let holds = below <= 0.0 || below < tolerance;
+            let step = steps.iter().rfind(|s| s.above < tolerance || s.above == 0.0).unwrap();
+            prop_assert_eq!(step.cells, if holds { cells } else { 0 }, "{} {:?}", tolerance, steps);
+        }
     }
 }
 
@@ -88,7 +85,7 @@ fn line(heights: &[f32]) -> (Landscape, Alignment) {
 
 fn outcomes(heights: &[f32], depth_tolerance: f64) -> String {
     let (landscape, alignment) = line(heights);
-    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance }, &Exec::new()).unwrap();
+    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(depth_tolerance), &Exec::new()).unwrap();
     flooding.acceptance.outcomes.iter().map(|o| o.name().chars().next().unwrap()).collect()
 }
 
@@ -122,7 +119,7 @@ fn with_an_even_number_of_cells_both_cells_around_the_mated_pose_are_its_minimum
         6.0, 7.0, 8.0, 9.0,
     ];
     let landscape = Landscape { grid, heights };
-    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.0 }, &Exec::new()).unwrap();
+    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.counts(), [16, 0, 0, 0]);
 }
 
@@ -140,7 +137,7 @@ fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
     let grid = Grid::over(&alignment, |_| 9);
     let heights = vec![0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 0.0];
     let landscape = Landscape { grid, heights };
-    let settings = Settings { depth_tolerance: 0.5 };
+    let settings = Settings::with_tolerance(0.5);
     let aligned =
         |a: &Alignment| flood(&landscape, a, &settings, &Exec::new()).unwrap().acceptance.counts()[0];
     assert!(aligned(&alignment) < 6);
@@ -151,8 +148,8 @@ fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
 #[test]
 fn basins_tell_depth_share_and_outcome() {
     let (landscape, alignment) = line(&[NONE, 3.0, 2.0, 5.0, 1.0, 0.0, 1.0, 4.0, 3.0, 4.0, NONE]);
-    let settings = Settings { depth_tolerance: 0.5 };
-    let basins = flood(&landscape, &alignment, &settings, &Exec::new()).unwrap().basins;
+    let settings = Settings::with_tolerance(0.5);
+    let basins = flood(&landscape, &alignment, &settings, &Exec::new()).unwrap().hierarchy.basins;
     let mated = basins.iter().find(|b| b.outcome == Outcome::Aligned).unwrap();
     assert_eq!((mated.minimum, mated.height, mated.depth), (5, 0.0, 4.0));
     assert_eq!(basins.iter().map(|b| b.cells).sum::<usize>(), 11);
@@ -162,11 +159,11 @@ fn basins_tell_depth_share_and_outcome() {
 #[test]
 fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
     let (landscape, alignment) = line(&[0.0, 1.0, 2.0, 1.5, 2.0, 1.0, 0.0]);
-    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.1 }, &Exec::new()).unwrap();
+    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(0.1), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.counts(), [1, 0, 6, 0]);
     assert!(flooding.acceptance.warnings.iter().any(|w| matches!(w, Warning::Note { .. })));
     // The mated pose, shallower than the tolerance, joins a basin that gathers far below it.
-    let merged = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.6 }, &Exec::new()).unwrap();
+    let merged = flood(&landscape, &alignment, &Settings::with_tolerance(0.6), &Exec::new()).unwrap();
     assert_eq!(merged.acceptance.counts()[0], 0);
     assert!(merged.acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
 }
@@ -174,10 +171,10 @@ fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
 #[test]
 fn what_cannot_be_flooded_is_refused() {
     let (landscape, alignment) = line(&[1.0, 0.0, 1.0]);
-    let bad = flood(&landscape, &alignment, &Settings { depth_tolerance: -1.0 }, &Exec::new()).unwrap_err();
+    let bad = flood(&landscape, &alignment, &Settings::with_tolerance(-1.0), &Exec::new()).unwrap_err();
     assert_eq!(bad, FloodError::Tolerance { depth: -1.0 });
     let exec = Exec::new().with_memory_budget(10);
-    let settings = Settings { depth_tolerance: 0.0 };
+    let settings = Settings::with_tolerance(0.0);
     assert!(matches!(flood(&landscape, &alignment, &settings, &exec), Err(FloodError::OutOfBudget(_))));
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
     let exec = exec.with_memory_budget(1 << 20);
@@ -188,7 +185,7 @@ fn what_cannot_be_flooded_is_refused() {
 fn an_empty_set_of_free_axes_is_one_cell_at_the_mated_pose() {
     let alignment = Alignment::new(DofSet::EMPTY, Mount::X);
     let landscape = Landscape { grid: Grid { axes: Vec::new() }, heights: vec![0.0] };
-    let flooding = flood(&landscape, &alignment, &Settings { depth_tolerance: 0.0 }, &Exec::new()).unwrap();
+    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.outcomes, [Outcome::Aligned]);
 }
 
@@ -200,18 +197,6 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, symmetry: u32) -> Pair {
     let connector = ConnectorSpec::Family(spec);
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
-}
-
-#[test]
-fn the_default_tolerance_is_a_tenth_of_the_face_height() {
-    let families =
-        [Family::VFace, Family::SFace, Family::XFace, Family::Pyramid, Family::Cone, Family::XFace3d];
-    for family in families {
-        for (aspect_ratio, cor) in [(0.25, 0.0), (1.0, -0.7)] {
-            let settings = Settings::for_pair(&pair(family, aspect_ratio, cor, 1));
-            assert!((settings.depth_tolerance - 0.1 * aspect_ratio).abs() < 1e-12, "{family:?} {settings:?}");
-        }
-    }
 }
 
 /// Exact values (rotation length 1) by quasi-static descent of 100 × 100 poses; flooding knows no rotation length and
@@ -227,7 +212,7 @@ fn the_bias_of_flooding_is_what_the_documentation_says() {
     ];
     for (family, aspect_ratio, cor, exact, bias) in cases {
         let pair = pair(family, aspect_ratio, cor, 1);
-        let settings = Settings::for_pair(&pair);
+        let settings = Settings::default();
         for cells in [100, 101] {
             let grid = Grid::over(&pair.alignment, |_| cells);
             let acceptance = accept(&pair, &grid, &settings, &Exec::new()).unwrap();
@@ -243,7 +228,7 @@ fn five_axes_agree_between_odd_and_even_grids_and_a_quarter_turn_doubles_the_bas
     let share = |cells, symmetry| {
         let pair = pair(Family::Pyramid, 0.5, 0.5, symmetry);
         let grid = Grid::over(&pair.alignment, |_| cells);
-        let acceptance = accept(&pair, &grid, &Settings::for_pair(&pair), &Exec::new()).unwrap();
+        let acceptance = accept(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
         acceptance.counts()[0] as f64 / grid.len() as f64
     };
     // Rolls and pitches aside, yaw in ±90° holds one whole basin and two halves of its quarter turns.
@@ -258,7 +243,7 @@ fn threads_do_not_change_a_bit() {
     let grid = Grid::over(&pair.alignment, |_| 6);
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        accept(&pair, &grid, &Settings::for_pair(&pair), &exec).unwrap()
+        accept(&pair, &grid, &Settings::default(), &exec).unwrap()
     };
     assert_eq!(with(1), with(3));
 }

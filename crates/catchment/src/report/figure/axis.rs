@@ -52,6 +52,11 @@ impl Units {
         Scale::new(format!("{name} [{}]", self.symbol), lo * self.width, hi * self.width, false)
     }
 
+    /// The unit of lengths.
+    pub(super) const fn symbol(&self) -> &'static str {
+        self.symbol
+    }
+
     /// What a length in D must be multiplied by to be shown.
     pub(super) const fn lengths(&self) -> f64 {
         self.width

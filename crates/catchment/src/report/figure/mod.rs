@@ -7,6 +7,7 @@
 //!   solids      both halves in space
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation
+//!   basins      depths of all minima, and the accepted share over the depth tolerance
 //!   overview    the picture of a design: halves, acceptance, heights
 //! ```
 //!
@@ -14,6 +15,7 @@
 //! same bytes. Maps and solids are embedded images, everything else is vector.
 
 mod axis;
+mod basins;
 mod colour;
 mod heights;
 mod map;
@@ -26,6 +28,7 @@ mod solid;
 mod svg;
 mod trajectory;
 
+pub use basins::basins;
 pub use heights::heights;
 pub use overview::overview;
 pub use region::region;

@@ -11,14 +11,14 @@ struct Step {
 }
 
 /// The neighbours of every cell of a grid; the first axis runs fastest.
-pub(super) struct Neighbourhood {
+pub(in super::super) struct Neighbourhood {
     shape: Vec<usize>,
     steps: Vec<Step>,
 }
 
 impl Neighbourhood {
     /// For a grid of this shape; at most 16 axes.
-    pub(super) fn new(shape: &[usize]) -> Self {
+    pub(in super::super) fn new(shape: &[usize]) -> Self {
         let mut steps = vec![Step { delta: 0, forbidden_at: 0, length: 0.0 }];
         let mut stride = 1isize;
         for (axis, cells) in shape.iter().enumerate() {
@@ -55,12 +55,12 @@ impl Neighbourhood {
     }
 
     /// Neighbours of a cell, in ascending order of their offset along the last axis, then the one before, ….
-    pub(super) fn of(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
+    pub(in super::super) fn of(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
         self.with_length(index).map(|(neighbour, _)| neighbour)
     }
 
     /// Neighbours and their distance in cells, in the same order.
-    pub(super) fn with_length(&self, index: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(in super::super) fn with_length(&self, index: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let borders = self.borders(index);
         self.steps
             .iter()

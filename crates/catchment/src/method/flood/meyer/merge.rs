@@ -52,14 +52,11 @@ pub(super) fn passes<H: Height>(heights: &[H], around: &Neighbourhood, flooded: 
 
 /// What merging makes of the basins.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Merged {
+pub(in super::super) struct Merged {
     /// For every basin number, the number of the basin it ended up in.
-    pub(super) into: Vec<u32>,
+    pub(in super::super) into: Vec<u32>,
     /// For every number still in use: the height of the minimum.
-    pub(super) bottom: Vec<f64>,
-    /// For every number still in use: how far the water must rise to run over into a neighbour; infinite for a
-    /// basin without one.
-    pub(super) depth: Vec<f64>,
+    pub(in super::super) bottom: Vec<f64>,
 }
 
 /// A depth that orders like a number; depths are never NaN.
@@ -119,11 +116,11 @@ pub(super) fn merge(bottoms: Vec<f64>, mut passes: Vec<Passes>, tolerance: f64) 
         }
         into[number] = last as u32;
     }
-    Merged { into, bottom, depth }
+    Merged { into, bottom }
 }
 
 /// The lowest pass and the basin behind it, the smallest number among equals.
-pub(super) fn lowest_pass(passes: &Passes) -> Option<(u32, f64)> {
+fn lowest_pass(passes: &Passes) -> Option<(u32, f64)> {
     passes.iter().map(|(n, p)| (*n, *p)).reduce(|best, next| if next.1 < best.1 { next } else { best })
 }
 

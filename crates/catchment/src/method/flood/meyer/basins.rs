@@ -6,9 +6,9 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Not reached.
-pub(super) const UNSEEN: u32 = 0;
+const UNSEEN: u32 = 0;
 /// The basin of every cell without contact, however many pieces it has.
-pub(super) const OUTSIDE: u32 = 1;
+const OUTSIDE: u32 = 1;
 /// Reached from two basins.
 pub(super) const DAM: u32 = u32::MAX;
 /// Waiting in the queue.
@@ -16,14 +16,14 @@ const QUEUED: u32 = u32::MAX - 1;
 /// Equal to a neighbour, and known to be no minimum.
 const SLOPE: u32 = u32::MAX - 2;
 /// Basin numbers lie below this.
-pub(super) const LABEL_LIMIT: u32 = SLOPE;
+const LABEL_LIMIT: u32 = SLOPE;
 
 /// Whether a label names a basin.
-pub(super) const fn is_basin(label: u32) -> bool {
+pub(in super::super) const fn is_basin(label: u32) -> bool {
     label != UNSEEN && label < LABEL_LIMIT
 }
 
-/// Where flooding may be read in two ways. The default is catchment's own.
+/// Where flooding may be read in two ways. The default is the one of Meyer's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rules {
     /// Every cell without a lower neighbour is a minimum, even on a plateau that drains elsewhere.
@@ -33,7 +33,7 @@ pub struct Rules {
 }
 
 /// What the heights are stored as.
-pub(super) trait Height: Copy + PartialOrd + Into<f64> + Send + Sync {}
+pub(in super::super) trait Height: Copy + PartialOrd + Into<f64> + Send + Sync {}
 impl Height for f32 {}
 impl Height for f64 {}
 

@@ -1,0 +1,187 @@
+//! The passes between basins that matter: a shortest tree over all of them.
+//!
+//! Two cells are neighbours where some unit cube of 2ⁿ cells holds both, and the pass over them is as high as the
+//! higher one. Within a cube every cell neighbours every other, so a knock-out tournament tells all that matters:
+//! each cell loses once, to a lower one, and the games connect all cells of the cube no higher than their neighbourhood
+//! does. Cubes share their early games: n games per cell instead of (3ⁿ − 1)/2 neighbours.
+//!
+//! ```text
+//!   3 ─ 7      games: 3–7, 5–4, then 3–4, where 7, 5 and 4 lose: passes of height 7, 5 and 4.
+//!   5 ─ 4      The neighbours 7 and 5 are connected at height 7 all the same: 7 ▸ 3 ▸ 4 ◂ 5.
+//! ```
+//!
+//! Of all games between different basins only those in the shortest spanning tree (Kruskal 1956) are kept: water that
+//! rises in any basin first meets another over a pass of that tree. Memory: O(basins).
+
+use super::drain::Basins;
+use super::sweep::{Slabs, level_of, number_of};
+use crate::exec::{Cancelled, Exec};
+use rayon::prelude::*;
+
+/// A pass between two basins; passes order by level first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Pass {
+    /// Level of its height.
+    pub(super) level: u32,
+    /// The basin of the smaller number.
+    pub(super) a: u32,
+    /// The other one.
+    pub(super) b: u32,
+}
+
+/// The shortest spanning tree of the basins, in ascending order.
+pub(super) fn passes(
+    shape: &[usize],
+    heights: &[f32],
+    basins: &Basins,
+    exec: &Exec,
+) -> Result<Vec<Pass>, Cancelled> {
+    let slabs = Slabs::new(shape);
+    let count = basins.minima.len();
+    if count < 2 {
+        return Ok(Vec::new());
+    }
+    let of_run = |run: std::ops::Range<usize>| {
+        let mut found = Found::new(count);
+        let (mut here, mut next) = (Vec::new(), Vec::new());
+        let load = |k: usize, words: &mut Vec<u64>, found: &mut Found| {
+            slabs.load(heights, k, |cell| basins.labels[cell], words);
+            slabs.least_of_cubes(words, |u, v| found.meet(u, v), exec)
+        };
+        load(run.start, &mut here, &mut found)?;
+        for k in run {
+            if k + 1 < slabs.count {
+                load(k + 1, &mut next, &mut found)?;
+                for (u, v) in here.iter().zip(&next) {
+                    found.meet(*u, *v);
+                }
+                std::mem::swap(&mut here, &mut next);
+            }
+        }
+        found.flush();
+        Ok(found.passes)
+    };
+    let found: Vec<Vec<Pass>> =
+        exec.install(|| slabs.runs(exec).into_par_iter().map(of_run).collect::<Result<_, _>>())?;
+    let mut passes = found.concat();
+    thin(&mut passes, count);
+    Ok(passes)
+}
+
+/// Bytes that the passes of so many basins take in every run.
+pub(super) const fn bytes(basins: u64) -> u64 {
+    let kept = basins.saturating_mul(ROOM as u64).saturating_add(LEAST_ROOM as u64);
+    kept.saturating_mul(2 * size_of::<Pass>() as u64)
+}
+
+/// Passes of a run.
+struct Found {
+    basins: usize,
+    /// The lowest pass of pairs met lately; most cells lie between the same basins as the cell before.
+    lately: Vec<Pass>,
+    passes: Vec<Pass>,
+    /// Thinned when it holds as many.
+    room: usize,
+}
+
+/// A power of two; a table of these passes stays in the nearest cache.
+const LATELY: usize = 1 << 11;
+/// How many passes per basin are held before they are thinned to one, and how many at least.
+const ROOM: usize = 4;
+const LEAST_ROOM: usize = 1 << 14;
+/// No pass.
+const NONE: Pass = Pass { level: u32::MAX, a: u32::MAX, b: u32::MAX };
+
+impl Found {
+    fn new(basins: usize) -> Self {
+        let room = basins.saturating_mul(ROOM).max(LEAST_ROOM);
+        Self { basins, lately: vec![NONE; LATELY], passes: Vec::new(), room }
+    }
+
+    /// Two cells next to each other, each with its basin.
+    #[inline]
+    fn meet(&mut self, u: u64, v: u64) {
+        if number_of(u ^ v) != 0 {
+            self.between(u, v);
+        }
+    }
+
+    #[inline]
+    fn between(&mut self, u: u64, v: u64) {
+        /// An odd number near 2³²/φ scatters neighbouring numbers (Knuth, TAOCP 3, 6.4).
+        const SCATTER: u32 = 0x9e37_79b9;
+        let (p, q) = (number_of(u), number_of(v));
+        let (a, b) = (p.min(q), p.max(q));
+        let pass = Pass { level: level_of(u.max(v)), a, b };
+        let slot = (a.wrapping_mul(SCATTER) ^ b).wrapping_mul(SCATTER) >> (32 - LATELY.trailing_zeros());
+        let slot = &mut self.lately[slot as usize];
+        if (slot.a, slot.b) == (a, b) {
+            slot.level = slot.level.min(pass.level);
+            return;
+        }
+        let old = std::mem::replace(slot, pass);
+        if old != NONE {
+            self.push(old);
+        }
+    }
+
+    fn push(&mut self, pass: Pass) {
+        if self.passes.len() >= self.room {
+            thin(&mut self.passes, self.basins);
+        }
+        self.passes.push(pass);
+    }
+
+    fn flush(&mut self) {
+        for pass in std::mem::take(&mut self.lately) {
+            if pass != NONE {
+                self.push(pass);
+            }
+        }
+        thin(&mut self.passes, self.basins);
+    }
+}
+
+/// Keeps the shortest spanning tree. The tree of a union is that of the union of the trees, and no two passes are
+/// equal in order without being the same: the order of thinning changes nothing.
+fn thin(passes: &mut Vec<Pass>, basins: usize) {
+    passes.sort_unstable();
+    let mut sets = Sets::new(basins);
+    passes.retain(|pass| sets.unite(pass.a, pass.b).is_some());
+}
+
+/// Disjoint sets of basins (union-find with path halving; the smaller number leads unless the caller says otherwise).
+#[derive(Debug, Clone)]
+pub(super) struct Sets(Vec<u32>);
+
+impl Sets {
+    pub(super) fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    /// The leader of a basin's set.
+    pub(super) fn find(&mut self, mut basin: u32) -> u32 {
+        while self.0[basin as usize] != basin {
+            let above = self.0[self.0[basin as usize] as usize];
+            self.0[basin as usize] = above;
+            basin = above;
+        }
+        basin
+    }
+
+    /// Unites two sets; the leader that stays and the one that goes, or nothing if they are one already.
+    pub(super) fn unite(&mut self, a: u32, b: u32) -> Option<(u32, u32)> {
+        let (a, b) = (self.find(a), self.find(b));
+        if a == b {
+            return None;
+        }
+        let (stays, goes) = (a.min(b), a.max(b));
+        self.0[goes as usize] = stays;
+        Some((stays, goes))
+    }
+
+    /// Puts the set of `leader` under another leader.
+    pub(super) fn put_under(&mut self, leader: u32, other: u32) {
+        self.0[leader as usize] = other;
+    }
+}

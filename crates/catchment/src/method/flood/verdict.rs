@@ -1,0 +1,161 @@
+//! From merged basins to the outcome of every cell.
+
+use super::Basin;
+use super::tree::{MergeTree, explains};
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::exec::{Cancelled, Exec};
+use crate::landscape::Grid;
+use rayon::prelude::*;
+
+/// How many cells are worked on between two looks at the cancel flag.
+const CELLS_PER_CHECK: usize = 1 << 16;
+
+/// Outcomes and basins at a tolerance. `targets` are the cells around the mated pose.
+pub(super) fn verdict(
+    grid: &Grid,
+    heights: &[f32],
+    targets: &[usize],
+    labels: &[u32],
+    tree: &MergeTree,
+    tolerance: f64,
+    exec: &Exec,
+) -> Result<(Acceptance, Vec<Basin>), Cancelled> {
+    let into = tree.merged(tolerance);
+    let target = target_basin(heights, targets, labels, tree, &into, tolerance);
+    let outside = tree.outside.map(|basin| into[basin as usize]);
+    let mut border_cells = 0;
+    let mut found: Vec<Option<Basin>> = vec![None; into.len()];
+    let cells = cells(tree, &into);
+    let escapes = escapes(tree, &into);
+    for (number, minimum) in tree.minima.iter().enumerate() {
+        if into[number] as usize != number {
+            continue;
+        }
+        let (translation, rotation) = on_border(grid, minimum.cell);
+        let outcome = if Some(number as u32) == outside {
+            Outcome::Missed
+        } else if Some(number as u32) == target {
+            Outcome::Aligned
+        } else {
+            border_cells += if translation || rotation { cells[number] } else { 0 };
+            if translation { Outcome::Missed } else { Outcome::Jammed }
+        };
+        found[number] = Some(Basin {
+            minimum: minimum.cell,
+            height: minimum.height,
+            depth: minimum.depth,
+            escape: escapes[number],
+            cells: cells[number],
+            outcome,
+        });
+    }
+    let outcome = |number: &u32| found[*number as usize].map_or(Outcome::Undecided, |basin| basin.outcome);
+    let of_basin: Vec<Outcome> = into.iter().map(outcome).collect();
+    let mut outcomes = vec![Outcome::Undecided; labels.len()];
+    exec.install(|| {
+        let pieces = outcomes.par_chunks_mut(CELLS_PER_CHECK).zip(labels.par_chunks(CELLS_PER_CHECK));
+        pieces.try_for_each(|(outcomes, labels)| {
+            exec.check()?;
+            for (outcome, label) in outcomes.iter_mut().zip(labels) {
+                *outcome = of_basin[*label as usize];
+            }
+            Ok(())
+        })
+    })?;
+    let warnings = warnings(grid, &outcomes, targets, border_cells);
+    let mut basins: Vec<Basin> = found.into_iter().flatten().collect();
+    basins.sort_by(|a, b| b.cells.cmp(&a.cells).then(a.minimum.cmp(&b.minimum)));
+    Ok((Acceptance { method: "flood", domain: Domain::Grid(grid.clone()), outcomes, warnings }, basins))
+}
+
+/// The number of the basin that gathers at the mated pose: the one that holds the lowest cell around it, unless that
+/// has joined a basin which gathers lower than the tolerance can explain.
+fn target_basin(
+    heights: &[f32],
+    targets: &[usize],
+    labels: &[u32],
+    tree: &MergeTree,
+    into: &[u32],
+    tolerance: f64,
+) -> Option<u32> {
+    let lower = |a: usize, b: usize| if heights[b] < heights[a] { b } else { a };
+    let cell = targets.iter().copied().reduce(lower)?;
+    let basin = into[labels[cell] as usize];
+    let gathers_at = tree.minima[basin as usize].height;
+    explains(tolerance, f64::from(heights[cell]) - gathers_at).then_some(basin)
+}
+
+/// Cells of every merged basin.
+fn cells(tree: &MergeTree, into: &[u32]) -> Vec<usize> {
+    let mut cells = vec![0; into.len()];
+    for (minimum, last) in tree.minima.iter().zip(into) {
+        cells[*last as usize] += minimum.cells;
+    }
+    cells
+}
+
+/// How far the water must rise in every merged basin to run over into another: over the lowest of the tree's passes.
+fn escapes(tree: &MergeTree, into: &[u32]) -> Vec<f64> {
+    let mut escapes = vec![f64::INFINITY; into.len()];
+    for link in &tree.links {
+        let [a, b] = link.basins.map(|basin| into[basin as usize] as usize);
+        if a != b {
+            for basin in [a, b] {
+                escapes[basin] = escapes[basin].min(link.height - tree.minima[basin].height);
+            }
+        }
+    }
+    escapes
+}
+
+/// Whether a cell lies on a border of a translation, and of a rotation.
+fn on_border(grid: &Grid, index: usize) -> (bool, bool) {
+    let cell = grid.cell(index);
+    let at = |rotation: bool| {
+        grid.axes
+            .iter()
+            .zip(&cell)
+            .any(|(a, k)| a.dof.is_rotation() == rotation && (*k == 0 || k + 1 == a.cells))
+    };
+    (at(false), at(true))
+}
+
+fn warnings(grid: &Grid, outcomes: &[Outcome], targets: &[usize], border_cells: usize) -> Vec<Warning> {
+    let mut warnings = vec![Warning::FloodingBias];
+    if targets.is_empty() || targets.iter().all(|t| outcomes[*t] != Outcome::Aligned) {
+        warnings.push(Warning::MatedPoseNotAccepted);
+    }
+    let axes = touched_axes(grid, outcomes);
+    if !axes.is_empty() {
+        warnings.push(Warning::TouchesBorder { axes });
+    }
+    if border_cells > 0 {
+        let share = 100.0 * border_cells as f64 / outcomes.len() as f64;
+        warnings.push(Warning::Note {
+            text: format!(
+                "{share:.1} % of the poses drain to the border of the error box, beyond which nothing was sampled; \
+                 they count as missed at a border of x or y, as jammed at one of an angle"
+            ),
+        });
+    }
+    warnings
+}
+
+/// Names of the axes at whose border a cell is accepted.
+fn touched_axes(grid: &Grid, outcomes: &[Outcome]) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut stride = 1;
+    for axis in &grid.axes {
+        // The cells at either border are runs of `stride` cells, one per `block`.
+        let block = stride * axis.cells;
+        let aligned = |run: &[Outcome]| run.contains(&Outcome::Aligned);
+        let touches = outcomes
+            .chunks_exact(block)
+            .any(|block| aligned(&block[..stride]) || aligned(&block[block.len() - stride..]));
+        if touches {
+            names.push(axis.dof.name().to_owned());
+        }
+        stride = block;
+    }
+    names
+}
