@@ -133,8 +133,8 @@ impl fmt::Display for Warning {
             }
             Self::FloodingBias => write!(
                 f,
-                "flooding follows grid directions only: its Sum may be several percent off at any resolution, a \
-                 quarter at worst so far; --method descent is exact at every pose"
+                "flooding follows grid directions only: its Sum may be several percent off at any resolution, and \
+                 far more on a coarse grid; --method descent is exact at every pose"
             ),
             Self::CutOff => write!(
                 f,

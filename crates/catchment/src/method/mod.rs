@@ -21,7 +21,7 @@ pub enum Method {
     Transport,
     /// [`descent`]: exact motion of every cell's centre.
     Descent,
-    /// [`flood`]: flooding of the heights over the grid.
+    /// [`flood`]: basins of the heights over the grid.
     Flood,
 }
 

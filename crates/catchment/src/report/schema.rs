@@ -373,7 +373,7 @@ mod sample;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use basins::{BasinReport, BasinsReport, StepReport};
+pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, StepReport};
 pub use sample::{SampleReport, StratumReport};
 
 #[cfg(test)]

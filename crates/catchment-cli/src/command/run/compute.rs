@@ -68,6 +68,17 @@ impl Job<'_> {
         })
     }
 
+    /// The basins over a small grid, if the method knows any.
+    pub(super) fn basins_of(&self, grid: &Grid) -> Result<Option<Hierarchy>, Failure> {
+        if self.method != Method::Flood {
+            return Ok(None);
+        }
+        let exec = Exec::new();
+        let landscape = Landscape::compute(self.pair, grid, &exec)?;
+        let flooding = flood::flood(&landscape, &self.design.alignment, &self.flood_settings(), &exec)?;
+        Ok(Some(flooding.hierarchy))
+    }
+
     /// The corrected Sum, if one was asked for, as `correct` finds it.
     pub(super) fn sample_of(
         &self,

@@ -194,7 +194,8 @@ fn check_requirements(
         let aligned = |poses: Vec<_>, _: &_| Ok(vec![Outcome::Aligned; poses.len()]);
         correction::estimate(&grid, &by, &settings, &Exec::new(), aligned)
     })?;
-    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None, basins: None };
+    let basins = job.basins_of(&grid)?;
+    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None, basins };
     let timing = Some(Timing { total_s: 0.0, threads: 1 });
     let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing, &Exec::new())?;
     unmet(requirements, &serde_json::to_value(&empty)?).map(drop)

@@ -53,7 +53,8 @@ pub fn basins(shape: &[usize], heights: &[f32]) -> Vec<usize> {
             if outside(&cell) {
                 return first_outside;
             }
-            let lowest = near[cell].iter().copied().reduce(|a, b| if heights[b] < heights[a] { b } else { a });
+            let lowest =
+                near[cell].iter().copied().reduce(|a, b| if heights[b] < heights[a] { b } else { a });
             lowest.filter(|lowest| heights[*lowest] < heights[cell])
         })
         .collect();

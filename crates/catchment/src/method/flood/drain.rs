@@ -44,6 +44,8 @@ pub(super) struct Basins {
 
 /// How many cells are worked on between two looks at the cancel flag.
 const CELLS_PER_CHECK: usize = 1 << 16;
+/// The same for flat cells, all of whose neighbours are looked at.
+const FLATS_PER_CHECK: usize = 1 << 12;
 
 /// Drains every cell of a grid of this shape.
 pub(super) fn drain(
@@ -67,9 +69,16 @@ pub(super) fn drain(
     for (number, cell) in (0..).zip(&minima) {
         *ways[*cell as usize].get_mut() = NUMBERED | number;
     }
-    let cells = exec.install(|| follow(&ways, minima.len(), outside, exec))?;
+    exec.install(|| follow(&ways, outside, exec))?;
     // The same memory, read as plain numbers.
-    let labels = ways.into_iter().map(|way| way.into_inner() & !NUMBERED).collect();
+    let labels: Vec<u32> = ways.into_iter().map(|way| way.into_inner() & !NUMBERED).collect();
+    let mut cells = vec![0; minima.len()];
+    for piece in labels.chunks(CELLS_PER_CHECK) {
+        exec.check()?;
+        for label in piece {
+            cells[*label as usize] += 1;
+        }
+    }
     Ok(Basins { labels, minima, cells, outside })
 }
 
@@ -138,6 +147,10 @@ fn settle(
     exec: &Exec,
 ) -> Result<Vec<u32>, FloodError> {
     let same = |a: usize, b: usize| level(heights[a]) == level(heights[b]);
+    let flat = ways.iter_mut().filter_map(|way| (*way.get_mut() == FLAT).then_some(())).count() as u64;
+    exec.reserve("the plateaus of a flooded grid", flat * size_of::<(u32, u32)>() as u64, |_| {
+        "use a coarser grid".to_owned()
+    })?;
     // The rim: flat cells beside an equal one that drains.
     let mut rim: Vec<(u32, u32)> = Vec::new();
     let mut outside = None;
@@ -161,10 +174,12 @@ fn settle(
     }
     let mut rim: Vec<u32> = rim.into_iter().map(|(cell, _)| cell).collect();
     while !rim.is_empty() {
-        exec.check()?;
         // In ascending order, so that a cell that two of the rim reach goes to the first of them.
         let mut inner = Vec::new();
-        for cell in rim {
+        for (done, cell) in rim.into_iter().enumerate() {
+            if done.is_multiple_of(FLATS_PER_CHECK) {
+                exec.check()?;
+            }
             for near in around.of(cell as usize) {
                 if *ways[near].get_mut() == FLAT && same(cell as usize, near) {
                     *ways[near].get_mut() = cell;
@@ -191,7 +206,12 @@ fn settle(
         minima.push(cell as u32);
         plateau.push(cell);
         *ways[cell].get_mut() = cell as u32;
+        let mut done = 0usize;
         while let Some(member) = plateau.pop() {
+            done += 1;
+            if done.is_multiple_of(FLATS_PER_CHECK) {
+                exec.check()?;
+            }
             for near in around.of(member) {
                 if *ways[near].get_mut() == FLAT && same(cell, near) {
                     *ways[near].get_mut() = cell as u32;
@@ -203,53 +223,37 @@ fn settle(
     Ok(minima)
 }
 
-/// Follows every way to its basin and leaves the basin's number along it. Counts the cells of every basin.
+/// Follows every way to its basin and leaves the basin's number along it.
 ///
 /// Threads may meet on a way: all of them write the same number.
-fn follow(
-    ways: &[AtomicU32],
-    basins: usize,
-    outside: Option<u32>,
-    exec: &Exec,
-) -> Result<Vec<usize>, Cancelled> {
+fn follow(ways: &[AtomicU32], outside: Option<u32>, exec: &Exec) -> Result<(), Cancelled> {
     let numbered = |way: u32| match (way, outside) {
         (OUTSIDE, Some(number)) => Some(NUMBERED | number),
         _ => (way & NUMBERED != 0).then_some(way),
     };
-    let per_thread = ways.len().div_ceil(exec.threads().max(1)).max(CELLS_PER_CHECK);
-    let count = |(part, chunk): (usize, &[AtomicU32])| {
-        let mut cells = vec![0usize; basins];
-        let first = part * per_thread;
-        for (start, own) in (first..).step_by(CELLS_PER_CHECK).zip(chunk.chunks(CELLS_PER_CHECK)) {
-            exec.check()?;
-            for cell in start..start + own.len() {
-                let mut at = cell;
-                let number = loop {
-                    let way = ways[at].load(Ordering::Relaxed);
-                    match numbered(way) {
-                        Some(number) => break number,
-                        None => at = way as usize,
-                    }
-                };
-                let mut at = cell;
-                loop {
-                    let way = ways[at].load(Ordering::Relaxed);
-                    ways[at].store(number, Ordering::Relaxed);
-                    if numbered(way).is_some() {
-                        break;
-                    }
-                    at = way as usize;
+    let pieces = ways.par_chunks(CELLS_PER_CHECK).enumerate();
+    pieces.try_for_each(|(piece, own)| {
+        exec.check()?;
+        let first = piece * CELLS_PER_CHECK;
+        for cell in first..first + own.len() {
+            let mut at = cell;
+            let number = loop {
+                let way = ways[at].load(Ordering::Relaxed);
+                match numbered(way) {
+                    Some(number) => break number,
+                    None => at = way as usize,
                 }
-                cells[(number & !NUMBERED) as usize] += 1;
+            };
+            let mut at = cell;
+            loop {
+                let way = ways[at].load(Ordering::Relaxed);
+                ways[at].store(number, Ordering::Relaxed);
+                if numbered(way).is_some() {
+                    break;
+                }
+                at = way as usize;
             }
         }
-        Ok(cells)
-    };
-    ways.par_chunks(per_thread).enumerate().map(count).try_reduce(
-        || vec![0; basins],
-        |mut sum, part| {
-            sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-            Ok(sum)
-        },
-    )
+        Ok(())
+    })
 }

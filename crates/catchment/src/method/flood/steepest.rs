@@ -11,7 +11,7 @@
 use super::drain::{FLAT, OUTSIDE};
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec};
-use crate::landscape::Grid;
+use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, face_from_cor};
 use glam::{DMat3, DVec2};
 use rayon::prelude::*;
@@ -82,7 +82,7 @@ impl Metric<'_> {
     /// Steps from any cell at a rotation, in the order of memory.
     fn steps(&self, rotation: usize) -> Vec<Step> {
         let [nx, ny] = self.lateral_cells();
-        let size = [Dof::X, Dof::Y].map(|dof| self.grid.axis(dof).map_or(0.0, |axis| axis.step()));
+        let size = [Dof::X, Dof::Y].map(|dof| self.grid.axis(dof).map_or(0.0, GridAxis::step));
         let slab = nx * ny;
         let (here, cor) = self.turned(rotation * slab);
         let rho = self.alignment.rotation_length;

@@ -71,11 +71,19 @@ impl Slabs {
     pub(super) fn reserve(&self, exec: &Exec) -> Result<(), OutOfBudget> {
         let slabs = (HELD * self.runs(exec).len()) as u64;
         let needed = slabs.saturating_mul((self.len * size_of::<u64>()) as u64);
-        exec.reserve("the slabs of a flooded grid", needed, |_| "use fewer threads, or a coarser grid".to_owned())
+        exec.reserve("the slabs of a flooded grid", needed, |_| {
+            "use fewer threads, or a coarser grid".to_owned()
+        })
     }
 
     /// The words of slab `k`, whose cells are numbered by `number`.
-    pub(super) fn load(&self, heights: &[f32], k: usize, number: impl Fn(usize) -> u32, words: &mut Vec<u64>) {
+    pub(super) fn load(
+        &self,
+        heights: &[f32],
+        k: usize,
+        number: impl Fn(usize) -> u32,
+        words: &mut Vec<u64>,
+    ) {
         let first = k * self.len;
         let cells = heights[first..first + self.len].iter().enumerate();
         words.clear();

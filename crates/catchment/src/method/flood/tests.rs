@@ -1,9 +1,9 @@
 //! Closed forms, and what the documentation says of the results.
 
 use super::*;
+use crate::acceptance::Warning;
 use crate::connector::Connector;
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
-use crate::acceptance::Warning;
 use crate::pose::{Dof, DofSet, Mount};
 use proptest::prelude::*;
 
@@ -85,7 +85,8 @@ fn line(heights: &[f32]) -> (Landscape, Alignment) {
 
 fn outcomes(heights: &[f32], depth_tolerance: f64) -> String {
     let (landscape, alignment) = line(heights);
-    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(depth_tolerance), &Exec::new()).unwrap();
+    let flooding =
+        flood(&landscape, &alignment, &Settings::with_tolerance(depth_tolerance), &Exec::new()).unwrap();
     flooding.acceptance.outcomes.iter().map(|o| o.name().chars().next().unwrap()).collect()
 }
 
@@ -199,27 +200,78 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, symmetry: u32) -> Pair {
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
-/// Exact values (rotation length 1) by quasi-static descent of 100 × 100 poses; flooding knows no rotation length and
-/// follows grid directions only. Its measured bias at 100 × 100 is part of what the room's opening says.
+/// Designs of tests/planar_sums.rs with their exact Sums at rotation length 1.
+const PLANAR: [(Family, f64, f64, f64); 5] = [
+    (Family::XFace, 1.0, 0.5, 3.853),
+    (Family::XFace, 0.5, -0.5, 1.953),
+    (Family::VFace, 1.0, 0.0, 2.391),
+    (Family::VFace, 0.5, -0.5, 1.25),
+    (Family::XFace, 2.0, 1.0, 3.707),
+];
+
+/// The measured bias at 100 × 100 is part of what the room's opening says, for both rules.
 #[test]
 fn the_bias_of_flooding_is_what_the_documentation_says() {
-    let cases = [
-        (Family::XFace, 1.0, 0.5, 3.853, 0.00..0.04),
-        (Family::XFace, 0.5, -0.5, 1.953, -0.26..-0.20),
-        (Family::VFace, 1.0, 0.0, 2.391, -0.02..0.02),
-        (Family::VFace, 0.5, -0.5, 1.276, -0.07..-0.03),
-        (Family::XFace, 2.0, 1.0, 3.707, 0.00..0.03),
-    ];
-    for (family, aspect_ratio, cor, exact, bias) in cases {
-        let pair = pair(family, aspect_ratio, cor, 1);
-        let settings = Settings::default();
-        for cells in [100, 101] {
-            let grid = Grid::over(&pair.alignment, |_| cells);
+    let measure = |(family, aspect_ratio, cor, exact): (Family, f64, f64, f64)| {
+        let mut pair = pair(family, aspect_ratio, cor, 1);
+        pair.alignment.rotation_length = 1.0;
+        let grid = Grid::over(&pair.alignment, |_| 100);
+        [Rule::Lowest, Rule::Steepest].map(|rule| {
+            let settings = Settings { rule, ..Settings::default() };
             let acceptance = accept(&pair, &grid, &settings, &Exec::new()).unwrap();
             assert!(!acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
             let sum = acceptance.counts()[0] as f64 * grid.cell_measure();
-            assert!(bias.contains(&(sum / exact - 1.0)), "{family:?} {aspect_ratio} {cor} {cells}: {sum}");
-        }
+            (1000.0 * (sum / exact - 1.0)).round() / 10.0
+        })
+    };
+    let expected = [[5.8, 4.5], [-5.7, -20.0], [0.4, 0.8], [-13.0, -7.4], [1.6, 1.3]];
+    assert_eq!(PLANAR.map(measure), expected);
+}
+
+/// Meyer's queue with its dams, on the same heights at the same tolerance.
+#[test]
+fn the_difference_from_meyers_flooding_is_what_the_documentation_says() {
+    let measure = |(family, aspect_ratio, cor, _)| {
+        let pair = pair(family, aspect_ratio, cor, 1);
+        let grid = Grid::over(&pair.alignment, |_| 100);
+        let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
+        let flooding = flood(&landscape, &pair.alignment, &Settings::default(), &Exec::new()).unwrap();
+        let around = meyer::neighbourhood::Neighbourhood::new(&grid.shape());
+        let targets = target::cells(&grid, &pair.alignment);
+        let (tolerance, rules) = (flooding.hierarchy.tolerance.depth, meyer::Rules::default());
+        let mut parts =
+            meyer::divide(&landscape.heights, &around, &targets, tolerance, rules, &Exec::new()).unwrap();
+        meyer::dams::assign(&landscape.heights, &around, &mut parts.labels);
+        let basin = |cell: usize| parts.merged.into[parts.labels[cell] as usize];
+        let mated = |cell: usize| basin(cell) == basin(targets[0]);
+        let different = flooding.acceptance.accepted().enumerate().filter(|(c, a)| *a != mated(*c)).count();
+        let share = 100.0 * different as f64 / grid.len() as f64;
+        let sum = (0..grid.len()).filter(|cell| mated(*cell)).count() as f64 * grid.cell_measure();
+        [share, sum].map(|v| (v * 1e3).round() / 1e3)
+    };
+    // Share of the cells in percent, and Meyer's Sum.
+    let expected = [[3.88, 3.942], [8.84, 1.474], [1.64, 2.403], [2.46, 1.206], [0.0, 3.766]];
+    assert_eq!(PLANAR.map(measure), expected);
+}
+
+/// The tolerance of the widest gap accepts what a tenth of the face's height accepts.
+#[test]
+fn the_tolerance_of_the_widest_gap_parts_pits_from_jams() {
+    let cases = [
+        (Family::VFace, 1.0, 0.0, 101),
+        (Family::VFace, 0.5, 0.0, 101),
+        (Family::XFace, 1.0, 0.5, 101),
+        (Family::SFace, 1.0, 0.0, 101),
+        (Family::Pyramid, 0.5, 0.5, 13),
+        (Family::Pyramid, 0.5, 0.0, 13),
+        (Family::XFace3d, 0.577, 0.5, 13),
+    ];
+    for (family, aspect_ratio, cor, cells) in cases {
+        let pair = pair(family, aspect_ratio, cor, 1);
+        let grid = Grid::over(&pair.alignment, |_| cells);
+        let count = |settings| accept(&pair, &grid, &settings, &Exec::new()).unwrap().counts()[0];
+        let tenth = Settings::with_tolerance(0.1 * aspect_ratio);
+        assert_eq!(count(Settings::default()), count(tenth), "{family:?} {aspect_ratio} {cor}");
     }
 }
 
@@ -233,7 +285,7 @@ fn five_axes_agree_between_odd_and_even_grids_and_a_quarter_turn_doubles_the_bas
     };
     // Rolls and pitches aside, yaw in ±90° holds one whole basin and two halves of its quarter turns.
     let (odd, even) = (share(9, 4), share(10, 4));
-    assert!((odd / even - 1.0).abs() < 0.03, "{odd} {even}");
+    assert!((odd / even - 1.0).abs() < 0.06, "{odd} {even}");
     assert!((share(10, 4) / share(10, 1) - 2.0).abs() < 0.05);
 }
 
@@ -243,7 +295,11 @@ fn threads_do_not_change_a_bit() {
     let grid = Grid::over(&pair.alignment, |_| 6);
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
-        accept(&pair, &grid, &Settings::default(), &exec).unwrap()
+        let landscape = Landscape::compute(&pair, &grid, &exec).unwrap();
+        [Rule::Lowest, Rule::Steepest].map(|rule| {
+            let settings = Settings { rule, ..Settings::default() };
+            flood(&landscape, &pair.alignment, &settings, &exec).unwrap()
+        })
     };
-    assert_eq!(with(1), with(3));
+    assert!(with(1) == with(3) && with(1) == with(8));
 }

@@ -3,7 +3,7 @@
 //! ```text
 //!   depths, log    ·   · ··  ·                   ·     ·            ·
 //!                 │          └────── widest ─────┘                  ╵ the mated pose's own
-//!               δ/16                      gap, τ in its middle
+//!               δ/8                       gap, τ in its middle
 //! ```
 //!
 //! The exact heights need no tolerance: without friction every minimum holds. What must be merged are the pits that
@@ -14,7 +14,7 @@
 //! - Logarithmic, because true depths differ by factors. On a linear scale the widest gap is the one below the
 //!   deepest minimum, and jams of a tenth of its depth would be merged.
 //! - It starts at δ at most: a deeper minimum is more than sampling can make.
-//! - It starts at δ/16 at least: pits come arbitrarily shallow, and the widest gap in their ratios would lie among them.
+//! - It starts at δ/8 at least: pits come arbitrarily shallow, and the widest gap in their ratios would lie among them.
 //! - It ends at the latest where the mated basin itself would run into a lower one.
 //!
 //! Within the gap no depth lies, so every tolerance in it gives the same basins; the one in its (geometric) middle is
@@ -49,7 +49,7 @@ pub enum Reason {
 }
 
 /// Pits shallower than this share of the height step are always merged.
-const NOISE: f64 = 1.0 / 16.0;
+const NOISE: f64 = 1.0 / 8.0;
 
 /// The tolerance in the widest gap. `staircase` is that of the mated basin, `height_step` as in
 /// [`Reason::WidestGap`].
@@ -136,16 +136,16 @@ mod tests {
         let tolerance = choice(&depths, &mated, 0.02).depth;
         assert!((tolerance - (0.01f64 * 0.11).sqrt()).abs() < 1e-15);
         // The gap below the mated pose is wider, but the jams are more than such a grid can make.
-        assert_eq!(gap(&[0.01, 0.02, 0.9], &[(0.0, 5)], 0.015), [0.01, 0.02]);
+        assert_eq!(gap(&[0.002, 0.01, 0.02, 0.9], &[(0.0, 5)], 0.015), [0.002, 0.01]);
         // On a coarser grid they are not.
         assert_eq!(gap(&[0.01, 0.02, 0.9], &[(0.0, 5)], 0.03), [0.02, 0.9]);
     }
 
     #[test]
     fn without_pits_it_lies_below_the_shallowest_jam() {
-        assert_eq!(gap(&[0.3, 0.4], &[(0.0, 5), (0.4, 0)], 0.16), [0.01, 0.3]);
-        assert_eq!(gap(&[], &[(0.0, 5)], 0.16), [0.01, 0.16]);
-        assert_eq!(gap(&[0.2], &[(0.0, 5), (0.2, 0)], 0.16), [0.01, 0.2]);
+        assert_eq!(gap(&[0.3, 0.4], &[(0.0, 5), (0.4, 0)], 0.16), [0.02, 0.3]);
+        assert_eq!(gap(&[], &[(0.0, 5)], 0.16), [0.02, 0.16]);
+        assert_eq!(gap(&[0.2], &[(0.0, 5), (0.2, 0)], 0.16), [0.02, 0.2]);
     }
 
     #[test]

@@ -175,7 +175,9 @@ fn joined_sets(minima: &[Minimum], joined: &[u32]) -> Sets {
     let mut sets = Sets::new(minima.len());
     let elder = |a: u32, b: u32| if is_elder(minima, b, a) { b } else { a };
     if let Some(lowest) = joined.iter().copied().reduce(elder) {
-        joined.iter().for_each(|basin| sets.put_under(*basin, lowest));
+        for basin in joined {
+            sets.put_under(*basin, lowest);
+        }
     }
     sets
 }

@@ -52,7 +52,11 @@ impl Depths {
 ///
 /// # Errors
 /// If the acceptance has no grid, or its landscape a single basin, which nothing can be merged with.
-pub fn basins(design: &Design, acceptance: &Acceptance, hierarchy: &Hierarchy) -> Result<Picture, FigureError> {
+pub fn basins(
+    design: &Design,
+    acceptance: &Acceptance,
+    hierarchy: &Hierarchy,
+) -> Result<Picture, FigureError> {
     let total = acceptance.outcomes.len() as f64;
     let depths = hierarchy.tree.links.iter().map(|link| link.depth).filter(|d| d.is_finite() && *d > 0.0);
     let (mut lo, mut hi) = depths.fold((f64::INFINITY, 0.0f64), |(lo, hi), d| (lo.min(d), hi.max(d)));
@@ -79,14 +83,12 @@ pub fn basins(design: &Design, acceptance: &Acceptance, hierarchy: &Hierarchy) -
         }
     };
     let accepted = 100.0 * acceptance.counts()[0] as f64 / total;
-    let story = format!(
-        "{} % accepted at a depth tolerance of {} {unit}{why}",
-        short(accepted),
-        shown(tolerance)
-    );
+    let story =
+        format!("{} % accepted at a depth tolerance of {} {unit}{why}", short(accepted), shown(tolerance));
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
     let (minima, merged) = (hierarchy.tree.minima.len(), hierarchy.basins.len());
-    let story = format!("{minima} minima, {merged} basins after merging; what lies left of the line is merged");
+    let story =
+        format!("{minima} minima, {merged} basins after merging; what lies left of the line is merged");
     svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
 
     if let Reason::WidestGap { between: [a, b], .. } = hierarchy.tolerance.reason {
@@ -96,11 +98,17 @@ pub fn basins(design: &Design, acceptance: &Acceptance, hierarchy: &Hierarchy) -
         }
     }
     let nothing = || Scale::new(String::new(), 0.0, 0.0, false);
-    staircase(&mut svg, hierarchy, total, &scale, &Frame {
-        rect: top,
-        x: nothing(),
-        y: Scale::new("accepted [%]".to_owned(), 0.0, highest(hierarchy, total), false),
-    });
+    staircase(
+        &mut svg,
+        hierarchy,
+        total,
+        &scale,
+        &Frame {
+            rect: top,
+            x: nothing(),
+            y: Scale::new("accepted [%]".to_owned(), 0.0, highest(hierarchy, total), false),
+        },
+    );
     dots(&mut svg, acceptance, hierarchy, &scale, bottom);
     for (x, value) in scale.ticks(units.lengths()) {
         for rect in [top, bottom] {
@@ -154,7 +162,10 @@ fn staircase(svg: &mut Svg, hierarchy: &Hierarchy, total: f64, scale: &Depths, f
     if !steps.is_empty() {
         let _ = write!(area, "L{} {}Z", n(right), n(frame.py(0.0)));
         svg.path(&area, &format!(r#"fill="{colour}" fill-opacity="0.25""#));
-        svg.path(&path, &format!(r#"fill="none" stroke="{colour}" stroke-width="2.2" stroke-linejoin="round""#));
+        svg.path(
+            &path,
+            &format!(r#"fill="none" stroke="{colour}" stroke-width="2.2" stroke-linejoin="round""#),
+        );
     }
     frame.draw(svg);
 }
@@ -163,7 +174,9 @@ fn staircase(svg: &mut Svg, hierarchy: &Hierarchy, total: f64, scale: &Depths, f
 fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &Depths, rect: Rect) {
     let total = acceptance.outcomes.len() as f64;
     // From one cell to all of them.
-    let py = |share: f64| rect.y + rect.h * (1.0 - 0.06 - 0.88 * (share * total).max(1.0).ln() / total.ln().max(1.0));
+    let py = |share: f64| {
+        rect.y + rect.h * (1.0 - 0.06 - 0.88 * (share * total).max(1.0).ln() / total.ln().max(1.0))
+    };
     let mut tick = 1.0;
     while tick * total >= 1.0 {
         let y = py(tick);
@@ -176,7 +189,8 @@ fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &D
     let mut minima: Vec<_> = hierarchy.tree.minima.iter().filter(|m| m.depth > 0.0).collect();
     minima.sort_by_key(|m| m.cells);
     for minimum in &minima[minima.len().saturating_sub(DOTS)..] {
-        let x = if minimum.depth.is_finite() { scale.px(minimum.depth) } else { scale.left + scale.width + 17.0 };
+        let x =
+            if minimum.depth.is_finite() { scale.px(minimum.depth) } else { scale.left + scale.width + 17.0 };
         let fill = acceptance.outcomes.get(minimum.cell).copied().unwrap_or(Outcome::Undecided);
         let kept = minimum.depth >= hierarchy.tolerance.depth;
         svg.circle([x, py(minimum.cells as f64 / total)], if kept { 5.0 } else { 3.5 }, &dot(fill, kept));
@@ -226,6 +240,9 @@ mod tests {
     fn a_single_basin_has_nothing_to_show() {
         let (design, mut flooding) = flooded();
         flooding.hierarchy.tree.links.clear();
-        assert!(matches!(basins(&design, &flooding.acceptance, &flooding.hierarchy), Err(FigureError::Empty { .. })));
+        assert!(matches!(
+            basins(&design, &flooding.acceptance, &flooding.hierarchy),
+            Err(FigureError::Empty { .. })
+        ));
     }
 }

@@ -54,7 +54,11 @@ pub(super) fn lines(text: &mut String, basins: &BasinsReport, report: &Report) {
     let mut steps: Vec<String> = Vec::new();
     for step in basins.staircase.iter().take(STEPS) {
         let share = if step.cells == 0 { "nothing".to_owned() } else { percent(step.fraction) };
-        steps.push(if step.above == 0.0 { share } else { format!("{share} above {}", significant(step.above)) });
+        steps.push(if step.above == 0.0 {
+            share
+        } else {
+            format!("{share} above {}", significant(step.above))
+        });
     }
     if basins.staircase.len() > STEPS {
         steps.push("…".to_owned());
@@ -66,6 +70,7 @@ pub(super) fn lines(text: &mut String, basins: &BasinsReport, report: &Report) {
 
 #[cfg(test)]
 mod tests {
+    use crate::exec::Exec;
     use crate::method::flood::Flooding;
     use crate::report::schema::basins::tests::flooded;
     use crate::report::{Report, table};
@@ -73,7 +78,7 @@ mod tests {
     #[test]
     fn basins_and_tolerance_are_told_in_eighty_columns() {
         let (design, Flooding { acceptance, hierarchy }) = flooded();
-        let report = Report::new(&design, &acceptance, serde_json::Value::Null, None).unwrap();
+        let report = Report::new(&design, &acceptance, serde_json::Value::Null, None, &Exec::new()).unwrap();
         let text = table(&report.with_basins(&acceptance, &hierarchy));
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
         for word in ["aligned", "no contact", "no depth lies between", "accepted by tolerance"] {
