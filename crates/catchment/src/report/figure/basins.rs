@@ -79,7 +79,7 @@ pub fn basins(
     let why = match hierarchy.tolerance.reason {
         Reason::Given => String::new(),
         Reason::WidestGap { between: [a, b], .. } => {
-            format!(", in the gap of the depths from {} to {}", shown(a), shown(b))
+            format!(", in the gap of the depths from {} to {} {unit}", shown(a), shown(b))
         }
     };
     let accepted = 100.0 * acceptance.counts()[0] as f64 / total;
