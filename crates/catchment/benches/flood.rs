@@ -67,7 +67,7 @@ impl Smooth {
         let mut line = vec![0.0f32; self.cells];
         for axis in 0..self.axes {
             let stride = self.cells.pow(axis as u32);
-            for first in (0..heights.len()).filter(|at| at / stride % self.cells == 0) {
+            for first in (0..heights.len()).filter(|at| (at / stride).is_multiple_of(self.cells)) {
                 for _ in 0..3 {
                     for (k, entry) in line.iter_mut().enumerate() {
                         let near = |j: usize| heights[first + (k + j) % self.cells * stride];
@@ -129,10 +129,8 @@ fn against_scikit_image(smooth: Smooth) -> String {
                 let [neighbours, basins, seconds] = fields[..] else { continue };
                 let seconds: f64 = seconds.parse().expect("seconds");
                 let times = seconds / fastest;
-                text += &format!(
-                    "\n  scikit-image {version}, connectivity {neighbours}: {seconds:.3} s, {basins} basins: \
-                     {times:.1} times as long"
-                );
+                let what = format!("scikit-image {version}, connectivity {neighbours}");
+                text = format!("{text}\n  {what}: {seconds:.3} s, {basins} basins: {times:.1} times as long");
             }
             text
         }

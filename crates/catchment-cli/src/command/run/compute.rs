@@ -120,7 +120,8 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             let landscape = Landscape::compute(job.pair, &job.grid, exec)?;
             let flooding = flood::flood(&landscape, &job.design.alignment, &job.flood_settings(), exec)?;
             let used = Some(flooding.hierarchy.tolerance.depth);
-            settings = serde_json::to_value(flood::Settings { depth_tolerance: used, ..job.flood_settings() })?;
+            settings =
+                serde_json::to_value(flood::Settings { depth_tolerance: used, ..job.flood_settings() })?;
             basins = Some(flooding.hierarchy);
             (flooding.acceptance, Some(landscape))
         }

@@ -200,7 +200,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, symmetry: u32) -> Pair {
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
-/// Designs of tests/planar_sums.rs with their exact Sums at rotation length 1.
+/// Designs of `tests/planar_sums.rs` with their exact Sums at rotation length 1.
 const PLANAR: [(Family, f64, f64, f64); 5] = [
     (Family::XFace, 1.0, 0.5, 3.853),
     (Family::XFace, 0.5, -0.5, 1.953),
