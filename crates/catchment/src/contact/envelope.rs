@@ -219,7 +219,7 @@ struct Plane {
 impl Plane {
     fn at(self, k: usize) -> f64 {
         // A row has fewer than 2³² cells; the narrower conversion is a single instruction for several cells at once.
-        self.first + self.step * f64::from(k as u32 as i32)
+        self.first + self.step * f64::from((k as u32).cast_signed())
     }
 }
 

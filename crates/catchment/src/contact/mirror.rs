@@ -35,10 +35,8 @@ impl Mirror {
     /// Whether an error changes its sign.
     pub const fn flips(self, dof: Dof) -> bool {
         match dof {
-            Dof::X => self.x,
-            Dof::Y => self.y,
-            Dof::Roll => self.y,
-            Dof::Pitch => self.x,
+            Dof::X | Dof::Pitch => self.x,
+            Dof::Y | Dof::Roll => self.y,
             Dof::Yaw => self.x != self.y,
         }
     }

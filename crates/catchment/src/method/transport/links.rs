@@ -241,9 +241,9 @@ impl<'a> Links<'a> {
         let slab = fold.slab() as u32;
         let mut lateral = cell % slab;
         let mut at = [0; 5];
-        for axis in 0..self.lateral {
-            at[axis] = lateral % self.cells[axis];
-            lateral /= self.cells[axis];
+        for (k, cells) in at[..self.lateral].iter_mut().zip(&self.cells) {
+            *k = lateral % cells;
+            lateral /= cells;
         }
         let rotation = fold.rotation((cell / slab) as usize) as u32;
         self.turn_to(rotation, &mut at);
@@ -252,9 +252,9 @@ impl<'a> Links<'a> {
 
     /// Writes the numbers of a rotation along its axes.
     fn turn_to(&self, mut rotation: u32, at: &mut [u32; 5]) {
-        for axis in self.lateral..self.axes {
-            at[axis] = rotation % self.cells[axis];
-            rotation /= self.cells[axis];
+        for (k, cells) in at[..self.axes].iter_mut().zip(&self.cells).skip(self.lateral) {
+            *k = rotation % cells;
+            rotation /= cells;
         }
     }
 
