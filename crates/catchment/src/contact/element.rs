@@ -9,9 +9,10 @@
 //!
 //! valid while the foot of the contact lies on both features.
 
+use super::Contact;
 use super::shape::Shape;
 use crate::contact::brute::SEAM;
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Which features meet; indices into the fixed and the moving shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,12 +25,58 @@ pub(super) enum Features {
     EdgeEdge { fixed: [u32; 2], moving: [u32; 2] },
 }
 
-/// A possible contact at one rotation.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Element {
+/// Two features that meet, named: the same two at another pose are asked for by [`Pair::contact`](super::Pair::contact).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Meeting {
     /// Index of the fixed and of the moving shape.
     pub(super) shapes: [u32; 2],
     pub(super) features: Features,
+}
+
+impl Meeting {
+    /// The contact of the two features, borders aside, with the COR at `c` and the moving half at `rotation`; edges keep
+    /// the sense of `before`, and its normal where they have become parallel.
+    pub(super) fn at(
+        &self,
+        before: &Contact,
+        fixed: &Shape,
+        moving: &Shape,
+        rotation: &DMat3,
+        c: DVec3,
+    ) -> Contact {
+        match self.features {
+            Features::FacetCorner { facet, vertex } => {
+                let normal = before.normal;
+                let point = c + *rotation * moving.at(vertex);
+                let gap = normal.dot(point) - fixed.levels[facet as usize];
+                Contact { gap, normal, point: point - normal * gap }
+            }
+            Features::CornerFacet { vertex, facet } => {
+                let facet = facet as usize;
+                let normal = *rotation * -moving.facets[facet].normal;
+                let point = fixed.at(vertex);
+                let gap = normal.dot(c - point) - moving.levels[facet];
+                Contact { gap, normal, point }
+            }
+            Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
+                let (a, p) = (fixed.at(a), c + *rotation * moving.at(p));
+                let (u, w) = (fixed.at(b) - a, c + *rotation * moving.at(q) - p);
+                let across = u.cross(w);
+                let normal = across
+                    .try_normalize()
+                    .map_or(before.normal, |n| if n.dot(before.normal) < 0.0 { -n } else { n });
+                let along = (p - a).cross(w).dot(across) / across.length_squared();
+                let along = if along.is_finite() { along } else { 0.0 };
+                Contact { gap: normal.dot(p - a), normal, point: a + u * along }
+            }
+        }
+    }
+}
+
+/// A possible contact at one rotation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Element {
+    pub(super) meeting: Meeting,
     /// Unit normal, from fixed to moving.
     pub(super) normal: DVec3,
     /// `gap = normal·c + offset`.
@@ -47,12 +94,12 @@ impl Element {
         -(self.normal.truncate().dot(lateral) + self.offset) / self.normal.z
     }
 
-    /// The point of the fixed half where this element touches (or would, across its gap) with the COR at `c`;
-    /// `None` when the foot misses one of the features.
-    pub(super) fn foot(&self, fixed: &Shape, moving: &Shape, c: DVec3) -> Option<DVec3> {
-        match self.features {
+    /// The point of the fixed half where this element touches (or would, across its gap) with the COR at `c` and the
+    /// moving half at `rotation`; `None` when the foot misses one of the features.
+    pub(super) fn foot(&self, fixed: &Shape, moving: &Shape, rotation: &DMat3, c: DVec3) -> Option<DVec3> {
+        match self.meeting.features {
             Features::FacetCorner { facet, vertex } => {
-                let point = c + moving.at(vertex);
+                let point = c + *rotation * moving.at(vertex);
                 let foot = point - self.normal * self.gap(c);
                 on_facet(fixed, facet, foot).then_some(foot)
             }
@@ -60,56 +107,59 @@ impl Element {
                 let foot = fixed.at(vertex);
                 // Seen from the COR, across the gap.
                 let seen = foot + self.normal * self.gap(c) - c;
-                on_facet(moving, facet, seen).then_some(foot)
+                on_facet(moving, facet, rotation.transpose() * seen).then_some(foot)
             }
             Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
-                let (a, p) = (fixed.at(a), moving.at(p));
-                let (u, w) = (fixed.at(b) - a, moving.at(q) - p);
+                let (a, p) = (fixed.at(a), *rotation * moving.at(p));
+                let (u, w) = (fixed.at(b) - a, *rotation * moving.at(q) - p);
                 let across = u.cross(w);
                 let d = c + p - a;
                 let scale = 1.0 / across.length_squared();
                 let s = d.cross(w).dot(across) * scale;
                 let t = d.cross(u).dot(across) * scale;
                 let on = |k: f64, edge: DVec3| {
-                    let slack = SEAM / edge.length();
-                    k >= -slack && k <= 1.0 + slack
+                    let beyond = (k - 1.0).max(-k);
+                    beyond <= 0.0 || beyond * beyond * edge.length_squared() <= SEAM * SEAM
                 };
                 (on(s, u) && on(t, w)).then(|| a + u * s)
             }
         }
     }
 
-    /// The touching point with the COR at `c`, where the element is known to touch: affine in c.
-    pub(super) fn touch(&self, fixed: &Shape, moving: &Shape, c: DVec3) -> DVec3 {
-        match self.features {
-            Features::FacetCorner { vertex, .. } => c + moving.at(vertex),
+    /// The touching point with the COR at `c`, where the element is known to touch: affine in c; `turned` are the
+    /// moving vertices at the element's rotation.
+    pub(super) fn touch(&self, fixed: &Shape, turned: &[DVec3], c: DVec3) -> DVec3 {
+        match self.meeting.features {
+            Features::FacetCorner { vertex, .. } => c + turned[vertex as usize],
             Features::CornerFacet { vertex, .. } => fixed.at(vertex),
             Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
-                let (a, p) = (fixed.at(a), moving.at(p));
-                let (u, w) = (fixed.at(b) - a, moving.at(q) - p);
+                let (a, p) = (fixed.at(a), turned[p as usize]);
+                let (u, w) = (fixed.at(b) - a, turned[q as usize] - p);
                 let across = u.cross(w);
                 a + u * ((c + p - a).cross(w).dot(across) / across.length_squared())
             }
         }
     }
 
-    /// The lateral COR positions for which the element is valid, as the corners of a convex polygon.
-    pub(super) fn footprint(&self, fixed: &Shape, moving: &Shape, out: &mut Vec<DVec2>) {
+    /// The lateral COR positions for which the element is valid, as the corners of a convex polygon; `turned` are the
+    /// moving vertices at the element's rotation.
+    pub(super) fn footprint(&self, fixed: &Shape, moving: &Shape, turned: &[DVec3], out: &mut Vec<DVec2>) {
         out.clear();
-        match self.features {
+        let turned = |k: u32| turned[k as usize];
+        match self.meeting.features {
             Features::FacetCorner { facet, vertex } => {
-                let v = moving.at(vertex);
+                let v = turned(vertex);
                 let facet = &fixed.facets[facet as usize];
                 out.extend(facet.corners.iter().map(|&k| (fixed.at(k) - v).truncate()));
             }
             Features::CornerFacet { vertex, facet } => {
                 let v = fixed.at(vertex);
                 let facet = &moving.facets[facet as usize];
-                out.extend(facet.corners.iter().map(|&k| (v - moving.at(k)).truncate()));
+                out.extend(facet.corners.iter().map(|&k| (v - turned(k)).truncate()));
             }
             Features::EdgeEdge { fixed: f, moving: m } => {
                 let [a, b] = f.map(|k| fixed.at(k).truncate());
-                let [p, q] = m.map(|k| moving.at(k).truncate());
+                let [p, q] = m.map(|k| turned(k).truncate());
                 out.extend([a - p, b - p, b - q, a - q]);
             }
         }
@@ -124,7 +174,8 @@ fn on_facet(shape: &Shape, facet: u32, point: DVec3) -> bool {
     facet.corners.iter().all(|&k| {
         let b = shape.at(k);
         let along = b - a;
-        let inside = facet.normal.dot(along.cross(point - a)) >= -SEAM * along.length();
+        let left = facet.normal.dot(along.cross(point - a));
+        let inside = left >= 0.0 || left * left <= SEAM * SEAM * along.length_squared();
         a = b;
         inside
     })

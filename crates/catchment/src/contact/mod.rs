@@ -12,17 +12,23 @@
 //! down in plain loops and judges every fast path.
 
 pub mod brute;
+mod candidates;
 mod element;
 mod envelope;
 pub mod mated;
 mod mirror;
+mod nearby;
+mod plan;
 mod raster;
 mod shape;
 #[cfg(test)]
 mod tests;
+mod turned;
 
+pub use element::Meeting;
 pub use envelope::Envelope;
 pub use mirror::Mirror;
+pub use nearby::Nearby;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;
@@ -64,6 +70,18 @@ impl Pair {
     /// z of the COR at first contact, in D; `None` where the halves pass each other by.
     pub fn height(&self, pose: &CorPose) -> Option<f64> {
         self.at_rotation(pose.rotation).height(pose.lateral)
+    }
+
+    /// The same two features as in `before`, seen as planes and lines without borders, at another pose.
+    pub fn contact(&self, before: &Contact, meeting: &Meeting, rotation: &DMat3, position: DVec3) -> Contact {
+        let [fixed, moving] = meeting.shapes.map(|s| s as usize);
+        meeting.at(before, &self.fixed_shapes[fixed], &self.moving_shapes[moving], rotation, position)
+    }
+
+    /// The pair near a pose that will move on by small steps, asked with up to this `slack` and `reach`: see
+    /// [`Nearby::turn`].
+    pub fn nearby(&self, slack: f64, reach: f64) -> Nearby<'_> {
+        Nearby::new(self, slack, reach)
     }
 
     /// The pair at one rotation: heights for any lateral position.

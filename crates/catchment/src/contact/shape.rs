@@ -11,8 +11,9 @@
 //!
 //! (for the fixed half; ≥ for the moving one). All other contacts are dominated by a supported one.
 
+use super::plan::{Plan, PlanTree};
 use crate::connector::{Facet, Surface};
-use glam::{DMat3, DVec2, DVec3};
+use glam::DVec3;
 use std::ops::Range;
 
 /// A corner that may touch.
@@ -29,42 +30,18 @@ pub(super) struct Corner {
 pub(super) struct Side {
     /// Its two ends.
     pub(super) ends: [u32; 2],
-    /// Its two facets.
-    pub(super) facets: [u32; 2],
     /// Unit vector from its first end to its second.
     pub(super) along: DVec3,
-    /// Unit vectors from the edge into its two facets, perpendicular to it.
-    pub(super) into: [DVec3; 2],
-}
-
-/// Bounds of a feature in plan view.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Plan {
-    pub(super) low: DVec2,
-    pub(super) high: DVec2,
-}
-
-impl Plan {
-    fn around(points: impl Iterator<Item = DVec3>) -> Self {
-        let nothing = Self { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY };
-        points.map(DVec3::truncate).fold(nothing, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
-    }
-
-    /// Whether the other, moved by `by`, comes within `reach`.
-    pub(super) fn meets(&self, other: &Self, by: DVec2, reach: f64) -> bool {
-        other.low.x + by.x <= self.high.x + reach
-            && other.high.x + by.x + reach >= self.low.x
-            && other.low.y + by.y <= self.high.y + reach
-            && other.high.y + by.y + reach >= self.low.y
-    }
+    /// Outward normals of the facets to its left and right, seen from outside.
+    pub(super) normals: [DVec3; 2],
 }
 
 /// Plan views of all features of a shape.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Plans {
-    pub(super) facets: Vec<Plan>,
-    pub(super) corners: Vec<Plan>,
-    pub(super) sides: Vec<Plan>,
+    pub(super) facets: PlanTree,
+    pub(super) corners: PlanTree,
+    pub(super) sides: PlanTree,
 }
 
 /// A surface with its touching features.
@@ -72,6 +49,8 @@ pub(super) struct Plans {
 pub(super) struct Shape {
     pub(super) vertices: Vec<DVec3>,
     pub(super) facets: Vec<Facet>,
+    /// `normal·p` for the points p of each facet.
+    pub(super) levels: Vec<f64>,
     pub(super) corners: Vec<Corner>,
     /// Unit vectors from the corners to their neighbours along edges.
     pub(super) spokes: Vec<DVec3>,
@@ -96,10 +75,8 @@ impl Shape {
         for edge in &surface.edges {
             let [a, b] = edge.ends;
             let along = (at(b) - at(a)).normalize_or_zero();
-            // Counter-clockwise seen from outside, the inside of a facet lies to the left of its edges.
-            let left = surface.facets[edge.facets[0] as usize].normal.cross(along);
-            let right = along.cross(surface.facets[edge.facets[1] as usize].normal);
-            sides.push(Side { ends: edge.ends, facets: edge.facets, along, into: [left, right] });
+            let normals = edge.facets.map(|f| surface.facets[f as usize].normal);
+            sides.push(Side { ends: edge.ends, along, normals });
             pointed[a as usize] = true;
             pointed[b as usize] = true;
         }
@@ -111,46 +88,21 @@ impl Shape {
             spokes.extend(neighbors.iter().map(|&w| (at(w) - from).normalize_or_zero()));
             corners.push(Corner { vertex: v as u32, spokes: first..spokes.len() as u32 });
         }
-        let mut shape = Self {
+        let around = |ids: &[u32]| Plan::around(ids.iter().map(|&k| at(k).truncate()));
+        let plans = Plans {
+            facets: PlanTree::over(surface.facets.iter().map(|f| around(&f.corners))),
+            corners: PlanTree::over(corners.iter().map(|c: &Corner| around(&[c.vertex]))),
+            sides: PlanTree::over(sides.iter().map(|s: &Side| around(&s.ends))),
+        };
+        Self {
             vertices: surface.vertices.clone(),
+            levels: surface.facets.iter().map(|f| f.normal.dot(at(f.corners[0]))).collect(),
             facets: surface.facets.clone(),
             corners,
             spokes,
             sides,
             convex: surface.convex,
-            plans: Plans::default(),
-        };
-        shape.draw_plans();
-        shape
-    }
-
-    /// Brings the plan views up to date.
-    pub(super) fn draw_plans(&mut self) {
-        let mut plans = std::mem::take(&mut self.plans);
-        let around = |ids: &[u32]| Plan::around(ids.iter().map(|&k| self.at(k)));
-        plans.facets.clear();
-        plans.facets.extend(self.facets.iter().map(|f| around(&f.corners)));
-        plans.corners.clear();
-        plans.corners.extend(self.corners.iter().map(|c| around(&[c.vertex])));
-        plans.sides.clear();
-        plans.sides.extend(self.sides.iter().map(|s| around(&s.ends)));
-        self.plans = plans;
-    }
-
-    /// Turns the shape about its origin, writing into `out` (same topology) without allocating.
-    pub(super) fn rotate_into(&self, rotation: &DMat3, out: &mut Self) {
-        for (o, v) in out.vertices.iter_mut().zip(&self.vertices) {
-            *o = *rotation * *v;
-        }
-        for (o, f) in out.facets.iter_mut().zip(&self.facets) {
-            o.normal = *rotation * f.normal;
-        }
-        for (o, s) in out.sides.iter_mut().zip(&self.sides) {
-            o.along = *rotation * s.along;
-            o.into = [*rotation * s.into[0], *rotation * s.into[1]];
-        }
-        for (o, s) in out.spokes.iter_mut().zip(&self.spokes) {
-            *o = *rotation * *s;
+            plans,
         }
     }
 
@@ -199,11 +151,5 @@ impl Shape {
     /// Whether a point lies strictly inside a convex shape, by more than `margin`.
     pub(super) fn contains(&self, point: DVec3, margin: f64) -> bool {
         self.convex && self.facets.iter().all(|f| f.normal.dot(point - self.at(f.corners[0])) < -margin)
-    }
-
-    /// Largest z-component of a normal that this side supports, over its two facets.
-    pub(super) fn steepest(&self, side: &Side) -> (f64, f64) {
-        let [a, b] = side.facets.map(|f| self.facets[f as usize].normal.z);
-        (a.min(b), a.max(b))
     }
 }

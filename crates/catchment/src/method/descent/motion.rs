@@ -5,10 +5,10 @@
 //! first contact, so that errors of the linearisation never build up. A step that the height contradicts
 //! is halved.
 
-use super::projection::{MAX_COORDINATES, Vector, closest_allowed, dot};
+use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
-use crate::contact::{Contact, Envelope, Pair};
+use crate::contact::{Contact, Meeting, Nearby, Pair};
 use crate::pose::{CorPose, Dof, PoseError, face_from_cor, rotation, rotation_angle};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -19,6 +19,8 @@ struct State {
     /// COR in the world frame.
     cor: DVec3,
     rotation: DMat3,
+    /// The same rotation where all three are free.
+    spin: DQuat,
     /// (roll, pitch, yaw) where some rotation is locked; unused when all three are free.
     angles: [f64; 3],
 }
@@ -37,6 +39,8 @@ struct Pace {
     step: f64,
     /// How hard the force pushes, in steps.
     reach: f64,
+    /// How far it reached: the length of the last displacement before it was cut to a step, in steps.
+    share: f64,
 }
 
 /// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
@@ -62,6 +66,15 @@ const WALL_MARGIN: f64 = 1e-6;
 /// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
 const OVERLAP: f64 = 1e-9;
 
+/// Features that fail to support by more than this angle are not looked for, however long the step: radians.
+const WIDEST: f64 = 0.2;
+
+/// A motion that turns by less than `STRAIGHT` (sine) from the start of a step to its middle is followed by longer
+/// steps, up to `LONG` times; one that turns by more than `BENT` is not.
+const STRAIGHT: f64 = 0.01;
+const BENT: f64 = 0.04;
+const LONG: f64 = 2.0;
+
 /// Rounding of a height, in D.
 const ROUNDING: f64 = 1e-12;
 /// A mean slope below this over a whole step's length, or over so many steps, is rest.
@@ -74,12 +87,13 @@ const SAME: f64 = 1e-12;
 pub(super) struct Motion<'a> {
     pair: &'a Pair,
     settings: &'a Settings,
-    envelope: Envelope<'a>,
-    contacts: Vec<Contact>,
+    nearby: Nearby<'a>,
+    contacts: Vec<(Contact, Meeting)>,
     /// Scratch for [`Motion::cut`].
-    carrying: Vec<Contact>,
+    carrying: Vec<(Contact, Meeting)>,
     rows: Vec<Vector>,
     gaps: Vec<f64>,
+    projection: Projection,
     /// Largest distance of a moving corner from the COR.
     radius: f64,
     /// All three rotations free: they live on SO(3), not in Euler angles.
@@ -90,14 +104,16 @@ impl<'a> Motion<'a> {
     pub(super) fn new(pair: &'a Pair, settings: &'a Settings) -> Self {
         let radius =
             pair.moving.surfaces.iter().flat_map(|s| &s.vertices).map(|v| v.length()).fold(0.0, f64::max);
+        let (slack, near) = horizon(settings.step, radius, pair.alignment.rotation_length);
         Self {
             pair,
             settings,
-            envelope: pair.at_rotation(DMat3::IDENTITY),
+            nearby: pair.nearby(slack, near),
             contacts: Vec::new(),
             carrying: Vec::new(),
             rows: Vec::new(),
             gaps: Vec::new(),
+            projection: Projection::default(),
             radius,
             spherical: pair.alignment.free.rotations() == 3,
         }
@@ -112,12 +128,16 @@ impl<'a> Motion<'a> {
     ) -> (Outcome, PoseError) {
         let alignment = &self.pair.alignment;
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
-        let mut pace = Pace { step: self.settings.step, reach: 1.0 };
+        let mut pace = Pace { step: self.settings.step, reach: 1.0, share: 1.0 };
+        self.nearby.leave();
         self.turn(&start.rotation, start.lateral, pace.step);
-        let Some(z) = self.envelope.height(start.lateral) else { return (Outcome::Missed, *error) };
+        let (Some(z), _) = self.nearby.height_below(start.lateral, f64::INFINITY) else {
+            return (Outcome::Missed, *error);
+        };
         let mut state = State {
             cor: start.lateral.extend(z),
             rotation: start.rotation,
+            spin: DQuat::from_mat3(&start.rotation),
             angles: [error.roll, error.pitch, error.yaw],
         };
         let mut travelled = 0.0;
@@ -153,52 +173,70 @@ impl<'a> Motion<'a> {
         let (mut u, mut length) = self.displacement(pace);
         let mut fresh = true;
         let mut cuts = 0;
+        let mut bend = 0.0;
         loop {
             if length <= REST * pace.step && pace.reach >= MAX_REACH {
                 return Advance::Ended(Outcome::Jammed, *state);
             }
-            if fresh && self.look_ahead(state, pace, &u) {
+            let mut halve = false;
+            if fresh {
+                let before = u;
+                self.look_ahead(state, &u);
                 (u, length) = self.displacement(pace);
+                bend = deflection(&before, &u);
+                halve = pace.step > longest && bend > BENT;
             }
-            let next = self.moved(state, &u);
-            self.turn(&next.rotation, next.cor.truncate(), pace.step);
-            let ceiling = state.cor.z.max(next.cor.z) + longest;
-            let (below, covered) = self.envelope.height_below(next.cor.truncate(), ceiling);
-            let z = below.unwrap_or(next.cor.z);
-            let landed = State { cor: next.cor.truncate().extend(z), ..next };
-            let blocked = covered && self.envelope.is_pierced(landed.cor);
-            if below.is_none() && !blocked {
-                return Advance::Ended(Outcome::Missed, next);
-            }
-            let rise = z - next.cor.z;
-            let allowed = self.settings.surprise * pace.step;
-            let climbs = z > state.cor.z + ROUNDING;
-            let halve = if blocked {
-                if pace.step <= longest * SMALLEST_SHARE {
-                    // A wall that no contact announced: the motion cannot be followed further.
-                    return Advance::Ended(Outcome::Undecided, *state);
-                }
-                true
-            } else if rise > allowed || climbs {
-                // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
-                if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
-                    cuts += 1;
-                    fresh = false;
-                    (u, length) = self.displacement(pace);
-                    continue;
-                }
-                if climbs && pace.step <= longest * REST_SHARE && -u[2] <= GENTLE * length {
-                    // The bottom of a smooth hollow, within a step.
-                    return Advance::Ended(Outcome::Jammed, *state);
-                }
-                pace.step > longest * SMALLEST_SHARE
-            } else {
-                // Falling off an edge: come closer to it before letting go.
-                rise < -FALL * allowed && pace.step > longest * COARSE_SHARE
-            };
             if !halve {
-                pace.step = (pace.step * 2.0).min(longest);
-                return Advance::Moved(landed, length);
+                let next = self.moved(state, &u);
+                self.turn(&next.rotation, next.cor.truncate(), pace.step);
+                let ceiling = state.cor.z.max(next.cor.z) + longest;
+                let (below, covered) = self.nearby.height_below(next.cor.truncate(), ceiling);
+                let z = below.unwrap_or(next.cor.z);
+                let landed = State { cor: next.cor.truncate().extend(z), ..next };
+                let blocked = covered && self.nearby.is_pierced(landed.cor);
+                if below.is_none() && !blocked {
+                    return Advance::Ended(Outcome::Missed, next);
+                }
+                let rise = z - next.cor.z;
+                let allowed = self.settings.surprise * pace.step.min(longest);
+                let climbs = z > state.cor.z + ROUNDING;
+                halve = if blocked {
+                    // A wall that no contact announced is one more contact, if it was not met before.
+                    if cuts < MAX_CUTS && self.meet(&landed, pace.step, &u) {
+                        cuts += 1;
+                        fresh = false;
+                        (u, length) = self.displacement(pace);
+                        continue;
+                    }
+                    if pace.step <= longest * SMALLEST_SHARE {
+                        // The motion cannot be followed further.
+                        return Advance::Ended(Outcome::Undecided, *state);
+                    }
+                    true
+                } else if pace.step > longest && (rise.abs() > allowed || climbs) {
+                    true
+                } else if rise > allowed || climbs {
+                    // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
+                    if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
+                        cuts += 1;
+                        fresh = false;
+                        (u, length) = self.displacement(pace);
+                        continue;
+                    }
+                    if climbs && pace.step <= longest * REST_SHARE && -u[2] <= GENTLE * length {
+                        // The bottom of a smooth hollow, within a step.
+                        return Advance::Ended(Outcome::Jammed, *state);
+                    }
+                    pace.step > longest * SMALLEST_SHARE
+                } else {
+                    // Falling off an edge: come closer to it before letting go.
+                    rise < -FALL * allowed && pace.step > longest * COARSE_SHARE
+                };
+                if !halve {
+                    let most = if bend > STRAIGHT { pace.step.max(longest) } else { longest * LONG };
+                    pace.step = (pace.step * 2.0).min(most);
+                    return Advance::Moved(landed, length);
+                }
             }
             pace.step *= 0.5;
             self.turn(&state.rotation, state.cor.truncate(), pace.step);
@@ -209,52 +247,47 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Replaces the contacts at the start of a step by those halfway along `u`, seen from the start: the midpoint
-    /// rule, second order where contacts bend. `false`, with nothing replaced, where contacts change on the way.
-    fn look_ahead(&mut self, state: &State, pace: &Pace, u: &Vector) -> bool {
-        let mut half = u.map(|x| 0.5 * x);
-        let mut middle = self.moved(state, &half);
-        self.turn(&middle.rotation, middle.cor.truncate(), pace.step);
-        let ceiling = state.cor.z + self.settings.step;
-        let (Some(z), _) = self.envelope.height_below(middle.cor.truncate(), ceiling) else { return false };
-        let rise = z - middle.cor.z;
-        if rise.abs() > self.settings.surprise * pace.step {
-            return false;
+    /// Replaces the rows of the contacts at the start of a step by those halfway along `u`, seen from the start: the
+    /// midpoint rule, second order where contacts bend.
+    fn look_ahead(&mut self, state: &State, u: &Vector) {
+        let half = u.map(|x| 0.5 * x);
+        let middle = self.moved(state, &half);
+        let axes = self.axes(&middle);
+        self.rows.clear();
+        self.gaps.clear();
+        let contacts = std::mem::take(&mut self.contacts);
+        for (before, meeting) in &contacts {
+            let contact = self.pair.contact(before, meeting, &middle.rotation, middle.cor);
+            let row = self.row(&contact, &middle, &axes);
+            let gap = contact.gap - dot(&row, &half);
+            let clear = margin(&contact);
+            self.learn(row, if clear > 0.0 { gap - clear } else { gap.max(0.0) });
         }
-        half[2] += rise;
-        middle.cor.z = z;
-        self.gather(&middle, pace.step);
-        for (gap, row) in self.gaps.iter_mut().zip(&self.rows) {
-            *gap -= dot(row, &half);
-        }
-        true
+        self.contacts = contacts;
     }
 
-    /// Gaps looked for: a step moves a point of the body by about as much. What it meets beyond them is cut off or halved.
-    fn near(&self, step: f64) -> f64 {
-        step * (1.0 + self.radius / self.pair.alignment.rotation_length)
+    fn horizon(&self, step: f64) -> (f64, f64) {
+        horizon(step, self.radius, self.pair.alignment.rotation_length)
     }
 
-    /// Prepares the envelope for questions at `lateral`, for a step of length `step`.
+    /// Prepares for questions at `lateral`, for a step of length `step`.
     fn turn(&mut self, rotation: &DMat3, lateral: DVec2, step: f64) {
-        // A step turns by at most step/ρ; what it may bring into contact supports its normal within that angle.
-        let slack = (step / self.pair.alignment.rotation_length).min(0.2);
-        let near = self.near(step);
-        self.envelope.turn_near(rotation, slack, lateral, near);
+        let (slack, near) = self.horizon(step);
+        self.nearby.turn(rotation, lateral, slack, near);
     }
 
     /// Finds all contacts that a step may close, as rows of the projection.
     fn gather(&mut self, state: &State, step: f64) {
-        let near = self.near(step);
-        self.envelope.contacts(state.cor, near, &mut self.contacts);
-        self.contacts.retain(|c| c.gap > -OVERLAP);
+        let (_, near) = self.horizon(step);
+        self.nearby.contacts(state.cor, near, &mut self.contacts);
+        self.contacts.retain(|(c, _)| c.gap > -OVERLAP);
         self.rows.clear();
         self.gaps.clear();
         let axes = self.axes(state);
         let contacts = std::mem::take(&mut self.contacts);
-        for contact in &contacts {
-            let clear = if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 };
+        for (contact, _) in &contacts {
             let row = self.row(contact, state, &axes);
+            let clear = margin(contact);
             let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
             // Corners, edges and facets that meet at one point say the same thing several times.
             self.learn(row, gap);
@@ -295,10 +328,10 @@ impl<'a> Motion<'a> {
     /// of this step. Only what lies below the present position can be added: a valley's other side, not a step up.
     fn cut(&mut self, landed: &State, rise: f64, u: &Vector) -> bool {
         let mut carrying = std::mem::take(&mut self.carrying);
-        self.envelope.contacts(landed.cor, OVERLAP, &mut carrying);
+        self.nearby.contacts(landed.cor, OVERLAP, &mut carrying);
         let axes = self.axes(landed);
         let mut added = false;
-        for contact in &carrying {
+        for (contact, _) in &carrying {
             let row = self.row(contact, landed, &axes);
             let there = -contact.normal.z * rise;
             let here = there - dot(&row, u);
@@ -308,6 +341,26 @@ impl<'a> Motion<'a> {
             }
         }
         self.carrying = carrying;
+        added
+    }
+
+    /// Adds what the body has run into at `landed` by the displacement `u`.
+    fn meet(&mut self, landed: &State, step: f64, u: &Vector) -> bool {
+        let (_, near) = self.horizon(step);
+        let mut met = std::mem::take(&mut self.carrying);
+        self.nearby.contacts(landed.cor, near, &mut met);
+        let axes = self.axes(landed);
+        let mut added = false;
+        for (contact, _) in met.iter().filter(|(c, _)| c.gap < -OVERLAP) {
+            let row = self.row(contact, landed, &axes);
+            let there = contact.gap - margin(contact);
+            let here = there - dot(&row, u);
+            // A contact that was as deep before is another way through the same wall.
+            if here > 0.25 * there {
+                added |= self.learn(row, here);
+            }
+        }
+        self.carrying = met;
         added
     }
 
@@ -327,30 +380,35 @@ impl<'a> Motion<'a> {
     /// The displacement of one step and its length in the ρ-metric, at most `step`.
     ///
     /// The reach of the pace is adapted: raised on gentle slopes.
-    fn displacement(&self, pace: &mut Pace) -> (Vector, f64) {
-        let Pace { step, reach } = pace;
+    fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
+        let Pace { step, reach, share } = pace;
         let step = *step;
-        let solve = |reach: f64| {
+        let Self { projection, rows, gaps, .. } = self;
+        let mut solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;
-            // Squeezed between two walls there is no clearance to regain.
-            let u = closest_allowed(&push, &self.rows, &self.gaps, step * reach).unwrap_or_else(|| {
-                let gaps: Vec<f64> = self.gaps.iter().map(|g| g.max(0.0)).collect();
-                closest_allowed(&push, &self.rows, &gaps, step * reach).unwrap_or_default()
-            });
+            let u = projection
+                .closest_allowed(&push, rows, gaps.iter().copied(), step * reach)
+                // Squeezed between two walls there is no clearance to regain.
+                .or_else(|| {
+                    projection.closest_allowed(&push, rows, gaps.iter().map(|g| g.max(0.0)), step * reach)
+                })
+                .unwrap_or_default();
             let length = u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>();
             (u, length.sqrt())
         };
-        *reach = (*reach * 0.5).max(1.0);
+        // As far as the last push would have had to reach for a whole step.
+        *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, MAX_REACH);
         let mut found = solve(*reach);
         while found.1 < 0.5 * step && *reach < MAX_REACH {
-            *reach = (*reach * 4.0).min(MAX_REACH);
+            *reach = (*reach * (step / found.1).clamp(2.0, 16.0)).min(MAX_REACH);
             found = solve(*reach);
         }
         while found.1 > 2.0 * step && *reach > 1.0 {
-            *reach = (*reach * 0.5).max(1.0);
+            *reach = (*reach * (step / found.1).clamp(1.0 / 16.0, 0.5)).max(1.0);
             found = solve(*reach);
         }
+        *share = found.1 / step;
         let (mut u, mut length) = found;
         // Nothing moved and 0 displacement are both allowed, hence everything in between.
         let longest = length.max(u[2].abs());
@@ -366,14 +424,14 @@ impl<'a> Motion<'a> {
         let cor = state.cor + DVec3::new(u[0], u[1], u[2]);
         let turn = [u[3], u[4], u[5]].map(|x| x / self.pair.alignment.rotation_length);
         if self.spherical {
-            let q = DQuat::from_scaled_axis(DVec3::from_array(turn)) * DQuat::from_mat3(&state.rotation);
-            State { cor, rotation: DMat3::from_quat(q.normalize()), angles: state.angles }
+            let spin = (DQuat::from_scaled_axis(DVec3::from_array(turn)) * state.spin).normalize();
+            State { cor, rotation: DMat3::from_quat(spin), spin, angles: state.angles }
         } else {
             let mut angles = state.angles;
             for (angle, turn) in angles.iter_mut().zip(turn) {
                 *angle += turn;
             }
-            State { cor, rotation: rotation(angles[0], angles[1], angles[2]), angles }
+            State { cor, rotation: rotation(angles[0], angles[1], angles[2]), angles, ..*state }
         }
     }
 
@@ -409,9 +467,29 @@ impl<'a> Motion<'a> {
         let touches = self
             .contacts
             .iter()
-            .filter(|c| c.gap <= OVERLAP)
-            .map(|c| Touch { point: c.point, normal: c.normal })
+            .filter(|(c, _)| c.gap <= OVERLAP)
+            .map(|(c, _)| Touch { point: c.point, normal: c.normal })
             .collect();
         Waypoint { error: self.error_of(state), height: state.cor.z, travelled, touches }
     }
+}
+
+/// What a step may meet: features that support a normal within the angle by which it turns at most, and gaps by as much
+/// as a point of the body moves. What it meets beyond them is cut off or halved.
+fn horizon(step: f64, radius: f64, rotation_length: f64) -> (f64, f64) {
+    ((step / rotation_length).min(WIDEST), step * (1.0 + radius / rotation_length))
+}
+
+/// Clearance to keep from a contact: from walls only.
+fn margin(contact: &Contact) -> f64 {
+    if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 }
+}
+
+/// Sine of the angle between the lateral parts of two displacements, or 1 where it is obtuse or one of them is none.
+fn deflection(a: &Vector, b: &Vector) -> f64 {
+    let lateral = |v: &Vector| Vector::map(*v, |x| x);
+    let (mut a, mut b) = (lateral(a), lateral(b));
+    (a[2], b[2]) = (0.0, 0.0);
+    let (aa, bb, ab) = (dot(&a, &a), dot(&b, &b), dot(&a, &b));
+    if ab <= 0.0 { 1.0 } else { (1.0 - ab * ab / (aa * bb)).max(0.0).sqrt() }
 }

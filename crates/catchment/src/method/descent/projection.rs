@@ -14,156 +14,216 @@
 
 /// Coordinates of a displacement: lateral x, y, approach z and up to three turns.
 pub(super) const MAX_COORDINATES: usize = 6;
-/// One more row holds the gaps.
-const ROWS: usize = MAX_COORDINATES + 1;
+/// One more row holds the gaps, and one stays 0: eight numbers fill the lanes of a processor.
+const ROWS: usize = MAX_COORDINATES + 2;
+/// The row of the gaps.
+const GAPS: usize = MAX_COORDINATES;
+/// Columns that can be independent.
+const MOST: usize = MAX_COORDINATES + 1;
 
 /// A displacement, or the row of a contact; unused coordinates are 0.
 pub(super) type Vector = [f64; MAX_COORDINATES];
-
-/// The displacement closest to `push` that keeps every gap open: `rows[i]·u ≥ −gaps[i]`; `None` where negative gaps
-/// contradict each other.
-///
-/// `scale` is the size of displacement of interest: gaps and push are measured in it for conditioning.
-pub(super) fn closest_allowed(push: &Vector, rows: &[Vector], gaps: &[f64], scale: f64) -> Option<Vector> {
-    let mut columns: Vec<[f64; ROWS]> = Vec::with_capacity(rows.len());
-    for (row, gap) in rows.iter().zip(gaps) {
-        // In v = (u − push)/scale:  row·v ≥ −(gap + row·push)/scale.
-        let bound = -(gap + dot(row, push)) / scale;
-        let mut column = [0.0; ROWS];
-        column[..MAX_COORDINATES].copy_from_slice(row);
-        column[MAX_COORDINATES] = bound;
-        columns.push(column);
-    }
-    if columns.iter().all(|c| c[MAX_COORDINATES] <= 0.0) {
-        return Some(*push);
-    }
-    let residual = non_negative_residual(&columns);
-    let mut u = *push;
-    // The last residual is 0 only if the constraints contradict each other.
-    if residual[MAX_COORDINATES].abs() > 1e-14 {
-        for (u, r) in u.iter_mut().zip(residual) {
-            *u -= scale * r / residual[MAX_COORDINATES];
-        }
-        return Some(u);
-    }
-    None
-}
+type Column = [f64; ROWS];
 
 /// Scalar product.
 pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Residual `E λ − f` of non-negative least squares `min |E λ − f|, λ ≥ 0` with f = (0, …, 0, 1).
-fn non_negative_residual(columns: &[[f64; ROWS]]) -> [f64; ROWS] {
-    let mut target = [0.0; ROWS];
-    target[ROWS - 1] = 1.0;
-    // Passive columns (λ > 0): never more than there are rows.
-    let mut passive: Vec<usize> = Vec::with_capacity(ROWS);
-    let mut lambda: Vec<f64> = Vec::with_capacity(ROWS);
-    let mut residual = target.map(|t| -t);
-    let norms: Vec<f64> =
-        columns.iter().map(|c| c.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)).collect();
-    let limit = 3 * columns.len() + 20;
-    for _ in 0..limit {
-        // The column along which the residual falls fastest.
-        let steepest = (0..columns.len())
-            .filter(|j| !passive.contains(j))
-            .map(|j| {
-                let slope: f64 = columns[j].iter().zip(residual).map(|(e, r)| -e * r).sum();
-                (slope / norms[j], j)
-            })
-            .fold((1e-12, usize::MAX), |best, next| if next.0 > best.0 { next } else { best });
-        if steepest.1 == usize::MAX || passive.len() == ROWS {
-            break;
-        }
-        passive.push(steepest.1);
-        lambda.push(0.0);
-        loop {
-            let Some(free) = least_squares(columns, &passive, &target) else {
-                // Linearly dependent on the passive ones: it cannot help.
-                passive.pop();
-                lambda.pop();
-                return residual;
-            };
-            if free.iter().all(|l| *l > 0.0) {
-                lambda = free;
-                break;
-            }
-            // Walk towards the free solution until the first multiplier reaches 0, and let it go.
-            let step = lambda
-                .iter()
-                .zip(&free)
-                .filter(|(_, f)| **f <= 0.0)
-                .map(|(l, f)| l / (l - f))
-                .fold(1.0f64, f64::min);
-            for (l, f) in lambda.iter_mut().zip(&free) {
-                *l += step * (f - *l);
-            }
-            let mut k = 0;
-            while k < passive.len() {
-                if lambda[k] <= 1e-15 {
-                    passive.remove(k);
-                    lambda.remove(k);
-                } else {
-                    k += 1;
-                }
-            }
-            if passive.is_empty() {
-                break;
-            }
-        }
-        residual = target.map(|t| -t);
-        for (j, l) in passive.iter().zip(&lambda) {
-            for (r, e) in residual.iter_mut().zip(columns[*j]) {
-                *r += e * l;
-            }
-        }
-    }
-    residual
+/// Scalar product, four and then two lanes at a time.
+fn product(a: &Column, b: &Column) -> f64 {
+    let p: [f64; 4] = std::array::from_fn(|k| a[k] * b[k] + a[k + 4] * b[k + 4]);
+    (p[0] + p[2]) + (p[1] + p[3])
 }
 
-/// Unconstrained least squares over the passive columns by modified Gram–Schmidt; `None` if they are dependent.
-fn least_squares(columns: &[[f64; ROWS]], passive: &[usize], target: &[f64; ROWS]) -> Option<Vec<f64>> {
-    let n = passive.len();
-    let mut q: [[f64; ROWS]; ROWS] = [[0.0; ROWS]; ROWS];
-    let mut r = [[0.0; ROWS]; ROWS];
-    let mut right = [0.0; ROWS];
-    let mut rest = *target;
-    for k in 0..n {
-        let mut column = columns[passive[k]];
-        let size: f64 = column.iter().map(|x| x * x).sum();
+/// The solver: owns its buffers.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Projection {
+    columns: Vec<Column>,
+    passive: Passive,
+}
+
+impl Projection {
+    /// The displacement closest to `push` that keeps every gap open: `rows[i]·u ≥ −gaps[i]`; `None` where negative gaps
+    /// contradict each other.
+    ///
+    /// `scale` is the size of displacement of interest: gaps and push are measured in it for conditioning.
+    pub(super) fn closest_allowed(
+        &mut self,
+        push: &Vector,
+        rows: &[Vector],
+        gaps: impl Iterator<Item = f64>,
+        scale: f64,
+    ) -> Option<Vector> {
+        self.columns.clear();
+        let mut free = true;
+        for (row, gap) in rows.iter().zip(gaps) {
+            // In v = (u − push)/scale:  row·v ≥ −(gap + row·push)/scale.
+            let bound = -(gap + dot(row, push)) / scale;
+            free &= bound <= 0.0;
+            let mut column = [0.0; ROWS];
+            column[..MAX_COORDINATES].copy_from_slice(row);
+            column[GAPS] = bound;
+            self.columns.push(column);
+        }
+        if free {
+            return Some(*push);
+        }
+        let residual = self.non_negative_residual();
+        // The last residual is 0 only if the constraints contradict each other.
+        (residual[GAPS].abs() > 1e-14)
+            .then(|| std::array::from_fn(|k| push[k] - scale * residual[k] / residual[GAPS]))
+    }
+
+    /// Residual `E λ − f` of non-negative least squares `min |E λ − f|, λ ≥ 0` with f = 1 in the row of the gaps.
+    fn non_negative_residual(&mut self) -> Column {
+        let Self { columns, passive } = self;
+        passive.count = 0;
+        let mut residual = TARGET.map(|t| -t);
+        let limit = 3 * columns.len() + 20;
+        for _ in 0..limit {
+            // The column along which the residual falls fastest: the largest sine, here squared.
+            let (mut most, mut steepest) = (1e-24, usize::MAX);
+            for (j, column) in columns.iter().enumerate() {
+                let slope = -product(column, &residual);
+                if slope > 0.0 && slope * slope > most * product(column, column) && !passive.contains(j) {
+                    most = slope * slope / product(column, column);
+                    steepest = j;
+                }
+            }
+            // A column that depends on the passive ones cannot help.
+            if steepest == usize::MAX
+                || passive.count == MOST
+                || !passive.push(steepest, columns)
+                || !passive.settle(columns)
+            {
+                break;
+            }
+            residual = passive.rest[passive.count].map(|r| -r);
+        }
+        residual
+    }
+}
+
+/// The right-hand side f: 1 in the row of the gaps.
+const TARGET: Column = {
+    let mut target = [0.0; ROWS];
+    target[GAPS] = 1.0;
+    target
+};
+
+/// The columns with λ > 0, factorised by modified Gram–Schmidt: `E = Q R`.
+#[derive(Debug, Clone)]
+struct Passive {
+    count: usize,
+    columns: [usize; MOST],
+    lambda: [f64; MOST],
+    q: [Column; MOST],
+    /// Upper triangle by columns; the diagonal is inverted.
+    r: [[f64; MOST]; MOST],
+    /// Qᵀ f.
+    right: [f64; MOST],
+    /// What is left of f after the first k columns.
+    rest: [Column; MOST + 1],
+}
+
+impl Default for Passive {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            columns: [0; MOST],
+            lambda: [0.0; MOST],
+            q: [[0.0; ROWS]; MOST],
+            r: [[0.0; MOST]; MOST],
+            right: [0.0; MOST],
+            rest: [TARGET; MOST + 1],
+        }
+    }
+}
+
+impl Passive {
+    fn contains(&self, column: usize) -> bool {
+        self.columns[..self.count].contains(&column)
+    }
+
+    /// Adds a column with λ = 0; `false`, with nothing added, if it depends on the others.
+    fn push(&mut self, column: usize, all: &[Column]) -> bool {
+        let k = self.count;
+        let mut q = all[column];
+        let size = product(&q, &q);
         for j in 0..k {
-            let along: f64 = q[j].iter().zip(column).map(|(a, b)| a * b).sum();
-            r[j][k] = along;
-            for (c, a) in column.iter_mut().zip(q[j]) {
+            let along = product(&self.q[j], &q);
+            self.r[k][j] = along;
+            for (c, a) in q.iter_mut().zip(&self.q[j]) {
                 *c -= along * a;
             }
         }
-        let norm = column.iter().map(|x| x * x).sum::<f64>();
+        let norm = product(&q, &q);
         if norm <= 1e-20 * size {
-            return None;
+            return false;
         }
-        let norm = norm.sqrt();
-        r[k][k] = norm;
-        q[k] = column.map(|x| x / norm);
-        right[k] = q[k].iter().zip(rest).map(|(a, b)| a * b).sum();
-        for (t, a) in rest.iter_mut().zip(q[k]) {
-            *t -= right[k] * a;
+        let inverse = 1.0 / norm.sqrt();
+        self.r[k][k] = inverse;
+        self.q[k] = q.map(|x| x * inverse);
+        self.right[k] = product(&self.q[k], &self.rest[k]);
+        for i in 0..ROWS {
+            self.rest[k + 1][i] = self.rest[k][i] - self.right[k] * self.q[k][i];
         }
+        self.columns[k] = column;
+        self.lambda[k] = 0.0;
+        self.count += 1;
+        true
     }
-    let mut lambda = vec![0.0; n];
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| r[k][j] * lambda[j]).sum();
-        lambda[k] = (right[k] - known) / r[k][k];
+
+    /// Moves λ to the least-squares solution over the passive columns, letting go those that would turn negative;
+    /// `false` if those left became dependent by rounding.
+    fn settle(&mut self, all: &[Column]) -> bool {
+        while self.count > 0 {
+            let free = self.unconstrained();
+            let n = self.count;
+            // Walk towards the free solution until the first multiplier reaches 0.
+            let mut step = 1.0f64;
+            for (l, f) in self.lambda.iter().zip(&free).take(n).filter(|(_, f)| **f <= 0.0) {
+                step = step.min(l / (l - f));
+            }
+            if free[..n].iter().all(|f| *f > 0.0) {
+                self.lambda = free;
+                return true;
+            }
+            let (columns, mut lambda) = (self.columns, self.lambda);
+            for (l, f) in lambda.iter_mut().zip(&free) {
+                *l += step * (f - *l);
+            }
+            self.count = 0;
+            for k in (0..n).filter(|&k| lambda[k] > 1e-15) {
+                if !self.push(columns[k], all) {
+                    return false;
+                }
+                self.lambda[self.count - 1] = lambda[k];
+            }
+        }
+        true
     }
-    Some(lambda)
+
+    /// Least squares without regard to signs: R λ = Qᵀ f.
+    fn unconstrained(&self) -> [f64; MOST] {
+        let mut lambda = [0.0; MOST];
+        for k in (0..self.count).rev() {
+            let known: f64 = (k + 1..self.count).map(|j| self.r[j][k] * lambda[j]).sum();
+            lambda[k] = (self.right[k] - known) * self.r[k][k];
+        }
+        lambda
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    fn closest_allowed(push: &Vector, rows: &[Vector], gaps: &[f64], scale: f64) -> Option<Vector> {
+        Projection::default().closest_allowed(push, rows, gaps.iter().copied(), scale)
+    }
 
     #[test]
     fn a_plane_deflects_the_push_along_itself() {

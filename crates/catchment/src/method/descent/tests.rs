@@ -74,10 +74,10 @@ proptest! {
             let pose = CorPose::from_error(&waypoint.error, cor, free);
             // At the height of first contact, or lower where the half has slid beside the other or under an overhang: then
             // free all the same.
-            let envelope = pair.at_rotation(pose.rotation);
-            let height = envelope.height(pose.lateral);
-            let first = height.is_some_and(|z| (z - waypoint.height).abs() < 1e-6);
-            prop_assert!(first || !envelope.is_pierced(pose.lateral.extend(waypoint.height)), "{waypoint:?}");
+            let first = pair.height(&pose).is_some_and(|z| (z - waypoint.height).abs() < 1e-6);
+            let mut nearby = pair.nearby(0.0, 0.0);
+            nearby.turn(&pose.rotation, pose.lateral, 0.0, 0.0);
+            prop_assert!(first || !nearby.is_pierced(pose.lateral.extend(waypoint.height)), "{waypoint:?}");
         }
     }
 

@@ -1,0 +1,284 @@
+//! Which features of the two halves may touch: found once for a neighbourhood of poses, tried at every pose in it.
+//!
+//! ```text
+//!   all pairs of features ──sieve──▶ candidates ──try_at(R)──▶ elements at rotation R
+//!                          (seldom)               (every step)
+//! ```
+//!
+//! A pair passes the sieve if it could be an element at *some* rotation R' with chord |R' − R| ≤ `skin`. The chord
+//! 2 sin(θ/2) bounds how far a unit vector moves, so each condition on directions is widened by it:
+//!
+//! ```text
+//!   corner supports n     n·s ≥ −slack                for its spokes s     widened to  −(slack + skin)
+//!   edges u × w support   (u × w)·s ≥ −slack·|u × w|  for its facets s     widened to  −(slack·(|u × w| + skin) + skin)
+//!   facet faces up        n_z > lowest                                     widened to  lowest − skin
+//! ```
+//!
+//! and the window in plan view must be widened by its owner. Directions are compared in whichever frame needs no copy
+//! of a turned shape; (u × w)·s reduces to ±w·n and ±u·n with the normals n of the facets beside the edges.
+
+use super::Pair;
+use super::element::{Element, Features, Meeting};
+use super::plan::Plan;
+use super::shape::{Shape, Side};
+use glam::{DMat3, DVec2, DVec3};
+
+/// Sine of the angle by which a feature may fail to support a normal and still count, at least: rounding.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// Below this length of u × w edges count as parallel: they have no normal of their own, their ends speak for them.
+const PARALLEL: f64 = 1e-9;
+
+/// What passes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sieve {
+    /// Sine of the angle by which a feature may fail to support a normal and still count.
+    pub(super) slack: f64,
+    /// Normals must have a z-component above this.
+    pub(super) lowest: f64,
+    /// Chord of the rotations for which the candidates hold.
+    pub(super) skin: f64,
+    /// Where in plan view; `None`: everywhere.
+    pub(super) window: Option<Window>,
+}
+
+/// Where the COR is in plan view, and how close features must come to count.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    pub(super) lateral: DVec2,
+    pub(super) reach: f64,
+}
+
+/// A feature of a fixed shape and one of a moving shape; indices into the corners, facets or sides of the shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Candidate {
+    shapes: [u32; 2],
+    fixed: u32,
+    moving: u32,
+}
+
+/// The pairs of features that passed a sieve.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Candidates {
+    facet_corner: Vec<Candidate>,
+    corner_facet: Vec<Candidate>,
+    edge_edge: Vec<Candidate>,
+    scratch: Scratch,
+}
+
+/// One shape's features seen from the other half's frame, kept to be allocated once.
+#[derive(Debug, Clone, Default)]
+struct Scratch {
+    vertices: Vec<DVec3>,
+    /// Of the fixed facets, in the moving frame.
+    normals: Vec<DVec3>,
+    /// Of the fixed sides, in the moving frame.
+    along: Vec<DVec3>,
+}
+
+impl Candidates {
+    /// Finds every pair that passes the sieve about `rotation`.
+    pub(super) fn collect(&mut self, pair: &Pair, rotation: &DMat3, sieve: &Sieve) {
+        let mut scratch = std::mem::take(&mut self.scratch);
+        self.facet_corner.clear();
+        self.corner_facet.clear();
+        self.edge_edge.clear();
+        for (m, moving) in pair.moving_shapes.iter().enumerate() {
+            scratch.vertices.clear();
+            scratch.vertices.extend(moving.vertices.iter().map(|v| *rotation * *v));
+            for (f, fixed) in pair.fixed_shapes.iter().enumerate() {
+                self.collect_pair([f as u32, m as u32], fixed, moving, rotation, sieve, &mut scratch);
+            }
+        }
+        // In the order of the features, however the trees were walked.
+        self.facet_corner.sort_unstable();
+        self.corner_facet.sort_unstable();
+        self.edge_edge.sort_unstable();
+        self.scratch = scratch;
+    }
+
+    fn collect_pair(
+        &mut self,
+        shapes: [u32; 2],
+        fixed: &Shape,
+        moving: &Shape,
+        rotation: &DMat3,
+        sieve: &Sieve,
+        scratch: &mut Scratch,
+    ) {
+        let Sieve { slack, lowest, skin, window } = *sieve;
+        let back = rotation.transpose();
+        let Scratch { vertices, normals, along } = scratch;
+        let at = |k: u32| vertices[k as usize];
+        // The window around a moving feature, as the tree of the fixed half sees it.
+        let around = |ids: &[u32]| {
+            window.map_or(Plan::EVERYWHERE, |w| {
+                Plan::around(ids.iter().map(|&k| at(k).truncate() + w.lateral)).widened(w.reach)
+            })
+        };
+        if !fixed.plans.facets.bounds().meets(&window.map_or(Plan::EVERYWHERE, |w| {
+            Plan::around(vertices.iter().map(|v| v.truncate() + w.lateral)).widened(w.reach)
+        })) {
+            return;
+        }
+        normals.clear();
+        normals.extend(fixed.facets.iter().map(|f| back * f.normal));
+        along.clear();
+        along.extend(fixed.sides.iter().map(|s| back * s.along));
+        for (c, corner) in moving.corners.iter().enumerate() {
+            fixed.plans.facets.visit(&around(&[corner.vertex]), |facet| {
+                if fixed.facets[facet as usize].normal.z > lowest
+                    && moving.supports(corner, normals[facet as usize], slack + skin)
+                {
+                    self.facet_corner.push(Candidate { shapes, fixed: facet, moving: c as u32 });
+                }
+            });
+        }
+        // World z seen from the moving half.
+        let up = back.z_axis;
+        for (k, facet) in moving.facets.iter().enumerate().filter(|(_, m)| up.dot(m.normal) < skin - lowest) {
+            let normal = *rotation * facet.normal;
+            fixed.plans.corners.visit(&around(&facet.corners), |c| {
+                if fixed.supports(&fixed.corners[c as usize], normal, slack + skin) {
+                    self.corner_facet.push(Candidate { shapes, fixed: c, moving: k as u32 });
+                }
+            });
+        }
+        for (k, side) in moving.sides.iter().enumerate() {
+            if side.normals.iter().all(|n| up.dot(*n) >= skin - lowest) {
+                continue;
+            }
+            let edges = EdgesAt { w: *rotation * side.along, moving: side };
+            fixed.plans.sides.visit(&around(&side.ends), |f| {
+                let fixed = &fixed.sides[f as usize];
+                if fixed.normals.iter().any(|n| n.z > lowest)
+                    && edges.may_touch(fixed, along[f as usize], slack, lowest, skin)
+                {
+                    self.edge_edge.push(Candidate { shapes, fixed: f, moving: k as u32 });
+                }
+            });
+        }
+    }
+
+    /// The elements among the candidates at `rotation`.
+    pub(super) fn try_at(
+        &self,
+        pair: &Pair,
+        rotation: &DMat3,
+        slack: f64,
+        lowest: f64,
+        out: &mut Vec<Element>,
+    ) {
+        out.clear();
+        let back = rotation.transpose();
+        let up = back.z_axis;
+        let of = |c: &Candidate| {
+            (&pair.fixed_shapes[c.shapes[0] as usize], &pair.moving_shapes[c.shapes[1] as usize])
+        };
+        let mut last = None;
+        let mut seen = DVec3::ZERO;
+        for candidate in &self.facet_corner {
+            let (fixed, moving) = of(candidate);
+            let facet = candidate.fixed as usize;
+            let normal = fixed.facets[facet].normal;
+            if last != Some((candidate.shapes[0], facet)) {
+                last = Some((candidate.shapes[0], facet));
+                seen = back * normal;
+            }
+            let corner = &moving.corners[candidate.moving as usize];
+            if moving.supports(corner, seen, slack) {
+                let features = Features::FacetCorner { facet: candidate.fixed, vertex: corner.vertex };
+                let offset = seen.dot(moving.at(corner.vertex)) - fixed.levels[facet];
+                out.push(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset });
+            }
+        }
+        for candidate in &self.corner_facet {
+            let (fixed, moving) = of(candidate);
+            let facet = candidate.moving as usize;
+            let normal = *rotation * moving.facets[facet].normal;
+            let corner = &fixed.corners[candidate.fixed as usize];
+            if -normal.z > lowest && fixed.supports(corner, normal, slack) {
+                let features = Features::CornerFacet { vertex: corner.vertex, facet: candidate.moving };
+                let offset = normal.dot(fixed.at(corner.vertex)) - moving.levels[facet];
+                let meeting = Meeting { shapes: candidate.shapes, features };
+                out.push(Element { meeting, normal: -normal, offset });
+            }
+        }
+        last = None;
+        for candidate in &self.edge_edge {
+            let (fixed, moving) = of(candidate);
+            let (f, m) = (&fixed.sides[candidate.fixed as usize], &moving.sides[candidate.moving as usize]);
+            if last != Some((candidate.shapes[0], candidate.fixed as usize)) {
+                last = Some((candidate.shapes[0], candidate.fixed as usize));
+                seen = back * f.along;
+            }
+            if m.normals.iter().all(|n| up.dot(*n) >= -lowest) {
+                continue;
+            }
+            let edges = EdgesAt { w: *rotation * m.along, moving: m };
+            if let Some(normal) = edges.normal(f, seen, slack).filter(|n| n.z > lowest) {
+                let offset = normal.dot(*rotation * moving.at(m.ends[0]) - fixed.at(f.ends[0]));
+                let features = Features::EdgeEdge { fixed: f.ends, moving: m.ends };
+                out.push(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset });
+            }
+        }
+    }
+}
+
+/// A moving edge at one rotation.
+struct EdgesAt<'a> {
+    /// Its direction in the world.
+    w: DVec3,
+    moving: &'a Side,
+}
+
+impl EdgesAt<'_> {
+    /// (u × w)·s for the directions s into the facets of the fixed edge, then of the moving one; `seen` is u in the
+    /// moving frame.
+    fn products(&self, fixed: &Side, seen: DVec3) -> ([f64; 2], [f64; 2]) {
+        let [left, right] = fixed.normals.map(|n| self.w.dot(n));
+        let [port, starboard] = self.moving.normals.map(|n| seen.dot(n));
+        ([-left, right], [port, -starboard])
+    }
+
+    /// Whether the edges may touch at some rotation within the chord `skin`.
+    fn may_touch(&self, fixed: &Side, seen: DVec3, slack: f64, lowest: f64, skin: f64) -> bool {
+        let (below, above) = self.products(fixed, seen);
+        // |u × w| ≤ 1, so this rejects nothing that the exact test below accepts.
+        let widest = slack * (1.0 + skin) + skin;
+        let supports = |sign: f64, by: f64| {
+            below.iter().all(|b| sign * b <= by) && above.iter().all(|a| sign * a >= -by)
+        };
+        if !supports(1.0, widest) && !supports(-1.0, widest) {
+            return false;
+        }
+        let across = fixed.along.cross(self.w);
+        let length = across.length() + skin;
+        let wide = slack * length + skin;
+        let lowest = lowest * if lowest < 0.0 { length } else { (length - 2.0 * skin).max(0.0) } - skin;
+        [1.0, -1.0].into_iter().any(|sign| supports(sign, wide) && sign * across.z > lowest)
+    }
+
+    /// The unit common normal of the edges in the sense that both support, if either does.
+    fn normal(&self, fixed: &Side, seen: DVec3, slack: f64) -> Option<DVec3> {
+        let (below, above) = self.products(fixed, seen);
+        let up = below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack);
+        let down = below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack);
+        if !(up || down) {
+            return None;
+        }
+        let across = fixed.along.cross(self.w);
+        let length = across.length();
+        if length <= PARALLEL {
+            return None;
+        }
+        let slack = slack * length;
+        if up && below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack) {
+            Some(across / length)
+        } else if down && below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack) {
+            Some(across / -length)
+        } else {
+            None
+        }
+    }
+}

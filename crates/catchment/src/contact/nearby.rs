@@ -1,0 +1,109 @@
+//! What may touch near a moving half that moves on by small steps.
+//!
+//! ```text
+//!   collect about (R₀, c₀)          turn to (R, c): only the candidates are tried
+//!        ╭───────────╮              valid while   |R − R₀| ≤ skin                        (chord)
+//!        │   · ·     │                            |c − c₀| + radius·|R − R₀| ≤ shift     (any point of the half)
+//!        │  ·   R,c  │
+//!        ╰───────────╯              else collected anew about (R, c)
+//! ```
+//!
+//! The answers are those of a list collected at every pose, bit for bit: see [`super::candidates`].
+
+use super::brute::SEAM;
+use super::candidates::{Candidates, ROUNDING, Sieve, Window};
+use super::element::Meeting;
+use super::turned::Turned;
+use super::{Contact, Pair};
+use glam::{DMat3, DVec2, DVec3};
+
+/// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
+/// Facets that lean further back belong to the undersides of the halves.
+const OVERHANG: f64 = 0.5;
+
+/// Skin and shift in units of the widest slack and reach: longer lists against more collecting. Flat around its optimum.
+const SKIN: f64 = 1.0;
+
+/// The pair near one pose: what can touch, also walls and features that a small turn may bring into contact.
+#[derive(Debug, Clone)]
+pub struct Nearby<'a> {
+    turned: Turned<'a>,
+    candidates: Candidates,
+    /// Slack and reach that are asked for as a rule: collected at least.
+    slack: f64,
+    reach: f64,
+    /// Largest distance of a moving vertex from the COR.
+    radius: f64,
+    collected: Option<Collected>,
+}
+
+/// Where the candidates were collected, and for which questions.
+#[derive(Debug, Clone, Copy)]
+struct Collected {
+    rotation: DMat3,
+    lateral: DVec2,
+    slack: f64,
+    reach: f64,
+}
+
+impl<'a> Nearby<'a> {
+    /// For questions with up to this slack and reach; see [`Nearby::turn`].
+    pub(super) fn new(pair: &'a Pair, slack: f64, reach: f64) -> Self {
+        let vertices = pair.moving_shapes.iter().flat_map(|s| &s.vertices);
+        let radius = vertices.map(|v| v.length()).fold(0.0, f64::max);
+        let (turned, candidates) = (Turned::new(pair), Candidates::default());
+        Self { turned, candidates, slack, reach, radius, collected: None }
+    }
+
+    /// Forgets where it was: what follows does not depend on what was before.
+    pub fn leave(&mut self) {
+        self.collected = None;
+    }
+
+    /// Moves on to a rotation, for questions about the COR at `lateral` alone: keeps what is within `reach` of
+    /// touching there in plan view, also walls and features that support a normal only within `slack` radians: what a
+    /// motion that turns by up to `slack` may meet.
+    pub fn turn(&mut self, rotation: &DMat3, lateral: DVec2, slack: f64, reach: f64) {
+        let slack = slack.max(ROUNDING);
+        let holds = self.collected.is_some_and(|c| {
+            let turn = chord(&c.rotation, rotation);
+            slack <= c.slack
+                && turn <= SKIN * c.slack
+                && reach + lateral.distance(c.lateral) + self.radius * turn <= (1.0 + SKIN) * c.reach
+        });
+        if !holds {
+            let (slack, reach) = (slack.max(self.slack), reach.max(self.reach));
+            // Both features may overshoot their borders by a seam.
+            let window = Window { lateral, reach: (1.0 + SKIN) * reach + 2.0 * SEAM };
+            let sieve = Sieve { slack, lowest: -OVERHANG, skin: SKIN * slack, window: Some(window) };
+            self.candidates.collect(self.turned.pair, rotation, &sieve);
+            self.collected = Some(Collected { rotation: *rotation, lateral, slack, reach });
+        }
+        self.turned.turn(rotation, &self.candidates, slack, -OVERHANG);
+    }
+
+    /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
+    /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
+    pub fn height_below(&self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
+        self.turned.height_below(lateral, ceiling)
+    }
+
+    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.
+    pub fn contacts(&self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
+        out.clear();
+        out.extend(self.turned.contacts(position, reach));
+    }
+
+    /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than
+    /// touching.
+    pub fn is_pierced(&self, position: DVec3) -> bool {
+        self.turned.is_pierced(position)
+    }
+}
+
+/// Furthest that a unit vector is apart after the two rotations: 2 sin(θ/2).
+fn chord(a: &DMat3, b: &DMat3) -> f64 {
+    let d = *a - *b;
+    let squares = d.x_axis.length_squared() + d.y_axis.length_squared() + d.z_axis.length_squared();
+    (0.5 * squares).sqrt()
+}

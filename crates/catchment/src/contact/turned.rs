@@ -1,0 +1,111 @@
+//! The pair at one rotation, as a list of elements: where a lowered half is stopped, and what touches there.
+
+use super::candidates::Candidates;
+use super::element::{Element, Meeting};
+use super::shape::Shape;
+use super::{Contact, Pair};
+use glam::{DMat3, DVec2, DVec3};
+
+/// Below this z-component a normal counts as horizontal: such a facet has no height of its own, its rim
+/// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
+pub(super) const VERTICAL: f64 = 1e-9;
+
+/// A pair, a rotation, and what can touch there.
+#[derive(Debug, Clone)]
+pub(super) struct Turned<'a> {
+    pub(super) pair: &'a Pair,
+    rotation: DMat3,
+    pub(super) elements: Vec<Element>,
+}
+
+impl<'a> Turned<'a> {
+    /// Not turned yet: nothing touches.
+    pub(super) fn new(pair: &'a Pair) -> Self {
+        Self { pair, rotation: DMat3::IDENTITY, elements: Vec::new() }
+    }
+
+    /// Replaces the elements by those among `candidates` at `rotation`.
+    pub(super) fn turn(&mut self, rotation: &DMat3, candidates: &Candidates, slack: f64, lowest: f64) {
+        self.rotation = *rotation;
+        candidates.try_at(self.pair, rotation, slack, lowest, &mut self.elements);
+    }
+
+    /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
+    /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
+    pub(super) fn height_below(&self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
+        let mut highest = f64::NEG_INFINITY;
+        let mut covered = false;
+        for element in &self.elements {
+            if element.normal.z <= VERTICAL {
+                continue;
+            }
+            let z = element.height(lateral);
+            let counts = if z > ceiling { !covered } else { z > highest };
+            if counts && self.foot(element, lateral.extend(z)).is_some() {
+                if z > ceiling {
+                    covered = true;
+                } else {
+                    highest = z;
+                }
+            }
+        }
+        (highest.is_finite().then_some(highest), covered)
+    }
+
+    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.
+    pub(super) fn contacts(
+        &self,
+        position: DVec3,
+        reach: f64,
+    ) -> impl Iterator<Item = (Contact, Meeting)> + '_ {
+        self.elements.iter().filter_map(move |element| {
+            let gap = element.gap(position);
+            // Deeper than `reach` the halves are not near each other along this normal: they passed.
+            if gap.abs() > reach {
+                return None;
+            }
+            let point = self.foot(element, position)?;
+            self.is_exposed(element, point, position)
+                .then_some((Contact { gap, normal: element.normal, point }, element.meeting))
+        })
+    }
+
+    /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than
+    /// touching.
+    pub(super) fn is_pierced(&self, position: DVec3) -> bool {
+        let back = self.rotation.transpose();
+        let fixed_in_moving = |p: DVec3| back * (p - position);
+        let moving_in_fixed = |p: DVec3| self.rotation * p + position;
+        self.pair.fixed_shapes.iter().any(|fixed| {
+            self.pair.moving_shapes.iter().any(|moving| {
+                fixed.pierces(moving, fixed_in_moving) || moving.pierces(fixed, moving_in_fixed)
+            })
+        })
+    }
+
+    fn foot(&self, element: &Element, position: DVec3) -> Option<DVec3> {
+        let [f, m] = element.meeting.shapes.map(|s| s as usize);
+        element.foot(&self.pair.fixed_shapes[f], &self.pair.moving_shapes[m], &self.rotation, position)
+    }
+
+    /// Whether the contact lies on the surface of both solids, not on a wall between two pieces of one.
+    fn is_exposed(&self, element: &Element, point: DVec3, position: DVec3) -> bool {
+        /// How far outside its own surface a contact looks for another piece of the same solid, in D.
+        const LOOK: f64 = 1e-7;
+        let hidden = |shapes: &[Shape], own: u32, point: DVec3| {
+            shapes.len() > 1
+                && shapes
+                    .iter()
+                    .enumerate()
+                    .any(|(s, shape)| s as u32 != own && shape.contains(point, LOOK * 1e-3))
+        };
+        let outward = element.normal * LOOK;
+        let seen = point + element.normal * element.gap(position) - position;
+        !hidden(&self.pair.fixed_shapes, element.meeting.shapes[0], point + outward)
+            && !hidden(
+                &self.pair.moving_shapes,
+                element.meeting.shapes[1],
+                self.rotation.transpose() * (seen - outward),
+            )
+    }
+}
