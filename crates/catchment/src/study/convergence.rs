@@ -268,7 +268,8 @@ mod tests {
     #[test]
     fn every_method_is_refined_until_it_is_stable_or_something_stops_it() {
         let pair = pair(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect());
-        let settings = Settings { tolerance: 0.1, time_limit_s: f64::INFINITY, descents: 200, ..Settings::default() };
+        let settings =
+            Settings { tolerance: 0.1, time_limit_s: f64::INFINITY, descents: 200, ..Settings::default() };
         let found = run(&pair, &settings, &Exec::new()).unwrap();
         assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), Method::ALL);
         assert_eq!(found.unit, "D·rad");

@@ -80,7 +80,29 @@ pub struct Row {
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// Seeds: of the exact values, and of the corrected Sums that are judged by them.
+    /// Seed of the exact values' random poses.
+    pub seed: u64,
+    /// One per design.
+    pub rows: Vec<Row>,
+}
+
+/// Why there is no table.
+#[derive(Debug, thiserror::Error)]
+pub enum AccuracyError {
+    /// A design of the list cannot be built.
+    #[error("{name} cannot be built: {problem}")]
+    Geometry {
+        /// Which.
+        name: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A method gave up.
+    #[error(transparent)]
+    Trial(#[from] TrialError),
+}
+
+/// Seeds: of the exact values, and of the corrected Sums that are judged by them.
 const SEEDS: [u64; 2] = [1, 2];
 
 /// Random poses of an exact value.

@@ -101,7 +101,8 @@ impl Accuracy {
 
     /// Every entry as a record for programs, the names of the columns first.
     pub fn records(&self) -> Vec<Vec<String>> {
-        let head = "design free unit exact exact_from exact_to method resolution cells sum error doubt seconds";
+        let head =
+            "design free unit exact exact_from exact_to method resolution cells sum error doubt seconds";
         let mut records = vec![head.split(' ').map(str::to_owned).collect::<Vec<String>>()];
         for row in &self.rows {
             let [lo, hi] = row.exact.ci95;
