@@ -84,7 +84,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
         let written = folder.write(&json, &report.records(), picture, &running.exec, |folder| {
             for (slice, of) in found.slices.iter().zip(&report.slices) {
                 running.exec.check()?;
-                let whole = Report::new(design, &slice.acceptance, settings.clone(), None)?;
+                let whole = Report::new(design, &slice.acceptance, settings.clone(), None, &running.exec)?;
                 let path = folder.join(of.name() + ".zarr");
                 zarr::write(&path, &whole, &slice.acceptance, None)?;
             }

@@ -5,7 +5,8 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-const V_FACE: &str = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+const V_FACE: &str =
+    "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
 
 /// A folder with a planar design in it.
 fn home() -> tempfile::TempDir {
@@ -26,7 +27,10 @@ fn slices_of_a_planar_design_are_its_run() {
     let home = home();
     insta::assert_snapshot!("slices_planar", run(home.path(), &["slices", "v.toml", "--resolution", "21"]));
     let slices = json(home.path(), &["slices", "v.toml", "--resolution", "21", "--json"]);
-    let whole = json(home.path(), &["run", "v.toml", "--resolution", "21", "--samples", "0", "--json"]);
+    let whole = json(
+        home.path(),
+        &["run", "v.toml", "--method", "descent", "--resolution", "21", "--samples", "0", "--json"],
+    );
     let slice = &slices["slices"][0];
     assert_eq!(slice["acceptance"]["outcomes"], whole["acceptance"]["outcomes"]);
     assert_eq!((&slice["onaa"], &slice["axes"]), (&whole["onaa"], &whole["axes"]));
@@ -43,7 +47,10 @@ fn all_slices_of_five_errors_are_written_and_replaced() {
         run(home.path(), &args)
     };
     let told = slices(&[]);
-    assert!(told.starts_with("exit 0\n") && told.contains("estimate") && told.contains("roll-pitch"), "{told}");
+    assert!(
+        told.starts_with("exit 0\n") && told.contains("estimate") && told.contains("roll-pitch"),
+        "{told}"
+    );
     let out = home.path().join("out");
     let names = entries(&out);
     assert_eq!(names.len(), 4 + 10, "{names:?}");
@@ -81,7 +88,8 @@ fn slices_that_cannot_be_are_refused() {
 #[test]
 fn refinement_says_when_it_is_stable() {
     let home = home();
-    let args = ["run", "v.toml", "--converge", "--tolerance", "10%", "--time-limit", "1e9"];
+    let args =
+        ["run", "v.toml", "--converge", "--tolerance", "10%", "--time-limit", "100 h", "--samples", "200"];
     let report = json(home.path(), &[&args[..], &["--json"]].concat());
     assert_eq!(report["settings"]["tolerance"], 0.1);
     let sequences = report["sequences"].as_array().unwrap();
@@ -91,11 +99,14 @@ fn refinement_says_when_it_is_stable() {
         let trials = sequence["trials"].as_array().unwrap();
         assert!(trials.len() >= 3 && trials[0]["resolution"] == 11 && trials[0]["cells"] == 121);
     }
-    assert_eq!(sequences[0]["method"], "descent");
-    let last = sequences[0]["trials"].as_array().unwrap().last().unwrap();
+    let exact = sequences.iter().find(|s| s["method"] == "descent").unwrap();
+    let last = exact["trials"].as_array().unwrap().last().unwrap();
     assert!((last["sum"].as_f64().unwrap() - 2.39).abs() < 0.25, "{last}");
     let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
-    assert!(told.starts_with("exit 0\n") && told.contains("\nflood\n") && told.contains("stable\n"), "{told}");
+    assert!(
+        told.starts_with("exit 0\n") && told.contains("\nflood\n") && told.contains("stable\n"),
+        "{told}"
+    );
     assert_eq!(
         entries(&home.path().join("out")),
         ["convergence.csv", "convergence.png", "convergence.svg", "report.json"]
@@ -105,10 +116,10 @@ fn refinement_says_when_it_is_stable() {
 #[test]
 fn what_stops_refinement_is_said() {
     let home = home();
-    let args = ["run", "v.toml", "--converge", "--tolerance", "1e-9", "--time-limit", "1e9", "--memory", "100 kB"];
+    let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "100 kB"];
     let told = run(home.path(), &args);
     assert!(told.starts_with("exit 0\n") && told.contains("stopped, not stable: at"), "{told}");
-    let told = run(home.path(), &["run", "v.toml", "--converge", "--time-limit", "1e-9"]);
+    let told = run(home.path(), &["run", "v.toml", "--converge", "--time-limit", "0.001 ms"]);
     assert!(told.contains("s are allowed for each method"), "{told}");
 }
 
@@ -144,7 +155,8 @@ fn slopes_and_spread_are_told_and_written() {
 
 #[test]
 fn own_halves_have_no_aspect_ratio_to_change() {
-    let report = json(&designs(), &["run", "pyramid-pieces.toml", "--sensitivity", "--samples", "20", "--json"]);
+    let report =
+        json(&designs(), &["run", "pyramid-pieces.toml", "--sensitivity", "--samples", "20", "--json"]);
     assert_eq!(report["slopes"].as_array().unwrap().len(), 2);
 }
 
@@ -154,14 +166,13 @@ fn a_study_takes_no_options_of_a_run() {
     for (study, option) in [
         ("--converge", ["--resolution", "9"]),
         ("--converge", ["--method", "flood"]),
-        ("--converge", ["--samples", "9"]),
+        ("--converge", ["--budget", "9s"]),
         ("--converge", ["--error-sigma", "x=0.1"]),
         ("--sensitivity", ["--require", "sum>1"]),
         ("--sensitivity", ["--tolerance", "1%"]),
         ("--converge", ["--tolerance", "0"]),
     ] {
-        let output =
-            catchment(home.path()).args(["run", "v.toml", study]).args(option).output().unwrap();
+        let output = catchment(home.path()).args(["run", "v.toml", study]).args(option).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{study} {option:?}");
     }
 }

@@ -47,9 +47,12 @@ impl SlicesReport {
     pub fn new(design: &Design, found: &Slices, settings: Settings, timing: Option<Timing>) -> Self {
         let slice = |s: &Slice| SliceReport {
             axes: axes(&s.acceptance),
-            acceptance: AcceptanceReport::new(&s.acceptance, &design.alignment),
+            acceptance: AcceptanceReport {
+                sum_bracket: Some(s.bracket),
+                ..AcceptanceReport::new(&s.acceptance, &design.alignment)
+            },
             onaa: s.onaa.clone().into(),
-            warnings: s.warnings().into_iter().map(WarningReport::from).collect(),
+            warnings: s.warnings.iter().cloned().map(WarningReport::from).collect(),
         };
         Self {
             schema: SCHEMA,
@@ -152,6 +155,7 @@ impl SliceReport {
 mod tests {
     use super::super::schema::testing::{blob, design};
     use super::*;
+    use crate::exec::Exec;
     use crate::merit::onaa::Onaa;
     use crate::merit::sum::Sum;
     use crate::pose::{Dof, DofSet};
@@ -163,8 +167,10 @@ mod tests {
         plane.alignment.free = [Dof::Pitch, Dof::Yaw].into_iter().collect();
         let acceptance = blob(&plane, 201);
         let sum = Sum::of(&acceptance, &plane.alignment);
-        let onaa = Onaa::of(&acceptance).unwrap();
-        let slice = Slice { axes: [Dof::Pitch, Dof::Yaw], acceptance, sum, onaa };
+        let onaa = Onaa::of(&acceptance, &Exec::new()).unwrap();
+        let warnings = vec![Warning::TouchesBorder { axes: vec!["yaw".to_owned()] }];
+        let bracket = [0.9 * sum.sum, 1.1 * sum.sum];
+        let slice = Slice { axes: [Dof::Pitch, Dof::Yaw], acceptance, sum, bracket, onaa, warnings };
         let estimate = Some(Estimate { optimistic: 0.39, conservative: 0.204 });
         let found = Slices { slices: vec![slice], estimate };
         let report = SlicesReport::new(&design, &found, Settings::default(), None);

@@ -179,9 +179,11 @@ fn sequence(
         }
         // Each refinement is dearer than all before it together: half of what is left.
         let done = 1.0 - 0.5f64.powi(trials.len() as i32);
-        match Decided::by(method, pair, resolution, &exec.part([done, 0.5 + 0.5 * done], "convergence")) {
-            Ok(decided) => {
-                let trial = decided.trial(pair)?;
+        let part = exec.part([done, 0.5 + 0.5 * done], "convergence");
+        let tried = Decided::by(method, pair, resolution, &part)
+            .and_then(|decided| Ok((decided.trial(pair, &part)?, decided)));
+        match tried {
+            Ok((trial, decided)) => {
                 spent += trial.seconds;
                 trials.push(trial);
                 finest = Some(decided);
@@ -232,17 +234,7 @@ mod tests {
     fn trial(sum: f64, onaa_edge: f64) -> Trial {
         let bracket = [sum, sum];
         let unit = String::new();
-        Trial {
-            resolution: 3,
-            cells: 9,
-            seconds: 0.0,
-            sum,
-            unit,
-            interval,
-            interval_kind,
-            onaa_edge,
-            undecided: 0,
-        }
+        Trial { resolution: 3, cells: 9, seconds: 0.0, sum, unit, bracket, onaa_edge, undecided: 0 }
     }
 
     #[test]

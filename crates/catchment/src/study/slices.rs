@@ -21,7 +21,7 @@ use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Resolution, ResolutionError};
 use crate::merit::estimate::Estimate;
 use crate::merit::onaa::Onaa;
-use crate::merit::sum::Sum;
+use crate::merit::sum::{Sum, bracket};
 use crate::merit::{MeritError, doubts, slice};
 use crate::method::descent;
 use crate::pose::Dof;
@@ -60,8 +60,12 @@ pub struct Slice {
     pub acceptance: Acceptance,
     /// Its area, Dᵃ·radᵇ.
     pub sum: Sum,
+    /// The same with one cell of doubt on either side of the border.
+    pub bracket: [f64; 2],
     /// Its largest axis-oriented square.
     pub onaa: Onaa,
+    /// The doubts that it raises.
+    pub warnings: Vec<Warning>,
 }
 
 /// Slices of one design.
@@ -118,7 +122,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Slices, Slic
     let largest = planes.iter().map(|(_, grid)| cells(grid)).max().unwrap_or(0);
     let kept = planes.iter().map(|(_, grid)| cells(grid)).fold(0, u64::saturating_add);
     let needed = largest.saturating_mul(pose_bytes()).saturating_add(kept);
-    exec.reserve("the slices", needed, |budget| {
+    exec.reserve("the largest slice", needed, |budget| {
         let fits = Resolution::largest_that_fits(budget, pose_bytes() + planes.len() as u64, 2);
         format!("use at most --resolution {fits}, or allow more with --memory")
     })?;
@@ -130,8 +134,10 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Slices, Slic
             let part = exec.part([k as f64 / total, (k + 1) as f64 / total], "slices");
             let (acceptance, _) = descent::run(pair, Domain::Grid(grid), &settings.descent, &part)?;
             let sum = Sum::of(&acceptance, &pair.alignment);
-            let onaa = Onaa::of(&acceptance)?;
-            Ok(Slice { axes, acceptance, sum, onaa })
+            let onaa = Onaa::of(&acceptance, &part)?;
+            let bracket = bracket(&acceptance, &part)?;
+            let warnings = doubts(&acceptance, &part)?;
+            Ok(Slice { axes, acceptance, sum, bracket, onaa, warnings })
         })
         .collect::<Result<Vec<Slice>, SlicesError>>()?;
     let estimate = estimate(pair, &slices);
@@ -168,13 +174,6 @@ fn estimate(pair: &Pair, slices: &[Slice]) -> Option<Estimate> {
         pair.alignment.free.iter().filter(|dof| dof.is_rotation()).map(edge).collect();
     let rotations = rotations.filter(|edges| !edges.is_empty())?;
     Some(Estimate::of(edge(Dof::Y)?, &rotations))
-}
-
-impl Slice {
-    /// The doubts that it raises.
-    pub fn warnings(&self) -> Vec<Warning> {
-        doubts(&self.acceptance)
-    }
 }
 
 #[cfg(test)]

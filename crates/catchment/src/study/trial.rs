@@ -10,7 +10,7 @@ use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, LandscapeError, Resolution};
 use crate::merit::MeritError;
 use crate::merit::onaa::Onaa;
-use crate::merit::sum::Sum;
+use crate::merit::sum::{Sum, bracket};
 use crate::method::correction::{self, ByFraction, ByNeighbours, Corrected, CorrectionError};
 use crate::method::flood::{self, FloodError};
 use crate::method::transport::{self, Arrival, TransportError};
@@ -129,7 +129,7 @@ impl Decided {
     ///
     /// # Errors
     /// A figure of merit that is not to be had.
-    pub fn trial(&self, pair: &Pair) -> Result<Trial, TrialError> {
+    pub fn trial(&self, pair: &Pair, exec: &Exec) -> Result<Trial, TrialError> {
         let sum = Sum::of(&self.acceptance, &pair.alignment);
         Ok(Trial {
             resolution: self.grid.axes.first().map_or(0, |axis| axis.cells),
@@ -137,8 +137,8 @@ impl Decided {
             seconds: self.seconds,
             sum: self.arrival.as_ref().map_or(sum.sum, |arrival| arrival.mean() * self.grid.measure()),
             unit: sum.unit(),
-            bracket: sum.bracket.unwrap_or([sum.sum; 2]),
-            onaa_edge: Onaa::of(&self.acceptance)?.edge,
+            bracket: bracket(&self.acceptance, exec)?,
+            onaa_edge: Onaa::of(&self.acceptance, exec)?.edge,
             undecided: sum.counts[Outcome::Undecided as usize - 1],
         })
     }

@@ -145,6 +145,7 @@ fn legend(svg: &mut Svg, found: &Slices, y: f64) {
 mod tests {
     use super::super::testing::{look, pyramid};
     use super::*;
+    use crate::exec::Exec;
     use crate::merit::estimate::Estimate;
     use crate::merit::onaa::Onaa;
     use crate::merit::slice;
@@ -159,8 +160,8 @@ mod tests {
             planar.alignment.free = axes.into_iter().collect();
             let acceptance = blob(&planar, cells);
             let sum = Sum::of(&acceptance, &planar.alignment);
-            let onaa = Onaa::of(&acceptance).unwrap();
-            Slice { axes, acceptance, sum, onaa }
+            let onaa = Onaa::of(&acceptance, &Exec::new()).unwrap();
+            Slice { axes, acceptance, bracket: [sum.sum; 2], sum, onaa, warnings: Vec::new() }
         };
         let all = slice::pairs(&crate::landscape::Grid::over(&design.alignment, |_| 2));
         let estimate = Some(Estimate { optimistic: 0.39, conservative: 0.204 });

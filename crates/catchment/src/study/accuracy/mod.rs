@@ -155,7 +155,7 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
     for resolution in case.resolutions() {
         for method in Method::ALL {
             let decided = Decided::by(method, &pair, resolution, exec)?;
-            entries.push(Entry::of(&decided, method, &pair)?);
+            entries.push(Entry::of(&decided, method, &pair, exec)?);
             match method {
                 Method::Descent => finest = Some(decided),
                 Method::Transport => entries.push(Entry::corrected(&decided, &pair, exec)?),
@@ -168,7 +168,7 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
     if let Some(decided) = finest {
         let settings = correction::Settings { seed: SEEDS[0], stop: Stop::Samples(EXACT) };
         let found = decided.correct(&pair, &settings, exec).map_err(TrialError::from)?;
-        let unit = decided.trial(&pair)?.unit;
+        let unit = decided.trial(&pair, exec)?.unit;
         exact = Exact { sum: found.sum, unit, ci95: found.ci95, descents: found.descents };
     }
     for entry in &mut entries {
@@ -181,8 +181,8 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
 
 impl Entry {
     /// The grid's own Sum; its error is not known yet.
-    fn of(decided: &Decided, method: Method, pair: &Pair) -> Result<Self, TrialError> {
-        let trial = decided.trial(pair)?;
+    fn of(decided: &Decided, method: Method, pair: &Pair, exec: &Exec) -> Result<Self, TrialError> {
+        let trial = decided.trial(pair, exec)?;
         Ok(Self {
             way: Way::Grid(method),
             resolution: trial.resolution,
@@ -200,7 +200,7 @@ impl Entry {
         let descents = Method::Transport.default_samples(pair);
         let settings = correction::Settings { seed: SEEDS[1], stop: Stop::Samples(descents) };
         let found = decided.correct(pair, &settings, exec)?;
-        let grid = Self::of(decided, Method::Transport, pair)?;
+        let grid = Self::of(decided, Method::Transport, pair, exec)?;
         Ok(Self {
             way: Way::Corrected,
             sum: found.sum,
