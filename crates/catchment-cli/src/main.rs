@@ -11,6 +11,7 @@ mod failure;
 mod geometry;
 mod output;
 mod poses;
+mod result_folder;
 mod source;
 
 use args::Cli;

@@ -8,6 +8,7 @@ mod outcome;
 mod reproduce;
 mod run;
 mod schema;
+mod slices;
 mod trace;
 mod zraa;
 
@@ -21,6 +22,7 @@ pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
     Run(Box<run::RunArgs>),
+    Slices(slices::SlicesArgs),
     Outcome(outcome::OutcomeArgs),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
@@ -37,6 +39,7 @@ impl Command {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
             Self::Run(args) => run::run(&args),
+            Self::Slices(args) => slices::run(&args),
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),

@@ -6,12 +6,14 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{number, to_stderr, to_stdout};
 use catchment::acceptance::Warning;
+use catchment::study::accuracy;
 use catchment::study::coverage::{Settings, coverage};
 use catchment::study::reproduce::{TABLES, TableComparison, reproduce};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use serde_json::json;
 use std::fmt::Write;
+use std::time::Instant;
 
 /// Compute published tables and set them beside the printed ones
 ///
@@ -23,9 +25,10 @@ use std::fmt::Write;
     catchment reproduce                     every table, and how well each agrees\n  \
     catchment reproduce 5.7                 one of them\n  \
     catchment reproduce 3.3 3.4 --csv > kinematic.csv\n  \
-    catchment reproduce coverage            how often the 95 % intervals of `run` hold (minutes)")]
+    catchment reproduce coverage            how often the 95 % intervals of `run` hold (minutes)\n  \
+    catchment reproduce accuracy            how far every method is off, on eleven designs (minutes)")]
 pub(crate) struct ReproduceArgs {
-    /// Numbers of the tables in the dissertation, all of them when none is named; or `coverage`
+    /// Numbers of the tables in the dissertation, all of them when none is named; or `coverage`; or `accuracy` alone
     #[arg(value_name = "TABLE", value_parser = tables())]
     tables: Vec<String>,
     /// Print JSON
@@ -34,6 +37,9 @@ pub(crate) struct ReproduceArgs {
     /// Print CSV, one line per entry
     #[arg(long)]
     csv: bool,
+    /// accuracy: print the page of the documentation
+    #[arg(long, conflicts_with_all = ["json", "csv"])]
+    markdown: bool,
     #[command(flatten)]
     exec: ExecArgs,
 }
@@ -44,14 +50,33 @@ const COVERAGE: &str = "coverage";
 /// Version of the JSON that `--json` prints.
 const JSON_SCHEMA: u32 = 1;
 
+/// The table that no dissertation has printed.
+const ACCURACY: &str = "accuracy";
+
 fn tables() -> PossibleValuesParser {
     let published = TABLES.iter().map(|table| PossibleValue::new(table.name).help(table.title));
-    let own =
+    let coverage =
         PossibleValue::new(COVERAGE).help("Share of repeated runs whose 95 % interval holds the exact Sum");
-    PossibleValuesParser::new(published.chain([own]))
+    let accuracy = PossibleValue::new(ACCURACY).help("Sum by every method beside the exact one");
+    PossibleValuesParser::new(published.chain([coverage, accuracy]))
 }
 
 pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
+    if args.tables.iter().any(|table| table == ACCURACY) {
+        if args.tables.len() > 1 {
+            let message = "accuracy is no published table, and is computed alone".to_owned();
+            return Err(Failure::with_help(
+                message,
+                Some("name the other tables in a second command".to_owned()),
+            ));
+        }
+        return accuracy(args);
+    }
+    if args.markdown {
+        let message =
+            "--markdown is for accuracy; published tables are printed as text, JSON or CSV".to_owned();
+        return Err(Failure::with_help(message, None));
+    }
     let wanted = |name: &str| args.tables.is_empty() || args.tables.iter().any(|t| t == name);
     let names: Vec<&str> = TABLES.iter().map(|table| table.name).filter(|name| wanted(name)).collect();
     let own = args.tables.iter().any(|t| t == COVERAGE);
@@ -84,6 +109,29 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     if fitted {
         to_stderr(&[format!("warning: {warning}")]);
     }
+    Ok(ExitStatus::Done)
+}
+
+/// How far every method is off.
+fn accuracy(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let running = args.exec.start()?;
+    let threads = running.exec.threads();
+    let table = accuracy::run(&accuracy::CASES, &running.exec)?;
+    drop(running);
+    let total_s = started.elapsed().as_secs_f64();
+    let text = if args.json {
+        let timing = json!({ "total_s": total_s, "threads": threads });
+        format!("{:#}\n", json!({ "schema": JSON_SCHEMA, "accuracy": table, "timing": timing }))
+    } else if args.csv {
+        String::from_utf8(crate::result_folder::csv(&table.records())?)?
+    } else if args.markdown {
+        let version = env!("CARGO_PKG_VERSION");
+        table.markdown(&format!("It took {total_s:.0} s on {threads} threads, with version {version}."))?
+    } else {
+        table.to_string()
+    };
+    to_stdout(&text)?;
     Ok(ExitStatus::Done)
 }
 

@@ -8,6 +8,7 @@ mod meshes;
 mod new;
 mod plumbing;
 mod poses;
+mod studies;
 mod tables;
 
 use std::path::{Path, PathBuf};

@@ -17,6 +17,7 @@
 
 pub mod brute;
 pub mod centered;
+pub mod estimate;
 mod mask;
 pub mod onaa;
 pub mod slice;

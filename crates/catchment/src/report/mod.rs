@@ -11,15 +11,21 @@
 //! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians in
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
+mod convergence;
 #[cfg(feature = "figure")]
 pub mod figure;
 mod requirement;
 pub mod schema;
+mod sensitivity;
+mod slices;
 mod table;
 pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
 
+pub use convergence::ConvergenceReport;
 pub use requirement::{Requirement, RequirementError};
 pub use schema::Report;
+pub use sensitivity::SensitivityReport;
+pub use slices::SlicesReport;
 pub use table::table;

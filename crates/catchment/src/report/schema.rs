@@ -301,7 +301,8 @@ impl Report {
     }
 }
 
-fn axes(acceptance: &Acceptance) -> Vec<Axis> {
+/// The axes of its grid.
+pub(super) fn axes(acceptance: &Acceptance) -> Vec<Axis> {
     let Some(grid) = acceptance.grid() else { return Vec::new() };
     grid.axes
         .iter()
@@ -310,7 +311,8 @@ fn axes(acceptance: &Acceptance) -> Vec<Axis> {
 }
 
 impl AcceptanceReport {
-    fn new(acceptance: &Acceptance, alignment: &Alignment) -> Self {
+    /// Measures an acceptance.
+    pub fn new(acceptance: &Acceptance, alignment: &Alignment) -> Self {
         let sum = Sum::of(acceptance, alignment);
         Self {
             sum: sum.sum,

@@ -50,16 +50,16 @@ pub fn table(report: &Report) -> String {
     text
 }
 
-fn line(text: &mut String, content: &str) {
+pub(super) fn line(text: &mut String, content: &str) {
     text.push_str(content.trim_end());
     text.push('\n');
 }
 
-fn row(text: &mut String, name: &str, value: &str) {
+pub(super) fn row(text: &mut String, name: &str, value: &str) {
     line(text, &format!("  {name:<width$}{value}", width = NAMES - 2));
 }
 
-fn heading(text: &mut String, design: &Design) {
+pub(super) fn heading(text: &mut String, design: &Design) {
     line(text, &design.name);
     line(text, &"─".repeat(design.name.chars().count().clamp(24, COLUMNS)));
     let kind = match &design.connector {
@@ -176,7 +176,7 @@ fn both(t: &ToleranceReport, scale: f64, digits: usize) -> String {
 }
 
 /// Breaks `content` between words; later lines are indented by the width of `first`.
-fn wrapped(text: &mut String, first: &str, content: &str) {
+pub(super) fn wrapped(text: &mut String, first: &str, content: &str) {
     let indent = first.chars().count();
     let mut current = first.to_owned();
     let mut used = indent;
@@ -197,7 +197,7 @@ fn wrapped(text: &mut String, first: &str, content: &str) {
     line(text, &current);
 }
 
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
@@ -208,7 +208,7 @@ fn number(value: f64) -> String {
 }
 
 /// Four significant digits.
-fn significant(value: f64) -> String {
+pub(super) fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -234,7 +234,7 @@ fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
 }
 
 /// Thousands kept apart by thin gaps: 24 300 000.
-fn grouped(n: usize) -> String {
+pub(super) fn grouped(n: usize) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (position, digit) in digits.chars().enumerate() {

@@ -1,4 +1,50 @@
-//! Studies over many designs: reproduction of published tables, and whether stated intervals hold.
+//! Studies: many computations of one design or of many, and what they say together.
+//!
+//! ```text
+//!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes
+//!   convergence  finer and finer grids until stable               one design, every method
+//!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
+//!   accuracy     how far each method is off the exact Sum          many designs
+//!   coverage     how often stated intervals hold                  many runs
+//!   reproduce    published tables, computed again                 many designs
+//! ```
 
+pub mod accuracy;
+pub mod convergence;
 pub mod coverage;
 pub mod reproduce;
+pub mod sensitivity;
+pub mod slices;
+pub mod trial;
+
+use crate::acceptance::Outcome;
+use crate::method::descent;
+
+/// Bytes per descent while they run: the end and the outcome of each, and the ends once more while the parts of the
+/// threads are put together.
+const fn pose_bytes() -> u64 {
+    (2 * size_of::<descent::End>() + size_of::<Outcome>()) as u64
+}
+
+#[cfg(test)]
+mod testing {
+    //! A pair to study.
+
+    use crate::connector::Connector;
+    use crate::contact::Pair;
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+    use crate::pose::DofSet;
+
+    /// A family with its defaults, free in `free`.
+    pub(super) fn design(family: Family, free: DofSet) -> Design {
+        let alignment = Alignment { free, ..Alignment::default_for(Some(family)) };
+        let connector = ConnectorSpec::Family(FamilySpec::new(family));
+        Design { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment }
+    }
+
+    /// Its halves.
+    pub(super) fn pair(family: Family, free: DofSet) -> Pair {
+        let design = design(family, free);
+        Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+    }
+}

@@ -10,6 +10,7 @@ mod errors;
 mod pictures;
 mod place;
 mod sample;
+mod study;
 
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
@@ -40,8 +41,11 @@ use std::time::Instant;
     catchment run design.toml --free x,y,yaw --resolution 41,yaw=61\n  \
     catchment run design.toml --tolerance 1%            until the Sum is known to ± 1 %\n  \
     catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' --require 'success.probability>=0.99'\n  \
-    catchment run design.toml --json | jq .onaa.edge\n\n\
-    The JSON of equal runs is equal byte for byte, whatever the number of threads, but for `timing`.")]
+    catchment run design.toml --json | jq .onaa.edge\n  \
+    catchment run design.toml --converge -o out         finer grids until stable, with every method\n  \
+    catchment run design.toml --sensitivity             slopes against rho, COR and aspect ratio\n\n\
+    The JSON of equal runs is equal byte for byte, whatever the number of threads, but for `timing` (and the seconds of\n\
+    --converge, which may end it earlier on a slower machine).")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     design: DesignArgs,
@@ -53,6 +57,8 @@ pub(crate) struct RunArgs {
     errors: errors::ErrorArgs,
     #[command(flatten)]
     place: place::PlaceArgs,
+    #[command(flatten)]
+    study: study::StudyArgs,
     /// Print the report as JSON instead of the table
     #[arg(long)]
     json: bool,
@@ -100,6 +106,9 @@ fn depth(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
+    if let Some(studied) = study::run(args) {
+        return studied;
+    }
     let started = Instant::now();
     let how = &args.how;
     if how.depth_tolerance.is_some() && how.method != Method::Flood {

@@ -4,24 +4,21 @@
 //!   -o DIR          DIR/report.json, DIR/result.zarr, and every picture as .png and .svg
 //!   -o NAME.zarr    the Zarr group alone
 //!   --figures DIR   every picture alone
+//!   (a study)       DIR/report.json, and its table and picture
 //! ```
 
 use super::compute::{Computed, Job};
 use super::pictures;
 use crate::failure::Failure;
 use crate::geometry::Built;
+use crate::result_folder::{REPORT, Study, encode, has_only, is_report, write_all};
 use catchment::exec::Exec;
-use catchment::report::figure::Picture;
 use catchment::report::write;
 use catchment::report::{Report, zarr};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-const REPORT: &str = "report.json";
 const RESULT: &str = "result.zarr";
-
-/// Pixels per unit of the drawing in PNG files: sharp on screens and slides.
-const PNG_SCALE: f32 = 2.0;
 
 /// Where the files of a run go.
 #[derive(Debug, Args)]
@@ -61,6 +58,13 @@ impl PlaceArgs {
         places.group.map_or(Ok(()), |path| write::check_folder(path, zarr::is_group))?;
         places.figures.map_or(Ok(()), |path| write::check_folder(path, has_only_pictures))?;
         Ok(places)
+    }
+
+    /// The folder of a study of this name, if one is to be written; refused now if it cannot be.
+    pub(super) fn study(&self, name: &'static str) -> Result<Option<Study<'_>>, Failure> {
+        let folder = self.output.as_deref().map(|path| Study { path, name });
+        folder.as_ref().map_or(Ok(()), Study::check)?;
+        Ok(folder)
     }
 }
 
@@ -118,25 +122,6 @@ impl Places<'_> {
     }
 }
 
-/// Every picture as SVG and PNG, with the name of its file.
-fn encode(drawn: &[(&'static str, Picture)], exec: &Exec) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let mut files = Vec::with_capacity(2 * drawn.len());
-    for (name, picture) in drawn {
-        exec.check()?;
-        files.push((format!("{name}.png"), picture.png(PNG_SCALE)?));
-        files.push((format!("{name}.svg"), picture.svg().as_bytes().to_vec()));
-    }
-    Ok(files)
-}
-
-fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Result<(), Failure> {
-    for (name, bytes) in files {
-        exec.check()?;
-        write::file(&folder.join(name), bytes)?;
-    }
-    Ok(())
-}
-
 /// Whether a folder holds pictures of a run, or nothing: replacing it loses nothing else.
 fn has_only_pictures(path: &Path) -> bool {
     has_only(path, is_picture)
@@ -144,11 +129,6 @@ fn has_only_pictures(path: &Path) -> bool {
 
 /// Whether a folder was written by `-o DIR`, or is empty: replacing it loses nothing else.
 fn is_result(path: &Path) -> bool {
-    let is_report = |path: &Path| {
-        let text = std::fs::read_to_string(path).unwrap_or_default();
-        let report: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-        report["schema"].is_u64() && report["catchment"].is_string()
-    };
     has_only(path, |name| {
         is_picture(name)
             || name == REPORT && is_report(&path.join(REPORT))
@@ -160,14 +140,6 @@ fn is_picture(name: &str) -> bool {
     pictures::NAMES
         .iter()
         .any(|picture| name.strip_prefix(picture).is_some_and(|ending| matches!(ending, ".png" | ".svg")))
-}
-
-/// Whether a folder holds only entries of known names.
-fn has_only(path: &Path, known: impl Fn(&str) -> bool) -> bool {
-    // A link may lead to a folder that other things rely on.
-    let is_folder = std::fs::symlink_metadata(path).is_ok_and(|meta| meta.is_dir());
-    let Ok(mut entries) = std::fs::read_dir(path) else { return false };
-    is_folder && entries.all(|entry| entry.is_ok_and(|e| e.file_name().to_str().is_some_and(&known)))
 }
 
 #[cfg(test)]

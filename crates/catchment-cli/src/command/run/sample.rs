@@ -11,16 +11,17 @@ use std::time::Duration;
 pub(super) struct SampleArgs {
     /// Random poses followed exactly to correct the Sum, 0 for none [default: 4000, fewer for round halves; 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
-    samples: Option<u32>,
+    pub(super) samples: Option<u32>,
     /// As many as can be followed in this time, such as "20s" or "2 min"; the report says how many
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["samples", "tolerance"], help_heading = SUM)]
     budget: Option<Duration>,
-    /// As many as it takes for a 95 % interval of ± this share of the Sum, such as 1% or 0.01
+    /// As many as it takes for a 95 % interval of ± this share of the Sum, such as 1% or 0.01; with --converge the largest
+    /// change that counts as stable
     #[arg(long, value_name = "SHARE", value_parser = share, conflicts_with = "samples", help_heading = SUM)]
-    tolerance: Option<f64>,
+    pub(super) tolerance: Option<f64>,
     /// Seed of the random poses
     #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = SUM)]
-    seed: u64,
+    pub(super) seed: u64,
 }
 
 const SUM: &str = "How sure the Sum is";
@@ -43,7 +44,7 @@ impl SampleArgs {
 }
 
 /// A time such as `20s`, `2 min`, `0.5 h`.
-fn duration(text: &str) -> Result<Duration, String> {
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
     const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("min", 60.0), ("h", 3600.0)];
     const LONGEST_S: f64 = 1e7;
     let number = text.trim().trim_end_matches(|c: char| c.is_ascii_alphabetic());

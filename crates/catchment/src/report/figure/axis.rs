@@ -144,23 +144,40 @@ impl Frame {
 
     /// Outline, ticks and labels; needs about 46 to the left and 38 below.
     pub(super) fn draw(&self, svg: &mut Svg) {
+        self.below(svg);
+        self.beside(svg);
+        self.outline(svg);
+    }
+
+    /// Ticks and label of the lower side.
+    pub(super) fn below(&self, svg: &mut Svg) {
         let r = self.rect;
-        let tick = format!(r#"stroke="{SOFT}" stroke-width="0.8""#);
         for x in self.x.ticks((r.w / 46.0) as usize) {
             let px = self.px(x);
-            svg.line([px, r.y + r.h], [px, r.y + r.h + 4.0], &tick);
+            svg.line([px, r.y + r.h], [px, r.y + r.h + 4.0], TICK_LINE);
             svg.text([px, r.y + r.h + 15.5], TICK, Anchor::Middle, SOFT, &tick_label(x));
         }
+        svg.text([r.x + 0.5 * r.w, r.y + r.h + 32.0], LABEL, Anchor::Middle, INK, &self.x.label);
+    }
+
+    /// Ticks and label of the left side.
+    pub(super) fn beside(&self, svg: &mut Svg) {
+        let r = self.rect;
         for y in self.y.ticks((r.h / 40.0) as usize) {
             let py = self.py(y);
-            svg.line([r.x - 4.0, py], [r.x, py], &tick);
+            svg.line([r.x - 4.0, py], [r.x, py], TICK_LINE);
             svg.text([r.x - 7.0, py + 3.8], TICK, Anchor::End, SOFT, &tick_label(y));
         }
-        svg.rect(r, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="1""#));
-        svg.text([r.x + 0.5 * r.w, r.y + r.h + 32.0], LABEL, Anchor::Middle, INK, &self.x.label);
         svg.text_up([r.x - 38.0, r.y + 0.5 * r.h], LABEL, &self.y.label);
     }
+
+    pub(super) fn outline(&self, svg: &mut Svg) {
+        svg.rect(self.rect, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="1""#));
+    }
 }
+
+/// Of the colour [`SOFT`].
+const TICK_LINE: &str = r##"stroke="#5f6b7a" stroke-width="0.8""##;
 
 /// A tick's number: multiples of a round step need few digits.
 pub(super) fn tick_label(value: f64) -> String {

@@ -94,6 +94,19 @@ pub(super) fn outcomes(
     units: &Units,
     onaa: Option<&Onaa>,
 ) -> Result<(), FigureError> {
+    inside(svg, map, frame, units, onaa)?;
+    frame.draw(svg);
+    Ok(())
+}
+
+/// The same without the axes.
+pub(super) fn inside(
+    svg: &mut Svg,
+    map: &Map,
+    frame: &Frame,
+    units: &Units,
+    onaa: Option<&Onaa>,
+) -> Result<(), FigureError> {
     let colours: Vec<Rgb> = map.outcomes.iter().map(|o| colour::outcome(*o)).collect();
     map.paint(svg, frame, &colours)?;
     zero_lines(svg, frame);
@@ -101,7 +114,6 @@ pub(super) fn outcomes(
     if let Some(onaa) = onaa {
         cube(svg, map, frame, units, onaa);
     }
-    frame.draw(svg);
     Ok(())
 }
 

@@ -2,6 +2,9 @@
 //!
 //! ```text
 //!   slices      outcomes over pairs of errors, the border of the accepted set, the ONAA cube
+//!   matrix      slices of all pairs of errors, in a triangle with shared axes
+//!   convergence Sum and ONAA against resolution and time, every method
+//!   sensitivity the Sum against rho
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
@@ -16,23 +19,30 @@
 
 mod axis;
 mod basins;
+mod chart;
 mod colour;
+mod convergence;
 mod heights;
 mod map;
+mod matrix;
 mod overview;
 mod raster;
 mod region;
 mod section;
+mod sensitivity;
 mod slices;
 mod solid;
 mod svg;
 mod trajectory;
 
 pub use basins::basins;
+pub use convergence::convergence;
 pub use heights::heights;
+pub use matrix::slice_matrix;
 pub use overview::overview;
 pub use region::region;
 pub use section::{Placement, section};
+pub use sensitivity::sensitivity;
 pub use slices::slices;
 pub use solid::solids;
 pub use trajectory::trajectory;

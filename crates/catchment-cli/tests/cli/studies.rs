@@ -1,0 +1,178 @@
+//! `catchment slices`, `run --converge`, `run --sensitivity`: many computations of one design.
+
+use super::{catchment, designs, json, run};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+const V_FACE: &str =
+    "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+
+/// A folder with a planar design in it.
+fn home() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("v.toml"), V_FACE).unwrap();
+    dir
+}
+
+fn entries(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn slices_of_a_planar_design_are_its_run() {
+    let home = home();
+    insta::assert_snapshot!("slices_planar", run(home.path(), &["slices", "v.toml", "--resolution", "21"]));
+    let slices = json(home.path(), &["slices", "v.toml", "--resolution", "21", "--json"]);
+    let whole = json(
+        home.path(),
+        &["run", "v.toml", "--method", "descent", "--resolution", "21", "--samples", "0", "--json"],
+    );
+    let slice = &slices["slices"][0];
+    assert_eq!(slice["acceptance"]["outcomes"], whole["acceptance"]["outcomes"]);
+    assert_eq!((&slice["onaa"], &slice["axes"]), (&whole["onaa"], &whole["axes"]));
+    assert!(slices["onaa_estimate"].is_null() && slices["timing"]["threads"].is_u64());
+}
+
+#[test]
+fn all_slices_of_five_errors_are_written_and_replaced() {
+    let home = tempfile::tempdir().unwrap();
+    let design = designs().join("pyramid.toml");
+    let slices = |more: &[&str]| {
+        let mut args = vec!["slices", design.to_str().unwrap(), "--resolution", "5", "-o", "out"];
+        args.extend(more);
+        run(home.path(), &args)
+    };
+    let told = slices(&[]);
+    assert!(
+        told.starts_with("exit 0\n") && told.contains("estimate") && told.contains("roll-pitch"),
+        "{told}"
+    );
+    let out = home.path().join("out");
+    let names = entries(&out);
+    assert_eq!(names.len(), 4 + 10, "{names:?}");
+    for name in ["report.json", "slices.csv", "slices.png", "slices.svg", "x-yaw.zarr", "roll-pitch.zarr"] {
+        assert!(names.iter().any(|n| n == name), "{name}");
+    }
+    let report: Value = serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
+    assert_eq!((report["study"].as_str(), report["slices"].as_array().unwrap().len()), (Some("slices"), 10));
+    assert!(report["onaa_estimate"]["optimistic"].is_f64());
+    let csv = fs::read_to_string(out.join("slices.csv")).unwrap();
+    assert!(csv.starts_with("slice,cells,sum,unit,") && csv.lines().count() == 11, "{csv}");
+    assert!(slices(&["--axes", "pitch,x"]).starts_with("exit 0\n"));
+    assert_eq!(entries(&out), ["report.json", "slices.csv", "slices.png", "slices.svg", "x-pitch.zarr"]);
+}
+
+#[test]
+fn slices_that_cannot_be_are_refused() {
+    let home = home();
+    let refuse = |args: &[&str]| {
+        let mut all = vec!["slices", "v.toml", "-o", "out"];
+        all.extend(args);
+        let text = run(home.path(), &all);
+        assert_eq!(entries(home.path()), ["v.toml"]);
+        text
+    };
+    insta::assert_snapshot!("slices_axis_not_free", refuse(&["--axes", "x,yaw"]));
+    insta::assert_snapshot!("slices_too_large", refuse(&["--resolution", "100000", "--memory", "1 MB"]));
+    assert!(refuse(&["--axes", "x"]).contains("a slice varies two errors, such as x,pitch"));
+    assert!(refuse(&["--axes", "x,z"]).contains("there is no axis `z`"));
+    assert!(refuse(&["--axes", "x,x"]).contains("two different errors"));
+    assert!(refuse(&["--resolution", "9,yaw=5"]).contains("yaw"));
+    assert!(refuse(&["--free", "x"]).contains("a slice needs two free errors"));
+}
+
+#[test]
+fn refinement_says_when_it_is_stable() {
+    let home = home();
+    let args =
+        ["run", "v.toml", "--converge", "--tolerance", "10%", "--time-limit", "100 h", "--samples", "200"];
+    let report = json(home.path(), &[&args[..], &["--json"]].concat());
+    assert_eq!(report["settings"]["tolerance"], 0.1);
+    let sequences = report["sequences"].as_array().unwrap();
+    assert!(sequences.len() >= 2);
+    for sequence in sequences {
+        assert_eq!(sequence["end"]["kind"], "stable", "{sequence}");
+        let trials = sequence["trials"].as_array().unwrap();
+        assert!(trials.len() >= 3 && trials[0]["resolution"] == 11 && trials[0]["cells"] == 121);
+    }
+    let exact = sequences.iter().find(|s| s["method"] == "descent").unwrap();
+    let last = exact["trials"].as_array().unwrap().last().unwrap();
+    assert!((last["sum"].as_f64().unwrap() - 2.39).abs() < 0.25, "{last}");
+    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
+    assert!(
+        told.starts_with("exit 0\n") && told.contains("\nflood\n") && told.contains("stable\n"),
+        "{told}"
+    );
+    assert_eq!(
+        entries(&home.path().join("out")),
+        ["convergence.csv", "convergence.png", "convergence.svg", "report.json"]
+    );
+}
+
+#[test]
+fn what_stops_refinement_is_said() {
+    let home = home();
+    let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "100 kB"];
+    let told = run(home.path(), &args);
+    assert!(told.starts_with("exit 0\n") && told.contains("stopped, not stable: at"), "{told}");
+    let told = run(home.path(), &["run", "v.toml", "--converge", "--time-limit", "0.001 ms"]);
+    assert!(told.contains("s are allowed for each method"), "{told}");
+}
+
+#[test]
+fn slopes_and_spread_are_told_and_written() {
+    let home = home();
+    let args = ["run", "v.toml", "--sensitivity", "--samples", "200"];
+    insta::assert_snapshot!("sensitivity_planar", run(home.path(), &args));
+    let with = |threads: &str, seed: &str| {
+        let more = ["--json", "--threads", threads, "--seed", seed];
+        let mut report = json(home.path(), &[&args[..], &more].concat());
+        assert!(report["timing"].take().is_object());
+        report
+    };
+    let report = with("1", "1");
+    assert_eq!(report, with("2", "1"));
+    assert_ne!(report["sum"], with("1", "2")["sum"]);
+    let names: Vec<&str> =
+        report["slopes"].as_array().unwrap().iter().map(|s| s["parameter"].as_str().unwrap()).collect();
+    assert_eq!(names, ["rotation_length", "center_of_rotation", "aspect_ratio"]);
+    let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
+    assert!(told.contains("wrote out: report.json, sensitivity.csv"), "{told}");
+    assert_eq!(
+        entries(&home.path().join("out")),
+        ["report.json", "sensitivity.csv", "sensitivity.png", "sensitivity.svg"]
+    );
+    // What a run wrote there is not replaced by a study.
+    fs::create_dir(home.path().join("thesis")).unwrap();
+    fs::write(home.path().join("thesis/overview.png"), "").unwrap();
+    let told = run(home.path(), &["run", "v.toml", "--sensitivity", "-o", "thesis"]);
+    assert!(told.starts_with("exit 2\n") && told.contains("cannot write"), "{told}");
+}
+
+#[test]
+fn own_halves_have_no_aspect_ratio_to_change() {
+    let report =
+        json(&designs(), &["run", "pyramid-pieces.toml", "--sensitivity", "--samples", "20", "--json"]);
+    assert_eq!(report["slopes"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn a_study_takes_no_options_of_a_run() {
+    let home = home();
+    for (study, option) in [
+        ("--converge", ["--resolution", "9"]),
+        ("--converge", ["--method", "flood"]),
+        ("--converge", ["--budget", "9s"]),
+        ("--converge", ["--error-sigma", "x=0.1"]),
+        ("--sensitivity", ["--require", "sum>1"]),
+        ("--sensitivity", ["--tolerance", "1%"]),
+        ("--converge", ["--tolerance", "0"]),
+    ] {
+        let output = catchment(home.path()).args(["run", "v.toml", study]).args(option).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{study} {option:?}");
+    }
+}

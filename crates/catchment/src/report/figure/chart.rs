@@ -1,0 +1,176 @@
+//! Lines over a logarithmic scale, each with its interval as a band.
+
+use super::axis::{Frame, Scale, tick_label};
+use super::colour::{Rgb, hex};
+use super::map::{JOIN, width_of};
+use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, polyline};
+
+/// One line.
+pub(super) struct Line {
+    pub(super) name: String,
+    pub(super) colour: Rgb,
+    pub(super) points: Vec<Point>,
+}
+
+/// One point of a line, with the interval of its value where it has one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) interval: Option<[f64; 2]>,
+}
+
+/// A chart over a logarithmic x scale.
+pub(super) struct Chart<'a> {
+    pub(super) rect: Rect,
+    pub(super) x_label: &'a str,
+    pub(super) y_label: &'a str,
+    pub(super) lines: &'a [Line],
+    /// A value to mark on the x scale, and what it is.
+    pub(super) mark: Option<(f64, &'a str)>,
+}
+
+impl Chart<'_> {
+    /// Draws the chart; needs about 56 to the left and 38 below. Points whose x is not positive are left out.
+    pub(super) fn draw(&self, svg: &mut Svg) {
+        let Some(frame) = self.frame() else { return };
+        let r = self.rect;
+        let grid = format!(r#"stroke="{SOFT}" stroke-opacity="0.18" stroke-width="0.8""#);
+        for y in frame.y.ticks((r.h / 40.0) as usize) {
+            svg.line([r.x, frame.py(y)], [r.x + r.w, frame.py(y)], &grid);
+        }
+        for x in decades(frame.x.lo, frame.x.hi, r.w) {
+            let px = frame.px(x.log10());
+            svg.line([px, r.y], [px, r.y + r.h], &grid);
+            svg.line(
+                [px, r.y + r.h],
+                [px, r.y + r.h + 4.0],
+                &format!(r#"stroke="{SOFT}" stroke-width="0.8""#),
+            );
+            svg.text([px, r.y + r.h + 15.5], TICK, Anchor::Middle, SOFT, &tick_label(x));
+        }
+        svg.text([r.x + 0.5 * r.w, r.y + r.h + 32.0], LABEL, Anchor::Middle, INK, self.x_label);
+        svg.begin_clip(r);
+        if let Some((x, words)) = self.mark {
+            let px = frame.px(x.log10());
+            let dashed = format!(r#"stroke="{INK}" stroke-width="1" stroke-dasharray="4 3""#);
+            svg.line([px, r.y], [px, r.y + r.h], &dashed);
+            svg.text([px + 5.0, r.y + 14.0], TICK, Anchor::Start, INK, words);
+        }
+        for line in self.lines {
+            line.band(svg, &frame);
+        }
+        for line in self.lines {
+            line.curve(svg, &frame);
+        }
+        svg.end();
+        frame.beside(svg);
+        frame.outline(svg);
+    }
+
+    /// The frame around all points and the interval of each line's last one; `None` without points.
+    fn frame(&self) -> Option<Frame> {
+        /// Room beside the outermost points, as a share of the extent.
+        const MARGIN: f64 = 0.06;
+        let points = || self.lines.iter().flat_map(Line::shown);
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
+        };
+        let (left, right) =
+            range(&mut points().map(|p| p.x.log10()).chain(self.mark.map(|(x, _)| x.log10())));
+        // Wide intervals of coarse beginnings would leave no room for the values: they run out of the frame.
+        let ends = self.lines.iter().filter_map(|line| line.shown().last()).filter_map(|p| p.interval);
+        let (low, high) = range(&mut points().map(|p| p.y).chain(ends.flatten()));
+        if !(left <= right && low <= high) {
+            return None;
+        }
+        // A single point still has room around it.
+        let wide = |lo: f64, hi: f64, least: f64| {
+            let margin = (MARGIN * (hi - lo)).max(least);
+            (lo - margin, hi + margin)
+        };
+        let (left, right) = wide(left, right, 0.02);
+        let (low, high) = wide(low, high, 1e-3 * low.abs().max(high.abs()).max(1e-9));
+        Some(Frame {
+            rect: self.rect,
+            x: Scale::new(String::new(), left, right, false),
+            y: Scale::new(self.y_label.to_owned(), low, high, false),
+        })
+    }
+}
+
+impl Line {
+    fn shown(&self) -> impl Iterator<Item = &Point> {
+        self.points.iter().filter(|p| p.x > 0.0 && p.y.is_finite())
+    }
+
+    fn band(&self, svg: &mut Svg, frame: &Frame) {
+        let ends =
+            |k: usize| self.shown().filter_map(move |p| p.interval.map(|i| frame.at([p.x.log10(), i[k]])));
+        let mut outline: Vec<[f64; 2]> = ends(1).collect();
+        let mut lower: Vec<[f64; 2]> = ends(0).collect();
+        // A band that turns back, as over times that do not grow, encloses nothing that means anything.
+        let forward = lower.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+        if lower.len() > 1 && forward {
+            lower.reverse();
+            outline.extend(lower);
+            let style = format!(r#"fill="{}" fill-opacity="0.16" stroke="none""#, hex(self.colour));
+            svg.path(&polyline(outline, true), &style);
+        }
+        // A band is thin at its ends and nothing at a single point: whiskers show every interval.
+        let whisker = format!(r#"stroke="{}" stroke-opacity="0.7" stroke-width="1.2""#, hex(self.colour));
+        for p in self.shown() {
+            if let Some([lo, hi]) = p.interval {
+                let [x, bottom] = frame.at([p.x.log10(), lo]);
+                svg.line([x, bottom], [x, frame.py(hi)], &whisker);
+            }
+        }
+    }
+
+    fn curve(&self, svg: &mut Svg, frame: &Frame) {
+        let colour = hex(self.colour);
+        let places: Vec<[f64; 2]> = self.shown().map(|p| frame.at([p.x.log10(), p.y])).collect();
+        let style = format!(r#"fill="none" stroke="{colour}" stroke-width="2" {JOIN}"#);
+        svg.path(&polyline(places.iter().copied(), false), &style);
+        for place in places {
+            svg.circle(place, 3.0, &format!(r##"fill="{colour}" stroke="#ffffff" stroke-width="1""##));
+        }
+    }
+}
+
+/// The names of lines, from left to right.
+pub(super) fn legend(svg: &mut Svg, lines: &[Line], [mut x, y]: [f64; 2]) {
+    for line in lines {
+        let style = format!(r#"stroke="{}" stroke-width="2.4""#, hex(line.colour));
+        svg.line([x, y - 4.0], [x + 18.0, y - 4.0], &style);
+        svg.text([x + 23.0, y], LABEL, Anchor::Start, INK, &line.name);
+        x += 45.0 + width_of(&line.name, LABEL);
+    }
+}
+
+/// Round numbers between 10^`lo` and 10^`hi`: of a decade 1, 2 and 5 where there is room, else powers of ten.
+fn decades(lo: f64, hi: f64, width: f64) -> Vec<f64> {
+    /// Units that a tick's number needs.
+    const ROOM: f64 = 34.0;
+    let of_ten: &[f64] = match width / (hi - lo).max(1e-9) {
+        decade if decade * 0.176 > ROOM => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
+        decade if decade * 0.301 > ROOM => &[1.0, 2.0, 5.0],
+        _ => &[1.0],
+    };
+    (lo.floor() as i32..=hi.floor() as i32)
+        .flat_map(|power| of_ten.iter().map(move |digit| digit * 10f64.powi(power)))
+        .filter(|value| (lo..=hi).contains(&value.log10()))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_lie_on_the_scale() {
+        assert_eq!(decades(0.0, 2.0, 300.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
+        assert_eq!(decades(-0.1, 4.1, 200.0), [1.0, 10.0, 100.0, 1000.0, 10_000.0]);
+        assert_eq!(decades(0.99, 1.5, 300.0), [10.0, 15.0, 20.0, 30.0]);
+    }
+}

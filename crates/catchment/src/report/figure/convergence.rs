@@ -1,0 +1,102 @@
+//! Sum and ONAA against resolution and against time, one line per method.
+
+use super::Picture;
+use super::axis::short;
+use super::chart::{Chart, Line, Point, legend};
+use super::colour::CURVES;
+use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use crate::design::Design;
+use crate::study::convergence::{Convergence, Sequence};
+use crate::study::trial::Trial;
+
+/// Draws every method's sequence: above the Sums with their intervals, below the ONAA edges; left over cells per axis,
+/// right over the time that they took.
+pub fn convergence(design: &Design, found: &Convergence) -> Picture {
+    let (left, right, top, size) = (78.0, 530.0, 92.0, [380.0, 240.0]);
+    let below = top + size[1] + 64.0;
+    let height = below + size[1] + 56.0;
+    let mut svg = Svg::new(right + size[0] + 28.0, height);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    let story = format!(
+        "every method refined until two refinements in a row change Sum and ONAA by less than {} %",
+        short(100.0 * found.settings.tolerance)
+    );
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
+    let lines = |x: fn(&Trial) -> f64, y: fn(&Trial) -> (f64, Option<[f64; 2]>)| -> Vec<Line> {
+        let line = |(k, s): (usize, &Sequence)| Line {
+            name: s.method.name().to_owned(),
+            colour: CURVES[k % CURVES.len()],
+            points: s
+                .trials
+                .iter()
+                .map(|t| {
+                    let (value, interval) = y(t);
+                    Point { x: x(t), y: value, interval }
+                })
+                .collect(),
+        };
+        found.sequences.iter().enumerate().map(line).collect()
+    };
+    let sum_label = format!("Sum [{}]", found.unit);
+    let places = [(left, top), (right, top), (left, below), (right, below)];
+    for (k, (x, y)) in places.into_iter().enumerate() {
+        let across: fn(&Trial) -> f64 = if k % 2 == 0 { |t| t.resolution as f64 } else { |t| t.seconds };
+        let up: fn(&Trial) -> (f64, Option<[f64; 2]>) =
+            if k < 2 { |t| (t.sum, Some(t.bracket)) } else { |t| (t.onaa_edge, None) };
+        let chart = Chart {
+            rect: Rect { x, y, w: size[0], h: size[1] },
+            x_label: if k % 2 == 0 { "cells per axis" } else { "time [s]" },
+            y_label: if k < 2 { &sum_label } else { "ONAA edge" },
+            lines: &lines(across, up),
+            mark: None,
+        };
+        chart.draw(&mut svg);
+    }
+    let names = lines(|t| t.seconds, |t| (t.sum, None));
+    legend(&mut svg, &names, [left, top - 16.0]);
+    Picture { svg: svg.finish() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::method::Method;
+    use crate::pose::Dof;
+    use crate::report::schema::testing::design;
+    use crate::study::convergence::{End, Settings};
+
+    #[test]
+    fn every_method_has_a_line_in_every_chart() {
+        let design = design([Dof::X, Dof::Pitch].into_iter().collect());
+        let trial = |resolution: usize, limit: f64| {
+            let off = 1.0 / resolution as f64;
+            let sum = limit + off;
+            Trial {
+                resolution,
+                cells: resolution * resolution,
+                seconds: 1e-4 * (resolution * resolution) as f64,
+                sum,
+                unit: "D·rad".to_owned(),
+                bracket: [sum - 3.0 * off, sum + 3.0 * off],
+                onaa_edge: 0.3 * limit / 2.4,
+                undecided: 0,
+            }
+        };
+        let sequence = |(k, method): (usize, &Method)| Sequence {
+            method: *method,
+            trials: [11, 15, 21, 29, 41].map(|n| trial(n, 2.4 + 0.1 * k as f64)).to_vec(),
+            end: End::Stable,
+            corrected: None,
+        };
+        let found = Convergence {
+            settings: Settings::default(),
+            unit: "D·rad".to_owned(),
+            sequences: Method::ALL.iter().enumerate().map(sequence).collect(),
+        };
+        let picture = convergence(&design, &found);
+        look("convergence", &picture);
+        assert_eq!(picture.svg().matches("<circle").count(), 4 * 5 * Method::ALL.len());
+        assert!(!picture.svg().contains("NaN"));
+    }
+}

@@ -1,0 +1,212 @@
+//! How far is each method off? The same designs by every method at several resolutions, beside the exact Sum.
+//!
+//! ```text
+//!   error = Sum of the method / exact Sum − 1       exact: the finest grid of descents, corrected by a large random sample
+//! ```
+//!
+//! A method is better than this table can show where its error is smaller than the interval of the exact Sum.
+//!
+//! Not promised: that other designs are as easy or as hard; that exact means real: friction, speed and mass are left
+//! out of all methods alike.
+
+mod cases;
+mod text;
+
+pub use cases::{CASES, Case};
+
+use super::trial::{Decided, TrialError};
+use crate::connector::Connector;
+use crate::contact::Pair;
+use crate::exec::Exec;
+use crate::method::Method;
+use crate::method::correction::{self, Stop};
+use serde::{Serialize, Serializer};
+use std::time::Instant;
+
+/// The exact Sum.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Exact {
+    /// The estimate.
+    pub sum: f64,
+    /// Unit of this and of all Sums beside it, like `D²·rad³`.
+    pub unit: String,
+    /// Its 95 % interval.
+    pub ci95: [f64; 2],
+    /// Random poses followed exactly.
+    pub descents: usize,
+}
+
+/// Where a Sum comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// The grid of a method alone.
+    Grid(Method),
+    /// Transport, corrected by as many exact descents as `run` uses.
+    Corrected,
+}
+
+/// One method at one resolution.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Entry {
+    /// What decided.
+    pub way: Way,
+    /// Cells per axis.
+    pub resolution: usize,
+    /// Cells of the grid.
+    pub cells: usize,
+    /// The Sum, Dᵃ·radᵇ.
+    pub sum: f64,
+    /// `sum / exact − 1`.
+    pub error: f64,
+    /// Half the Sum's own 95 % interval, as a share of the exact Sum; null for grids, which have none.
+    pub doubt: Option<f64>,
+    /// Wall-clock time, in seconds.
+    pub seconds: f64,
+}
+
+/// One design.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// What it is.
+    pub name: String,
+    /// Its free errors.
+    pub free: Vec<&'static str>,
+    /// The exact Sum.
+    pub exact: Exact,
+    /// By resolution, then by way.
+    pub entries: Vec<Entry>,
+}
+
+/// The table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// Seed of the exact values' random poses.
+    pub seed: u64,
+    /// One per design.
+    pub rows: Vec<Row>,
+}
+
+/// Why there is no table.
+#[derive(Debug, thiserror::Error)]
+pub enum AccuracyError {
+    /// A design of the list cannot be built.
+    #[error("{name} cannot be built: {problem}")]
+    Geometry {
+        /// Which.
+        name: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A method gave up.
+    #[error(transparent)]
+    Trial(#[from] TrialError),
+}
+
+/// Seeds: of the exact values, and of the corrected Sums that are judged by them.
+const SEEDS: [u64; 2] = [1, 2];
+
+/// Random poses of an exact value.
+const EXACT: usize = 100_000;
+
+impl Serialize for Way {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl Way {
+    /// All of them, in the order of the table.
+    pub fn all() -> Vec<Self> {
+        Method::ALL.into_iter().map(Self::Grid).chain([Self::Corrected]).collect()
+    }
+
+    /// Its name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Grid(method) => method.name(),
+            Self::Corrected => "corrected",
+        }
+    }
+}
+
+/// Computes the table of some designs: [`CASES`] takes minutes.
+///
+/// # Errors
+/// See [`AccuracyError`].
+pub fn run(cases: &[Case], exec: &Exec) -> Result<Accuracy, AccuracyError> {
+    let share = |k: usize| k as f64 / cases.len() as f64;
+    let rows = cases
+        .iter()
+        .enumerate()
+        .map(|(k, case)| row(case, &exec.part([share(k), share(k + 1)], "accuracy")))
+        .collect::<Result<Vec<Row>, _>>()?;
+    Ok(Accuracy { seed: SEEDS[0], rows })
+}
+
+fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
+    let design = case.design();
+    let connector = Connector::build(&design).map_err(|problems| AccuracyError::Geometry {
+        name: case.name(),
+        problem: problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
+    })?;
+    let pair = Pair::new(&connector, &design.alignment);
+    let mut entries = Vec::new();
+    let mut finest = None;
+    for resolution in case.resolutions() {
+        for method in Method::ALL {
+            let decided = Decided::by(method, &pair, resolution, exec)?;
+            entries.push(Entry::of(&decided, method, &pair, exec)?);
+            match method {
+                Method::Descent => finest = Some(decided),
+                Method::Transport => entries.push(Entry::corrected(&decided, &pair, exec)?),
+                Method::Flood => {}
+            }
+        }
+    }
+    entries.sort_by_key(|entry| (entry.resolution, Way::all().iter().position(|way| *way == entry.way)));
+    let mut exact = Exact { sum: 0.0, unit: String::new(), ci95: [0.0; 2], descents: 0 };
+    if let Some(decided) = finest {
+        let settings = correction::Settings { seed: SEEDS[0], stop: Stop::Samples(EXACT) };
+        let found = decided.correct(&pair, &settings, exec).map_err(TrialError::from)?;
+        let unit = decided.trial(&pair, exec)?.unit;
+        exact = Exact { sum: found.sum, unit, ci95: found.ci95, descents: found.descents };
+    }
+    for entry in &mut entries {
+        entry.error = entry.sum / exact.sum - 1.0;
+        entry.doubt = entry.doubt.map(|half| half / exact.sum);
+    }
+    let free = case.free.iter().map(|dof| dof.name()).collect();
+    Ok(Row { name: case.name(), free, exact, entries })
+}
+
+impl Entry {
+    /// The grid's own Sum; its error is not known yet.
+    fn of(decided: &Decided, method: Method, pair: &Pair, exec: &Exec) -> Result<Self, TrialError> {
+        let trial = decided.trial(pair, exec)?;
+        Ok(Self {
+            way: Way::Grid(method),
+            resolution: trial.resolution,
+            cells: trial.cells,
+            sum: trial.sum,
+            error: f64::NAN,
+            doubt: None,
+            seconds: trial.seconds,
+        })
+    }
+
+    /// The same grid, corrected.
+    fn corrected(decided: &Decided, pair: &Pair, exec: &Exec) -> Result<Self, TrialError> {
+        let started = Instant::now();
+        let descents = Method::Transport.default_samples(pair);
+        let settings = correction::Settings { seed: SEEDS[1], stop: Stop::Samples(descents) };
+        let found = decided.correct(pair, &settings, exec)?;
+        let grid = Self::of(decided, Method::Transport, pair, exec)?;
+        Ok(Self {
+            way: Way::Corrected,
+            sum: found.sum,
+            doubt: Some(0.5 * (found.ci95[1] - found.ci95[0])),
+            seconds: grid.seconds + started.elapsed().as_secs_f64(),
+            ..grid
+        })
+    }
+}
