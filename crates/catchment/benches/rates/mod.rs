@@ -39,7 +39,6 @@ struct Stored {
 /// What was measured of one work.
 struct Row {
     name: String,
-    unit: &'static str,
     per_second: f64,
     peak_bytes: Option<f64>,
     to_brute: Option<f64>,
@@ -95,7 +94,6 @@ impl Rates {
         }
         self.rows.push(Row {
             name,
-            unit,
             per_second: count as f64 / median(seconds),
             peak_bytes: peak.map(|bytes| bytes as f64 / count as f64),
             to_brute: brute.map(|_| median(ratios)),
