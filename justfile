@@ -13,9 +13,9 @@ test *filter:
     cargo nextest run --locked --workspace --all-features {{ filter }}
     cargo test --locked --workspace --all-features --doc
 
-# time the fast paths; every bench asserts its result
+# rates beside the judges and beside stored ones; every bench asserts its result; just bench --store keeps new ones
 bench *filter:
-    cargo bench --locked --workspace --all-features -- {{ filter }}
+    cargo bench --locked -p catchment -- {{ filter }}
 
 # the program, optimised: just run run designs/v-face.toml
 run *arguments:

@@ -17,14 +17,14 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Rounds of which the median counts.
 const ROUNDS: usize = 7;
-/// A round repeats shorter works until this much time has passed: far above the clock's resolution.
-const SHORTEST_ROUND: Duration = Duration::from_millis(20);
-/// Works that take longer are not repeated more often than needed for a median.
-const LONG: Duration = Duration::from_millis(700);
+/// Seconds for which a round repeats shorter works: far above the clock's resolution.
+const SHORTEST_ROUND: f64 = 0.02;
+/// Works that take more seconds are not repeated more often than needed for a median.
+const LONG: f64 = 0.7;
 const ROUNDS_OF_LONG: usize = 3;
 
 /// The rates of one bench, as they are stored.
@@ -39,7 +39,6 @@ struct Stored {
 /// What was measured of one work.
 struct Row {
     name: String,
-    unit: &'static str,
     per_second: f64,
     peak_bytes: Option<f64>,
     to_brute: Option<f64>,
@@ -78,14 +77,12 @@ impl Rates {
         }
         let (first, peak) = peak_of(work);
         let mut brute = brute;
-        if let Some(brute) = &mut brute {
-            brute();
-        }
+        let first_brute = brute.as_mut().map_or(0.0, |brute| time(brute));
         if !self.timed {
             return;
         }
-        let repeats = (SHORTEST_ROUND.as_secs_f64() / first.as_secs_f64().max(1e-9)).ceil() as usize;
-        let rounds = if first > LONG { ROUNDS_OF_LONG } else { ROUNDS };
+        let repeats = (SHORTEST_ROUND / first.max(1e-9)).ceil() as usize;
+        let rounds = if first + first_brute > LONG { ROUNDS_OF_LONG } else { ROUNDS };
         let (mut seconds, mut ratios) = (Vec::new(), Vec::new());
         for _ in 0..rounds {
             let slow = brute.as_mut().map(|brute| time(brute));
@@ -95,7 +92,6 @@ impl Rates {
         }
         self.rows.push(Row {
             name,
-            unit,
             per_second: count as f64 / median(seconds),
             peak_bytes: peak.map(|bytes| bytes as f64 / count as f64),
             to_brute: brute.map(|_| median(ratios)),
@@ -160,14 +156,13 @@ fn time(work: &mut dyn FnMut()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-/// How long the work took and how many bytes it held at most, beside those held before.
-fn peak_of(work: &mut dyn FnMut()) -> (Duration, Option<usize>) {
+/// Seconds that the work took, and how many bytes it held at most, beside those held before.
+fn peak_of(work: &mut dyn FnMut()) -> (f64, Option<usize>) {
     PeakAlloc.reset_peak_usage();
     let before = PeakAlloc.current_usage();
-    let start = Instant::now();
-    work();
+    let seconds = time(work);
     // Nothing is counted unless the bench has installed the counting allocator.
-    (start.elapsed(), (before > 0).then(|| PeakAlloc.peak_usage().saturating_sub(before)))
+    (seconds, (before > 0).then(|| PeakAlloc.peak_usage().saturating_sub(before)))
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -13,13 +13,15 @@
 use super::schema::{Report, Unit};
 use super::write::{self, WriteError};
 use crate::acceptance::{Acceptance, Outcome};
+use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::merit::MeritError;
+use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::sync::Arc;
 use zarrs::array::codec::GzipCodec;
-use zarrs::array::{Array, ArrayBuilder, ArrayBytes, ArrayMetadataOptions, DataType, FillValue, data_type};
+use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, DataType, Element, FillValue, data_type};
 use zarrs::filesystem::FilesystemStore;
 
 /// Version of the group's layout, its attribute `catchment`.
@@ -54,6 +56,9 @@ pub enum ZarrError {
         /// What it says.
         reason: String,
     },
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 fn storage<E: std::error::Error>(error: E) -> ZarrError {
@@ -70,6 +75,7 @@ pub fn write(
     report: &Report,
     acceptance: &Acceptance,
     heights: Option<&[f32]>,
+    exec: &Exec,
 ) -> Result<(), ZarrError> {
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
     if let Some(heights) = heights
@@ -77,7 +83,9 @@ pub fn write(
     {
         return Err(ZarrError::Shape { heights: heights.len(), cells: grid.len() });
     }
-    write::folder(path, is_group, |folder| fill(folder, report, acceptance, grid, heights))
+    write::folder(path, is_group, |folder| {
+        exec.install(|| fill(folder, report, acceptance, grid, heights, exec))
+    })
 }
 
 /// Whether a folder is a group written by [`write()`].
@@ -93,45 +101,35 @@ fn fill(
     acceptance: &Acceptance,
     grid: &Grid,
     heights: Option<&[f32]>,
+    exec: &Exec,
 ) -> Result<(), ZarrError> {
     let store = Arc::new(FilesystemStore::new(folder).map_err(storage)?);
     let mut arrays = Map::new();
     for axis in &grid.axes {
-        let centers: Vec<u8> = (0..axis.cells).flat_map(|k| axis.center(k).to_le_bytes()).collect();
         let attributes = json!({
             "long_name": long_name(axis),
             "units": units(axis),
             "lower_border": axis.lo,
             "upper_border": axis.hi,
         });
-        let plan = Plan {
-            name: axis.dof.name(),
-            axes: &[*axis],
-            kind: data_type::float64(),
-            fill: FillValue::from(f64::NAN),
-        };
-        arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, 8, &centers)?);
+        let plan =
+            Plan { name: axis.dof.name(), axes: &[*axis], kind: data_type::float64(), fill: f64::NAN, exec };
+        arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, |k| axis.center(k))?);
     }
-    let codes: Vec<u8> = acceptance.outcomes.iter().map(|o| *o as u8).collect();
     let attributes = json!({
         "long_name": format!("outcome by {}", acceptance.method),
         "flag_values": Outcome::ALL.map(|o| o as u8),
         "flag_meanings": Outcome::ALL.map(Outcome::name).join(" "),
     });
-    let plan =
-        Plan { name: "outcome", axes: &grid.axes, kind: data_type::uint8(), fill: FillValue::from(0u8) };
-    arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, 1, &codes)?);
+    let plan = Plan { name: "outcome", axes: &grid.axes, kind: data_type::uint8(), fill: 0u8, exec };
+    let code = |cell: usize| acceptance.outcomes[cell] as u8;
+    arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, code)?);
     if let Some(heights) = heights {
-        let finite = |h: &f32| if h.is_finite() { *h } else { f32::NAN };
-        let bytes: Vec<u8> = heights.iter().flat_map(|h| finite(h).to_le_bytes()).collect();
+        let finite = |cell: usize| if heights[cell].is_finite() { heights[cell] } else { f32::NAN };
         let attributes = json!({ "long_name": "z of the centre of rotation at first contact", "units": "D" });
-        let plan = Plan {
-            name: "height",
-            axes: &grid.axes,
-            kind: data_type::float32(),
-            fill: FillValue::from(f32::NAN),
-        };
-        arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, 4, &bytes)?);
+        let plan =
+            Plan { name: "height", axes: &grid.axes, kind: data_type::float32(), fill: f32::NAN, exec };
+        arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, finite)?);
     }
     let report = serde_json::to_value(report).map_err(storage)?;
     let root = json!({
@@ -161,21 +159,24 @@ const fn units(axis: &GridAxis) -> &'static str {
 }
 
 /// An array to be written: axes with the fastest first, as in a grid.
-struct Plan<'a> {
+struct Plan<'a, T> {
     name: &'static str,
     axes: &'a [GridAxis],
     kind: DataType,
-    fill: FillValue,
+    fill: T,
+    exec: &'a Exec,
 }
 
-impl Plan<'_> {
-    /// Stores metadata and chunks of `bytes` (little-endian, `size` bytes per cell); returns the metadata.
+impl<T: Element + Copy + Send + Sync> Plan<'_, T>
+where
+    FillValue: From<T>,
+{
+    /// Stores metadata and the chunks, each made of the `value` of its cells when its turn comes; returns the metadata.
     fn write(
         &self,
         store: &Arc<FilesystemStore>,
         attributes: Value,
-        size: usize,
-        bytes: &[u8],
+        value: impl Fn(usize) -> T + Sync,
     ) -> Result<Value, ZarrError> {
         let shape: Vec<usize> = self.axes.iter().rev().map(|a| a.cells).collect();
         let chunk = chunk_shape(&shape);
@@ -186,7 +187,7 @@ impl Plan<'_> {
             _ => Map::new(),
         };
         let array: Array<FilesystemStore> =
-            ArrayBuilder::new(wide(&shape), wide(&chunk), self.kind.clone(), self.fill.clone())
+            ArrayBuilder::new(wide(&shape), wide(&chunk), self.kind.clone(), FillValue::from(self.fill))
                 .bytes_to_bytes_codecs(vec![Arc::new(codec)])
                 .dimension_names(Some(self.axes.iter().rev().map(|a| a.dof.name())))
                 .attributes(attributes)
@@ -197,11 +198,12 @@ impl Plan<'_> {
         array.store_metadata_opt(&options).map_err(storage)?;
         let grid: Vec<usize> = shape.iter().zip(&chunk).map(|(n, c)| n.div_ceil(*c)).collect();
         let chunks: usize = grid.iter().product();
-        for number in 0..chunks {
+        (0..chunks).into_par_iter().try_for_each(|number| {
+            self.exec.check()?;
             let place = unravel(number, &grid);
-            let data = gather(bytes, size, &shape, &chunk, &place, self.fill.as_ne_bytes());
-            array.store_chunk(&wide(&place), ArrayBytes::new_flen(data)).map_err(storage)?;
-        }
+            let data = gather(&shape, &chunk, &place, self.fill, &value);
+            array.store_chunk(&wide(&place), data).map_err(storage)
+        })?;
         serde_json::to_value(array.metadata_opt(&options)).map_err(storage)
     }
 }
@@ -229,30 +231,28 @@ fn unravel(mut number: usize, shape: &[usize]) -> Vec<usize> {
     place
 }
 
-/// The cells of one chunk, row-major, copied row by row; beyond the array the fill value.
-fn gather(
-    bytes: &[u8],
-    size: usize,
+/// The values of the cells of one chunk, row-major; beyond the array the fill value.
+fn gather<T: Copy>(
     shape: &[usize],
     chunk: &[usize],
     place: &[usize],
-    fill: &[u8],
-) -> Vec<u8> {
+    fill: T,
+    value: impl Fn(usize) -> T,
+) -> Vec<T> {
     let (Some((&length, rows)), Some((&along, others))) = (chunk.split_last(), shape.split_last()) else {
-        return bytes.to_vec();
+        return vec![value(0)];
     };
     let first = place[place.len() - 1] * length;
     let inside = along.saturating_sub(first).min(length);
-    let mut data = Vec::with_capacity(chunk.iter().product::<usize>() * size);
+    let mut data = Vec::with_capacity(chunk.iter().product());
     for number in 0..rows.iter().product() {
         let row = unravel(number, rows).into_iter().zip(rows).zip(place).map(|((k, c), p)| p * c + k);
         let index = row.zip(others).try_fold(0, |index, (k, n)| (k < *n).then_some(index * n + k));
-        let copied = index.map_or(0, |row| {
-            let start = (row * along + first) * size;
-            data.extend_from_slice(&bytes[start..start + inside * size]);
-            inside
-        });
-        data.extend(std::iter::repeat_n(fill, length - copied).flatten());
+        if let Some(row) = index {
+            let start = row * along + first;
+            data.extend((start..start + inside).map(&value));
+        }
+        data.resize((number + 1) * length, fill);
     }
     data
 }
@@ -260,7 +260,6 @@ fn gather(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exec::Exec;
     use crate::pose::Dof;
     use crate::report::schema::testing::{blob, design};
 
@@ -271,7 +270,7 @@ mod tests {
             .map(|i| if i == 7 { f32::NEG_INFINITY } else { i as f32 })
             .collect();
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        write(folder, &report, &acceptance, Some(&heights)).unwrap();
+        write(folder, &report, &acceptance, Some(&heights), &Exec::new()).unwrap();
         (acceptance, heights)
     }
 
@@ -332,9 +331,9 @@ mod tests {
         let design = design([Dof::X].into_iter().collect());
         let acceptance = blob(&design, 4);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        let refused = write(home.path(), &report, &acceptance, None);
+        let refused = write(home.path(), &report, &acceptance, None, &Exec::new());
         assert!(matches!(refused, Err(ZarrError::Write(WriteError::NotAResult { .. }))));
-        let short = write(&home.path().join("new.zarr"), &report, &acceptance, Some(&[0.0]));
+        let short = write(&home.path().join("new.zarr"), &report, &acceptance, Some(&[0.0]), &Exec::new());
         assert!(matches!(short, Err(ZarrError::Shape { heights: 1, cells: 4 })));
     }
 
@@ -344,8 +343,7 @@ mod tests {
         assert_eq!(chunk_shape(&[100, 100]), [100, 100]);
         assert_eq!(chunk_shape(&[3 << 20]), [1 << 20]);
         assert_eq!(chunk_shape(&[64; 5]), [1, 4, 64, 64, 64]);
-        let bytes: Vec<u8> = (0..15).collect();
         // The last chunk of a 3 × 5 array in chunks of 2 × 3: one row and two columns are inside.
-        assert_eq!(gather(&bytes, 1, &[3, 5], &[2, 3], &[1, 1], &[99]), [13, 14, 99, 99, 99, 99]);
+        assert_eq!(gather(&[3, 5], &[2, 3], &[1, 1], 99, |cell| cell), [13, 14, 99, 99, 99, 99]);
     }
 }

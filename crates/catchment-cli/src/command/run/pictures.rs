@@ -4,12 +4,13 @@ use super::compute::{Computed, Job, descend};
 use crate::failure::Failure;
 use catchment::acceptance::{Acceptance, Domain};
 use catchment::connector::Connector;
+use catchment::contact::Pair;
 use catchment::exec::Exec;
-use catchment::landscape::{Grid, GridAxis, Landscape};
+use catchment::landscape::{Grid, GridAxis};
 use catchment::merit::onaa::Onaa;
 use catchment::merit::slice;
 use catchment::method::Method;
-use catchment::pose::{Dof, PoseError};
+use catchment::pose::{CorPose, Dof, PoseError};
 use catchment::report::figure::{self, FigureError, Picture, Placement};
 
 /// Names of all pictures there can be, without ending.
@@ -49,13 +50,13 @@ pub(super) fn draw(
         let own =
             finer.iter().find(|slice| slice.grid().is_some_and(|g| g.axes.iter().map(|a| a.dof).eq(pair)));
         let map = own.unwrap_or(acceptance);
-        let landscape = match (&computed.landscape, map.grid()) {
-            (Some(landscape), Some(grid)) if landscape.grid == *grid => landscape.clone(),
-            (_, Some(grid)) => Landscape::compute(job.pair, grid, exec)?,
-            (_, None) => return Ok((drawn, left_out)),
-        };
+        let Some(grid) = map.grid() else { return Ok((drawn, left_out)) };
+        let landscape = computed.landscape.as_ref().filter(|landscape| landscape.grid == *grid);
         let onaa = Onaa::of(acceptance, exec)?;
-        let height = |cell: usize| f64::from(landscape.heights[cell]);
+        let height = |cell: usize| match landscape {
+            Some(landscape) => f64::from(landscape.heights[cell]),
+            None => height_of(job.pair, &grid.pose(cell)),
+        };
         let zero = PoseError::default();
         keep("overview", figure::overview(design, connector, acceptance, &onaa, map, &height, pair))?;
         keep("slices", figure::slices(design, acceptance, &onaa, &finer, &[], &zero))?;
@@ -70,6 +71,12 @@ pub(super) fn draw(
     keep("solids", figure::solids(design, connector, &lifted))?;
     exec.check()?;
     Ok((drawn, left_out))
+}
+
+/// z of the COR at first contact, in D; −∞ without contact.
+fn height_of(pair: &Pair, error: &PoseError) -> f64 {
+    let pose = CorPose::from_error(error, pair.alignment.center_of_rotation, pair.alignment.free);
+    pair.height(&pose).unwrap_or(f64::NEG_INFINITY)
 }
 
 /// How far the halves are drawn apart, in D, so that both faces can be seen.

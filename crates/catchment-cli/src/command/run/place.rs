@@ -100,15 +100,14 @@ impl Places<'_> {
             ));
         }
         if let Some(path) = self.group {
-            exec.check()?;
-            zarr::write(path, report, &computed.acceptance, heights)?;
+            zarr::write(path, report, &computed.acceptance, heights, exec)?;
             notes.push(format!("wrote {}", path.display()));
         }
         if let Some(path) = self.folder {
             let json = report.to_json()?;
             write::folder(path, is_result, |folder| -> Result<(), Failure> {
                 write_all(folder, &pictures, exec)?;
-                zarr::write(&folder.join(RESULT), report, &computed.acceptance, heights)?;
+                zarr::write(&folder.join(RESULT), report, &computed.acceptance, heights, exec)?;
                 write::file(&folder.join(REPORT), json.as_bytes())?;
                 Ok(exec.check()?)
             })?;
