@@ -27,7 +27,7 @@ pub enum Method {
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 3] = [Self::Transport, Self::Descent, Self::Flood];
+    pub const ALL: [Self; 4] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest];
 
     /// The lower-case name used in files, reports and options.
     pub const fn name(self) -> &'static str {
@@ -35,6 +35,7 @@ impl Method {
             Self::Descent => "descent",
             Self::Transport => "transport",
             Self::Flood => "flood",
+            Self::Steepest => "steepest",
         }
     }
 
@@ -46,6 +47,16 @@ impl Method {
                 "arrival fractions over the grid along exact directions; ambiguous cells by descent"
             }
             Self::Flood => "fast flooding of the heights over the grid; biased, made for comparisons",
+            Self::Steepest => "flooding along the steepest neighbour; biased too, made for comparisons",
+        }
+    }
+
+    /// Where flooding drains a cell to; `None` for methods that do not flood.
+    pub const fn rule(self) -> Option<flood::Rule> {
+        match self {
+            Self::Flood => Some(flood::Rule::Lowest),
+            Self::Steepest => Some(flood::Rule::Steepest),
+            Self::Transport | Self::Descent => None,
         }
     }
 
@@ -65,7 +76,7 @@ impl Method {
                 })
             }
             Self::Transport => [1001, 201, 51, 31, 21],
-            Self::Flood => Resolution::DEFAULT_CELLS,
+            Self::Flood | Self::Steepest => Resolution::DEFAULT_CELLS,
         }
     }
 
@@ -75,7 +86,7 @@ impl Method {
         const LEAST: f64 = 200.0;
         match self {
             Self::Descent | Self::Transport => (SIMPLE * affordable(pair)).max(LEAST) as usize,
-            Self::Flood => 0,
+            Self::Flood | Self::Steepest => 0,
         }
     }
 }

@@ -120,7 +120,11 @@ impl Decided {
                 let found = transport::run(pair, &grid, &transport::Settings::default(), exec)?;
                 arrival.insert(found).acceptance(exec)?
             }
-            Method::Flood => flood::accept(pair, &grid, &flood::Settings::for_pair(pair), exec)?,
+            Method::Flood | Method::Steepest => {
+                let settings =
+                    flood::Settings { rule: method.rule().unwrap_or_default(), ..flood::Settings::default() };
+                flood::accept(pair, &grid, &settings, exec)?
+            }
         };
         Ok(Self { grid, acceptance, arrival, seconds: started.elapsed().as_secs_f64() })
     }

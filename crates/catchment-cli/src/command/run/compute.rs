@@ -56,7 +56,8 @@ pub(super) struct Sample {
 
 impl Job<'_> {
     fn flood_settings(&self) -> flood::Settings {
-        flood::Settings { depth_tolerance: self.depth_tolerance, ..flood::Settings::default() }
+        let rule = self.method.rule().unwrap_or_default();
+        flood::Settings { depth_tolerance: self.depth_tolerance, rule }
     }
 
     /// The settings of the method, as they stand in the report.
@@ -64,13 +65,13 @@ impl Job<'_> {
         Ok(match self.method {
             Method::Descent => serde_json::to_value(descent::Settings::default())?,
             Method::Transport => serde_json::to_value(transport::Settings::default())?,
-            Method::Flood => serde_json::to_value(self.flood_settings())?,
+            Method::Flood | Method::Steepest => serde_json::to_value(self.flood_settings())?,
         })
     }
 
     /// The basins over a small grid, if the method knows any.
     pub(super) fn basins_of(&self, grid: &Grid) -> Result<Option<Hierarchy>, Failure> {
-        if self.method != Method::Flood {
+        if self.method.rule().is_none() {
             return Ok(None);
         }
         let exec = Exec::new();
@@ -99,9 +100,9 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
     let (what, per_cell) = match job.method {
         Method::Descent => ("the outcome of every cell", DESCENT_BYTES),
         Method::Transport => ("transport", transport::bytes(job.pair, &job.grid).div_ceil(cells.max(1))),
-        Method::Flood => ("flooding", flood::bytes(1)),
+        Method::Flood | Method::Steepest => ("flooding", flood::bytes(1)),
     };
-    let heights = job.heights && job.method != Method::Flood;
+    let heights = job.heights && job.method.rule().is_none();
     let per_cell = per_cell + if heights { Landscape::bytes(1) } else { 0 };
     exec.reserve(what, cells.saturating_mul(per_cell), |budget| {
         match Resolution::largest_that_fits(budget, per_cell, axes) {
@@ -116,7 +117,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             let found = transport::run(job.pair, &job.grid, &transport::Settings::default(), exec)?;
             (arrival.insert(found).acceptance(exec)?, None)
         }
-        Method::Flood => {
+        Method::Flood | Method::Steepest => {
             let landscape = Landscape::compute(job.pair, &job.grid, exec)?;
             let flooding = flood::flood(&landscape, &job.design.alignment, &job.flood_settings(), exec)?;
             let used = Some(flooding.hierarchy.tolerance.depth);

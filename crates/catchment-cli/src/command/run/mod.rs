@@ -111,7 +111,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     }
     let started = Instant::now();
     let how = &args.how;
-    if how.depth_tolerance.is_some() && how.method != Method::Flood {
+    if how.depth_tolerance.is_some() && how.method.rule().is_none() {
         let message = format!("--depth-tolerance is a setting of flooding; {} has none", how.method.name());
         return Err(Failure::with_help(message, Some("add --method flood, or leave it out".to_owned())));
     }

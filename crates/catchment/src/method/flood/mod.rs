@@ -78,6 +78,16 @@ pub enum Rule {
     Steepest,
 }
 
+impl Rule {
+    /// The name of the method that floods by this rule.
+    pub const fn method(self) -> &'static str {
+        match self {
+            Self::Lowest => "flood",
+            Self::Steepest => "steepest",
+        }
+    }
+}
+
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Settings {
@@ -197,8 +207,9 @@ pub fn flood(
         Some(depth) => Choice { depth, reason: Reason::Given },
         None => tolerance::choose(&tree, &staircase, tolerance::height_step(&grid.shape(), heights)),
     };
-    let (acceptance, basins) =
+    let (mut acceptance, basins) =
         verdict::verdict(grid, heights, &targets, &labels, &tree, tolerance.depth, exec)?;
+    acceptance.method = settings.rule.method();
     Ok(Flooding { acceptance, hierarchy: Hierarchy { basins, tree, tolerance, staircase } })
 }
 

@@ -159,7 +159,7 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
             match method {
                 Method::Descent => finest = Some(decided),
                 Method::Transport => entries.push(Entry::corrected(&decided, &pair, exec)?),
-                Method::Flood => {}
+                Method::Flood | Method::Steepest => {}
             }
         }
     }
