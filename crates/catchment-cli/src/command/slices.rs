@@ -86,7 +86,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
                 running.exec.check()?;
                 let whole = Report::new(design, &slice.acceptance, settings.clone(), None, &running.exec)?;
                 let path = folder.join(of.name() + ".zarr");
-                zarr::write(&path, &whole, &slice.acceptance, None)?;
+                zarr::write(&path, &whole, &slice.acceptance, None, &running.exec)?;
             }
             Ok(())
         })?;

@@ -8,7 +8,7 @@
 //!       └───────╲─▶ x        the optimistic edge is the smallest e
 //! ```
 //!
-//! With n_x = n_y, which y-yaw equal to x-yaw means, n_x + n_y = 1/e_xy and n_x + n_a = 1/e_xa, so that
+//! With `n_x = n_y`, which y-yaw equal to x-yaw means, `n_x + n_y = 1/e_xy` and `n_x + n_a = 1/e_xa`, so that
 //! `1/d = 1/e_xy + Σ (1/e_xa − 1/(2·e_xy))` over the rotations a.
 //!
 //! Not promised: that the true edge lies between the two. Slices through zero see nothing of the rest of the error

@@ -23,6 +23,8 @@ pub enum Method {
     Descent,
     /// [`flood`]: basins of the heights over the grid.
     Flood,
+    /// [`flood`], every cell to its steepest neighbour.
+    Steepest,
 }
 
 impl Method {

@@ -159,7 +159,7 @@ fn sequence(
     exec: &Exec,
 ) -> Result<Sequence, ConvergenceError> {
     let axes = pair.alignment.free.len().clamp(1, 5);
-    let cells = |resolution: usize| (resolution as f64).powi(axes as i32);
+    let cells = |resolution: usize| (resolution as f64).powf(axes as f64);
     let mut resolution = FIRST[axes - 1];
     let mut trials: Vec<Trial> = Vec::new();
     let mut finest: Option<Decided> = None;
@@ -178,7 +178,7 @@ fn sequence(
             break End::Cells { resolution };
         }
         // Each refinement is dearer than all before it together: half of what is left.
-        let done = 1.0 - 0.5f64.powi(trials.len() as i32);
+        let done = 1.0 - 0.5f64.powf(trials.len() as f64);
         let part = exec.part([done, 0.5 + 0.5 * done], "convergence");
         let tried = Decided::by(method, pair, resolution, &part)
             .and_then(|decided| Ok((decided.trial(pair, &part)?, decided)));
