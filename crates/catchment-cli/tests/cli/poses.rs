@@ -105,7 +105,7 @@ fn a_trace_tells_the_whole_way() {
     let waypoints = report["waypoints"].as_array().unwrap();
     let heights: Vec<f64> = waypoints.iter().map(|w| w["height_d"].as_f64().unwrap()).collect();
     // A pushed half never rises; heights are rounded to 1e-12 D.
-    assert!(heights.len() > 10 && heights.windows(2).all(|w| w[1] <= w[0] + 1e-9), "{heights:?}");
+    assert!(heights.len() > 5 && heights.windows(2).all(|w| w[1] <= w[0] + 1e-9), "{heights:?}");
     assert!(waypoints.iter().all(|w| !w["touches"].as_array().unwrap().is_empty()));
     assert!((waypoints[0]["error"]["x"].as_f64().unwrap() - 0.16).abs() < 1e-12);
     let text = run(&folder, &pose);

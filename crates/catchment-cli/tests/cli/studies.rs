@@ -115,7 +115,7 @@ fn refinement_says_when_it_is_stable() {
 #[test]
 fn what_stops_refinement_is_said() {
     let home = home();
-    let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "100 kB"];
+    let args = ["run", "v.toml", "--converge", "--tolerance", "0.00001", "--memory", "2 MB"];
     let told = run(home.path(), &args);
     assert!(told.starts_with("exit 0\n") && told.contains("stopped, not stable: at"), "{told}");
     let told = run(home.path(), &["run", "v.toml", "--converge", "--time-limit", "0.001 ms"]);

@@ -284,7 +284,7 @@ mod tests {
         let found = run(&pair, &hasty, &Exec::new()).unwrap();
         let once = |s: &Sequence| s.trials.len() == 1 && matches!(s.end, End::Time { resolution: 15, .. });
         assert!(found.sequences.iter().all(once));
-        let small = Exec::new().with_memory_budget(100_000);
+        let small = Exec::new().with_memory_budget(2_000_000);
         let strict = Settings { tolerance: 1e-9, ..settings.clone() };
         let found = run(&pair, &strict, &small).unwrap();
         assert!(found.sequences.iter().all(|s| matches!(s.end, End::Memory { .. })), "{found:?}");

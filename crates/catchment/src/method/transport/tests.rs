@@ -30,7 +30,7 @@ fn fast_and_brute_agree_cell_by_cell() {
         (pair(Family::XFace, 0.5, -0.5, 1.0, None), 41),
         (pair(Family::Pyramid, 0.5, 0.5, 0.5, Some(&[X, Pitch, Yaw])), 14),
         (pair(Family::XFace3d, 0.577, 0.2, 0.5, Some(&[X, Y, Pitch])), 14),
-        (pair(Family::Pyramid, 0.5, 0.5, 0.5, None), 6),
+        (pair(Family::Pyramid, 0.5, 0.5, 0.5, None), 8),
     ] {
         let mut grid = Grid::over(&pair.alignment, |_| cells);
         let folded = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
