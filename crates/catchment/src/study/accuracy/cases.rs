@@ -50,9 +50,9 @@ impl Case {
     /// Cells per axis, coarse to fine.
     pub const fn resolutions(&self) -> [usize; 3] {
         match self.free.len() {
-            ..=2 => [51, 101, 201],
-            3 => [15, 25, 41],
-            _ => [7, 9, 11],
+            ..=2 => [50, 100, 200],
+            3 => [20, 30, 40],
+            _ => [8, 10, 12],
         }
     }
 

@@ -147,7 +147,7 @@ mod tests {
             assert!(has(&|case| case.free.len() == errors) >= 2, "{errors}");
         }
         assert!(has(&|c| c.center_of_rotation == -1.0) >= 1 && has(&|c| c.center_of_rotation == 1.0) >= 1);
-        assert!(has(&|case| case.resolutions().iter().all(|n| n % 2 == 1)) == CASES.len());
+        assert!(has(&|case| case.resolutions().iter().all(|n| n % 2 == 0)) == CASES.len());
     }
 
     #[test]
