@@ -5,6 +5,7 @@
 //! run on one thread; the fastest of several runs counts, since the machine may be busy.
 
 mod designs;
+mod rates;
 
 use catchment::contact::Pair;
 use catchment::design::Alignment;
@@ -13,20 +14,83 @@ use catchment::landscape::{Grid, Landscape};
 use catchment::method::flood::{self, Flooding, Rule, Settings, brute};
 use catchment::pose::{Dof, Mount};
 use designs::pair;
-use divan::AllocProfiler;
-use divan::counter::ItemsCount;
+use peak_alloc::PeakAlloc;
+use rates::Rates;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
 #[global_allocator]
-static ALLOCATOR: AllocProfiler = AllocProfiler::system();
+static ALLOCATOR: PeakAlloc = PeakAlloc;
+
+/// Grid on which the judges are measured against the fast path.
+const SMALL: usize = 24;
 
 #[expect(clippy::print_stdout, reason = "a bench prints its figures")]
 fn main() {
-    divan::main();
-    let wants = |word: &str| std::env::args().any(|arg| arg == word);
-    if !wants("--test") && !wants("--list") {
+    let mut rates = Rates::of("flood");
+    for smooth in [SPACE, FIVE] {
+        let (landscape, alignment) = smooth.landscape();
+        for threads in [1, 2] {
+            let name = format!("{}-D smooth noise, {threads} threads", smooth.axes);
+            rates.measure(
+                &name,
+                "floods of cells",
+                landscape.heights.len(),
+                &mut || {
+                    let tree = Smooth::flood(&landscape, &alignment, threads).hierarchy.tree;
+                    assert_eq!(tree.minima.len(), tree.links.len() + 1, "a tree");
+                },
+                None,
+            );
+        }
+    }
+    // Heights included: the whole method.
+    for (name, cells) in [("v-face", 100), ("pyramid", 8), ("pyramid", 12)] {
+        let pair = pair(&format!("{name}.toml"));
+        let grid = Grid::over(&pair.alignment, |_| cells);
+        let accept = || {
+            let found = flood::accept(&pair, &grid, &Settings::default(), &Exec::new()).expect("flooded");
+            let share = found.counts()[0] as f64 / grid.len() as f64;
+            // Loose: a bench guards against computing nothing or everything, the tests hold the numbers.
+            assert!((0.05..0.9).contains(&share), "{name}: {share} of the box accepted");
+        };
+        let name = format!("with heights, {name}, {cells} cells per axis");
+        rates.measure(&name, "floods of cells", grid.len(), &mut || accept(), None);
+    }
+    for rule in [Rule::Lowest, Rule::Steepest] {
+        let pair = pair("pyramid.toml");
+        let landscape = landscape(&pair, 12);
+        let settings = Settings { rule, ..Settings::default() };
+        let flood = || flood::flood(&landscape, &pair.alignment, &settings, &Exec::new()).expect("flooded");
+        let name = format!("to the {rule:?} neighbour, pyramid, 12 cells per axis");
+        rates.measure(&name, "floods of cells", landscape.heights.len(), &mut || drop(flood()), None);
+    }
+    let small = pair("v-face.toml");
+    let landscape = landscape(&small, SMALL);
+    let settings = Settings::default();
+    let shape = landscape.grid.shape();
+    rates.measure(
+        "judged, v-face, 24 cells per axis",
+        "floods of cells",
+        landscape.heights.len(),
+        &mut || drop(flood::flood(&landscape, &small.alignment, &settings, &Exec::new()).expect("flooded")),
+        Some(&mut || {
+            drop((brute::tree(&shape, &landscape.heights), brute::basins(&shape, &landscape.heights)));
+        }),
+    );
+    rates.measure(
+        "table 5.7 by Meyer's queue",
+        "tables",
+        1,
+        &mut || {
+            let table = catchment::study::reproduce::reproduce("5.7", &Exec::new()).expect("a known table");
+            assert_eq!(table.summary.exact, 25);
+        },
+        None,
+    );
+    rates.finish();
+    if std::env::args().any(|argument| argument == "--bench") {
         for smooth in [SPACE, FIVE] {
             println!("{}", against_scikit_image(smooth));
         }
@@ -88,18 +152,6 @@ impl Smooth {
     }
 }
 
-/// Basins, tree, tolerance and outcomes of 8 million cells.
-#[divan::bench(sample_count = 5, sample_size = 1, args = [(3, 1), (3, 2), (5, 1), (5, 2)])]
-fn smooth(bencher: divan::Bencher, (axes, threads): (usize, usize)) {
-    let smooth = if axes == SPACE.axes { SPACE } else { FIVE };
-    let (landscape, alignment) = smooth.landscape();
-    bencher.counter(ItemsCount::new(landscape.heights.len())).bench_local(|| {
-        let found = Smooth::flood(&landscape, &alignment, threads);
-        assert_eq!(found.hierarchy.tree.minima.len(), found.hierarchy.tree.links.len() + 1, "a tree");
-        found
-    });
-}
-
 /// Both on the very same heights, in the same run.
 fn against_scikit_image(smooth: Smooth) -> String {
     const ROUNDS: usize = 5;
@@ -156,56 +208,4 @@ fn scikit_image(landscape: &Landscape, smooth: Smooth) -> Result<String, String>
         return Err(complaint.lines().last().unwrap_or("it failed").to_owned());
     }
     String::from_utf8(output.stdout).map_err(|e| e.to_string())
-}
-
-/// The whole method, heights included.
-#[divan::bench(sample_count = 10, args = [("v-face.toml", 100), ("pyramid.toml", 8), ("pyramid.toml", 12)])]
-fn accept(bencher: divan::Bencher, (name, cells): (&str, usize)) {
-    let pair = pair(name);
-    let grid = Grid::over(&pair.alignment, |_| cells);
-    bencher.counter(ItemsCount::new(grid.len())).bench_local(|| {
-        let acceptance = flood::accept(&pair, &grid, &Settings::default(), &Exec::new()).expect("flooded");
-        let share = acceptance.counts()[0] as f64 / grid.len() as f64;
-        // Loose: a bench guards against computing nothing or everything, the tests hold the numbers.
-        assert!((0.05..0.9).contains(&share), "{name}: {share} of the box accepted");
-        acceptance
-    });
-}
-
-/// Flooding alone, by either rule. Its peak memory (`max alloc`) is 5 bytes per cell ([`flood::bytes`] less the
-/// heights), the slabs of the threads, and what the basins need.
-#[divan::bench(sample_count = 10, args = [Rule::Lowest, Rule::Steepest], consts = [8, 12, 16])]
-fn pyramid<const CELLS: usize>(bencher: divan::Bencher, rule: Rule) {
-    let pair = pair("pyramid.toml");
-    let landscape = landscape(&pair, CELLS);
-    let settings = Settings { rule, ..Settings::default() };
-    bencher
-        .counter(ItemsCount::new(landscape.heights.len()))
-        .bench_local(|| flood::flood(&landscape, &pair.alignment, &settings, &Exec::new()).expect("flooded"));
-}
-
-/// Grid on which the judges are measured against the fast path.
-const SMALL: usize = 24;
-
-#[divan::bench(sample_count = 10)]
-fn small_fast(bencher: divan::Bencher) {
-    let pair = pair("v-face.toml");
-    let landscape = landscape(&pair, SMALL);
-    bencher.bench_local(|| {
-        flood::flood(&landscape, &pair.alignment, &Settings::default(), &Exec::new()).expect("flooded")
-    });
-}
-
-#[divan::bench(sample_count = 10)]
-fn small_brute(bencher: divan::Bencher) {
-    let pair = pair("v-face.toml");
-    let Landscape { grid, heights } = landscape(&pair, SMALL);
-    bencher.bench_local(|| (brute::tree(&grid.shape(), &heights), brute::basins(&grid.shape(), &heights)));
-}
-
-/// A whole published table: 25 designs of 101 × 101 samples, by Meyer's queue.
-#[divan::bench(sample_count = 10)]
-fn table_5_7() {
-    let table = catchment::study::reproduce::reproduce("5.7", &Exec::new()).expect("a known table");
-    assert_eq!(table.summary.exact, 25);
 }
