@@ -31,7 +31,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Longest step in the ρ-metric, in D. Halving it must not change outcomes; it is here to be tested.
+    /// Longest step in the ρ-metric, in D; twice as long where motion is straight. Halving it must not change outcomes; it is
+    /// here to be tested.
     pub step: f64,
     /// Largest mismatch between a step's predicted and true height, as a share of the step; beyond it the step is halved.
     pub surprise: f64,
