@@ -7,10 +7,10 @@
 //!              mated       border        accepted: u > ½
 //! ```
 //!
-//! The arrival fraction obeys `q̇·∇u = 0`, discretised upwind on Freudenthal's simplices ([`links`]): monotone, first order,
+//! The arrival fraction obeys `q̇·∇u = 0`, discretised upwind on Freudenthal's simplices (`links.rs`): monotone, first order,
 //! and, unlike flooding and steepest-neighbour descent, *convergent*, because the direction is exact and not one of
 //! the grid's. Every link leads downwards: valleys that a coarse direction would cross back and forth are solved when
-//! the links are made, so one pass over the cells is all ([`solve`]).
+//! the links are made, so one pass over the cells is all (`solve.rs`).
 //!
 //! *Ends* are cells from which no neighbour lies downhill: the mated pose, jams, and the hollows that a grid makes
 //! of a narrow ravine. Exact descent from their centres tells which is which, so that there is nothing to merge and no
