@@ -1,26 +1,9 @@
 //! `catchment run`: what it prints, what it writes, what it refuses.
 
-use super::{catchment, run};
+use super::{catchment, entries, home, run};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-
-const V_FACE: &str =
-    "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
-
-/// A folder with a design in it.
-fn home() -> tempfile::TempDir {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("v.toml"), V_FACE).unwrap();
-    dir
-}
-
-fn entries(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
 
 /// Exit code and stdout.
 fn json(folder: &Path, args: &[&str]) -> (i32, String) {

@@ -11,6 +11,7 @@ mod poses;
 mod studies;
 mod tables;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -48,4 +49,23 @@ fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
     let output = catchment(folder).args(args).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// A planar design.
+const V_FACE: &str =
+    "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+
+/// A folder with a planar design in it.
+fn home() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("v.toml"), V_FACE).unwrap();
+    dir
+}
+
+/// Names in a folder, sorted.
+fn entries(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
 }

@@ -1,26 +1,8 @@
 //! `catchment slices`, `run --converge`, `run --sensitivity`: many computations of one design.
 
-use super::{catchment, designs, json, run};
+use super::{catchment, designs, entries, home, json, run};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-
-const V_FACE: &str =
-    "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
-
-/// A folder with a planar design in it.
-fn home() -> tempfile::TempDir {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("v.toml"), V_FACE).unwrap();
-    dir
-}
-
-fn entries(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
 
 #[test]
 fn slices_of_a_planar_design_are_its_run() {

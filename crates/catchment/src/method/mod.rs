@@ -63,8 +63,8 @@ impl Method {
     }
 
     /// Cells per axis when nothing was said, for one to five axes: an answer within seconds, at 0.1 to 0.5 ms per
-    /// descent between simple halves and about 1 µs per cell of the other methods. Odd, so that a cell is centred on the mated
-    /// pose.
+    /// descent between simple halves and below 1 µs per cell of the other methods. Odd for descent and
+    /// flooding, so that a cell is centred on the mated pose.
     pub fn default_cells(self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1001, 101, 25, 11, 7];
         match self {

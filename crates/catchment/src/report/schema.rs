@@ -376,7 +376,7 @@ mod sample;
 pub(crate) mod testing;
 
 pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, StepReport};
-pub use sample::{SampleReport, StratumReport};
+pub use sample::SampleReport;
 
 #[cfg(test)]
 mod tests {

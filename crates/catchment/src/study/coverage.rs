@@ -13,16 +13,17 @@
 //!
 //! Not promised: a share of 100 repeats is itself known to ± 4 % only.
 
+use super::accuracy::Case;
 use crate::acceptance::{Domain, Outcome};
 use crate::connector::Connector;
 use crate::contact::Pair;
-use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::design::Family;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
-use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop, Stratify};
+use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop, Stratify, Z95};
 use crate::method::descent;
 use crate::method::transport::{self, TransportError};
-use crate::pose::{Dof, DofSet};
+use crate::pose::Dof;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
@@ -101,50 +102,41 @@ pub struct Coverage {
 }
 
 /// A design and how finely its error box is parted.
-struct Case {
+struct Parted {
     name: &'static str,
-    family: Family,
-    aspect_ratio: f64,
-    cor: f64,
-    rotation_length: f64,
-    free: DofSet,
+    case: Case,
     cells: usize,
 }
 
 /// A planar design, one with three free errors and one with five.
-fn cases() -> [Case; 3] {
-    let case = |name, free, cells| Case {
-        name,
-        family: Family::Pyramid,
-        aspect_ratio: 0.5,
-        cor: 0.5,
-        rotation_length: 0.5,
-        free,
-        cells,
+fn cases() -> [Parted; 3] {
+    let pyramid = |name, free, cells| {
+        let case = Case {
+            family: Family::Pyramid,
+            aspect_ratio: 0.5,
+            center_of_rotation: 0.5,
+            rotation_length: 0.5,
+            free,
+        };
+        Parted { name, case, cells }
     };
-    let planar = DofSet::EMPTY.with(Dof::X).with(Dof::Pitch);
+    let v_face = Case {
+        family: Family::VFace,
+        aspect_ratio: 1.0,
+        center_of_rotation: 0.0,
+        rotation_length: 1.0,
+        free: &[Dof::X, Dof::Pitch],
+    };
     [
-        Case {
-            family: Family::VFace,
-            aspect_ratio: 1.0,
-            cor: 0.0,
-            rotation_length: 1.0,
-            ..case("v-face, x pitch, 101² cells", planar, 101)
-        },
-        case("pyramid, x y yaw, 41³ cells", DofSet::EMPTY.with(Dof::X).with(Dof::Y).with(Dof::Yaw), 41),
-        case("pyramid, all five, 13⁵ cells", DofSet::ALL, 13),
+        Parted { name: "v-face, x pitch, 101² cells", case: v_face, cells: 101 },
+        pyramid("pyramid, x y yaw, 41³ cells", &[Dof::X, Dof::Y, Dof::Yaw], 41),
+        pyramid("pyramid, all five, 13⁵ cells", &Dof::ALL, 13),
     ]
 }
 
-impl Case {
+impl Parted {
     fn pair(&self) -> Result<Pair, CoverageError> {
-        let mut alignment = Alignment::default_for(Some(self.family));
-        alignment.free = self.free;
-        alignment.center_of_rotation = self.cor;
-        alignment.rotation_length = self.rotation_length;
-        let spec = FamilySpec { aspect_ratio: self.aspect_ratio, ..FamilySpec::new(self.family) };
-        let connector = ConnectorSpec::Family(spec);
-        let design = Design { name: self.name.to_owned(), connector, width: 1.0, unit: None, alignment };
+        let design = self.case.design();
         let built = Connector::build(&design).map_err(|problems| CoverageError::Design {
             design: self.name,
             problem: problems.first().map_or_else(String::new, ToString::to_string),
@@ -201,7 +193,7 @@ fn plain(pair: &Pair, count: usize, exec: &Exec) -> Result<f64, Cancelled> {
 }
 
 struct Trial<'a> {
-    case: &'a Case,
+    case: &'a Parted,
     pair: &'a Pair,
     grid: &'a Grid,
     settings: &'a Settings,
@@ -244,9 +236,6 @@ impl Trial<'_> {
         })
     }
 }
-
-/// Two-sided 95 % quantile of the standard normal distribution.
-const Z95: f64 = 1.96;
 
 impl fmt::Display for Coverage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -26,6 +26,7 @@ mod strata;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use interval::Z95;
 pub use interval::wilson95;
 pub use schedule::{FAINT, Stop};
 pub use settle::{ambiguous, settle};
@@ -73,7 +74,8 @@ pub enum CorrectionError {
 }
 
 /// What was seen in one stratum.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Stratum {
     /// What it holds.
     pub name: String,

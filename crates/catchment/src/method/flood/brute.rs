@@ -92,7 +92,7 @@ pub fn basins(shape: &[usize], heights: &[f32]) -> Vec<usize> {
 }
 
 /// Cells at most one step away along every axis, in order of memory.
-fn neighbours(shape: &[usize], cell: usize) -> Vec<usize> {
+pub(super) fn neighbours(shape: &[usize], cell: usize) -> Vec<usize> {
     let place = |mut index: usize| -> Vec<usize> {
         shape
             .iter()

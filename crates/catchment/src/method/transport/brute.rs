@@ -1,6 +1,7 @@
 //! The definition of transport in executable form: all cells, sorted by height, one after the other; every contact
 //! found anew at every cell. Slow, plain, and the judge of the fast path.
 
+use super::links::{CROSSINGS, LEAST, NEGLIGIBLE};
 use super::metric::Metric;
 use super::{Settings, surface};
 use crate::acceptance::Outcome;
@@ -24,10 +25,10 @@ pub fn fractions(pair: &Pair, landscape: &Landscape, settings: &Settings) -> Vec
         let mut links: Vec<(usize, f64)> = Vec::new();
         let (mut total, mut leaves) = (0.0, false);
         let mut front = vec![(cell, 1.0)];
-        for crossing in 0..=2 {
+        for crossing in 0..=CROSSINGS {
             let mut next: Vec<(usize, f64)> = Vec::new();
             for (from, weight) in front {
-                if weight < 0.05 {
+                if weight < f64::from(NEGLIGIBLE) {
                     continue;
                 }
                 let (corners, out) = corners(grid, from, &velocities[from]);
@@ -50,7 +51,7 @@ pub fn fractions(pair: &Pair, landscape: &Landscape, settings: &Settings) -> Vec
             }
             front = next;
         }
-        fractions[cell] = if total >= 0.1 {
+        fractions[cell] = if total >= f64::from(LEAST) {
             links.iter().map(|(to, weight)| weight * fractions[*to]).sum::<f64>() / total
         } else if leaves && !follow_out {
             0.0

@@ -18,12 +18,12 @@ use crate::contact::Mirror;
 use crate::landscape::{Grid, Patch, Relief};
 
 /// How often a corner across a valley is replaced by where it leads.
-const CROSSINGS: usize = 2;
+pub(super) const CROSSINGS: usize = 2;
 /// Corners with less weight are not followed across valleys.
-const NEGLIGIBLE: f32 = 0.05;
+pub(super) const NEGLIGIBLE: f32 = 0.05;
 /// The least share of its weight that a cell must keep: below it, what is kept is discretisation, not descent. Between 0.05
 /// and 0.2 results hardly change; without it shallow jams leak (V-Face, 2 %).
-const LEAST: f32 = 0.1;
+pub(super) const LEAST: f32 = 0.1;
 
 /// A share of a cell's arrival.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -19,7 +19,7 @@
 //! angle, and a warning says so.
 //!
 //! **Not guaranteed:** u strictly between 0 and 1 is numerical diffusion, not a probability of docking. At 30 cells per
-//! axis in five dimensions a few percent of the box are ambiguous (0.02 < u < 0.98) and most of what is wrong is among
+//! axis in five dimensions a tenth of the box is ambiguous (0.02 < u < 0.98) and most of what is wrong is among
 //! them; [`Arrival::is_ambiguous`] names them, so that descent can settle them or a sample correct their Sum.
 //!
 //! Memory: 10 bytes per cell, 2.5 to 5 where the pair is symmetric ([`Relief`]). Sources: upwind membership, Gyulassy,
@@ -42,6 +42,7 @@ use metric::Metric;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use solve::Shares;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What may change the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -128,7 +129,7 @@ impl Arrival {
     /// than counting cells, because a cell at the border counts in part.
     pub fn mean(&self) -> f64 {
         let slab = self.fold.slab();
-        // Summed per rotation as whole numbers: exact, so no order matters.
+        // Summed in the order of the grid, whatever the threads.
         let per_slab: Vec<f64> = self
             .shares
             .par_chunks_exact(slab)
@@ -204,9 +205,10 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
         let metric = Metric::new(pair, grid, error);
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
-    let judge = Judge { pair, relief: &relief, settings, follow_out: surface(grid) <= settings.followed_out };
+    let follow_out = surface(grid) <= settings.followed_out;
+    let judge = Judge { pair, relief: &relief, settings, follow_out, cut_off: AtomicBool::new(false) };
     let shares = solve::solve(&relief, &judge, exec)?;
-    let cut_off = !judge.follow_out;
+    let cut_off = judge.cut_off.into_inner();
     let Relief { grid, fold, .. } = relief;
     Ok(Arrival { grid, fold, shares, cut_off })
 }
@@ -223,6 +225,8 @@ struct Judge<'a> {
     settings: &'a Settings,
     /// Whether motion that leaves the box is followed.
     follow_out: bool,
+    /// Whether some motion left that was not.
+    cut_off: AtomicBool,
 }
 
 impl Judge<'_> {
@@ -241,6 +245,7 @@ impl Ends<'_> {
     fn decide(&mut self, kept: u32, end: End) -> Shares {
         let Relief { grid, fold, .. } = self.judge.relief;
         if let (End::Leaves(axis), false) = (end, self.judge.follow_out) {
+            self.judge.cut_off.store(true, Relaxed);
             let jams = grid.axes[axis].dof.is_rotation();
             return Shares::new(0.0, if jams { 1.0 } else { 0.0 });
         }

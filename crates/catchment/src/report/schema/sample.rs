@@ -22,25 +22,7 @@ pub struct SampleReport {
     /// Poses followed.
     pub descents: usize,
     /// Where they lay.
-    pub strata: Vec<StratumReport>,
-}
-
-/// The poses of one stratum, a part of the error box.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StratumReport {
-    /// What it holds.
-    pub name: String,
-    /// Its share of the error box, exact.
-    pub share: f64,
-    /// Poses followed in it.
-    pub descents: usize,
-    /// How many aligned.
-    pub aligned: usize,
-    /// How many could not be followed to their end.
-    pub undecided: usize,
-    /// Estimated share of its poses that align: the mean over batches, near `aligned / descents`.
-    pub accepted: f64,
+    pub strata: Vec<Stratum>,
 }
 
 impl Report {
@@ -61,16 +43,9 @@ impl Report {
             settings,
             seed,
             descents,
-            strata: corrected.strata.iter().cloned().map(StratumReport::from).collect(),
+            strata: corrected.strata.clone(),
         });
         self
-    }
-}
-
-impl From<Stratum> for StratumReport {
-    fn from(stratum: Stratum) -> Self {
-        let Stratum { name, share, descents, aligned, undecided, accepted } = stratum;
-        Self { name, share, descents, aligned, undecided, accepted }
     }
 }
 

@@ -2,6 +2,7 @@
 //! looks at every cell.
 
 use super::Rules;
+use crate::method::flood::brute::neighbours;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The basin of every cell after merging: 1 is the outside (height −∞), minima are numbered from 2 in the order of
@@ -25,24 +26,6 @@ pub fn divide(shape: &[usize], heights: &[f64], targets: &[usize], tolerance: f6
     let into = merge(heights, &near, &basin, &dams, bottoms, tolerance);
     drain_dams(shape, heights, &near, &mut basin);
     basin.iter().map(|b| b.map_or(0, |b| into[&b])).collect()
-}
-
-/// Cells at most one step away along every axis, in order of memory.
-fn neighbours(shape: &[usize], cell: usize) -> Vec<usize> {
-    let place = |mut index: usize| -> Vec<usize> {
-        shape
-            .iter()
-            .map(|n| {
-                let k = index % n;
-                index /= n;
-                k
-            })
-            .collect()
-    };
-    let here = place(cell);
-    (0..shape.iter().product())
-        .filter(|other| *other != cell && place(*other).iter().zip(&here).all(|(a, b)| a.abs_diff(*b) <= 1))
-        .collect()
 }
 
 fn minima(heights: &[f64], near: &[Vec<usize>], rules: Rules) -> (Vec<Option<u32>>, BTreeMap<u32, f64>) {
