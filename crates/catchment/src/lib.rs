@@ -82,7 +82,8 @@
 //! - [`report`]: JSON, text, pictures, Zarr.
 //!
 //! [`pose`] owns frames, signs and the order of angles; [`exec`] owns threads, cancelling, progress and the
-//! memory budget, none of which changes a bit of a result.
+//! memory budget, none of which changes a bit of a result. [`polytope`] is the geometry of convex sets in up to six
+//! dimensions.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
 //!
@@ -100,6 +101,7 @@ pub mod exec;
 pub mod landscape;
 pub mod merit;
 pub mod method;
+pub mod polytope;
 pub mod pose;
 pub mod report;
 pub mod study;

@@ -1,0 +1,206 @@
+//! Cutting a polytope by a plane, and what follows from it: intersection, difference, overlap.
+//!
+//! ```text
+//!      outside     o         Vertices are inside (i), outside (o) or on the plane (x), up to RESOLUTION. Every edge
+//!                 ╱ ╲        from inside to outside gets a new vertex (n), on the facets of the edge and on the
+//!   ─────────────n───x────   plane. A facet stays if it has a vertex inside.
+//!      inside   ╱     ╲
+//!              i───────i
+//! ```
+//!
+//! Nothing but the classes of the vertices depends on numbers: what is kept and what is joined follows from which
+//! vertex lies on which facet. Both halves share the new vertices to the last bit.
+//!
+//! Cost: vertices inside × vertices outside words, and one search for a third vertex per edge.
+
+use super::incidence::{Incidence, ones};
+use super::{FLAT, Halfspace, Point, Polytope, RESOLUTION};
+
+/// What a plane does to a polytope.
+enum Cut {
+    /// Nothing of it is outside.
+    Inside,
+    /// Nothing of it is inside.
+    Outside,
+    /// It goes through.
+    Through(Section),
+}
+
+/// The plane's way through a polytope.
+struct Section {
+    /// How far each vertex is outside; 0 for those on the plane.
+    excess: Vec<f64>,
+    /// New vertices: where, and on the edge between which vertices.
+    crossings: Vec<(Point, usize, usize)>,
+    /// There are vertices on the plane.
+    touches: bool,
+    /// Some of those are on it by decision rather than up to rounding.
+    doubt: bool,
+}
+
+impl Polytope {
+    /// The part of it in a half space: a copy if nothing is cut off, none if nothing thicker than [`RESOLUTION`]
+    /// is left.
+    #[must_use]
+    pub fn cut(&self, by: &Halfspace) -> Option<Self> {
+        match self.section(by) {
+            Cut::Inside => Some(self.clone()),
+            Cut::Outside => None,
+            Cut::Through(section) => self.part(by, &section, 1.0),
+        }
+    }
+
+    /// The parts inside and outside a half space.
+    pub fn split(&self, by: &Halfspace) -> (Option<Self>, Option<Self>) {
+        match self.section(by) {
+            Cut::Inside => (Some(self.clone()), None),
+            Cut::Outside => (None, Some(self.clone())),
+            Cut::Through(section) => (self.part(by, &section, 1.0), self.part(&by.flipped(), &section, -1.0)),
+        }
+    }
+
+    /// The part of it in all half spaces.
+    #[must_use]
+    pub fn intersection_of(&self, halfspaces: &[Halfspace]) -> Option<Self> {
+        let mut rest: Option<Self> = None;
+        for by in halfspaces {
+            let whole = rest.as_ref().unwrap_or(self);
+            match whole.section(by) {
+                Cut::Inside => {}
+                Cut::Outside => return None,
+                Cut::Through(section) => rest = Some(whole.part(by, &section, 1.0)?),
+            }
+        }
+        Some(rest.unwrap_or_else(|| self.clone()))
+    }
+
+    /// What is in both; none where that is thinner than [`RESOLUTION`], or their dimensions differ.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Option<Self> {
+        if self.is_apart(other) { None } else { self.intersection_of(&other.facets) }
+    }
+
+    /// Do their interiors meet? They touch at most where this is false.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.intersection(other).is_some()
+    }
+
+    /// What is in this and not in the other, as polytopes whose interiors do not meet; this one in one piece if it
+    /// does not overlap the other.
+    ///
+    /// A facet of the other after the other, the part outside is one piece and the part inside goes on (*regiondiff*).
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Vec<Self> {
+        if self.is_apart(other) {
+            return vec![self.clone()];
+        }
+        let mut pieces = Vec::new();
+        let mut rest: Option<Self> = None;
+        for by in &other.facets {
+            let whole = rest.as_ref().unwrap_or(self);
+            match whole.section(by) {
+                Cut::Inside => {}
+                Cut::Outside => return vec![self.clone()],
+                Cut::Through(section) => {
+                    let outside = whole.part(&by.flipped(), &section, -1.0);
+                    let Some(inside) = whole.part(by, &section, 1.0) else { return vec![self.clone()] };
+                    pieces.extend(outside);
+                    rest = Some(inside);
+                }
+            }
+        }
+        pieces
+    }
+
+    /// A quick sign that interiors do not meet: their boxes do not, or a facet of one has all of the other outside.
+    /// True for different dimensions.
+    fn is_apart(&self, other: &Self) -> bool {
+        let boxes = |axis: usize| {
+            self.high[axis] - other.low[axis] <= RESOLUTION || other.high[axis] - self.low[axis] <= RESOLUTION
+        };
+        let outside = |of: &Self, all: &Self| {
+            of.facets.iter().any(|facet| all.vertices.iter().all(|v| facet.excess(v) >= -RESOLUTION))
+        };
+        self.dimension != other.dimension
+            || (0..self.dimension).any(boxes)
+            || outside(self, other)
+            || outside(other, self)
+    }
+
+    /// Where a plane goes through.
+    fn section(&self, by: &Halfspace) -> Cut {
+        let mut excess: Vec<f64> = self.vertices.iter().map(|vertex| by.excess(vertex)).collect();
+        let (mut inside, mut outside, mut touches, mut doubt) = (false, false, false, false);
+        for e in &mut excess {
+            if *e < -RESOLUTION {
+                inside = true;
+            } else if *e > RESOLUTION {
+                outside = true;
+            } else {
+                touches = true;
+                doubt |= e.abs() > FLAT;
+                *e = 0.0;
+            }
+        }
+        if !outside {
+            return Cut::Inside;
+        }
+        if !inside {
+            return Cut::Outside;
+        }
+        let mut crossings = Vec::new();
+        for (a, below) in excess.iter().enumerate().filter(|(_, e)| **e < 0.0) {
+            for (b, above) in excess.iter().enumerate().filter(|(_, e)| **e > 0.0) {
+                if self.incidence.joined(a, b, self.dimension) {
+                    let share = below / (below - above);
+                    let (from, to) = (&self.vertices[a], &self.vertices[b]);
+                    let point = std::array::from_fn(|axis| from[axis] + share * (to[axis] - from[axis]));
+                    crossings.push((point, a, b));
+                }
+            }
+        }
+        Cut::Through(Section { excess, crossings, touches, doubt })
+    }
+
+    /// The part where `side` · excess is negative, which is inside `by`.
+    fn part(&self, by: &Halfspace, section: &Section, side: f64) -> Option<Self> {
+        let width = self.incidence.row(0).len();
+        let mut staying = vec![0u64; width];
+        let mut count = section.crossings.len();
+        for (vertex, e) in section.excess.iter().enumerate() {
+            if e * side < 0.0 {
+                for (all, word) in staying.iter_mut().zip(self.incidence.row(vertex)) {
+                    *all |= word;
+                }
+            }
+            count += usize::from(e * side <= 0.0);
+        }
+        // The place that each facet that stays will have; the plane comes last.
+        let mut places = vec![0; self.facets.len()];
+        let mut facets = Vec::with_capacity(self.facets.len() + 1);
+        for facet in ones(staying.iter().copied()) {
+            places[facet] = facets.len();
+            facets.push(self.facets[facet]);
+        }
+        let plane = facets.len();
+        facets.push(*by);
+        let mut vertices = Vec::with_capacity(count);
+        let mut incidence = Incidence::new(count, facets.len());
+        for (vertex, e) in section.excess.iter().enumerate() {
+            if e * side <= 0.0 {
+                vertices.push(self.vertices[vertex]);
+                let kept = ones(self.incidence.row(vertex).iter().zip(&staying).map(|(a, b)| a & b));
+                incidence.push(kept.map(|facet| places[facet]).chain((*e == 0.0).then_some(plane)));
+            }
+        }
+        for &(point, a, b) in &section.crossings {
+            vertices.push(point);
+            let shared = ones(self.incidence.row(a).iter().zip(self.incidence.row(b)).map(|(a, b)| a & b));
+            incidence.push(shared.map(|facet| places[facet]).chain([plane]));
+        }
+        if section.doubt || section.touches && !incidence.is_sound(self.dimension, facets.len()) {
+            return Self::hull(self.dimension, &vertices);
+        }
+        Self::assembled(self.dimension, facets, vertices, incidence)
+    }
+}

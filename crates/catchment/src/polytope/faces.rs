@@ -1,0 +1,97 @@
+//! From a hull's simplices to a polytope's facets.
+//!
+//! Simplices in one plane are one facet, and a point that is a corner of no face (it lies on no facet that another
+//! vertex does not lie on too) is no vertex. First, what is in one plane up to [`FLAT`] counts as in one plane: that
+//! swallows the splinters that rounding leaves on facets with many vertices. If any vertex is in doubt (beyond
+//! [`FLAT`], but nearer than [`RESOLUTION`]) or the edges do not close, exactly coplanar simplices only are put
+//! together; that is always right, and may keep splinters.
+
+use super::exact::{self, SPACING};
+use super::hull::Hull;
+use super::incidence::Incidence;
+use super::{FLAT, Halfspace, Polytope, RESOLUTION};
+use std::cmp::Ordering;
+
+impl Hull {
+    /// The polytope of which this is the boundary; none where it is thinner than [`RESOLUTION`].
+    pub(super) fn into_polytope(self) -> Option<Polytope> {
+        let mut vertices: Vec<usize> =
+            self.simplices.iter().flat_map(|s| &s.vertices[..self.dimension]).copied().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let mut order: Vec<usize> = (0..self.simplices.len()).collect();
+        order.sort_by(|a, b| self.simplices[*b].plane.size.total_cmp(&self.simplices[*a].plane.size));
+        self.faces(&vertices, &order, true).or_else(|| self.faces(&vertices, &order, false))
+    }
+
+    /// Puts coplanar simplices together, the largest first, because its plane is known best. None if `nearly` and in
+    /// doubt.
+    fn faces(&self, vertices: &[usize], order: &[usize], nearly: bool) -> Option<Polytope> {
+        let mut taken = vec![false; self.simplices.len()];
+        let mut facets: Vec<Halfspace> = Vec::new();
+        // Vertex and facet.
+        let mut incident: Vec<(usize, usize)> = Vec::new();
+        let mut on = vec![false; self.points.len()];
+        for &seed in order {
+            if taken[seed] {
+                continue;
+            }
+            let plane = &self.simplices[seed].plane;
+            for &vertex in vertices {
+                let point = &self.points[vertex];
+                on[vertex] = if nearly {
+                    let distance = plane.height(point).abs() * SPACING;
+                    if distance > FLAT && distance < RESOLUTION {
+                        return None;
+                    }
+                    distance <= FLAT
+                } else {
+                    plane.side(point) == Ordering::Equal
+                };
+                if on[vertex] {
+                    incident.push((vertex, facets.len()));
+                }
+            }
+            taken[seed] = true;
+            let mut reached = vec![seed];
+            while let Some(simplex) = reached.pop() {
+                for &next in &self.simplices[simplex].neighbours[..self.dimension] {
+                    let beside = &self.simplices[next];
+                    // Behind a sharp edge lies another facet, however near.
+                    if !taken[next]
+                        && beside.vertices[..self.dimension].iter().all(|v| on[*v])
+                        && super::dot(&beside.plane.unit, &plane.unit) > 0.0
+                    {
+                        taken[next] = true;
+                        reached.push(next);
+                    }
+                }
+            }
+            let offset = super::dot(&plane.unit, &exact::coordinates(&plane.through));
+            facets.push(Halfspace { normal: plane.unit, offset });
+        }
+        incident.sort_unstable();
+        let mut all = Incidence::new(vertices.len(), facets.len());
+        for group in incident.chunk_by(|a, b| a.0 == b.0) {
+            all.push(group.iter().map(|(_, facet)| *facet));
+        }
+        let is_corner = |vertex: usize| {
+            let row = all.row(vertex);
+            (0..all.rows()).all(|other| {
+                let within = row.iter().zip(all.row(other)).all(|(a, b)| a & !b == 0);
+                // Of two in one place, the first stays.
+                !within || other == vertex || (vertex < other && row == all.row(other))
+            })
+        };
+        let corners: Vec<usize> = (0..vertices.len()).filter(|vertex| is_corner(*vertex)).collect();
+        let mut incidence = Incidence::new(corners.len(), facets.len());
+        for &corner in &corners {
+            incidence.push(super::incidence::ones(all.row(corner).iter().copied()));
+        }
+        if nearly && !incidence.is_sound(self.dimension, facets.len()) {
+            return None;
+        }
+        let points = corners.iter().map(|c| exact::coordinates(&self.points[vertices[*c]])).collect();
+        Polytope::assembled(self.dimension, facets, points, incidence)
+    }
+}

@@ -1,0 +1,249 @@
+//! The convex hull of lattice points as simplices, every decision exact.
+//!
+//! ```text
+//!        p                     Every point outside waits above one facet that it sees. The highest one, p, is taken:
+//!      ╱ : ╲                   the facets it sees (dotted) go, and each ridge between a facet that it sees and one
+//!    ╱···:···╲                 that it does not is joined to p. Points that waited above facets now gone wait
+//!   ╱_________╲                above new ones, or are inside.
+//! ```
+//!
+//! Seen means strictly: a facet whose plane holds p stays, and the new simplices beside it are coplanar with it. That
+//! is right for any points (a seen facet cannot be coplanar with a ridge's join, so no join is flat), and
+//! [`super::faces`] puts coplanar simplices together. The order of the points does not matter: they are sorted.
+//!
+//! Cost: about 0.2 µs per simplex made in three dimensions, plus one height per point and new facet.
+//!
+//! Source: Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, ACM TOMS 22 (1996), without its
+//! tolerances.
+
+use super::exact::{self, Lattice, Minors, Plane};
+use super::{MAX_DIMENSION, Point, RESOLUTION};
+use std::cmp::Ordering;
+
+/// No facet.
+const NONE: usize = usize::MAX;
+
+/// A facet of the hull: a simplex. Its i-th neighbour is the one opposite its i-th vertex.
+pub(super) struct Simplex {
+    pub(super) vertices: [usize; MAX_DIMENSION],
+    pub(super) neighbours: [usize; MAX_DIMENSION],
+    pub(super) plane: Plane,
+    alive: bool,
+}
+
+/// The boundary of a hull, a closed surface of simplices.
+pub(super) struct Hull {
+    pub(super) dimension: usize,
+    /// All points, without repetitions.
+    pub(super) points: Vec<Lattice>,
+    /// Simplices; their vertices and neighbours are indices.
+    pub(super) simplices: Vec<Simplex>,
+}
+
+/// What a hull in the making needs beside its simplices.
+struct Waiting {
+    /// For each point, a facet that it sees, or [`NONE`].
+    facet: Vec<usize>,
+    /// How high above that facet.
+    height: Vec<f64>,
+}
+
+impl Hull {
+    /// The hull of `points` in dimension 2 or more; none where all of them lie in something flatter than
+    /// [`RESOLUTION`].
+    pub(super) fn of(dimension: usize, mut points: Vec<Lattice>) -> Option<Self> {
+        points.sort_unstable();
+        points.dedup();
+        let corners = first_simplex(dimension, &points)?;
+        let mut minors = Minors::new();
+        let mut simplices = Vec::new();
+        for (index, &opposite) in corners.iter().enumerate() {
+            let mut vertices = [0; MAX_DIMENSION];
+            let mut neighbours = [NONE; MAX_DIMENSION];
+            let others = (0..=dimension).filter(|other| *other != index);
+            for ((vertex, neighbour), other) in vertices.iter_mut().zip(&mut neighbours).zip(others) {
+                *vertex = corners[other];
+                *neighbour = other;
+            }
+            let plane = Plane::new(dimension, &vertices.map(|v| points[v]), &points[opposite], &mut minors)?;
+            simplices.push(Simplex { vertices, neighbours, plane, alive: true });
+        }
+        let mut hull = Self { dimension, points, simplices };
+        let count = hull.points.len();
+        let mut waiting = Waiting { facet: vec![NONE; count], height: vec![0.0; count] };
+        for point in 0..count {
+            hull.wait(point, 0, &mut waiting);
+        }
+        while let Some(point) = waiting.highest() {
+            hull.join(point, &mut waiting, &mut minors)?;
+        }
+        hull.drop_dead();
+        Some(hull)
+    }
+
+    /// Lets a point wait above the facet from `first` on that it sees from highest, if it sees one.
+    fn wait(&self, point: usize, first: usize, waiting: &mut Waiting) {
+        let at = &self.points[point];
+        let (mut best, mut above) = (NONE, 0.0);
+        for (facet, simplex) in self.simplices.iter().enumerate().skip(first) {
+            if !simplex.alive {
+                continue;
+            }
+            let height = simplex.plane.height(at);
+            // An exact sign, and only where the point is not yet seen to be outside or would be higher.
+            if (best == NONE || height > above) && simplex.plane.side(at) == Ordering::Greater {
+                (best, above) = (facet, height.max(0.0));
+            }
+        }
+        (waiting.facet[point], waiting.height[point]) = (best, above);
+    }
+
+    /// Makes a point that waits part of the hull. None only if the surface were not closed, which exact signs rule
+    /// out.
+    fn join(&mut self, point: usize, waiting: &mut Waiting, minors: &mut Minors) -> Option<()> {
+        let dimension = self.dimension;
+        let at = self.points[point];
+        let fresh = self.simplices.len();
+        let mut seen = vec![waiting.facet[point]];
+        let mut unseen = Vec::new();
+        let mut horizon = Vec::new();
+        self.simplices[seen[0]].alive = false;
+        let mut next = 0;
+        while let Some(&facet) = seen.get(next) {
+            next += 1;
+            for slot in 0..dimension {
+                let beyond = self.simplices[facet].neighbours[slot];
+                if !self.simplices[beyond].alive {
+                    continue;
+                }
+                if !unseen.contains(&beyond) {
+                    if self.simplices[beyond].plane.side(&at) == Ordering::Greater {
+                        self.simplices[beyond].alive = false;
+                        seen.push(beyond);
+                        continue;
+                    }
+                    unseen.push(beyond);
+                }
+                horizon.push((facet, slot, beyond));
+            }
+        }
+        for (made, &(facet, slot, beyond)) in horizon.iter().enumerate() {
+            let old = &self.simplices[facet];
+            let (mut vertices, mut neighbours) = (old.vertices, [NONE; MAX_DIMENSION]);
+            // What the facet that goes had behind the ridge is inside, strictly below the new facet.
+            let below = self.points[vertices[slot]];
+            vertices[slot] = point;
+            neighbours[slot] = beyond;
+            let plane = Plane::new(dimension, &vertices.map(|v| self.points[v]), &below, minors)?;
+            let back = self.slot_of(beyond, facet)?;
+            self.simplices[beyond].neighbours[back] = fresh + made;
+            self.simplices[facet].neighbours[slot] = fresh + made;
+            self.simplices.push(Simplex { vertices, neighbours, plane, alive: true });
+        }
+        for (made, &(facet, slot, _)) in horizon.iter().enumerate() {
+            for other in (0..dimension).filter(|other| *other != slot) {
+                let found = self.around(facet, slot, other, fresh, seen.len())?;
+                self.simplices[fresh + made].neighbours[other] = found;
+            }
+        }
+        waiting.facet[point] = NONE;
+        for point in 0..self.points.len() {
+            if waiting.facet[point] != NONE && !self.simplices[waiting.facet[point]].alive {
+                self.wait(point, fresh, waiting);
+            }
+        }
+        Some(())
+    }
+
+    /// Where in `simplex` the ridge to `neighbour` is.
+    fn slot_of(&self, simplex: usize, neighbour: usize) -> Option<usize> {
+        self.simplices[simplex].neighbours[..self.dimension].iter().position(|n| *n == neighbour)
+    }
+
+    /// The new facet beside the one that took the place of `facet` at `slot`, across the ridge opposite vertex
+    /// `other`: turns around what both share through facets that went, until a new one comes.
+    fn around(
+        &self,
+        mut facet: usize,
+        slot: usize,
+        mut other: usize,
+        fresh: usize,
+        limit: usize,
+    ) -> Option<usize> {
+        let mut left = self.simplices[facet].vertices[slot];
+        for _ in 0..=limit {
+            let next = self.simplices[facet].neighbours[other];
+            if next >= fresh {
+                return Some(next);
+            }
+            let entered = self.slot_of(next, facet)?;
+            let vertices = &self.simplices[next].vertices[..self.dimension];
+            other = vertices.iter().position(|v| *v == left)?;
+            left = vertices[entered];
+            facet = next;
+        }
+        None
+    }
+
+    /// Forgets the facets that went.
+    fn drop_dead(&mut self) {
+        let mut kept = 0;
+        let places: Vec<usize> = self
+            .simplices
+            .iter()
+            .map(|simplex| {
+                kept += usize::from(simplex.alive);
+                if simplex.alive { kept - 1 } else { NONE }
+            })
+            .collect();
+        self.simplices.retain(|simplex| simplex.alive);
+        for simplex in &mut self.simplices {
+            for neighbour in simplex.neighbours.iter_mut().take(self.dimension) {
+                *neighbour = places[*neighbour];
+            }
+        }
+    }
+}
+
+impl Waiting {
+    /// The highest point that waits.
+    fn highest(&self) -> Option<usize> {
+        let mut best: Option<usize> = None;
+        for (point, facet) in self.facet.iter().enumerate() {
+            if *facet != NONE && best.is_none_or(|best| self.height[point] > self.height[best]) {
+                best = Some(point);
+            }
+        }
+        best
+    }
+}
+
+/// Points that span the space: the first one, and always the one farthest from what is spanned so far. None where
+/// that is nearer than [`RESOLUTION`].
+fn first_simplex(dimension: usize, points: &[Lattice]) -> Option<Vec<usize>> {
+    let first = points.first()?;
+    let mut rest: Vec<Point> = points.iter().map(|point| exact::difference(point, first)).collect();
+    let mut corners = vec![0];
+    while corners.len() <= dimension {
+        let (mut farthest, mut distance) = (0, 0.0);
+        for (index, point) in rest.iter().enumerate() {
+            let square = super::dot(point, point);
+            if square > distance {
+                (farthest, distance) = (index, square);
+            }
+        }
+        let length = distance.sqrt();
+        if length * exact::SPACING < RESOLUTION {
+            return None;
+        }
+        corners.push(farthest);
+        let direction = rest[farthest].map(|c| c / length);
+        for point in &mut rest {
+            let along = super::dot(point, &direction);
+            for (c, d) in point.iter_mut().zip(&direction) {
+                *c -= along * d;
+            }
+        }
+    }
+    Some(corners)
+}

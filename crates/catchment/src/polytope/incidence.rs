@@ -1,0 +1,100 @@
+//! Which vertex lies on which facet: a matrix of bits, a row per vertex.
+//!
+//! All that cutting needs of a polytope's faces is here. Two vertices are joined by an edge when they share at least
+//! dimension − 1 facets and no third vertex lies on all the facets they share. One allocation for all rows, and no
+//! limit on the number of facets; up to 64 of them, a row is one word.
+
+/// Facets in a word.
+const WORD: usize = u64::BITS as usize;
+
+/// Rows of bits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Incidence {
+    /// Words in a row, at least one.
+    width: usize,
+    words: Vec<u64>,
+}
+
+impl Incidence {
+    /// No vertex yet, room for `vertices` of them on `facets` facets.
+    pub(super) fn new(vertices: usize, facets: usize) -> Self {
+        let width = facets.div_ceil(WORD).max(1);
+        Self { width, words: Vec::with_capacity(vertices * width) }
+    }
+
+    /// One more vertex, on these facets.
+    pub(super) fn push(&mut self, facets: impl IntoIterator<Item = usize>) {
+        let start = self.words.len();
+        self.words.resize(start + self.width, 0);
+        for facet in facets {
+            self.words[start + facet / WORD] |= 1 << (facet % WORD);
+        }
+    }
+
+    /// The facets of a vertex.
+    pub(super) fn row(&self, vertex: usize) -> &[u64] {
+        &self.words[vertex * self.width..(vertex + 1) * self.width]
+    }
+
+    /// How many vertices there are.
+    pub(super) fn rows(&self) -> usize {
+        self.words.len() / self.width
+    }
+
+    /// Does this vertex lie on this facet?
+    pub(super) fn has(&self, vertex: usize, facet: usize) -> bool {
+        self.words[vertex * self.width + facet / WORD] >> (facet % WORD) & 1 == 1
+    }
+
+    /// Is there an edge between these vertices of a polytope in this dimension?
+    pub(super) fn joined(&self, a: usize, b: usize, dimension: usize) -> bool {
+        let (row_a, row_b) = (self.row(a), self.row(b));
+        let shared: u32 = row_a.iter().zip(row_b).map(|(a, b)| (a & b).count_ones()).sum();
+        shared as usize + 1 >= dimension
+            && !self.words.chunks_exact(self.width).enumerate().any(|(third, row)| {
+                third != a
+                    && third != b
+                    && row.iter().zip(row_a).zip(row_b).all(|((row, a), b)| a & b & !row == 0)
+            })
+    }
+
+    /// Do the edges make a polytope of this dimension: has every vertex, in every facet it lies on, at least
+    /// dimension − 1 neighbours (in three dimensions exactly two), and at least dimension of them in all?
+    ///
+    /// Vertices that were put on a facet by mistake hide edges from each other, which this finds.
+    pub(super) fn is_sound(&self, dimension: usize, facets: usize) -> bool {
+        let vertices = self.rows();
+        let mut neighbours = vec![0u16; vertices * facets];
+        let mut degree = vec![0usize; vertices];
+        for a in 0..vertices {
+            for b in a + 1..vertices {
+                if self.joined(a, b, dimension) {
+                    degree[a] += 1;
+                    degree[b] += 1;
+                    for facet in ones(self.row(a).iter().zip(self.row(b)).map(|(a, b)| a & b)) {
+                        neighbours[a * facets + facet] += 1;
+                        neighbours[b * facets + facet] += 1;
+                    }
+                }
+            }
+        }
+        let least = dimension - 1;
+        vertices > dimension
+            && degree.iter().all(|&d| d >= dimension)
+            && (0..vertices).all(|vertex| {
+                ones(self.row(vertex).iter().copied()).all(|facet| {
+                    let count = neighbours[vertex * facets + facet] as usize;
+                    if dimension == 3 { count == least } else { count >= least }
+                })
+            })
+    }
+}
+
+/// The places of the bits that are set.
+pub(super) fn ones(words: impl IntoIterator<Item = u64>) -> impl Iterator<Item = usize> {
+    words.into_iter().enumerate().flat_map(|(index, word)| {
+        std::iter::successors(Some(word), |w| Some(w & w.wrapping_sub(1)))
+            .take_while(|w| *w != 0)
+            .map(move |w| index * WORD + w.trailing_zeros() as usize)
+    })
+}

@@ -1,0 +1,211 @@
+//! Convex polytopes in one to six dimensions, and finite unions of them.
+//!
+//! ```text
+//!   V-form: the hull of its vertices          H-form: what lies behind all its facets
+//!
+//!        •─────────•                                ╲___________╱       normal · x ≤ offset
+//!       ╱           ╲            =                  ╱           ╲
+//!      •─────────────•                             ╱_____________╲
+//! ```
+//!
+//! A [`Polytope`] keeps both forms, and which vertex lies on which facet. It is bounded and full-dimensional: a set
+//! thinner than [`RESOLUTION`] is no polytope here, and operations answer `None` for it. A [`Collection`] is a finite
+//! union of polytopes (a *P-collection*), the currency of the polyhedral method.
+//!
+//! # What is exact and what is not
+//!
+//! **A hull's signs are exact.** [`Polytope::hull`], and with it sums, projections and cross-sections, round points to a
+//! lattice of 2⁻⁴⁰ and then decide every side in whole numbers. A wrong sign there gives a wrong topology, and that
+//! changes a set by anything: hulls in floating point are known to be wrong for one in fifty Minkowski sums, because
+//! their facets are parallelograms with exactly coplanar corners. On the lattice, sums are exact, so coplanar sums are
+//! coplanar.
+//!
+//! **Cuts are regularised.** [`Polytope::cut`] and all set operations on it count a vertex nearer to the cutting plane
+//! than [`RESOLUTION`] as on it. What such a decision changes is a sliver thinner than that, which has no measure to
+//! speak of and must not exist in either reading. Where a vertex is on the plane only by this rule (farther from it than
+//! rounding explains), or the faces would not close, the result is the exact hull of its vertices.
+//!
+//! # Units and limits
+//!
+//! Coordinates are in D and rad, of order 1, and at most 1024; beyond that `None` is the answer. Cost grows quickly with
+//! the dimension: a polytope with n vertices in six dimensions may have n³ facets. Memory is not reserved
+//! beforehand: a caller who multiplies collections bounds their number.
+//!
+//! Source: N. Eckenstein's dissertation, chapter 5 (P-collections); M. Baotić, *Polytopic computations in constrained
+//! optimal control* (set difference of P-collections); Ziegler, *Lectures on Polytopes* (faces).
+
+mod collection;
+mod cut;
+mod exact;
+mod faces;
+mod halfspace;
+mod hull;
+mod image;
+mod incidence;
+mod measure;
+
+pub mod brute;
+
+pub use collection::Collection;
+pub use halfspace::Halfspace;
+pub use image::minkowski_sum_of;
+
+use exact::Lattice;
+use hull::Hull;
+use incidence::Incidence;
+
+/// Most dimensions: five pose errors and the height.
+pub const MAX_DIMENSION: usize = 6;
+
+/// A point or direction, in D and rad. Components beyond the dimension are 0.
+pub type Point = [f64; MAX_DIMENSION];
+
+/// Nearer to a plane than this, in D or rad, is on it, and what is thinner is nothing: 2⁻³⁰ ≈ 9e-10.
+///
+/// Derived from the lattice of hulls (2⁻⁴⁰): a plane through rounded points is off by their rounding, times what it is
+/// extrapolated by, times the square root of the dimension; a thousand units of the lattice stay above that, and
+/// a million times below the thousandth of D that a connector's makers and a result's readers care about.
+pub const RESOLUTION: f64 = 1.0 / (1u64 << 30) as f64;
+
+/// Nearer to a plane than this, rounding explains the distance: 64 units of the lattice of hulls. Between this and
+/// [`RESOLUTION`], a point on a plane is in doubt.
+const FLAT: f64 = RESOLUTION / 16.0;
+
+/// A bounded convex set with an interior.
+///
+/// Always: every vertex is behind all facets and on at least `dimension` of them, both up to rounding; every facet has
+/// at least `dimension` vertices; every facet has a vertex deeper below it than [`RESOLUTION`].
+#[derive(Clone, Debug)]
+pub struct Polytope {
+    dimension: usize,
+    facets: Vec<Halfspace>,
+    vertices: Vec<Point>,
+    incidence: Incidence,
+    low: Point,
+    high: Point,
+}
+
+impl Polytope {
+    /// The convex hull of points. Neither their order nor repetitions matter; components beyond `dimension` are
+    /// ignored, the others are rounded to multiples of 2⁻⁴⁰.
+    ///
+    /// None where they all lie in something thinner than [`RESOLUTION`], where a coordinate is no number or beyond 1024,
+    /// and for a dimension of 0 or above [`MAX_DIMENSION`].
+    pub fn hull(dimension: usize, points: &[Point]) -> Option<Self> {
+        if !(1..=MAX_DIMENSION).contains(&dimension) {
+            return None;
+        }
+        let lattice: Option<Vec<Lattice>> = points.iter().map(|p| exact::snapped(dimension, p)).collect();
+        Self::hull_of_lattice(dimension, lattice?)
+    }
+
+    fn hull_of_lattice(dimension: usize, points: Vec<Lattice>) -> Option<Self> {
+        if dimension == 1 {
+            let (low, high) = (points.iter().min()?, points.iter().max()?);
+            return Self::cuboid(1, &exact::coordinates(low), &exact::coordinates(high));
+        }
+        Hull::of(dimension, points)?.into_polytope()
+    }
+
+    /// The box from `low` to `high`. None where a side is shorter than [`RESOLUTION`], a coordinate is no number or
+    /// beyond 1024, and for a dimension of 0 or above [`MAX_DIMENSION`].
+    pub fn cuboid(dimension: usize, low: &Point, high: &Point) -> Option<Self> {
+        if !(1..=MAX_DIMENSION).contains(&dimension) {
+            return None;
+        }
+        let mut facets = Vec::with_capacity(2 * dimension);
+        for (axis, (low, high)) in low.iter().zip(high).enumerate().take(dimension) {
+            if !exact::within_reach(*low) || !exact::within_reach(*high) {
+                return None;
+            }
+            let mut normal = [0.0; MAX_DIMENSION];
+            normal[axis] = -1.0;
+            facets.push(Halfspace { normal, offset: -low });
+            normal[axis] = 1.0;
+            facets.push(Halfspace { normal, offset: *high });
+        }
+        let mut incidence = Incidence::new(1 << dimension, facets.len());
+        let mut vertices = Vec::with_capacity(1 << dimension);
+        for corner in 0..1usize << dimension {
+            let mut vertex = [0.0; MAX_DIMENSION];
+            for (axis, c) in vertex.iter_mut().enumerate().take(dimension) {
+                *c = if corner >> axis & 1 == 1 { high[axis] } else { low[axis] };
+            }
+            vertices.push(vertex);
+            incidence.push((0..dimension).map(|axis| 2 * axis + (corner >> axis & 1)));
+        }
+        Self::assembled(dimension, facets, vertices, incidence)
+    }
+
+    /// Puts a polytope together from forms that fit; none where it is thinner than [`RESOLUTION`].
+    fn assembled(
+        dimension: usize,
+        facets: Vec<Halfspace>,
+        vertices: Vec<Point>,
+        incidence: Incidence,
+    ) -> Option<Self> {
+        let thick = facets.iter().all(|f| vertices.iter().any(|v| f.excess(v) < -RESOLUTION));
+        let (mut low, mut high) = (*vertices.first()?, *vertices.first()?);
+        for vertex in &vertices {
+            for ((low, high), c) in low.iter_mut().zip(&mut high).zip(vertex) {
+                *low = low.min(*c);
+                *high = high.max(*c);
+            }
+        }
+        thick.then_some(Self { dimension, facets, vertices, incidence, low, high })
+    }
+
+    /// The dimension, 1 to [`MAX_DIMENSION`].
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The H-form: the facets, each with its outward unit normal. No two have the same vertices.
+    pub fn facets(&self) -> &[Halfspace] {
+        &self.facets
+    }
+
+    /// The V-form: the vertices, in no particular order.
+    pub fn vertices(&self) -> &[Point] {
+        &self.vertices
+    }
+
+    /// The indices of a facet's vertices; none for a facet that does not exist.
+    pub fn facet_vertices(&self, facet: usize) -> impl Iterator<Item = usize> + '_ {
+        let exists = facet < self.facets.len();
+        (0..self.vertices.len()).filter(move |vertex| exists && self.incidence.has(*vertex, facet))
+    }
+
+    /// The indices of the facets that a vertex lies on; none for a vertex that does not exist.
+    pub fn vertex_facets(&self, vertex: usize) -> impl Iterator<Item = usize> + '_ {
+        let exists = vertex < self.vertices.len();
+        (0..self.facets.len()).filter(move |facet| exists && self.incidence.has(vertex, *facet))
+    }
+
+    /// Is there an edge between two vertices?
+    pub fn is_edge(&self, a: usize, b: usize) -> bool {
+        a.max(b) < self.vertices.len() && a != b && self.incidence.joined(a, b, self.dimension)
+    }
+
+    /// The smallest box around it: its lowest and its highest corner.
+    pub fn bounds(&self) -> (Point, Point) {
+        (self.low, self.high)
+    }
+
+    /// Does the point lie inside, on the border, or within [`RESOLUTION`] of all facets that it is outside of?
+    pub fn contains(&self, point: &Point) -> bool {
+        self.facets.iter().all(|facet| facet.excess(point) <= RESOLUTION)
+    }
+
+    /// The support function: the largest `direction` · x over the polytope.
+    pub fn support(&self, direction: &Point) -> f64 {
+        self.vertices.iter().map(|vertex| dot(direction, vertex)).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+fn dot(a: &Point, b: &Point) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests;
