@@ -233,12 +233,9 @@ mod tests {
                 point[axis] = far;
             }
             let plane = Plane::new(dimension, &points, &[0; MAX_DIMENSION], &mut Minors::new()).unwrap();
-            let mut on = [0; MAX_DIMENSION];
-            on[0] = 3 * far - (dimension as i64 - 1) * far / 3;
-            for c in on.iter_mut().take(dimension).skip(1) {
-                *c = far / 3;
-            }
-            on[0] = far - on.iter().skip(1).sum::<i64>();
+            let mut on = [far / 3; MAX_DIMENSION];
+            on[dimension..].fill(0);
+            on[0] = far - on[1..].iter().sum::<i64>();
             assert_eq!(plane.side(&on), Ordering::Equal, "{dimension}");
             for (change, side) in [(1, Ordering::Greater), (-1, Ordering::Less)] {
                 let mut point = on;

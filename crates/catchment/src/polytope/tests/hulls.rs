@@ -1,0 +1,150 @@
+//! Hulls, sums, shadows and sections against the points they are made of and against brute.
+
+use super::super::*;
+use super::clouds::{check, cloud, nearly_flat_cloud, real, sums, support};
+use proptest::prelude::*;
+
+/// How far a support function may be off: rounding to the lattice, and splinters that are left out; corners that
+/// are as sharp as those of random points stand out of a splinter by some thousand times its thickness.
+const SHARP: f64 = 1e-7;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn a_hull_holds_its_points_and_no_more((dimension, points) in cloud(1..=5, 14), directions in prop::collection::vec(real(6), 20)) {
+        let Some(hull) = Polytope::hull(dimension, &points) else { return Ok(()) };
+        check(&hull)?;
+        for point in &points {
+            prop_assert!(hull.contains(point));
+        }
+        for mut direction in directions {
+            direction[dimension..].fill(0.0);
+            prop_assert!((hull.support(&direction) - support(&points, &direction)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_hulls_facets_are_those_of_brute((dimension, points) in cloud(2..=4, 10)) {
+        let brute = brute::facets(dimension, &points);
+        let Some(hull) = Polytope::hull(dimension, &points) else {
+            // All in one plane: every plane through that has all behind it, on both sides.
+            prop_assert!(brute.iter().all(|f| points.iter().all(|p| f.excess(p) >= -1e-6)), "{brute:?}");
+            return Ok(());
+        };
+        for facet in &brute {
+            prop_assert!(hull.facets().iter().any(|f| dot(&f.normal, &facet.normal) > 1.0 - 1e-6 && (f.offset - facet.offset).abs() < 1e-4), "{facet:?} is missing in {hull:?}");
+        }
+        prop_assert_eq!(brute.len(), hull.facets().len());
+        for a in 0..hull.vertices().len() {
+            for b in 0..a {
+                prop_assert_eq!(hull.is_edge(a, b), brute::is_edge(&hull, a, b), "{} {} {:?}", a, b, hull);
+            }
+        }
+    }
+
+    #[test]
+    fn the_order_of_points_does_not_matter((dimension, points) in cloud(2..=5, 14), turn in 0..14usize) {
+        let mut other = points.clone();
+        let turn = turn % points.len();
+        other.rotate_left(turn);
+        other.swap(0, points.len() / 2);
+        other.extend_from_slice(&points[..turn]);
+        let (one, other) = (Polytope::hull(dimension, &points), Polytope::hull(dimension, &other));
+        prop_assert_eq!(format!("{one:?}"), format!("{other:?}"));
+    }
+
+    #[test]
+    fn nearly_flat_points_have_a_sound_hull((dimension, points) in nearly_flat_cloud(2..=4, 10), directions in prop::collection::vec(real(6), 20)) {
+        let Some(hull) = Polytope::hull(dimension, &points) else { return Ok(()) };
+        check(&hull)?;
+        for mut direction in directions {
+            direction[dimension..].fill(0.0);
+            prop_assert!((hull.support(&direction) - support(&points, &direction)).abs() < SHARP);
+        }
+    }
+
+    #[test]
+    fn a_sums_support_is_the_sum_of_supports((dimension, a) in cloud(2..=4, 8), b in prop::collection::vec(real(6), 1..5), flat in any::<bool>(), directions in prop::collection::vec(real(6), 20)) {
+        let mut b = b;
+        for point in &mut b {
+            point[dimension - usize::from(flat)..].fill(0.0);
+        }
+        let Some(sum) = minkowski_sum_of(dimension, &a, &b) else { return Ok(()) };
+        check(&sum)?;
+        for mut direction in directions {
+            direction[dimension..].fill(0.0);
+            let expected = support(&a, &direction) + support(&b, &direction);
+            prop_assert!((sum.support(&direction) - expected).abs() < 1e-9);
+        }
+        let by_points = Polytope::hull(dimension, &sums(&a, &b)).unwrap();
+        prop_assert!((by_points.volume() - sum.volume()).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_shadows_support_is_that_of_the_body((dimension, points) in cloud(3..=5, 12), axes in Just(vec![0usize, 1, 2, 3, 4]).prop_shuffle(), size in 1..4usize, directions in prop::collection::vec(real(6), 10)) {
+        let Some(body) = Polytope::hull(dimension, &points) else { return Ok(()) };
+        let axes: Vec<usize> = axes.into_iter().filter(|a| *a < dimension).take(size).collect();
+        let shadow = body.project(&axes).unwrap();
+        check(&shadow)?;
+        for direction in directions {
+            let (mut inner, mut outer) = ([0.0; MAX_DIMENSION], [0.0; MAX_DIMENSION]);
+            for (index, axis) in axes.iter().enumerate() {
+                inner[index] = direction[index];
+                outer[*axis] = direction[index];
+            }
+            prop_assert!((shadow.support(&inner) - body.support(&outer)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_section_holds_what_the_body_holds_there((dimension, points) in cloud(2..=5, 12), axis in 0..5usize, value in -0.5..0.5f64, probes in prop::collection::vec(real(6), 40)) {
+        let axis = axis % dimension;
+        let Some(body) = Polytope::hull(dimension, &points) else { return Ok(()) };
+        let Some(section) = body.slice(axis, value) else { return Ok(()) };
+        check(&section)?;
+        for probe in probes {
+            let mut at = probe;
+            at[dimension..].fill(0.0);
+            at[axis] = value;
+            let mut inner: Vec<f64> = at.to_vec();
+            inner.remove(axis);
+            inner.push(0.0);
+            let inner: Point = inner.try_into().unwrap();
+            // Near the border the two may differ.
+            let depth = body.facets().iter().map(|f| f.excess(&at)).fold(f64::NEG_INFINITY, f64::max);
+            prop_assume!(depth.abs() > 1e-6);
+            prop_assert_eq!(section.contains(&inner), depth < 0.0);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn volumes_are_those_of_evenly_strewn_points((dimension, points) in cloud(1..=4, 12)) {
+        let Some(hull) = Polytope::hull(dimension, &points) else { return Ok(()) };
+        let facets = hull.facets().to_vec();
+        let (low, high) = hull.bounds();
+        let room: f64 = low.iter().zip(&high).take(dimension).map(|(l, h)| h - l).product();
+        let (mut count, mut middle) = (0.0, [0.0; MAX_DIMENSION]);
+        let expected = brute::volume(dimension, &low, &high, 20_000, |point| {
+            let inside = brute::contains(&facets, point);
+            if inside {
+                count += 1.0;
+                middle = std::array::from_fn(|i| middle[i] + point[i]);
+            }
+            inside
+        });
+        // Random points would be off by 0.0035 of the box at one standard deviation; these are by less.
+        prop_assert!((hull.volume() - expected).abs() < 0.012 * room, "{} {expected} {room}", hull.volume());
+        let centroid = hull.centroid();
+        prop_assert!(hull.contains(&centroid));
+        if expected > 0.05 * room {
+            for (c, m) in centroid.iter().zip(middle) {
+                prop_assert!((c - m / count).abs() < 0.1, "{c} {}", m / count);
+            }
+        }
+    }
+}
