@@ -5,15 +5,16 @@
 //! ```
 //!
 //! Points are rounded to a lattice of [`SPACING`], so that coordinates are whole numbers, sums of points are exact, and
-//! sums that ought to be coplanar are. A plane's normal is computed once, in whole numbers of up to 384 bits, and
-//! rounded once; the sign for a point is first tried with the rounded normal, whose error is below
-//! [`ROUNDING`] times the sum of its terms' sizes, and computed in whole numbers where that does not decide.
+//! sums that ought to be coplanar are. The normal is computed in floating point, and the same sums with all signs
+//! positive bound its error (Shewchuk, *Adaptive precision floating-point arithmetic*, 1997, explains such filters).
+//! Only where the bound does not decide, the normal is computed in whole numbers of up to 384 bits, once per plane.
 //!
 //! Sizes: coordinates are below [`REACH`] / [`SPACING`] = 2^50, those of a sum of two below 2^51, differences
-//! below 2^52. By Hadamard's inequality a k × k minor is below k^(k/2) · 2^(52 k), and with k ≤ 6 that is
-//! below 2^(64 k − 1): it fits k words with its sign.
+//! below 2^52, which floating point holds exactly. By Hadamard's inequality a k × k minor is below
+//! k^(k/2) · 2^(52 k), and with k ≤ 6 that is below 2^(64 k − 1): it fits k words with its sign.
 
 use super::{MAX_DIMENSION, Point};
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 /// Distance between neighbouring lattice points: 2⁻⁴⁰ ≈ 9e-13 D or rad, 4 000 times the rounding of a coordinate of
@@ -21,9 +22,13 @@ use std::cmp::Ordering;
 pub(super) const SPACING: f64 = 1.0 / (1u64 << 40) as f64;
 /// Largest coordinate of a point: a thousand times any connector, and what keeps minors in their words.
 pub(super) const REACH: f64 = 1024.0;
-/// Relative error of the rounded side: the normal's components are each off by less than 10 units of 2⁻⁵³ (rounding
-/// six words, squares, sum, root, quotient), products and their sum by less than 7 more, and 17 < 32.
+/// Error of a rounded side, relative to the sum of its terms with all signs positive. A term is rounded k times at the
+/// k-th row and at most 5 rows are expanded, the first of which is exact: 14 units of 2⁻⁵³; scaling, the last product
+/// and its sum take 10 more, and the bound's own rounding is covered by what is left to 32.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
+/// A normal that is not known to be right to this is rounded from whole numbers: 2⁻⁴⁴ moves no point within reach of
+/// order 1 by a unit of the lattice.
+const TILT: f64 = 256.0 * f64::EPSILON;
 
 /// A point in units of [`SPACING`].
 pub(super) type Lattice = [i64; MAX_DIMENSION];
@@ -62,42 +67,34 @@ pub(super) fn difference(a: &Lattice, b: &Lattice) -> Point {
 /// An oriented plane through lattice points.
 pub(super) struct Plane {
     dimension: usize,
-    pub(super) through: Lattice,
-    /// Minors; the signs that belong to them are (−1)^j, all turned when `turned`.
-    minors: [Wide; MAX_DIMENSION],
-    turned: bool,
-    /// The unit normal, pointing away from what lies below; its components are right to 10 units of 2⁻⁵³.
+    corners: [Lattice; MAX_DIMENSION],
+    /// The unit normal, pointing away from what lies below; after [`Self::refine`] right to [`TILT`].
     pub(super) unit: Point,
+    /// Its components with all signs positive, which bound its error.
+    bound: Point,
     /// Length of the whole-number normal: (dimension − 1)! times the measure of the simplex it was made from.
     pub(super) size: f64,
+    /// All signs of the normal's components are turned.
+    turned: bool,
+    /// The minors that are the normal's components up to their signs, once they were needed.
+    minors: OnceCell<Box<[Wide; MAX_DIMENSION]>>,
 }
 
 impl Plane {
-    /// The plane through the first `dimension` of `points`, with `below` below it; none where those points lie in
-    /// something flatter or `below` lies on it. `minors` is scratch.
-    pub(super) fn new(
-        dimension: usize,
-        points: &[Lattice; MAX_DIMENSION],
-        below: &Lattice,
-        minors: &mut Minors,
-    ) -> Option<Self> {
-        let mut plane = Self {
-            dimension,
-            through: points[0],
-            minors: minors.of(dimension, points),
-            turned: false,
-            unit: [0.0; MAX_DIMENSION],
-            size: 0.0,
-        };
-        for (j, (unit, minor)) in plane.unit.iter_mut().zip(&plane.minors).enumerate().take(dimension) {
-            *unit = if j % 2 == 0 { rounded(minor) } else { -rounded(minor) };
+    /// The plane through the first `dimension` of `corners`, with `below` below it; none where those lie in
+    /// something flatter or `below` lies on it.
+    pub(super) fn new(dimension: usize, corners: &[Lattice; MAX_DIMENSION], below: &Lattice) -> Option<Self> {
+        let (mut unit, mut bound) = rough_normal(dimension, corners);
+        // At most 2^313: its square is a number. Where it vanishes, the side is always computed exactly.
+        let size = super::dot(&unit, &unit).sqrt();
+        if size > 0.0 {
+            unit = unit.map(|c| c / size);
+            bound = bound.map(|c| c / size);
+        } else {
+            bound = [f64::INFINITY; MAX_DIMENSION];
         }
-        // At most 2^313: its square is a number.
-        plane.size = plane.unit.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if plane.size == 0.0 {
-            return None;
-        }
-        plane.unit = plane.unit.map(|c| c / plane.size);
+        let mut plane =
+            Self { dimension, corners: *corners, unit, bound, size, turned: false, minors: OnceCell::new() };
         match plane.side(below) {
             Ordering::Less => {}
             Ordering::Equal => return None,
@@ -109,27 +106,60 @@ impl Plane {
         Some(plane)
     }
 
+    /// A point on the plane.
+    pub(super) fn through(&self) -> &Lattice {
+        &self.corners[0]
+    }
+
+    /// Makes the unit normal right to [`TILT`].
+    pub(super) fn refine(&mut self) {
+        if ROUNDING * self.bound.iter().sum::<f64>() <= TILT {
+            return;
+        }
+        let mut normal = [0.0; MAX_DIMENSION];
+        for (j, (c, minor)) in normal.iter_mut().zip(self.minors()).enumerate().take(self.dimension) {
+            *c = if (j % 2 == 1) == self.turned { rounded(minor) } else { -rounded(minor) };
+        }
+        self.size = super::dot(&normal, &normal).sqrt();
+        self.unit = normal.map(|c| c / self.size);
+    }
+
     /// Distance of a point above the plane in units of [`SPACING`], rounded.
     pub(super) fn height(&self, point: &Lattice) -> f64 {
-        super::dot(&self.unit, &difference(point, &self.through))
+        super::dot(&self.unit, &difference(point, self.through()))
     }
 
     /// Above (greater), on or below the plane; exact.
     pub(super) fn side(&self, point: &Lattice) -> Ordering {
+        self.side_and_height(point).0
+    }
+
+    /// [`Self::side`] and [`Self::height`] at once.
+    pub(super) fn side_and_height(&self, point: &Lattice) -> (Ordering, f64) {
         let (mut height, mut size) = (0.0, 0.0);
-        for (unit, difference) in self.unit.iter().zip(difference(point, &self.through)) {
-            let term = unit * difference;
-            height += term;
-            size += term.abs();
+        let offsets = difference(point, self.through());
+        for ((unit, bound), offset) in self.unit.iter().zip(&self.bound).zip(&offsets) {
+            height += unit * offset;
+            size += bound * offset.abs();
         }
-        if height.abs() > ROUNDING * size {
-            return if height > 0.0 { Ordering::Greater } else { Ordering::Less };
+        let side = if height > ROUNDING * size {
+            Ordering::Greater
+        } else if height < -ROUNDING * size {
+            Ordering::Less
+        } else {
+            self.exact_side(point)
+        };
+        (side, height)
+    }
+
+    fn exact_side(&self, point: &Lattice) -> Ordering {
+        let (mut sum, through) = ([0; MAX_DIMENSION], self.through());
+        for (j, minor) in self.minors().iter().enumerate().take(self.dimension) {
+            let factor = point[j] - through[j];
+            let factor = if (j % 2 == 1) == self.turned { factor } else { -factor };
+            add_product(&mut sum, factor, minor, self.dimension);
         }
-        let mut sum = [0; MAX_DIMENSION];
-        for (j, minor) in self.minors.iter().enumerate().take(self.dimension) {
-            let factor = point[j] - self.through[j];
-            add_product(&mut sum, if (j % 2 == 1) == self.turned { factor } else { -factor }, minor);
-        }
+        extend(&mut sum, self.dimension);
         if is_negative(&sum) {
             Ordering::Less
         } else if sum == [0; MAX_DIMENSION] {
@@ -138,55 +168,85 @@ impl Plane {
             Ordering::Greater
         }
     }
+
+    fn minors(&self) -> &[Wide; MAX_DIMENSION] {
+        self.minors.get_or_init(|| Box::new(exact_minors(self.dimension, &self.corners)))
+    }
 }
 
-/// Scratch: the minors of the first rows, by the set of their columns.
-pub(super) struct Minors([Wide; 1 << MAX_DIMENSION]);
-
-impl Minors {
-    pub(super) fn new() -> Self {
-        Self([[0; MAX_DIMENSION]; 1 << MAX_DIMENSION])
-    }
-
-    /// The minors of the dimension − 1 rows of differences to the first point, leaving out one column each. Expanded along the last row, for
-    /// all sets of columns from small to large.
-    fn of(&mut self, dimension: usize, points: &[Lattice; MAX_DIMENSION]) -> [Wide; MAX_DIMENSION] {
-        let all = (1usize << dimension) - 1;
-        self.0[0] = [1, 0, 0, 0, 0, 0];
-        for columns in 1..all {
-            let rows = columns.count_ones() as usize;
-            let (mut minor, mut rest, mut negative) = ([0; MAX_DIMENSION], columns, rows.is_multiple_of(2));
-            while rest != 0 {
-                let column = rest.trailing_zeros() as usize;
-                rest &= rest - 1;
-                let factor = points[rows][column] - points[0][column];
-                add_product(
-                    &mut minor,
-                    if negative { -factor } else { factor },
-                    &self.0[columns ^ 1 << column],
-                );
-                negative = !negative;
-            }
-            self.0[columns] = minor;
+/// The normal, not yet turned or scaled, and its components with all signs positive.
+fn rough_normal(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> (Point, Point) {
+    let all = (1usize << dimension) - 1;
+    // By the set of columns; one row after another.
+    let mut minors = [(0.0, 0.0); 1 << MAX_DIMENSION];
+    minors[0] = (1.0, 1.0);
+    for columns in 1..all {
+        let row = columns.count_ones() as usize;
+        let (mut minor, mut bound) = (0.0, 0.0);
+        let (mut rest, mut sign) = (columns, if row.is_multiple_of(2) { -1.0 } else { 1.0 });
+        while rest != 0 {
+            let column = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let factor = sign * (corners[row][column] - corners[0][column]) as f64;
+            let (smaller, smaller_bound) = minors[columns ^ 1 << column];
+            minor += factor * smaller;
+            bound += factor.abs() * smaller_bound;
+            sign = -sign;
         }
-        let mut found = [[0; MAX_DIMENSION]; MAX_DIMENSION];
-        for (column, minor) in found.iter_mut().enumerate().take(dimension) {
-            *minor = self.0[all ^ 1 << column];
-        }
-        found
+        minors[columns] = (minor, bound);
     }
+    let (mut normal, mut bounds) = ([0.0; MAX_DIMENSION], [0.0; MAX_DIMENSION]);
+    for column in 0..dimension {
+        let (minor, bound) = minors[all ^ 1 << column];
+        normal[column] = if column.is_multiple_of(2) { minor } else { -minor };
+        bounds[column] = bound;
+    }
+    (normal, bounds)
+}
+
+/// The minors of the dimension − 1 rows of differences to the first point, leaving out one column each. Expanded along
+/// the last row, for all sets of columns from small to large.
+fn exact_minors(dimension: usize, corners: &[Lattice; MAX_DIMENSION]) -> [Wide; MAX_DIMENSION] {
+    let all = (1usize << dimension) - 1;
+    let mut minors = [[0; MAX_DIMENSION]; 1 << MAX_DIMENSION];
+    minors[0] = [1, 0, 0, 0, 0, 0];
+    for columns in 1..all {
+        let rows = columns.count_ones() as usize;
+        let (mut minor, mut rest, mut negative) = ([0; MAX_DIMENSION], columns, rows.is_multiple_of(2));
+        while rest != 0 {
+            let column = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let factor = corners[rows][column] - corners[0][column];
+            let factor = if negative { -factor } else { factor };
+            add_product(&mut minor, factor, &minors[columns ^ 1 << column], rows);
+            negative = !negative;
+        }
+        extend(&mut minor, rows);
+        minors[columns] = minor;
+    }
+    let mut found = [[0; MAX_DIMENSION]; MAX_DIMENSION];
+    for (column, minor) in found.iter_mut().enumerate().take(dimension) {
+        *minor = minors[all ^ 1 << column];
+    }
+    found
 }
 
 fn is_negative(number: &Wide) -> bool {
     number[MAX_DIMENSION - 1] >> 63 == 1
 }
 
-/// `sum` += `factor` · `number`, modulo 2^384.
-fn add_product(sum: &mut Wide, factor: i64, number: &Wide) {
+/// Fills the words beyond the first `words`, which hold the number, with its sign.
+fn extend(number: &mut Wide, words: usize) {
+    let negative = number[words - 1] >> 63 == 1;
+    number[words..].fill(if negative { u64::MAX } else { 0 });
+}
+
+/// `sum` += `factor` · `number`, in the first `words` words.
+fn add_product(sum: &mut Wide, factor: i64, number: &Wide, words: usize) {
     // −(−1 − s + p) − 1 = s − p: to subtract, add to the complement.
     let flip = if factor < 0 { u64::MAX } else { 0 };
     let (factor, mut carry) = (u128::from(factor.unsigned_abs()), 0u128);
-    for (word, digit) in sum.iter_mut().zip(number) {
+    for (word, digit) in sum.iter_mut().zip(number).take(words) {
         // (2^64 − 1)² + 2 (2^64 − 1) < 2^128.
         let total = factor * u128::from(*digit) + u128::from(*word ^ flip) + carry;
         *word = total as u64 ^ flip;
@@ -200,7 +260,7 @@ fn rounded(number: &Wide) -> f64 {
     let mut size = *number;
     if negative {
         size = [0; MAX_DIMENSION];
-        add_product(&mut size, -1, number);
+        add_product(&mut size, -1, number, MAX_DIMENSION);
     }
     let size = size.iter().rev().fold(0.0, |high, word| high * 18_446_744_073_709_551_616.0 + *word as f64);
     if negative { -size } else { size }
@@ -213,13 +273,14 @@ mod tests {
     #[test]
     fn wide_products_have_the_right_sign() {
         let mut sum = [0; MAX_DIMENSION];
-        add_product(&mut sum, -7, &[1, 0, 0, 0, 0, 0]);
+        add_product(&mut sum, -7, &[1, 0, 0, 0, 0, 0], 1);
+        extend(&mut sum, 1);
         assert!(is_negative(&sum));
         assert_eq!(rounded(&sum), -7.0);
         let minus_seven = sum;
-        add_product(&mut sum, -3, &minus_seven);
+        add_product(&mut sum, -3, &minus_seven, MAX_DIMENSION);
         assert_eq!(rounded(&sum), 14.0);
-        add_product(&mut sum, i64::MIN, &[0, 1, 0, 0, 0, 0]);
+        add_product(&mut sum, i64::MIN, &[0, 1, 0, 0, 0, 0], MAX_DIMENSION);
         assert_eq!(rounded(&sum), 14.0 - 2f64.powi(127));
     }
 
@@ -232,7 +293,7 @@ mod tests {
             for (axis, point) in points.iter_mut().enumerate().take(dimension) {
                 point[axis] = far;
             }
-            let plane = Plane::new(dimension, &points, &[0; MAX_DIMENSION], &mut Minors::new()).unwrap();
+            let plane = Plane::new(dimension, &points, &[0; MAX_DIMENSION]).unwrap();
             let mut on = [far / 3; MAX_DIMENSION];
             on[dimension..].fill(0);
             on[0] = far - on[1..].iter().sum::<i64>();

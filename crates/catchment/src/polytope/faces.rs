@@ -14,7 +14,8 @@ use std::cmp::Ordering;
 
 impl Hull {
     /// The polytope of which this is the boundary; none where it is thinner than [`RESOLUTION`].
-    pub(super) fn into_polytope(self) -> Option<Polytope> {
+    pub(super) fn into_polytope(mut self) -> Option<Polytope> {
+        self.simplices.iter_mut().for_each(|simplex| simplex.plane.refine());
         let mut vertices: Vec<usize> =
             self.simplices.iter().flat_map(|s| &s.vertices[..self.dimension]).copied().collect();
         vertices.sort_unstable();
@@ -67,7 +68,7 @@ impl Hull {
                     }
                 }
             }
-            let offset = super::dot(&plane.unit, &exact::coordinates(&plane.through));
+            let offset = super::dot(&plane.unit, &exact::coordinates(plane.through()));
             facets.push(Halfspace { normal: plane.unit, offset });
         }
         incident.sort_unstable();

@@ -16,7 +16,7 @@
 //! Source: Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, ACM TOMS 22 (1996), without its
 //! tolerances.
 
-use super::exact::{self, Lattice, Minors, Plane};
+use super::exact::{self, Lattice, Plane};
 use super::{MAX_DIMENSION, Point, RESOLUTION};
 use std::cmp::Ordering;
 
@@ -29,6 +29,8 @@ pub(super) struct Simplex {
     pub(super) neighbours: [usize; MAX_DIMENSION],
     pub(super) plane: Plane,
     alive: bool,
+    /// The last point found not to see it.
+    unseen_from: usize,
 }
 
 /// The boundary of a hull, a closed surface of simplices.
@@ -55,7 +57,6 @@ impl Hull {
         points.sort_unstable();
         points.dedup();
         let corners = first_simplex(dimension, &points)?;
-        let mut minors = Minors::new();
         let mut simplices = Vec::new();
         for (index, &opposite) in corners.iter().enumerate() {
             let mut vertices = [0; MAX_DIMENSION];
@@ -65,8 +66,8 @@ impl Hull {
                 *vertex = corners[other];
                 *neighbour = other;
             }
-            let plane = Plane::new(dimension, &vertices.map(|v| points[v]), &points[opposite], &mut minors)?;
-            simplices.push(Simplex { vertices, neighbours, plane, alive: true });
+            let plane = Plane::new(dimension, &vertices.map(|v| points[v]), &points[opposite])?;
+            simplices.push(Simplex { vertices, neighbours, plane, alive: true, unseen_from: NONE });
         }
         let mut hull = Self { dimension, points, simplices };
         let count = hull.points.len();
@@ -75,7 +76,7 @@ impl Hull {
             hull.wait(point, 0, &mut waiting);
         }
         while let Some(point) = waiting.highest() {
-            hull.join(point, &mut waiting, &mut minors)?;
+            hull.join(point, &mut waiting)?;
         }
         hull.drop_dead();
         Some(hull)
@@ -89,10 +90,9 @@ impl Hull {
             if !simplex.alive {
                 continue;
             }
-            let height = simplex.plane.height(at);
-            // An exact sign, and only where the point is not yet seen to be outside or would be higher.
-            if (best == NONE || height > above) && simplex.plane.side(at) == Ordering::Greater {
-                (best, above) = (facet, height.max(0.0));
+            let (side, height) = simplex.plane.side_and_height(at);
+            if side == Ordering::Greater && (best == NONE || height > above) {
+                (best, above) = (facet, height);
             }
         }
         (waiting.facet[point], waiting.height[point]) = (best, above);
@@ -100,12 +100,11 @@ impl Hull {
 
     /// Makes a point that waits part of the hull. None only if the surface were not closed, which exact signs rule
     /// out.
-    fn join(&mut self, point: usize, waiting: &mut Waiting, minors: &mut Minors) -> Option<()> {
+    fn join(&mut self, point: usize, waiting: &mut Waiting) -> Option<()> {
         let dimension = self.dimension;
         let at = self.points[point];
         let fresh = self.simplices.len();
         let mut seen = vec![waiting.facet[point]];
-        let mut unseen = Vec::new();
         let mut horizon = Vec::new();
         self.simplices[seen[0]].alive = false;
         let mut next = 0;
@@ -116,13 +115,13 @@ impl Hull {
                 if !self.simplices[beyond].alive {
                     continue;
                 }
-                if !unseen.contains(&beyond) {
+                if self.simplices[beyond].unseen_from != point {
                     if self.simplices[beyond].plane.side(&at) == Ordering::Greater {
                         self.simplices[beyond].alive = false;
                         seen.push(beyond);
                         continue;
                     }
-                    unseen.push(beyond);
+                    self.simplices[beyond].unseen_from = point;
                 }
                 horizon.push((facet, slot, beyond));
             }
@@ -134,11 +133,11 @@ impl Hull {
             let below = self.points[vertices[slot]];
             vertices[slot] = point;
             neighbours[slot] = beyond;
-            let plane = Plane::new(dimension, &vertices.map(|v| self.points[v]), &below, minors)?;
+            let plane = Plane::new(dimension, &vertices.map(|v| self.points[v]), &below)?;
             let back = self.slot_of(beyond, facet)?;
             self.simplices[beyond].neighbours[back] = fresh + made;
             self.simplices[facet].neighbours[slot] = fresh + made;
-            self.simplices.push(Simplex { vertices, neighbours, plane, alive: true });
+            self.simplices.push(Simplex { vertices, neighbours, plane, alive: true, unseen_from: NONE });
         }
         for (made, &(facet, slot, _)) in horizon.iter().enumerate() {
             for other in (0..dimension).filter(|other| *other != slot) {
