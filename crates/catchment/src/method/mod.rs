@@ -5,6 +5,7 @@ pub mod correction;
 pub mod descent;
 pub mod flood;
 pub mod kinematic;
+pub mod partition;
 pub mod transport;
 pub mod zraa;
 
@@ -25,11 +26,17 @@ pub enum Method {
     Flood,
     /// [`flood`], every cell to its steepest neighbour.
     Steepest,
+    /// [`partition`]: polytopes of the contact space, sampled at every cell's centre.
+    Partition,
 }
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 4] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest];
+    pub const ALL: [Self; 5] =
+        [Self::Transport, Self::Descent, Self::Flood, Self::Steepest, Self::Partition];
+
+    /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
+    pub const ON_GRIDS: [Self; 4] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest];
 
     /// The lower-case name used in files, reports and options.
     pub const fn name(self) -> &'static str {
@@ -38,6 +45,7 @@ impl Method {
             Self::Transport => "transport",
             Self::Flood => "flood",
             Self::Steepest => "steepest",
+            Self::Partition => "partition",
         }
     }
 
@@ -50,6 +58,7 @@ impl Method {
             }
             Self::Flood => "fast flooding of the heights over the grid; biased, made for comparisons",
             Self::Steepest => "flooding along the steepest neighbour; biased too, made for comparisons",
+            Self::Partition => "watersheds of the contact space as polytopes, without a grid; two or three errors",
         }
     }
 
@@ -58,7 +67,7 @@ impl Method {
         match self {
             Self::Flood => Some(flood::Rule::Lowest),
             Self::Steepest => Some(flood::Rule::Steepest),
-            Self::Transport | Self::Descent => None,
+            Self::Transport | Self::Descent | Self::Partition => None,
         }
     }
 
@@ -79,7 +88,7 @@ impl Method {
             }
             // Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once.
             Self::Transport => [1000, 200, 50, 30, 20],
-            Self::Flood | Self::Steepest => Resolution::DEFAULT_CELLS,
+            Self::Flood | Self::Steepest | Self::Partition => Resolution::DEFAULT_CELLS,
         }
     }
 
@@ -89,7 +98,7 @@ impl Method {
         const LEAST: f64 = 200.0;
         match self {
             Self::Descent | Self::Transport => (SIMPLE * affordable(pair)).max(LEAST) as usize,
-            Self::Flood | Self::Steepest => 0,
+            Self::Flood | Self::Steepest | Self::Partition => 0,
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::merit::onaa::Onaa;
 use crate::merit::success::{Distribution, success};
 use crate::merit::sum::{Sum, bracket};
 use crate::merit::tolerance::{Tolerance, tolerances};
+use crate::method::partition::Partition;
 use crate::pose::Dof;
 use serde::{Deserialize, Serialize};
 use std::mem::discriminant;
@@ -48,6 +49,8 @@ pub struct Report {
     pub success: Option<SuccessReport>,
     /// The basins behind the outcomes; null for methods that know none.
     pub basins: Option<BasinsReport>,
+    /// The polytopes behind the outcomes; null for all methods but `partition`.
+    pub partition: Option<PartitionReport>,
     /// Doubts.
     pub warnings: Vec<WarningReport>,
     /// How long it took; null where equal runs must write equal bytes.
@@ -258,6 +261,7 @@ impl Report {
             tolerances: tolerable,
             success: None,
             basins: None,
+            partition: None,
             warnings: warnings.into_iter().map(WarningReport::from).collect(),
             timing,
         })
@@ -282,6 +286,13 @@ impl Report {
             outside: found.outside,
         });
         Ok(self)
+    }
+
+    /// Adds the partition behind the outcomes.
+    #[must_use]
+    pub fn with_partition(mut self, partition: &Partition) -> Self {
+        self.partition = Some(PartitionReport::new(partition));
+        self
     }
 
     /// The report as indented JSON, ending with a line break.
@@ -371,11 +382,13 @@ impl From<Tolerance> for ToleranceReport {
 }
 
 pub(crate) mod basins;
+mod partition;
 mod sample;
 #[cfg(test)]
 pub(crate) mod testing;
 
 pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, StepReport};
+pub use partition::PartitionReport;
 pub use sample::SampleReport;
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ impl Default for Settings {
             tolerance: 0.01,
             time_limit_s: 60.0,
             most_cells: u64::MAX,
-            methods: Method::ALL.to_vec(),
+            methods: Method::ON_GRIDS.to_vec(),
             descents: 4000,
             seed: 1,
         }
@@ -263,7 +263,7 @@ mod tests {
         let settings =
             Settings { tolerance: 0.1, time_limit_s: f64::INFINITY, descents: 200, ..Settings::default() };
         let found = run(&pair, &settings, &Exec::new()).unwrap();
-        assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), Method::ALL);
+        assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), Method::ON_GRIDS);
         assert_eq!(found.unit, "D·rad");
         for sequence in &found.sequences {
             assert_eq!(sequence.end, End::Stable);

@@ -13,6 +13,7 @@ use crate::merit::onaa::Onaa;
 use crate::merit::sum::{Sum, bracket};
 use crate::method::correction::{self, ByFraction, ByNeighbours, Corrected, CorrectionError};
 use crate::method::flood::{self, FloodError};
+use crate::method::partition::{self, PartitionError};
 use crate::method::transport::{self, Arrival, TransportError};
 use crate::method::{Method, descent};
 use serde::Serialize;
@@ -64,6 +65,9 @@ pub enum TrialError {
     /// Transport refuses.
     #[error(transparent)]
     Transport(TransportError),
+    /// There is no partition.
+    #[error(transparent)]
+    Partition(#[from] PartitionError),
     /// There is no corrected Sum.
     #[error(transparent)]
     Correction(#[from] CorrectionError),
@@ -125,6 +129,8 @@ impl Decided {
                     flood::Settings { rule: method.rule().unwrap_or_default(), ..flood::Settings::default() };
                 flood::accept(pair, &grid, &settings, exec)?
             }
+            Method::Partition => partition::run(pair, &partition::Settings::default(), exec)?
+                .acceptance(Domain::Grid(grid.clone()), exec)?,
         };
         Ok(Self { grid, acceptance, arrival, seconds: started.elapsed().as_secs_f64() })
     }

@@ -8,6 +8,7 @@ use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape, Resolution};
 use catchment::method::correction::{self, ByFraction, ByNeighbours, Corrected, CorrectionError};
 use catchment::method::flood::{self, Hierarchy};
+use catchment::method::partition::{self, Partition};
 use catchment::method::transport::{self, Arrival};
 use catchment::method::{Method, descent};
 use serde_json::Value;
@@ -24,6 +25,8 @@ pub(super) struct Job<'a> {
     pub(super) method: Method,
     /// Flooding's tolerance, if not the default.
     pub(super) depth_tolerance: Option<f64>,
+    /// Slices and strips of the partition.
+    pub(super) partition: partition::Settings,
     /// Random poses that correct the Sum, if any shall.
     pub(super) sample: Option<correction::Settings>,
     /// Whether the heights are wanted even where the method needs none.
@@ -42,6 +45,8 @@ pub(super) struct Computed {
     pub(super) landscape: Option<Landscape>,
     /// The basins, if the method knows any.
     pub(super) basins: Option<Hierarchy>,
+    /// The polytopes, if the method made any.
+    pub(super) partition: Option<Partition>,
 }
 
 /// The corrected Sum.
@@ -66,6 +71,7 @@ impl Job<'_> {
             Method::Descent => serde_json::to_value(descent::Settings::default())?,
             Method::Transport => serde_json::to_value(transport::Settings::default())?,
             Method::Flood | Method::Steepest => serde_json::to_value(self.flood_settings())?,
+            Method::Partition => serde_json::to_value(self.partition)?,
         })
     }
 
@@ -101,6 +107,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
         Method::Descent => ("the outcome of every cell", DESCENT_BYTES),
         Method::Transport => ("transport", transport::bytes(job.pair, &job.grid).div_ceil(cells.max(1))),
         Method::Flood | Method::Steepest => ("flooding", flood::bytes(1)),
+        Method::Partition => ("the outcome of every cell", size_of::<Outcome>() as u64),
     };
     let heights = job.heights && job.method.rule().is_none();
     let per_cell = per_cell + if heights { Landscape::bytes(1) } else { 0 };
@@ -110,7 +117,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             fits => format!("use at most --resolution {fits}, or allow more with --memory"),
         }
     })?;
-    let (mut arrival, mut basins) = (None, None);
+    let (mut arrival, mut basins, mut partition) = (None, None, None);
     let (mut acceptance, flooded) = match job.method {
         Method::Descent => (descend(job.pair, Domain::Grid(job.grid.clone()), exec)?, None),
         Method::Transport => {
@@ -125,6 +132,10 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
                 serde_json::to_value(flood::Settings { depth_tolerance: used, ..job.flood_settings() })?;
             basins = Some(flooding.hierarchy);
             (flooding.acceptance, Some(landscape))
+        }
+        Method::Partition => {
+            let found = partition.insert(partition::run(job.pair, &job.partition, exec)?);
+            (found.acceptance(Domain::Grid(job.grid.clone()), exec)?, None)
         }
     };
     let landscape = match flooded {
@@ -147,7 +158,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
         let most = sample.as_ref().map_or(0, |sample| sample.corrected.descents);
         settle(job, arrival, &mut acceptance, most, exec)?;
     }
-    Ok(Computed { acceptance, settings, sample, landscape, basins })
+    Ok(Computed { acceptance, settings, sample, landscape, basins, partition })
 }
 
 /// Follows the ambiguous cells exactly if they are at most `most`, else warns.

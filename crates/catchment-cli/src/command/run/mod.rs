@@ -18,11 +18,13 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
 use catchment::acceptance::{Acceptance, Outcome, Warning};
+use catchment::design::Design;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Resolution};
 use catchment::merit::success::Distribution;
 use catchment::method::Method;
 use catchment::method::correction::{self, ByNeighbours, Settings, Stop};
+use catchment::method::partition;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{Report, Requirement, table};
 use clap::Args;
@@ -81,6 +83,27 @@ struct HowArgs {
     /// Flooding: basins shallower than this are merged, in D [default: in the widest gap between the depths of the basins]
     #[arg(long, value_name = "DEPTH", value_parser = depth)]
     depth_tolerance: Option<f64>,
+    /// Partition: rotation slices across the error box of every free angle [default: 20 for one angle, 4 for two]
+    #[arg(long, value_name = "COUNT")]
+    slices: Option<usize>,
+    /// Partition: strips per D into which the moving half is cut; 1 is the dissertation's method [default: 8, or 1 for two angles]
+    #[arg(long, value_name = "COUNT")]
+    strips: Option<usize>,
+}
+
+impl HowArgs {
+    /// The settings of the partition; `None` of its options may be given for any other method.
+    fn partition(&self, design: &Design) -> Result<partition::Settings, Failure> {
+        if self.method != Method::Partition && (self.slices.is_some() || self.strips.is_some()) {
+            let message = format!("--slices and --strips are settings of partition; {} has none", self.method.name());
+            return Err(Failure::with_help(message, Some("add --method partition, or leave them out".to_owned())));
+        }
+        let default = partition::Settings::for_rotations(design.alignment.free.rotations());
+        Ok(partition::Settings {
+            slices: self.slices.unwrap_or(default.slices),
+            strips: self.strips.unwrap_or(default.strips),
+        })
+    }
 }
 
 fn method_parser() -> ValueParser {
@@ -129,6 +152,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         grid,
         method: how.method,
         depth_tolerance: how.depth_tolerance,
+        partition: how.partition(design)?,
         sample: args.sample.settings(how.method, &pair),
         heights: place.wants_heights(),
     };
@@ -173,6 +197,9 @@ fn report(
     if let Some(basins) = &computed.basins {
         report = report.with_basins(&computed.acceptance, basins);
     }
+    if let Some(partition) = &computed.partition {
+        report = report.with_partition(partition);
+    }
     if let Some(distribution) = distribution {
         report = report.with_success(&computed.acceptance, distribution, exec)?;
     }
@@ -204,7 +231,7 @@ fn check_requirements(
         correction::estimate(&grid, &by, &settings, &Exec::new(), aligned)
     })?;
     let basins = job.basins_of(&grid)?;
-    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None, basins };
+    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None, basins, partition: None };
     let timing = Some(Timing { total_s: 0.0, threads: 1 });
     let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing, &Exec::new())?;
     unmet(requirements, &serde_json::to_value(&empty)?).map(drop)

@@ -14,7 +14,8 @@ use catchment::pose::{CorPose, Dof, PoseError};
 use catchment::report::figure::{self, FigureError, Picture, Placement};
 
 /// Names of all pictures there can be, without ending.
-pub(super) const NAMES: [&str; 6] = ["overview", "slices", "heights", "basins", "section", "solids"];
+pub(super) const NAMES: [&str; 7] =
+    ["overview", "slices", "heights", "basins", "partition", "section", "solids"];
 
 /// Cells per axis of the slice in the overview, and of the many in the slices, where the method decides each cell
 /// by itself and the grid is coarser.
@@ -64,6 +65,9 @@ pub(super) fn draw(
     }
     if let Some(basins) = &computed.basins {
         keep("basins", figure::basins(design, acceptance, basins))?;
+    }
+    if let Some(partition) = &computed.partition {
+        keep("partition", figure::partition(design, partition, acceptance))?;
     }
     exec.check()?;
     let lifted = Placement::mated(design, LIFT);

@@ -11,6 +11,7 @@
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
+//!   partition   the contact space as polygons, and the exact outline of what is accepted
 //!   overview    the picture of a design: halves, acceptance, heights
 //! ```
 //!
@@ -26,6 +27,7 @@ mod heights;
 mod map;
 mod matrix;
 mod overview;
+mod partition;
 mod raster;
 mod region;
 mod section;
@@ -40,6 +42,7 @@ pub use convergence::convergence;
 pub use heights::heights;
 pub use matrix::slice_matrix;
 pub use overview::overview;
+pub use partition::partition;
 pub use region::region;
 pub use section::{Placement, section};
 pub use sensitivity::sensitivity;

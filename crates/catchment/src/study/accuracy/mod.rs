@@ -117,7 +117,7 @@ impl Serialize for Way {
 impl Way {
     /// All of them, in the order of the table.
     pub fn all() -> Vec<Self> {
-        Method::ALL.into_iter().map(Self::Grid).chain([Self::Corrected]).collect()
+        Method::ON_GRIDS.into_iter().map(Self::Grid).chain([Self::Corrected]).collect()
     }
 
     /// Its name in tables.
@@ -153,13 +153,13 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
     let mut entries = Vec::new();
     let mut finest = None;
     for resolution in case.resolutions() {
-        for method in Method::ALL {
+        for method in Method::ON_GRIDS {
             let decided = Decided::by(method, &pair, resolution, exec)?;
             entries.push(Entry::of(&decided, method, &pair, exec)?);
             match method {
                 Method::Descent => finest = Some(decided),
                 Method::Transport => entries.push(Entry::corrected(&decided, &pair, exec)?),
-                Method::Flood | Method::Steepest => {}
+                _ => {}
             }
         }
     }

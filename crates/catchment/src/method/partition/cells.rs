@@ -1,0 +1,333 @@
+//! The cells of the contact space and the gates through which motion leaves them.
+//!
+//! ```text
+//!        ┌───────────┐           q̇ = −M⁻¹ ∇h is constant over a cell, so the points that leave through a
+//!        │   cell    │           part of a facet are that part, swept back along −q̇: convex again
+//!        │    ↘      │
+//!        └──▓▓▓▓▓────┘  gate     through it: into a lower cell, along a ravine, off the halves, out of the box
+//!           ▓ next ▓
+//! ```
+//!
+//! Neighbours are found through an R-tree of bounding boxes (the original compared all pairs, which took most of
+//! its time).
+
+use super::compose::Compartment;
+use super::space::{Affine, Patch};
+use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION};
+use crate::pose::{Dof, DofSet};
+use glam::{DMat3, DVec3};
+use rstar::{AABB, RTree, primitives::GeomWithData, primitives::Rectangle};
+use std::array;
+
+/// Heights closer than this are equal, in D: ten times what a vertex on a plane may be off by, at slopes up to 10.
+pub(super) const LEVEL: f64 = 100.0 * RESOLUTION;
+
+/// Largest sine of the angle between motion and a facet along which the motion counts as running, not crossing.
+const GRAZING: f64 = 1e-9;
+
+/// A part of the contact space with the motion over it.
+#[derive(Debug, Clone)]
+pub(super) struct Cell {
+    /// The pose errors (of the COR) over which it lies.
+    pub(super) region: Polytope,
+    /// Height of first contact.
+    pub(super) height: Affine,
+    /// `−M⁻¹∇h`, per unit of mobility.
+    pub(super) velocity: Point,
+    /// How fast the height falls along it: the squared slope in the ρ-metric.
+    pub(super) descent: f64,
+    /// Where motion leaves.
+    pub(super) gates: Vec<Gate>,
+}
+
+/// A part of a facet through which all motion has the same fate at first.
+#[derive(Debug, Clone)]
+pub(super) struct Gate {
+    /// The facet of the cell.
+    pub(super) facet: usize,
+    /// The coordinate that the facet's plane gives from the others.
+    pub(super) dropped: usize,
+    /// The part, in the other coordinates.
+    pub(super) region: Polytope,
+    /// What lies beyond.
+    pub(super) to: Beyond,
+}
+
+/// What lies beyond a gate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Beyond {
+    /// A cell that is not higher there.
+    Cell(usize),
+    /// A cell whose motion comes the other way, or a wall: motion goes on along the gate itself.
+    Ravine,
+    /// No contact.
+    Nothing,
+    /// The last slice of a rotation.
+    Border,
+}
+
+/// All cells with an index over their boxes.
+#[derive(Debug)]
+pub(super) struct Cells {
+    /// The cells.
+    pub(super) cells: Vec<Cell>,
+    index: RTree<Boxed>,
+    /// Lowest and highest pose error of every free rotation, at its place among the coordinates.
+    limits: Vec<(usize, [f64; 2])>,
+}
+
+type Boxed = GeomWithData<Rectangle<Point>, usize>;
+
+fn rectangle(polytope: &Polytope, margin: f64) -> AABB<Point> {
+    let (low, high) = polytope.bounds();
+    AABB::from_corners(low.map(|v| v - margin), high.map(|v| v + margin))
+}
+
+impl Cells {
+    /// Cells of the patches of each compartment, with their gates.
+    pub(super) fn new(
+        patches: &[(Compartment, Vec<Patch>)],
+        free: DofSet,
+        rotation_length: f64,
+        limits: Vec<(usize, [f64; 2])>,
+    ) -> Self {
+        let cells: Vec<Cell> = patches
+            .iter()
+            .flat_map(|(_, patches)| patches)
+            .map(|patch| Cell::new(patch, free, rotation_length))
+            .collect();
+        let boxed = |(k, cell): (usize, &Cell)| {
+            Boxed::new(Rectangle::from_aabb(rectangle(&cell.region, 0.0)), k)
+        };
+        let index = RTree::bulk_load(cells.iter().enumerate().map(boxed).collect());
+        Self { cells, index, limits }
+    }
+
+    /// The cells whose boxes meet that of `polytope`, in order.
+    fn near(&self, polytope: &Polytope) -> Vec<usize> {
+        let envelope = rectangle(polytope, RESOLUTION);
+        let mut near: Vec<usize> =
+            self.index.locate_in_envelope_intersecting(envelope).map(|boxed| boxed.data).collect();
+        near.sort_unstable();
+        near
+    }
+
+    /// The cells that hold `q`, in order.
+    pub(super) fn holding(&self, q: &Point) -> Vec<usize> {
+        let envelope = AABB::from_corners(q.map(|v| v - RESOLUTION), q.map(|v| v + RESOLUTION));
+        let mut holding: Vec<usize> = self
+            .index
+            .locate_in_envelope_intersecting(envelope)
+            .map(|boxed| boxed.data)
+            .filter(|k| self.cells[*k].region.contains(q))
+            .collect();
+        holding.sort_unstable();
+        holding
+    }
+
+    /// The gates of one cell.
+    pub(super) fn gates_of(&self, k: usize) -> Vec<Gate> {
+        let cell = &self.cells[k];
+        let near = self.near(&cell.region);
+        let mut gates = Vec::new();
+        for (facet, plane) in cell.region.facets().iter().enumerate() {
+            if !cell.crosses(plane) {
+                continue;
+            }
+            let dropped = steepest_axis(plane, cell.region.dimension());
+            let Some(whole) = cell.region.facet_projected(facet, dropped) else { continue };
+            let mut open = vec![whole];
+            for &other in near.iter().filter(|other| **other != k) {
+                let neighbour = &self.cells[other];
+                let Some(back) = facing(&neighbour.region, plane) else { continue };
+                let Some(side) = neighbour.region.facet_projected(back, dropped) else { continue };
+                let shared: Vec<Polytope> = open.iter().filter_map(|part| part.intersection(&side)).collect();
+                if shared.is_empty() {
+                    continue;
+                }
+                open = open.iter().flat_map(|part| part.difference(&side)).collect();
+                let counter = neighbour.crosses(&plane.flipped());
+                for part in shared {
+                    for (region, rise) in self.split_at_steps(part, k, other, plane, dropped) {
+                        let to = match rise {
+                            Step::Up => Beyond::Ravine,
+                            Step::Level if counter => Beyond::Ravine,
+                            Step::Level | Step::Down => Beyond::Cell(other),
+                        };
+                        gates.push(Gate { facet, dropped, region, to });
+                    }
+                }
+            }
+            let to = if self.on_border(plane) { Beyond::Border } else { Beyond::Nothing };
+            gates.extend(open.into_iter().map(|region| Gate { facet, dropped, region, to }));
+        }
+        gates
+    }
+
+    /// Whether a facet's plane is the last slice of a rotation.
+    pub(super) fn on_border(&self, plane: &Halfspace) -> bool {
+        self.limits.iter().any(|&(axis, [low, high])| {
+            let at = plane.offset * plane.normal[axis];
+            plane.normal[axis].abs() > 1.0 - GRAZING
+                && ((at - low).abs() <= LEVEL || (at - high).abs() <= LEVEL)
+        })
+    }
+
+    /// A shared part of a facet, cut where the height steps from up to down.
+    fn split_at_steps(
+        &self,
+        part: Polytope,
+        from: usize,
+        to: usize,
+        plane: &Halfspace,
+        dropped: usize,
+    ) -> Vec<(Polytope, Step)> {
+        let [from, to] = [from, to].map(|k| self.cells[k].height);
+        let rises = |polytope: &Polytope| {
+            let rise = |y: &Point| {
+                let q = lifted(y, plane, dropped);
+                to.at(&q) - from.at(&q)
+            };
+            polytope
+                .vertices()
+                .iter()
+                .map(rise)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], r| [low.min(r), high.max(r)])
+        };
+        let step = |polytope: &Polytope| match rises(polytope) {
+            [low, high] if low >= -LEVEL && high <= LEVEL => Step::Level,
+            [low, _] if low >= -LEVEL => Step::Up,
+            _ => Step::Down,
+        };
+        let [low, high] = rises(&part);
+        if low < -LEVEL && high > LEVEL {
+            // The rise is affine over the facet: q_dropped = (offset − Σ n y)/n_dropped.
+            let n = plane.normal;
+            let slope: Point = array::from_fn(|k| to.slope[k] - from.slope[k]);
+            let per_dropped = slope[dropped] / n[dropped];
+            let normal = removed(&array::from_fn(|k| slope[k] - per_dropped * n[k]), dropped);
+            let level = to.level - from.level + per_dropped * plane.offset;
+            if let Some(cut) = Halfspace::new(normal, -level) {
+                let (down, up) = part.split(&cut);
+                return down
+                    .map(|part| (part, Step::Down))
+                    .into_iter()
+                    .chain(up.map(|part| (part, Step::Up)))
+                    .collect();
+            }
+        }
+        let step = step(&part);
+        vec![(part, step)]
+    }
+}
+
+/// How the height goes on beyond a facet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    Up,
+    Level,
+    Down,
+}
+
+impl Cell {
+    fn new(patch: &Patch, free: DofSet, rotation_length: f64) -> Self {
+        let slope = &patch.height.slope;
+        let velocity = mobility(&patch.region.centroid(), free, rotation_length, slope).map(|v| -v);
+        let descent = -dot(&velocity, slope);
+        Self { region: patch.region.clone(), height: patch.height, velocity, descent, gates: Vec::new() }
+    }
+
+    /// Whether motion leaves the cell through a facet with this outward plane.
+    pub(super) fn crosses(&self, plane: &Halfspace) -> bool {
+        let speed = dot(&self.velocity, &self.velocity).sqrt();
+        // No slope, no motion: below it the height changes by less than its own error over the whole box.
+        self.descent > LEVEL * LEVEL && dot(&self.velocity, &plane.normal) > GRAZING * speed
+    }
+
+    /// What of the cell leaves through `through`, a part of the plane of one of its facets.
+    pub(super) fn upstream(&self, facet: usize, dropped: usize, through: &Polytope) -> Option<Polytope> {
+        let plane = &self.region.facets()[facet];
+        let speed = dot(&self.velocity, &plane.normal);
+        // q is carried to y = q + t·v on the plane, t = (offset − n·q)/(n·v): c·y ≤ e is a half-space of q.
+        let swept = through.facets().iter().filter_map(|side| {
+            let c = inserted(&side.normal, dropped);
+            let along = dot(&c, &self.velocity) / speed;
+            let normal = array::from_fn(|k| c[k] - along * plane.normal[k]);
+            Halfspace::new(normal, side.offset - along * plane.offset)
+        });
+        let swept: Vec<Halfspace> = swept.collect();
+        self.region.intersection_of(&swept)
+    }
+}
+
+/// `M⁻¹ g` in the metric `|v|² + ρ²|ω|²`, ω from the rates of the free Euler angles at the pose error `q`.
+fn mobility(q: &Point, free: DofSet, rotation_length: f64, g: &Point) -> Point {
+    let mut angles = [0.0; 3];
+    let rotations = [Dof::Roll, Dof::Pitch, Dof::Yaw];
+    let places: Vec<Dof> = free.iter().collect();
+    let place = |dof: Dof| places.iter().position(|free| *free == dof);
+    for (angle, dof) in angles.iter_mut().zip(rotations) {
+        *angle = place(dof).map_or(0.0, |k| q[k]);
+    }
+    let about_z = DMat3::from_rotation_z(angles[2]);
+    let axes = [about_z * (DMat3::from_rotation_y(angles[1]) * DVec3::X), about_z * DVec3::Y, DVec3::Z];
+    let entry = |j: usize, k: usize| match (place(rotations[j]), place(rotations[k])) {
+        (Some(_), Some(_)) => axes[j].dot(axes[k]),
+        _ => f64::from(u8::from(j == k)),
+    };
+    let gram = DMat3::from_cols_array_2d(&array::from_fn(|j| array::from_fn(|k| entry(j, k))));
+    let torque = DVec3::from_array(rotations.map(|dof| place(dof).map_or(0.0, |k| g[k])));
+    // Singular at the pole of the Euler angles only, where no cell has its centroid.
+    let rates = gram.inverse() * torque / (rotation_length * rotation_length);
+    let mut mobile = *g;
+    for (rate, dof) in rates.to_array().into_iter().zip(rotations) {
+        if let Some(k) = place(dof) {
+            mobile[k] = rate;
+        }
+    }
+    mobile
+}
+
+/// The facet of `polytope` that lies on `plane` and faces it.
+pub(super) fn facing(polytope: &Polytope, plane: &Halfspace) -> Option<usize> {
+    // Two unit normals that differ by this much part by less than LEVEL over the box.
+    let opposed = |facet: &Halfspace| {
+        (facet.offset + plane.offset).abs() <= LEVEL
+            && (0..MAX_DIMENSION).all(|k| (facet.normal[k] + plane.normal[k]).abs() <= LEVEL)
+    };
+    polytope.facets().iter().position(opposed)
+}
+
+/// The axis along which a plane's normal is longest.
+fn steepest_axis(plane: &Halfspace, dimension: usize) -> usize {
+    (1..dimension).fold(0, |best, k| if plane.normal[k].abs() > plane.normal[best].abs() { k } else { best })
+}
+
+/// The point of `plane` whose coordinates but `dropped` are `y`.
+pub(super) fn lifted(y: &Point, plane: &Halfspace, dropped: usize) -> Point {
+    let mut q = inserted(y, dropped);
+    q[dropped] = (plane.offset - dot(&q, &plane.normal)) / plane.normal[dropped];
+    q
+}
+
+/// `y` with a zero put in at `axis`.
+fn inserted(y: &Point, axis: usize) -> Point {
+    array::from_fn(|k| match k {
+        k if k < axis => y[k],
+        k if k == axis => 0.0,
+        k => y[k - 1],
+    })
+}
+
+/// `q` without its coordinate `axis`.
+fn removed(q: &Point, axis: usize) -> Point {
+    array::from_fn(|k| match k {
+        k if k < axis => q[k],
+        k if k + 1 < MAX_DIMENSION => q[k + 1],
+        _ => 0.0,
+    })
+}
+
+pub(super) fn dot(a: &Point, b: &Point) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,176 @@
+//! Where one point of the contact space ends: the judge of the partition, and what it asks about ravines.
+//!
+//! From a point, motion crosses the cell whose own velocity leads into it (the steepest, if several), up to the facet
+//! where it leaves. Where no cell does, motion runs along a ravine or a wall to its lowest point (the dissertation's ravine
+//! rule, section 5.1.6; over two pose errors that is exact, over more a ravine's own slope would bend it). Where there is no lower
+//! one, it has come to rest.
+
+use super::cells::{Beyond, Cells, Gate, LEVEL, dot, lifted};
+use crate::polytope::{MAX_DIMENSION, Point, RESOLUTION};
+use std::array;
+
+/// Where motion ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Fate {
+    /// At rest, in contact.
+    Rest(Point),
+    /// Contact lost.
+    Lost,
+    /// Beyond the last slice of a rotation.
+    Left,
+}
+
+/// Motion that has not fallen by [`LEVEL`] over so many cells circles a point of rest.
+const ROUND: usize = 64;
+
+/// Where the point of first contact at `q` ends.
+pub(super) fn fate(cells: &Cells, q: &Point) -> Fate {
+    let top = cells.holding(q).into_iter().map(|k| cells.cells[k].height.at(q)).max_by(f64::total_cmp);
+    top.map_or(Fate::Lost, |height| fate_from(cells, q, height))
+}
+
+/// Where motion ends that is at `q` at a height: below first contact, beside a wall.
+pub(super) fn fate_from(cells: &Cells, start: &Point, height: f64) -> Fate {
+    let (mut q, mut height) = (*start, height);
+    let at = |k: usize, q: &Point| cells.cells[k].height.at(q);
+    let mut falling_from = f64::INFINITY;
+    for step in 0.. {
+        if step % ROUND == 0 {
+            if height > falling_from - LEVEL {
+                break;
+            }
+            falling_from = height;
+        }
+        // Cells that stand higher here are walls.
+        let under: Vec<usize> =
+            cells.holding(&q).into_iter().filter(|k| at(*k, &q) <= height + LEVEL).collect();
+        match leading(cells, &under, &q) {
+            Some(k) => {
+                let (next, facet) = crossed(cells, k, &q);
+                height = at(k, &next);
+                let beyond = cells.holding(&next);
+                if beyond.iter().all(|other| *other == k) {
+                    let border = cells.on_border(&cells.cells[k].region.facets()[facet]);
+                    return if border { Fate::Left } else { Fate::Lost };
+                }
+                q = next;
+            }
+            None => match ravine(cells, &under, &q, height) {
+                Some(next) => {
+                    q = next;
+                    height = cells
+                        .holding(&q)
+                        .into_iter()
+                        .map(|k| at(k, &q))
+                        .filter(|h| *h <= height + LEVEL)
+                        .fold(f64::NEG_INFINITY, f64::max);
+                }
+                None => return resting(cells, &under, &q),
+            },
+        }
+    }
+    Fate::Rest(q)
+}
+
+/// The cell whose motion leads into it from `q`: the steepest.
+fn leading(cells: &Cells, under: &[usize], q: &Point) -> Option<usize> {
+    let inward = |k: &usize| {
+        let cell = &cells.cells[*k];
+        let mut active = cell.region.facets().iter().filter(|facet| facet.excess(q) >= -RESOLUTION);
+        cell.descent > LEVEL * LEVEL && !active.any(|facet| cell.crosses(facet))
+    };
+    let steeper = |a: &usize, b: &usize| cells.cells[*a].descent.total_cmp(&cells.cells[*b].descent);
+    under.iter().copied().filter(inward).max_by(|a, b| steeper(a, b).then(b.cmp(a)))
+}
+
+/// Where motion from `q` leaves the cell, and through which facet.
+fn crossed(cells: &Cells, k: usize, q: &Point) -> (Point, usize) {
+    let cell = &cells.cells[k];
+    let time = |facet: usize| {
+        let plane = &cell.region.facets()[facet];
+        (-plane.excess(q)).max(0.0) / dot(&cell.velocity, &plane.normal)
+    };
+    let (facet, time) = (0..cell.region.facets().len())
+        .filter(|facet| cell.crosses(&cell.region.facets()[*facet]))
+        .map(|facet| (facet, time(facet)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or((0, 0.0));
+    (array::from_fn(|j| q[j] + time * cell.velocity[j]), facet)
+}
+
+/// The lowest point of the steepest ravine or wall that leads down from `q`.
+fn ravine(cells: &Cells, under: &[usize], q: &Point, height: f64) -> Option<Point> {
+    let mut best: Option<(f64, Point)> = None;
+    for &k in under {
+        let cell = &cells.cells[k];
+        for gate in cell.gates.iter().filter(|gate| gate.to == Beyond::Ravine) {
+            let plane = &cell.region.facets()[gate.facet];
+            if plane.excess(q).abs() > LEVEL || !gate.region.contains(&without(q, gate.dropped)) {
+                continue;
+            }
+            let (low, bottom) = lowest(cells, k, gate);
+            let way = (0..q.len()).map(|j| (bottom[j] - q[j]).powi(2)).sum::<f64>().sqrt();
+            let slope = (height - low) / way;
+            if height - low > LEVEL && best.is_none_or(|(steepest, _)| slope > steepest) {
+                best = Some((slope, bottom));
+            }
+        }
+    }
+    best.map(|(_, bottom)| bottom)
+}
+
+/// The lowest point of a gate and its height.
+pub(super) fn lowest(cells: &Cells, k: usize, gate: &Gate) -> (f64, Point) {
+    let cell = &cells.cells[k];
+    let plane = &cell.region.facets()[gate.facet];
+    gate.region
+        .vertices()
+        .iter()
+        .map(|y| lifted(y, plane, gate.dropped))
+        .map(|q| (cell.height.at(&q), q))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap_or((f64::INFINITY, cell.region.centroid()))
+}
+
+/// Where motion rests that reaches a level gate: the aligned pose if the gate holds it, else its middle.
+pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<Point> {
+    let cell = &cells.cells[k];
+    let plane = &cell.region.facets()[gate.facet];
+    let heights = gate.region.vertices().iter().map(|y| cell.height.at(&lifted(y, plane, gate.dropped)));
+    let [low, high] =
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)]);
+    if high - low > LEVEL {
+        return None;
+    }
+    let aligned = [0.0; MAX_DIMENSION];
+    let holds = plane.excess(&aligned).abs() <= LEVEL && gate.region.contains(&aligned);
+    Some(if holds { aligned } else { lifted(&gate.region.centroid(), plane, gate.dropped) })
+}
+
+/// A point that nothing leads down from: at rest, unless it is where the contact space ends.
+fn resting(cells: &Cells, under: &[usize], q: &Point) -> Fate {
+    let mut fate = Fate::Rest(*q);
+    for &k in under {
+        let cell = &cells.cells[k];
+        for gate in &cell.gates {
+            let plane = &cell.region.facets()[gate.facet];
+            if plane.excess(q).abs() > LEVEL || !gate.region.contains(&without(q, gate.dropped)) {
+                continue;
+            }
+            match gate.to {
+                Beyond::Nothing => return Fate::Lost,
+                Beyond::Border => fate = Fate::Left,
+                _ => {}
+            }
+        }
+    }
+    fate
+}
+
+fn without(q: &Point, axis: usize) -> Point {
+    let mut y = [0.0; MAX_DIMENSION];
+    for (to, from) in (0..q.len()).filter(|k| *k != axis).enumerate() {
+        y[to] = q[from];
+    }
+    y
+}

@@ -1,0 +1,416 @@
+//! The dissertation's polyhedral method: the contact space as polytopes, and its watersheds exactly.
+//!
+//! ```text
+//!   slices ──▶ composites ──▶ Minkowski sum ──▶ contact space ──▶ gates ──▶ watersheds ──▶ area of acceptance
+//!   of the     (compose)      with the flat     (space: what      (cells)   (split along    (polytopes over the
+//!   moving                    fixed half         faces up and                steepest       pose errors)
+//!   half                                         is met first)               ascent)
+//! ```
+//!
+//! No grid is involved: the area of acceptance is a P-collection, a finite union of convex polytopes, with an exact
+//! outline. It works in any number of free errors from two (x and an angle: polytopes in 3-D) to five (6-D); the number of
+//! polytopes grows with the product of the slices of all rotations, so up to three errors are practical.
+//!
+//! What is approximate is the rotation between slices ([`compose`]'s chords) and, over three errors and more, the ravine rule.
+//! Not promised: convergence of the watersheds at a fixed number of strips, see [`Settings::strips`].
+//!
+//! Source: dissertation, sections 5.1 and 5.2, figures 5.5–5.8.
+
+mod cells;
+mod compose;
+mod fall;
+mod outline;
+mod pieces;
+mod space;
+#[cfg(test)]
+mod tests;
+mod watershed;
+
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::contact::Pair;
+use crate::design::Alignment;
+use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::landscape::Grid;
+use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope};
+use crate::pose::{Dof, PoseError, rotation_angle};
+use cells::Cells;
+use compose::Compartment;
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+pub use outline::Corner;
+use watershed::{Parts, Watersheds};
+
+/// What changes the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Rotation slices across the error box of every free rotation.
+    pub slices: usize,
+    /// Strips per D into which the moving half is cut across x (and y) before its slices are joined. An edge that turns
+    /// is composed to a corrugated face whose slopes are wrong by up to half a strip's length however many slices there are,
+    /// so strips must grow with the slices. 1 is the dissertation's method.
+    pub strips: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { slices: 20, strips: 8 }
+    }
+}
+
+impl Settings {
+    /// Defaults that take seconds: the polytopes grow with the product of the slices of all angles.
+    pub fn for_rotations(rotations: usize) -> Self {
+        if rotations < 2 { Self::default() } else { Self { slices: 4, strips: 1 } }
+    }
+}
+
+/// Why there is no partition.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PartitionError {
+    /// Nothing to partition.
+    #[error("the partition needs at least two free errors, one of them a rotation; there are {free}")]
+    TooFewErrors {
+        /// Free errors.
+        free: usize,
+    },
+    /// A setting that makes no partition.
+    #[error("{setting} must be at least {least}, not {given}")]
+    Setting {
+        /// Its name.
+        setting: &'static str,
+        /// The least it may be.
+        least: usize,
+        /// What was given.
+        given: usize,
+    },
+    /// A half is not made of few convex pieces.
+    #[error(
+        "a half has more than {most} convex pieces; the partition is made for halves of few facets, use another method"
+    )]
+    TooManyPieces {
+        /// The most there may be.
+        most: usize,
+    },
+    /// A surface has no volume to speak of.
+    #[error("a surface is thinner than the resolution of the partition; use another method")]
+    FlatPiece,
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// How much there was of everything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Counts {
+    /// Polytopes of the Minkowski sum.
+    pub polytopes: usize,
+    /// Cells of the contact space.
+    pub cells: usize,
+    /// Parts of cells, each of which drains to one other.
+    pub parts: usize,
+    /// Places of rest: base watersheds.
+    pub rests: usize,
+}
+
+/// The partitioned contact space.
+#[derive(Debug)]
+pub struct Partition {
+    alignment: Alignment,
+    settings: Settings,
+    cells: Cells,
+    compartments: Vec<Compartment>,
+    /// The compartment of every cell.
+    within: Vec<u32>,
+    watersheds: Watersheds,
+    counts: Counts,
+}
+
+/// A part of the contact space with one fate.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// Its pose errors, one coordinate per free error: lateral position of the *COR* (D), and angles (radians).
+    pub region: Polytope,
+    /// What becomes of them.
+    pub outcome: Outcome,
+}
+
+/// Bytes of a cell with its gates and parts, roughly: a region of a dozen corners, three times over.
+const CELL_BYTES: u64 = 6_000;
+/// Polytopes of the sum held per compartment while it is worked on.
+const POLYTOPE_BYTES: u64 = 4_000;
+
+/// Partitions the contact space of a pair.
+///
+/// # Errors
+/// [`PartitionError`]; cancel is checked before every compartment and every few cells.
+pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, PartitionError> {
+    let alignment = &pair.alignment;
+    let free = alignment.free;
+    if free.len() < 2 || free.rotations() == 0 {
+        return Err(PartitionError::TooFewErrors { free: free.len() });
+    }
+    for (setting, least, given) in [("slices", 2, settings.slices), ("strips", 1, settings.strips)] {
+        if given < least {
+            return Err(PartitionError::Setting { setting, least, given });
+        }
+    }
+    let slices: Vec<(Dof, Vec<f64>)> = free
+        .iter()
+        .filter(|dof| dof.is_rotation())
+        .map(|dof| (dof, compose::slices(alignment.half_range(dof), settings.slices)))
+        .collect();
+    let meetings = pieces::meetings(pair, 1.0 / settings.strips as f64)?;
+    let count: u64 = slices.iter().map(|(_, angles)| angles.len() as u64 - 1).product();
+    let polytopes: u64 = meetings
+        .iter()
+        .map(|m| {
+            let corners = m.moving.vertices.len() as u64;
+            (0..slices.len() as u64).map(|k| 2 * (corners + k)).product::<u64>()
+        })
+        .sum();
+    let threads = exec.threads() as u64;
+    exec.reserve(
+        "the partition",
+        polytopes.saturating_mul(POLYTOPE_BYTES * threads).saturating_add(count.saturating_mul(polytopes * CELL_BYTES / 4)),
+        |_| "use fewer --slices or --strips, or allow more with --memory".to_owned(),
+    )?;
+    let compartments = Compartment::all(&slices);
+    let found = spaces(&meetings, &compartments, alignment, exec)?;
+    let within = found.iter().zip(0..).flat_map(|((_, patches), k)| patches.iter().map(move |_| k)).collect();
+    let limits: Vec<(usize, [f64; 2])> = free
+        .iter()
+        .enumerate()
+        .filter(|(_, dof)| dof.is_rotation())
+        .map(|(k, dof)| (k, [-alignment.half_range(dof), alignment.half_range(dof)]))
+        .collect();
+    let mut cells = Cells::new(&found, free, alignment.rotation_length, limits);
+    drop(found);
+    let gates: Vec<Vec<cells::Gate>> = exec.install(|| {
+        (0..cells.cells.len())
+            .into_par_iter()
+            .map(|k| {
+                exec.check()?;
+                Ok(cells.gates_of(k))
+            })
+            .collect::<Result<_, Cancelled>>()
+    })?;
+    for (cell, gates) in cells.cells.iter_mut().zip(gates) {
+        cell.gates = gates;
+    }
+    let watersheds = watershed::drain(&cells, |rest| is_aligned(alignment, rest), exec)?;
+    let parts = watersheds.parts.iter().map(|parts| match parts {
+        Parts::Whole(_) => 1,
+        Parts::Cut(parts) => parts.len(),
+    });
+    let counts = Counts {
+        polytopes: (polytopes * count) as usize,
+        cells: cells.cells.len(),
+        parts: parts.sum(),
+        rests: watersheds.rests.len(),
+    };
+    let alignment = alignment.clone();
+    Ok(Partition { alignment, settings: *settings, cells, compartments, within, watersheds, counts })
+}
+
+/// The contact space of every compartment, in their order.
+fn spaces(
+    meetings: &[pieces::Meeting],
+    compartments: &[Compartment],
+    alignment: &Alignment,
+    exec: &Exec,
+) -> Result<Vec<(Compartment, Vec<space::Patch>)>, Cancelled> {
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    exec.install(|| {
+        compartments
+            .par_iter()
+            .map(|compartment| {
+                exec.check()?;
+                let patches = space::patches(meetings, compartment, alignment.free);
+                let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+                exec.report(done as f64 / compartments.len() as f64, "contact space");
+                Ok((compartment.clone(), patches))
+            })
+            .collect()
+    })
+}
+
+impl Partition {
+    /// How much there was of everything.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// The settings it was made with.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// All parts.
+    pub fn parts(&self) -> impl Iterator<Item = Part> + '_ {
+        self.labelled().map(|(_, region, outcome)| Part { region, outcome })
+    }
+
+    /// Cell, region and outcome of all parts.
+    fn labelled(&self) -> impl Iterator<Item = (usize, Polytope, Outcome)> + '_ {
+        self.watersheds.parts.iter().enumerate().flat_map(|(k, parts)| {
+            let parts = match parts {
+                Parts::Whole(label) => vec![(self.cells.cells[k].region.clone(), *label)],
+                Parts::Cut(parts) => parts.clone(),
+            };
+            parts.into_iter().map(move |(region, label)| (k, region, label))
+        })
+    }
+
+    /// Measure of the parts with an outcome inside the error box, Dᵃ·radᵇ.
+    pub fn measure(&self, outcome: Outcome) -> f64 {
+        self.labelled()
+            .filter(|(_, _, other)| *other == outcome)
+            .filter_map(|(cell, region, _)| region.intersection_of(&self.box_over(cell, &region)))
+            .map(|region| region.volume())
+            .sum()
+    }
+
+    /// The sides of the error box, which holds *face centres*, over a part, whose coordinates are of the COR.
+    fn box_over(&self, cell: usize, region: &Polytope) -> Vec<Halfspace> {
+        let shift = self.face_from_cor(cell, &region.centroid());
+        let mut sides = Vec::new();
+        for (k, dof) in self.alignment.free.iter().enumerate().filter(|(_, dof)| !dof.is_rotation()) {
+            let (level, slope) = shift[dof.index()];
+            let half = self.alignment.half_range(dof);
+            for sign in [1.0, -1.0] {
+                let mut normal = slope.map(|s| sign * s);
+                normal[k] += sign;
+                sides.extend(Halfspace::new(normal, half - sign * level));
+            }
+        }
+        sides
+    }
+
+    /// Offset (x, y) of the face centre from the COR as an affine function of the coordinates, interpolated between the
+    /// slices around a cell: (value at the origin, slope).
+    fn face_from_cor(&self, cell: usize, at: &Point) -> [(f64, Point); 2] {
+        let compartment = &self.compartments[self.within[cell] as usize];
+        let translations = self.alignment.free.len() - self.alignment.free.rotations();
+        let spans = &compartment.spans;
+        let shares: Vec<f64> = spans
+            .iter()
+            .enumerate()
+            .map(|(k, (_, [low, high]))| (at[translations + k] - low) / (high - low))
+            .collect();
+        [0, 1].map(|component| {
+            let (mut value, mut slope) = (0.0, [0.0; MAX_DIMENSION]);
+            for corner in 0..1usize << spans.len() {
+                let mut angles = [0.0; 5];
+                let mut weights = Vec::with_capacity(spans.len());
+                for (k, (dof, span)) in spans.iter().enumerate() {
+                    let upper = corner >> k & 1;
+                    angles[dof.index()] = span[upper];
+                    weights.push(if upper == 1 { shares[k] } else { 1.0 - shares[k] });
+                }
+                let face = self.offset(&PoseError::from_array(angles))[component];
+                value += face * weights.iter().product::<f64>();
+                for (k, (_, [low, high])) in spans.iter().enumerate() {
+                    let others: f64 =
+                        weights.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, w)| w).product();
+                    let sign = if corner >> k & 1 == 1 { 1.0 } else { -1.0 };
+                    slope[translations + k] += sign * face * others / (high - low);
+                }
+            }
+            let at_origin = value - slope.iter().zip(at).map(|(s, a)| s * a).sum::<f64>();
+            (at_origin, slope)
+        })
+    }
+
+    /// (x, y) of the face centre from the COR at a rotation, in D.
+    fn offset(&self, error: &PoseError) -> [f64; 2] {
+        let face = error.rotation() * DVec3::new(0.0, 0.0, self.alignment.center_of_rotation);
+        [face.x, face.y]
+    }
+
+    /// What becomes of one pose error.
+    pub fn outcome(&self, error: &PoseError) -> Outcome {
+        let [dx, dy] = self.offset(error);
+        let coordinates = error.to_array();
+        let mut q = [0.0; MAX_DIMENSION];
+        for (q, dof) in q.iter_mut().zip(self.alignment.free.iter()) {
+            *q = coordinates[dof.index()]
+                - match dof {
+                    Dof::X => dx,
+                    Dof::Y => dy,
+                    _ => 0.0,
+                };
+        }
+        let holding = self.cells.holding(&q);
+        let height = |k: &usize| self.cells.cells[*k].height.at(&q);
+        let Some(top) = holding.into_iter().max_by(|a, b| height(a).total_cmp(&height(b))) else {
+            return Outcome::Missed;
+        };
+        match &self.watersheds.parts[top] {
+            Parts::Whole(outcome) => *outcome,
+            Parts::Cut(parts) => parts
+                .iter()
+                .find(|(part, _)| part.contains(&q))
+                .map_or(Outcome::Undecided, |(_, outcome)| *outcome),
+        }
+    }
+
+    /// What becomes of the centre of every cell of a grid, or of every pose.
+    pub fn acceptance(&self, domain: Domain, exec: &Exec) -> Result<Acceptance, Cancelled> {
+        let outcomes: Vec<Outcome> = exec.install(|| match &domain {
+            Domain::Grid(grid) => sampled(grid.len(), |k| self.outcome(&grid.pose(k)), exec),
+            Domain::Poses(poses) => sampled(poses.len(), |k| self.outcome(&poses[k]), exec),
+        })?;
+        let undecided = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
+        let mut warnings = Vec::new();
+        if self.watersheds.cut_off {
+            warnings.push(Warning::CutOff);
+        }
+        if undecided > 0 {
+            warnings.push(Warning::Undecided { cells: undecided });
+        }
+        Ok(Acceptance { method: "partition", domain, outcomes, warnings })
+    }
+
+    /// A grid over the error box, for [`Self::acceptance`].
+    pub fn grid(&self, cells: usize) -> Grid {
+        Grid::over(&self.alignment, |_| cells)
+    }
+}
+
+/// Whether a place of rest is the mated pose, or one that a declared symmetry makes equal to it.
+fn is_aligned(alignment: &Alignment, rest: &Point) -> bool {
+    /// As close as an exact descent must come, in D and radians.
+    const WITHIN: f64 = 0.02;
+    let mut error = [0.0; 5];
+    for (k, dof) in alignment.free.iter().enumerate() {
+        error[dof.index()] = rest[k];
+    }
+    let fold = alignment.symmetry.max(1);
+    let equal = (0..fold).any(|k| {
+        let back = DMat3::from_rotation_z(-TAU * f64::from(k) / f64::from(fold));
+        rotation_angle(&(back * PoseError::from_array(error).rotation())) <= WITHIN
+    });
+    error[0].hypot(error[1]) <= WITHIN && equal
+}
+
+fn sampled(
+    count: usize,
+    outcome: impl Fn(usize) -> Outcome + Sync,
+    exec: &Exec,
+) -> Result<Vec<Outcome>, Cancelled> {
+    (0..count)
+        .into_par_iter()
+        .map(|k| {
+            if k.is_multiple_of(256) {
+                exec.check()?;
+            }
+            Ok(outcome(k))
+        })
+        .collect()
+}

@@ -1,0 +1,222 @@
+//! The contact space: the part of the Minkowski sum's boundary that the approach meets first.
+//!
+//! ```text
+//!   z ▲      ╱╲  roof of one polytope of the sum: the lowest of its upward facets' planes, over its shadow
+//!     │  ╱╲ ╱  ╲
+//!     │ ╱  ╳    ╲      a facet keeps what no other roof covers:
+//!     │╱  ╱ ╲    ╲
+//!     └──────────────▶ q     facet ∖ ⋃ { q in a shadow : every plane of that roof lies above the facet }
+//! ```
+//!
+//! Each covered set is convex, so the difference is one of polytopes over the pose errors q, one dimension below
+//! that of the sum. What remains tiles the shadow of the whole sum with convex cells, over each of which the height
+//! of first contact is affine. Where two roofs agree, the earlier one keeps the ground.
+//!
+//! The dissertation (section 5.1.3) keeps every boundary facet that faces up, also those under an overhang. The approach meets what
+//! lies over them first, so they are left out here.
+
+use super::compose::{Compartment, compose};
+use super::pieces::Meeting;
+use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION, minkowski_sum_of};
+use crate::pose::DofSet;
+use std::array;
+
+/// `h(q) = slope·q + level`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Affine {
+    /// ∂h/∂q: D per D, or D per radian.
+    pub(super) slope: Point,
+    /// h at q = 0, in D.
+    pub(super) level: f64,
+}
+
+impl Affine {
+    /// The height over `q`, in D.
+    pub(super) fn at(&self, q: &Point) -> f64 {
+        self.slope.iter().zip(q).map(|(s, q)| s * q).sum::<f64>() + self.level
+    }
+
+    /// Where this lies above `other`: a half-space, or everywhere, or nowhere; on equal planes `tie` decides.
+    pub(super) fn above(&self, other: &Self, tie: bool) -> Covered {
+        let normal: Point = array::from_fn(|k| other.slope[k] - self.slope[k]);
+        let rise = self.level - other.level;
+        let steepness = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+        // Planes whose difference changes by less than the resolution over a unit of q do not cross.
+        if steepness > RESOLUTION
+            && let Some(halfspace) = Halfspace::new(normal, rise)
+        {
+            return Covered::Where(halfspace);
+        }
+        let everywhere = if rise.abs() <= RESOLUTION { tie } else { rise > 0.0 };
+        if everywhere { Covered::Everywhere } else { Covered::Nowhere }
+    }
+}
+
+/// Where one plane lies above another.
+pub(super) enum Covered {
+    Everywhere,
+    Nowhere,
+    Where(Halfspace),
+}
+
+/// One polytope of the sum, seen from above.
+#[derive(Debug, Clone)]
+pub(super) struct Roof {
+    /// Its shadow: where it can be met at all.
+    pub(super) shadow: Polytope,
+    /// Its upward facets: each one's own part of the shadow, and its plane.
+    pub(super) facets: Vec<(Polytope, Affine)>,
+    /// Its highest point, in D.
+    top: f64,
+}
+
+/// A part of the contact space over which the height is affine.
+#[derive(Debug, Clone)]
+pub(super) struct Patch {
+    /// The pose errors (of the COR) over which it lies.
+    pub(super) region: Polytope,
+    /// Height of first contact.
+    pub(super) height: Affine,
+}
+
+/// The contact space over one compartment.
+pub(super) fn patches(meetings: &[Meeting], compartment: &Compartment, free: DofSet) -> Vec<Patch> {
+    envelope(&roofs(meetings, compartment, free))
+}
+
+/// All polytopes of the sum over one compartment, highest first.
+pub(super) fn roofs(meetings: &[Meeting], compartment: &Compartment, free: DofSet) -> Vec<Roof> {
+    let mut roofs: Vec<Roof> = Vec::new();
+    for Meeting { fixed, moving } in meetings {
+        let dimension = moving.dimension + compartment.spans.len();
+        for composite in compose(moving, compartment) {
+            let Some(sum) = minkowski_sum_of(dimension, &composite, &fixed.vertices) else { continue };
+            roofs.extend(unlocked(sum, moving.dimension, free).and_then(|(sum, z)| Roof::of(&sum, z)));
+        }
+    }
+    // Ties in height keep their order, so the result is the same on every machine.
+    roofs.sort_by(|a, b| b.top.total_cmp(&a.top));
+    roofs
+}
+
+/// The cross-section at the aligned position of every translation that is locked, and the axis of the approach in it.
+fn unlocked(sum: Polytope, solid_dimension: usize, free: DofSet) -> Option<(Polytope, usize)> {
+    use crate::pose::Dof;
+    let mut approach = solid_dimension - 1;
+    let mut sum = sum;
+    if solid_dimension == 3 && !free.contains(Dof::Y) {
+        sum = sum.slice(1, 0.0)?;
+        approach -= 1;
+    }
+    if !free.contains(Dof::X) {
+        sum = sum.slice(0, 0.0)?;
+        approach -= 1;
+    }
+    Some((sum, approach))
+}
+
+impl Roof {
+    fn of(sum: &Polytope, approach: usize) -> Option<Self> {
+        let axes: Vec<usize> = (0..sum.dimension()).filter(|axis| *axis != approach).collect();
+        let shadow = sum.project(&axes)?;
+        let facets: Vec<(Polytope, Affine)> = sum
+            .facets()
+            .iter()
+            .enumerate()
+            .filter(|(_, facet)| facet.normal[approach] > RESOLUTION)
+            .filter_map(|(k, facet)| {
+                let up = facet.normal[approach];
+                let mut slope = [0.0; MAX_DIMENSION];
+                for (s, &axis) in slope.iter_mut().zip(&axes) {
+                    *s = -facet.normal[axis] / up;
+                }
+                Some((sum.facet_projected(k, approach)?, Affine { slope, level: facet.offset / up }))
+            })
+            .collect();
+        let top = sum.vertices().iter().map(|v| v[approach]).fold(f64::NEG_INFINITY, f64::max);
+        Some(Self { shadow, facets, top })
+    }
+
+    /// The half-spaces within which this roof lies above a plane; `None` if it nowhere does.
+    fn covers(&self, plane: &Affine, tie: bool) -> Option<Vec<Halfspace>> {
+        let mut cover = self.shadow.facets().to_vec();
+        for (_, roof) in &self.facets {
+            match roof.above(plane, tie) {
+                Covered::Everywhere => {}
+                Covered::Nowhere => return None,
+                Covered::Where(halfspace) => cover.push(halfspace),
+            }
+        }
+        Some(cover)
+    }
+
+    /// The height over `q`, if the roof lies there.
+    #[cfg(test)]
+    pub(super) fn height(&self, q: &Point) -> Option<f64> {
+        let lowest = || self.facets.iter().map(|(_, plane)| plane.at(q)).fold(f64::INFINITY, f64::min);
+        self.shadow.contains(q).then(lowest)
+    }
+}
+
+/// What of every facet is met first. `roofs` are sorted, highest first.
+pub(super) fn envelope(roofs: &[Roof]) -> Vec<Patch> {
+    let mut patches = Vec::new();
+    for (k, roof) in roofs.iter().enumerate() {
+        for (facet, plane) in &roof.facets {
+            let lowest = facet.vertices().iter().map(|q| plane.at(q)).fold(f64::INFINITY, f64::min);
+            let mut left = vec![facet.clone()];
+            for (other, cover) in roofs.iter().enumerate() {
+                if other == k || left.is_empty() {
+                    continue;
+                }
+                // The others are lower still.
+                if cover.top < lowest {
+                    break;
+                }
+                if !boxes_meet(&cover.shadow, &left) {
+                    continue;
+                }
+                if let Some(cover) = cover.covers(plane, other < k) {
+                    left = left.into_iter().flat_map(|part| without(part, &cover)).collect();
+                }
+            }
+            patches.extend(joined(left).into_iter().map(|region| Patch { region, height: *plane }));
+        }
+    }
+    patches
+}
+
+fn boxes_meet(shadow: &Polytope, parts: &[Polytope]) -> bool {
+    let (low, high) = shadow.bounds();
+    parts.iter().any(|part| {
+        let (other_low, other_high) = part.bounds();
+        (0..shadow.dimension()).all(|k| low[k] < other_high[k] && other_low[k] < high[k])
+    })
+}
+
+/// A polytope without the intersection of half-spaces: disjoint convex parts.
+fn without(part: Polytope, cover: &[Halfspace]) -> Vec<Polytope> {
+    let excess = |halfspace: &Halfspace| {
+        part.vertices().iter().map(|q| halfspace.excess(q)).fold(f64::INFINITY, f64::min)
+    };
+    // Wholly beyond one of them: nothing is covered.
+    if cover.iter().any(|halfspace| excess(halfspace) >= -RESOLUTION) {
+        return vec![part];
+    }
+    let mut inside = part.clone();
+    let mut outside = Vec::new();
+    for halfspace in cover {
+        let (within, beyond) = inside.split(halfspace);
+        outside.extend(beyond);
+        match within {
+            Some(within) => inside = within,
+            None => return vec![part],
+        }
+    }
+    outside
+}
+
+/// Parts of one facet, joined where their union is convex: fewer cells to drain later.
+fn joined(parts: Vec<Polytope>) -> Vec<Polytope> {
+    if parts.len() < 2 { parts } else { super::pieces::joined(parts) }
+}

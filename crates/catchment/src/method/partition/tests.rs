@@ -1,0 +1,186 @@
+use super::compose::{Compartment, slices};
+use super::fall::{self, Fate};
+use super::space::{Patch, Roof, envelope, roofs};
+use super::watershed::Parts;
+use super::*;
+use crate::acceptance::Stream;
+use crate::connector::Connector;
+use crate::design::{ConnectorSpec, Design, Family, FamilySpec};
+use crate::method::descent;
+use crate::pose::DofSet;
+
+fn pair(family: Family, aspect_ratio: f64, cor: f64, rotation_length: f64, free: &[Dof]) -> Pair {
+    let mut alignment = Alignment::default_for(Some(family));
+    alignment.center_of_rotation = cor;
+    alignment.rotation_length = rotation_length;
+    if !free.is_empty() {
+        alignment.free = free.iter().copied().collect::<DofSet>();
+    }
+    let connector = ConnectorSpec::Family(FamilySpec { aspect_ratio, ..FamilySpec::new(family) });
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
+/// The five planar designs whose exact Sums are known: family, H/D, COR.
+const FIVE: [(Family, f64, f64); 5] = [
+    (Family::XFace, 1.0, 0.5),
+    (Family::XFace, 0.5, -0.5),
+    (Family::VFace, 1.0, 0.0),
+    (Family::XFace, 2.0, 1.0),
+    (Family::VFace, 0.5, -0.5),
+];
+
+fn spaces_of(pair: &Pair, settings: &Settings) -> Vec<(Vec<Roof>, Vec<Patch>, Compartment)> {
+    let free = pair.alignment.free;
+    let angles: Vec<_> = free
+        .iter()
+        .filter(|dof| dof.is_rotation())
+        .map(|dof| (dof, slices(pair.alignment.half_range(dof), settings.slices)))
+        .collect();
+    let meetings = pieces::meetings(pair, 1.0 / settings.strips as f64).unwrap();
+    Compartment::all(&angles)
+        .into_iter()
+        .map(|compartment| {
+            let roofs = roofs(&meetings, &compartment, free);
+            let patches = envelope(&roofs);
+            (roofs, patches, compartment)
+        })
+        .collect()
+}
+
+/// A random point of a compartment with translations within ±1.2 D.
+fn random_point(compartment: &Compartment, translations: usize, stream: &Stream, k: u64) -> Point {
+    let mut q = [0.0; MAX_DIMENSION];
+    let mut number = (0..).map(|j| stream.uniform(8 * k + j));
+    for value in q.iter_mut().take(translations) {
+        *value = 2.4 * number.next().unwrap() - 1.2;
+    }
+    for (value, (_, [low, high])) in q.iter_mut().skip(translations).zip(&compartment.spans) {
+        *value = low + (high - low) * number.next().unwrap();
+    }
+    q
+}
+
+/// The highest roof over `q`: the definition of the envelope.
+fn brute_height(roofs: &[Roof], q: &Point) -> Option<f64> {
+    roofs.iter().filter_map(|roof| roof.height(q)).max_by(f64::total_cmp)
+}
+
+#[test]
+fn patches_tile_the_shadow_at_the_height_of_the_highest_roof() {
+    let yaw = [Dof::X, Dof::Y, Dof::Yaw];
+    let cases = [
+        (pair(Family::VFace, 0.5, -0.5, 1.0, &[]), Settings { slices: 7, strips: 3 }),
+        (pair(Family::XFace, 1.0, 0.5, 1.0, &[]), Settings { slices: 6, strips: 2 }),
+        (pair(Family::SFace, 1.0, 0.0, 1.0, &[]), Settings { slices: 4, strips: 2 }),
+        (pair(Family::Pyramid, 1.0, 0.0, 0.5, &yaw), Settings { slices: 4, strips: 1 }),
+    ];
+    for (case, (pair, settings)) in cases.iter().enumerate() {
+        let stream = Stream::new(case as u64);
+        let translations = pair.alignment.free.len() - pair.alignment.free.rotations();
+        for (roofs, patches, compartment) in spaces_of(pair, settings) {
+            for k in 0..300 {
+                let q = random_point(&compartment, translations, &stream, k);
+                let over: Vec<f64> = patches
+                    .iter()
+                    .filter(|patch| patch.region.contains(&q))
+                    .map(|patch| patch.height.at(&q))
+                    .collect();
+                match brute_height(&roofs, &q) {
+                    None => assert!(over.is_empty(), "case {case} at {q:?}: nothing is met there"),
+                    Some(height) => {
+                        assert_eq!(over.len(), 1, "case {case} at {q:?}: the patches do not tile");
+                        // Facets are met where they were cut, to a few times the resolution.
+                        assert!((over[0] - height).abs() < 1e-7, "case {case} at {q:?}: {} {height}", over[0]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn on_slices_the_height_is_that_of_first_contact() {
+    for (family, ratio, cor) in FIVE {
+        let pair = pair(family, ratio, cor, 1.0, &[]);
+        let partition = run(&pair, &Settings { slices: 6, strips: 2 }, &Exec::new()).unwrap();
+        for angle in slices(std::f64::consts::FRAC_PI_2, 6) {
+            let rotation = PoseError { pitch: angle, ..PoseError::default() }.rotation();
+            for k in -20..=20 {
+                // Off the corners, where two answers are right.
+                let x = 0.0613 * f64::from(k) + 0.0017;
+                let exact = pair.at_rotation(rotation).height(glam::DVec2::new(x, 0.0));
+                let q = [x, angle, 0.0, 0.0, 0.0, 0.0];
+                let cells = &partition.cells;
+                let ours = cells.holding(&q).into_iter().map(|k| cells.cells[k].height.at(&q));
+                let ours = ours.max_by(f64::total_cmp);
+                match (exact, ours) {
+                    (Some(exact), Some(ours)) => assert!((exact - ours).abs() < 1e-7, "{exact} {ours}"),
+                    (exact, ours) => assert_eq!(exact, ours, "{} at {x}, {angle}", family.name()),
+                }
+            }
+        }
+    }
+}
+
+/// Every part against the motion of single points: the definition of a watershed.
+fn judged(partition: &Partition, stream: &Stream, count: u64) -> [usize; 2] {
+    let translations = partition.alignment.free.len() - partition.alignment.free.rotations();
+    let (mut same, mut tried) = (0, 0);
+    for k in 0..count {
+        let number = stream.uniform(1_000_000 + k);
+        let compartment = &partition.compartments[(number * partition.compartments.len() as f64) as usize];
+        let q = random_point(compartment, translations, stream, k);
+        let Some(&cell) = partition.cells.holding(&q).first() else { continue };
+        let label = match &partition.watersheds.parts[cell] {
+            Parts::Whole(label) => Some(*label),
+            Parts::Cut(parts) => parts.iter().find(|(part, _)| part.contains(&q)).map(|(_, label)| *label),
+        };
+        // Places of rest along a level ravine are many for points and one for parts.
+        let fate = match fall::fate(&partition.cells, &q) {
+            Fate::Lost => Outcome::Missed,
+            Fate::Left => Outcome::Jammed,
+            Fate::Rest(place) if is_aligned(&partition.alignment, &place) => Outcome::Aligned,
+            Fate::Rest(_) => Outcome::Jammed,
+        };
+        tried += 1;
+        same += usize::from(label == Some(fate));
+    }
+    [same, tried]
+}
+
+#[test]
+fn parts_end_where_their_points_end() {
+    for (case, (family, ratio, cor)) in FIVE.into_iter().enumerate() {
+        let pair = pair(family, ratio, cor, 1.0, &[]);
+        let partition = run(&pair, &Settings { slices: 12, strips: 3 }, &Exec::new()).unwrap();
+        let [same, tried] = judged(&partition, &Stream::new(case as u64), 1000);
+        println!("{} AR {ratio} COR {cor}: {same} of {tried}, {:?}", family.name(), partition.counts());
+        assert!(tried > 500 && same == tried, "{} AR {ratio} COR {cor}: {same} of {tried}", family.name());
+    }
+}
+
+#[test]
+fn sums_come_to_those_of_exact_descents() {
+    for (family, ratio, cor) in FIVE {
+        let pair = pair(family, ratio, cor, 1.0, &[]);
+        let grid = Grid::over(&pair.alignment, |_| 100);
+        let cell = grid.cell_measure();
+        let (exact, _) =
+            descent::run(&pair, Domain::Grid(grid), &descent::Settings::default(), &Exec::new()).unwrap();
+        let exact = exact.counts()[0] as f64 * cell;
+        for (count, strips) in [(12, 4), (50, 16), (50, 32), (50, 48)] {
+            let started = std::time::Instant::now();
+            let partition = run(&pair, &Settings { slices: count, strips }, &Exec::new()).unwrap();
+            let sum = partition.measure(Outcome::Aligned);
+            println!(
+                "{} AR {ratio} COR {cor}: {count} slices {strips} strips {sum:.4} for {exact:.4} ({:+.1} %), left {:.4}, {:?} {:.2} s",
+                family.name(),
+                100.0 * (sum / exact - 1.0),
+                partition.measure(Outcome::Undecided),
+                partition.counts(),
+                started.elapsed().as_secs_f64(),
+            );
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! The partition over two errors: every part of the contact space in the colour of its fate, and the exact outline of
+//! what is accepted.
+
+use super::axis::{Frame, Scale, Units, short};
+use super::colour::{self, hex};
+use super::map::{JOIN, legend, zero_lines};
+use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::{FigureError, Picture};
+use crate::acceptance::{Acceptance, Outcome};
+use crate::design::Design;
+use crate::method::partition::Partition;
+
+/// Draws a partition of two errors; `acceptance` is its sample over a grid, for the legend's shares.
+///
+/// # Errors
+/// If other than two errors are free.
+pub fn partition(
+    design: &Design,
+    partition: &Partition,
+    acceptance: &Acceptance,
+) -> Result<Picture, FigureError> {
+    let polygons = partition.polygons();
+    let dofs: Vec<_> = design.alignment.free.iter().collect();
+    let [first, second] = dofs[..] else {
+        return Err(FigureError::Empty { what: "a partition is drawn over two errors" });
+    };
+    let units = Units::of(design);
+    let rect = Rect { x: 78.0, y: 92.0, w: 520.0, h: 520.0 };
+    let mut svg = Svg::new(rect.x + rect.w + 34.0, rect.y + rect.h + 84.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    let counts = partition.counts();
+    let settings = partition.settings();
+    let story = format!(
+        "{} slices, {} strips per D: {} polytopes, {} cells, {} parts",
+        settings.slices, settings.strips, counts.polytopes, counts.cells, counts.parts
+    );
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
+    let whole: f64 = dofs.iter().map(|dof| 2.0 * design.alignment.half_range(*dof)).product();
+    let share = 100.0 * partition.measure(Outcome::Aligned) / whole;
+    let story = format!("{} % of the error box accepted, inside the dark outline", short(share));
+    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
+    let scale = |dof| {
+        let half = design.alignment.half_range(dof) * units.factor(dof);
+        Scale::new(units.label(dof), -half, half, dof.is_rotation())
+    };
+    let frame = Frame { rect, x: scale(first), y: scale(second) };
+    let at = |corner: &[f64; 2]| frame.at([corner[0] * units.factor(first), corner[1] * units.factor(second)]);
+    svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::outcome(Outcome::Missed))));
+    svg.begin_clip(rect);
+    for (corners, outcome) in &polygons {
+        let fill = hex(colour::outcome(*outcome));
+        let style = format!(r##"fill="{fill}" stroke="#ffffff" stroke-opacity="0.55" stroke-width="0.4" {JOIN}"##);
+        svg.path(&polyline(corners.iter().map(at), true), &style);
+    }
+    let outline: String = partition.outline().iter().map(|ends| polyline(ends.iter().map(at), false)).collect();
+    svg.path(&outline, &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
+    svg.end();
+    zero_lines(&mut svg, &frame);
+    frame.draw(&mut svg);
+    legend(&mut svg, acceptance, false, [rect.x, rect.y + rect.h + 62.0]);
+    Ok(Picture { svg: svg.finish() })
+}
