@@ -23,7 +23,8 @@
 //! **Cuts are regularised.** [`Polytope::cut`] and all set operations on it count a vertex nearer to the cutting plane
 //! than [`RESOLUTION`] as on it. What such a decision changes is a sliver thinner than that, which has no measure to
 //! speak of and must not exist in either reading. Where a vertex is on the plane only by this rule (farther from it than
-//! rounding explains), or the faces would not close, the result is the exact hull of its vertices.
+//! rounding explains, or not much nearer than others), or the faces would not close, the result is the exact hull of
+//! its vertices.
 //!
 //! # Units and limits
 //!
@@ -67,9 +68,40 @@ pub type Point = [f64; MAX_DIMENSION];
 /// a million times below the thousandth of D that a connector's makers and a result's readers care about.
 pub const RESOLUTION: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Nearer to a plane than this, rounding explains the distance: 64 units of the lattice of hulls. Between this and
-/// [`RESOLUTION`], a point on a plane is in doubt.
+/// Nearer to a plane than this, rounding explains the distance: 64 units of the lattice of hulls.
 const FLAT: f64 = RESOLUTION / 16.0;
+/// Vertices on a plane and the nearest others must be so many times farther apart: a plane through some of the vertices
+/// on it can miss the others by that, where their features are that small.
+const CLEAR: f64 = 1e6;
+
+/// How well the vertices on planes stand apart from the others.
+#[derive(Clone, Copy)]
+struct Gap {
+    /// The largest distance of a vertex that counts as on its plane.
+    on: f64,
+    /// The smallest distance of one that does not.
+    off: f64,
+}
+
+impl Gap {
+    const NEW: Self = Self { on: 0.0, off: f64::INFINITY };
+
+    /// Does a vertex at this distance count as on the plane?
+    fn is_on(&mut self, distance: f64) -> bool {
+        let on = distance.abs() <= RESOLUTION;
+        if on {
+            self.on = self.on.max(distance.abs());
+        } else {
+            self.off = self.off.min(distance.abs());
+        }
+        on
+    }
+
+    /// Is every vertex certain to be on its plane or off it?
+    fn is_clear(&self) -> bool {
+        self.on <= FLAT && self.on * CLEAR <= self.off
+    }
+}
 
 /// A bounded convex set with an interior.
 ///

@@ -27,6 +27,9 @@ proptest! {
     #[test]
     fn a_hulls_facets_are_those_of_brute((dimension, points) in cloud(2..=4, 10)) {
         let brute = brute::facets(dimension, &points);
+        let depth = |f: &Halfspace| points.iter().map(|p| -f.excess(p)).fold(0.0, f64::max);
+        // Brute cannot tell the sides of what is nearly flat.
+        prop_assume!(brute.iter().all(|f| depth(f) > 1e-3 || depth(f) < 1e-9));
         let Some(hull) = Polytope::hull(dimension, &points) else {
             // All in one plane: every plane through that has all behind it, on both sides.
             prop_assert!(brute.iter().all(|f| points.iter().all(|p| f.excess(p) >= -1e-6)), "{brute:?}");
