@@ -89,7 +89,10 @@ impl Hull {
         for &corner in &corners {
             incidence.push(super::incidence::ones(all.row(corner).iter().copied()));
         }
-        if nearly && !incidence.is_sound(self.dimension, facets.len()) {
+        // Where nothing was put together the faces are those of the hull, which is closed.
+        let simplicial =
+            facets.len() == self.simplices.len() && incident.len() == self.dimension * facets.len();
+        if nearly && !simplicial && !incidence.is_sound(self.dimension, facets.len()) {
             return None;
         }
         let points = corners.iter().map(|c| exact::coordinates(&self.points[vertices[*c]])).collect();

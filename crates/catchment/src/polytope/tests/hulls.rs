@@ -85,6 +85,36 @@ proptest! {
     }
 
     #[test]
+    fn a_zonotope_has_the_faces_and_the_volume_of_its_formula(dimension in 2..=4usize, generators in prop::collection::vec(real(6), 4..=6)) {
+        let (n, origin) = (generators.len(), [0.0; MAX_DIMENSION]);
+        let generators: Vec<Point> = generators.into_iter().map(|mut g| {
+            g[dimension..].fill(0.0);
+            g
+        }).collect();
+        // Every choice of as many generators as there are dimensions spans a parallelepiped, which is one cell.
+        let factorial: f64 = (1..=dimension).map(|k| k as f64).product();
+        let mut cells = Vec::new();
+        brute::each_subset(n, dimension, 0, &mut Vec::new(), &mut |chosen| {
+            let simplex: Vec<Point> = chosen.iter().map(|g| generators[*g]).chain([origin]).collect();
+            cells.push(Polytope::hull(dimension, &simplex).map_or(0.0, |simplex| factorial * simplex.volume()));
+        });
+        prop_assume!(cells.iter().all(|volume| *volume > 1e-4));
+        let mut vertices = vec![origin];
+        let mut sum = None;
+        for generator in &generators {
+            sum = minkowski_sum_of(dimension, &vertices, &[origin, *generator]);
+            vertices = sum.as_ref().map_or_else(|| sums(&vertices, &[origin, *generator]), |s: &Polytope| s.vertices().to_vec());
+        }
+        let sum = sum.unwrap();
+        check(&sum)?;
+        let choose = |k: usize, of: usize| (0..k).fold(1, |c, i| c * (of - i) / (i + 1));
+        // Buck, Partition of space: 2 Σ C(n − 1, i) regions of n planes through the origin; two facets per d − 1 of them.
+        prop_assert_eq!(sum.vertices().len(), 2 * (0..dimension).map(|i| choose(i, n - 1)).sum::<usize>());
+        prop_assert_eq!(sum.facets().len(), 2 * choose(dimension - 1, n));
+        prop_assert!((sum.volume() - cells.iter().sum::<f64>()).abs() < 1e-8);
+    }
+
+    #[test]
     fn a_shadows_support_is_that_of_the_body((dimension, points) in cloud(3..=5, 12), axes in Just(vec![0usize, 1, 2, 3, 4]).prop_shuffle(), size in 1..4usize, directions in prop::collection::vec(real(6), 10)) {
         let Some(body) = Polytope::hull(dimension, &points) else { return Ok(()) };
         let axes: Vec<usize> = axes.into_iter().filter(|a| *a < dimension).take(size).collect();
