@@ -13,7 +13,7 @@ use super::{Gap, Halfspace, Polytope};
 use std::cmp::Ordering;
 
 impl Hull {
-    /// The polytope of which this is the boundary; none where it is thinner than [`RESOLUTION`].
+    /// The polytope of which this is the boundary; none where it is thinner than [`super::RESOLUTION`].
     pub(super) fn into_polytope(mut self) -> Option<Polytope> {
         self.simplices.iter_mut().for_each(|simplex| simplex.plane.refine());
         let mut vertices: Vec<usize> =

@@ -32,8 +32,33 @@
 //! the dimension: a polytope with n vertices in six dimensions may have n³ facets. Memory is not reserved
 //! beforehand: a caller who multiplies collections bounds their number.
 //!
-//! Source: N. Eckenstein's dissertation, chapter 5 (P-collections); M. Baotić, *Polytopic computations in constrained
-//! optimal control* (set difference of P-collections); Ziegler, *Lectures on Polytopes* (faces).
+//! # Example
+//!
+//! ```
+//! use catchment::polytope::{Collection, Polytope, minkowski_sum_of};
+//!
+//! # fn example() -> Option<()> {
+//! let square = Polytope::cuboid(2, &[0.0; 6], &[1.0; 6])?;
+//! let corners = [(0.5, 0.5), (1.5, 0.0), (1.5, 1.0)].map(|(x, y)| [x, y, 0.0, 0.0, 0.0, 0.0]);
+//! let tip = Polytope::hull(2, &corners)?;
+//! assert!(square.overlaps(&tip));
+//!
+//! // What the tip leaves of the square, in convex pieces.
+//! let left = Collection { polytopes: square.difference(&tip) };
+//! assert!((left.volume() - 0.875).abs() < 1e-9);
+//!
+//! // Swept upwards by 2: a flat set and a segment make a prism.
+//! let prism = minkowski_sum_of(3, tip.vertices(), &[[0.0; 6], [0.0, 0.0, 2.0, 0.0, 0.0, 0.0]])?;
+//! assert_eq!(prism.facets().len(), 5);
+//! assert!((prism.slice(2, 1.0)?.volume() - tip.volume()).abs() < 1e-9);
+//! # Some(())
+//! # }
+//! # assert!(example().is_some());
+//! ```
+//!
+//! Source: the dissertation's polyhedral method (P-collections, set difference, projection); M. Baotić, *Polytopic
+//! computations in constrained optimal control*, Automatika 50 (2009), for the difference; G. Ziegler, *Lectures on
+//! Polytopes* (1995), for faces.
 
 mod collection;
 mod cut;
