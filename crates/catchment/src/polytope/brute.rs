@@ -78,7 +78,7 @@ pub fn is_edge(polytope: &Polytope, a: usize, b: usize) -> bool {
 }
 
 /// Calls with every set of `size` indices from `next` on, in addition to those chosen.
-fn each_subset(
+pub(super) fn each_subset(
     count: usize,
     size: usize,
     next: usize,

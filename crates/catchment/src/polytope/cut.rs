@@ -14,7 +14,7 @@
 //! Cost: vertices inside × vertices outside words, and one search for a third vertex per edge.
 
 use super::incidence::{Incidence, ones};
-use super::{FLAT, Halfspace, Point, Polytope, RESOLUTION};
+use super::{Gap, Halfspace, Point, Polytope, RESOLUTION};
 
 /// What a plane does to a polytope.
 enum Cut {
@@ -34,8 +34,8 @@ struct Section {
     crossings: Vec<(Point, usize, usize)>,
     /// There are vertices on the plane.
     touches: bool,
-    /// Some of those are on it by decision rather than up to rounding.
-    doubt: bool,
+    /// Whether those are on it up to rounding, rather than by decision.
+    gap: Gap,
 }
 
 impl Polytope {
@@ -130,16 +130,15 @@ impl Polytope {
     /// Where a plane goes through.
     fn section(&self, by: &Halfspace) -> Cut {
         let mut excess: Vec<f64> = self.vertices.iter().map(|vertex| by.excess(vertex)).collect();
-        let (mut inside, mut outside, mut touches, mut doubt) = (false, false, false, false);
+        let (mut inside, mut outside, mut touches, mut gap) = (false, false, false, Gap::NEW);
         for e in &mut excess {
-            if *e < -RESOLUTION {
-                inside = true;
-            } else if *e > RESOLUTION {
-                outside = true;
-            } else {
+            if gap.is_on(*e) {
                 touches = true;
-                doubt |= e.abs() > FLAT;
                 *e = 0.0;
+            } else if *e < 0.0 {
+                inside = true;
+            } else {
+                outside = true;
             }
         }
         if !outside {
@@ -159,7 +158,7 @@ impl Polytope {
                 }
             }
         }
-        Cut::Through(Section { excess, crossings, touches, doubt })
+        Cut::Through(Section { excess, crossings, touches, gap })
     }
 
     /// The part where `side` · excess is negative, which is inside `by`.
@@ -198,7 +197,9 @@ impl Polytope {
             let shared = ones(self.incidence.row(a).iter().zip(self.incidence.row(b)).map(|(a, b)| a & b));
             incidence.push(shared.map(|facet| places[facet]).chain([plane]));
         }
-        if section.doubt || section.touches && !incidence.is_sound(self.dimension, facets.len()) {
+        let clear =
+            !section.touches || section.gap.is_clear() && incidence.is_sound(self.dimension, facets.len());
+        if !clear {
             return Self::hull(self.dimension, &vertices);
         }
         Self::assembled(self.dimension, facets, vertices, incidence)

@@ -1,19 +1,19 @@
 //! From a hull's simplices to a polytope's facets.
 //!
 //! Simplices in one plane are one facet, and a point that is a corner of no face (it lies on no facet that another
-//! vertex does not lie on too) is no vertex. First, what is in one plane up to [`FLAT`] counts as in one plane: that
-//! swallows the splinters that rounding leaves on facets with many vertices. If any vertex is in doubt (beyond
-//! [`FLAT`], but nearer than [`RESOLUTION`]) or the edges do not close, exactly coplanar simplices only are put
-//! together; that is always right, and may keep splinters.
+//! vertex does not lie on too) is no vertex. First, what is in one plane up to rounding counts as in one plane: that
+//! swallows the splinters that rounding leaves on facets with many vertices. If any vertex is in doubt (see [`Gap`]) or
+//! the edges do not close, exactly coplanar simplices only are put together; that is always right, and may keep
+//! splinters.
 
 use super::exact::{self, SPACING};
 use super::hull::Hull;
 use super::incidence::Incidence;
-use super::{FLAT, Halfspace, Polytope, RESOLUTION};
+use super::{Gap, Halfspace, Polytope};
 use std::cmp::Ordering;
 
 impl Hull {
-    /// The polytope of which this is the boundary; none where it is thinner than [`RESOLUTION`].
+    /// The polytope of which this is the boundary; none where it is thinner than [`super::RESOLUTION`].
     pub(super) fn into_polytope(mut self) -> Option<Polytope> {
         self.simplices.iter_mut().for_each(|simplex| simplex.plane.refine());
         let mut vertices: Vec<usize> =
@@ -33,6 +33,7 @@ impl Hull {
         // Vertex and facet.
         let mut incident: Vec<(usize, usize)> = Vec::new();
         let mut on = vec![false; self.points.len()];
+        let mut gap = Gap::NEW;
         for &seed in order {
             if taken[seed] {
                 continue;
@@ -41,17 +42,16 @@ impl Hull {
             for &vertex in vertices {
                 let point = &self.points[vertex];
                 on[vertex] = if nearly {
-                    let distance = plane.height(point).abs() * SPACING;
-                    if distance > FLAT && distance < RESOLUTION {
-                        return None;
-                    }
-                    distance <= FLAT
+                    gap.is_on(plane.height(point) * SPACING)
                 } else {
                     plane.side(point) == Ordering::Equal
                 };
                 if on[vertex] {
                     incident.push((vertex, facets.len()));
                 }
+            }
+            if !gap.is_clear() {
+                return None;
             }
             taken[seed] = true;
             let mut reached = vec![seed];
@@ -89,7 +89,10 @@ impl Hull {
         for &corner in &corners {
             incidence.push(super::incidence::ones(all.row(corner).iter().copied()));
         }
-        if nearly && !incidence.is_sound(self.dimension, facets.len()) {
+        // Where nothing was put together the faces are those of the hull, which is closed.
+        let simplicial =
+            facets.len() == self.simplices.len() && incident.len() == self.dimension * facets.len();
+        if nearly && !simplicial && !incidence.is_sound(self.dimension, facets.len()) {
             return None;
         }
         let points = corners.iter().map(|c| exact::coordinates(&self.points[vertices[*c]])).collect();

@@ -11,7 +11,7 @@
 //! is right for any points (a seen facet cannot be coplanar with a ridge's join, so no join is flat), and
 //! [`super::faces`] puts coplanar simplices together. The order of the points does not matter: they are sorted.
 //!
-//! Cost: about 0.2 µs per simplex made in three dimensions, plus one height per point and new facet.
+//! Cost: a normal for each simplex made, a height for each point that waits above one that goes and each new one.
 //!
 //! Source: Barber, Dobkin, Huhdanpaa, *The Quickhull algorithm for convex hulls*, ACM TOMS 22 (1996), without its
 //! tolerances.

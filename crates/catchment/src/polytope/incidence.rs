@@ -58,35 +58,55 @@ impl Incidence {
             })
     }
 
-    /// Do the edges make a polytope of this dimension: has every vertex, in every facet it lies on, at least
-    /// dimension − 1 neighbours (in three dimensions exactly two), and at least dimension of them in all?
+    /// Could these be the faces of a polytope of this dimension? Edges and ridges close (see [`Self::joins`]), and up to
+    /// four dimensions their numbers obey Euler's relation.
     ///
     /// Vertices that were put on a facet by mistake hide edges from each other, which this finds.
     pub(super) fn is_sound(&self, dimension: usize, facets: usize) -> bool {
         let vertices = self.rows();
-        let mut neighbours = vec![0u16; vertices * facets];
-        let mut degree = vec![0usize; vertices];
+        let mut turned = Self::new(facets, vertices);
+        for facet in 0..facets {
+            turned.push((0..vertices).filter(|vertex| self.has(*vertex, facet)));
+        }
+        let (Some(edges), Some(ridges)) = (self.joins(dimension, facets), turned.joins(dimension, vertices))
+        else {
+            return false;
+        };
+        match dimension {
+            2 => vertices == facets,
+            3 => edges == ridges && vertices + facets == edges + 2,
+            4 => vertices + ridges == edges + facets,
+            _ => true,
+        }
+    }
+
+    /// The number of edges; none where a vertex has fewer than dimension of them, or, within a facet, fewer than
+    /// dimension − 1 (in three dimensions, other than two). For the turned matrix, where facets are joined by
+    /// ridges, the same holds of the dual polytope.
+    fn joins(&self, dimension: usize, facets: usize) -> Option<usize> {
+        let vertices = self.rows();
+        let mut within = vec![0usize; vertices * facets];
+        let mut degrees = vec![0usize; vertices];
         for a in 0..vertices {
             for b in a + 1..vertices {
                 if self.joined(a, b, dimension) {
-                    degree[a] += 1;
-                    degree[b] += 1;
-                    for facet in ones(self.row(a).iter().zip(self.row(b)).map(|(a, b)| a & b)) {
-                        neighbours[a * facets + facet] += 1;
-                        neighbours[b * facets + facet] += 1;
+                    for end in [a, b] {
+                        degrees[end] += 1;
+                        for facet in ones(self.row(a).iter().zip(self.row(b)).map(|(a, b)| a & b)) {
+                            within[end * facets + facet] += 1;
+                        }
                     }
                 }
             }
         }
-        let least = dimension - 1;
-        vertices > dimension
-            && degree.iter().all(|&d| d >= dimension)
-            && (0..vertices).all(|vertex| {
-                ones(self.row(vertex).iter().copied()).all(|facet| {
-                    let count = neighbours[vertex * facets + facet] as usize;
-                    if dimension == 3 { count == least } else { count >= least }
-                })
-            })
+        let closed = |vertex: usize, facet: usize| {
+            let count = within[vertex * facets + facet] + 1;
+            if dimension == 3 { count == dimension } else { count >= dimension }
+        };
+        let all = degrees.iter().enumerate().all(|(vertex, degree)| {
+            *degree >= dimension && ones(self.row(vertex).iter().copied()).all(|facet| closed(vertex, facet))
+        });
+        (all && vertices > dimension).then(|| degrees.iter().sum::<usize>() / 2)
     }
 }
 

@@ -23,7 +23,8 @@
 //! **Cuts are regularised.** [`Polytope::cut`] and all set operations on it count a vertex nearer to the cutting plane
 //! than [`RESOLUTION`] as on it. What such a decision changes is a sliver thinner than that, which has no measure to
 //! speak of and must not exist in either reading. Where a vertex is on the plane only by this rule (farther from it than
-//! rounding explains), or the faces would not close, the result is the exact hull of its vertices.
+//! rounding explains, or not much nearer than others), or the faces would not close, the result is the exact hull of
+//! its vertices.
 //!
 //! # Units and limits
 //!
@@ -31,8 +32,33 @@
 //! the dimension: a polytope with n vertices in six dimensions may have n³ facets. Memory is not reserved
 //! beforehand: a caller who multiplies collections bounds their number.
 //!
-//! Source: N. Eckenstein's dissertation, chapter 5 (P-collections); M. Baotić, *Polytopic computations in constrained
-//! optimal control* (set difference of P-collections); Ziegler, *Lectures on Polytopes* (faces).
+//! # Example
+//!
+//! ```
+//! use catchment::polytope::{Collection, Polytope, minkowski_sum_of};
+//!
+//! # fn example() -> Option<()> {
+//! let square = Polytope::cuboid(2, &[0.0; 6], &[1.0; 6])?;
+//! let corners = [(0.5, 0.5), (1.5, 0.0), (1.5, 1.0)].map(|(x, y)| [x, y, 0.0, 0.0, 0.0, 0.0]);
+//! let tip = Polytope::hull(2, &corners)?;
+//! assert!(square.overlaps(&tip));
+//!
+//! // What the tip leaves of the square, in convex pieces.
+//! let left = Collection { polytopes: square.difference(&tip) };
+//! assert!((left.volume() - 0.875).abs() < 1e-9);
+//!
+//! // Swept upwards by 2: a flat set and a segment make a prism.
+//! let prism = minkowski_sum_of(3, tip.vertices(), &[[0.0; 6], [0.0, 0.0, 2.0, 0.0, 0.0, 0.0]])?;
+//! assert_eq!(prism.facets().len(), 5);
+//! assert!((prism.slice(2, 1.0)?.volume() - tip.volume()).abs() < 1e-9);
+//! # Some(())
+//! # }
+//! # assert!(example().is_some());
+//! ```
+//!
+//! Source: the dissertation's polyhedral method (P-collections, set difference, projection); M. Baotić, *Polytopic
+//! computations in constrained optimal control*, Automatika 50 (2009), for the difference; G. Ziegler, *Lectures on
+//! Polytopes* (1995), for faces.
 
 mod collection;
 mod cut;
@@ -67,9 +93,40 @@ pub type Point = [f64; MAX_DIMENSION];
 /// a million times below the thousandth of D that a connector's makers and a result's readers care about.
 pub const RESOLUTION: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Nearer to a plane than this, rounding explains the distance: 64 units of the lattice of hulls. Between this and
-/// [`RESOLUTION`], a point on a plane is in doubt.
+/// Nearer to a plane than this, rounding explains the distance: 64 units of the lattice of hulls.
 const FLAT: f64 = RESOLUTION / 16.0;
+/// Vertices on a plane and the nearest others must be so many times farther apart: a plane through some of the vertices
+/// on it can miss the others by that, where their features are that small.
+const CLEAR: f64 = 1e6;
+
+/// How well the vertices on planes stand apart from the others.
+#[derive(Clone, Copy)]
+struct Gap {
+    /// The largest distance of a vertex that counts as on its plane.
+    on: f64,
+    /// The smallest distance of one that does not.
+    off: f64,
+}
+
+impl Gap {
+    const NEW: Self = Self { on: 0.0, off: f64::INFINITY };
+
+    /// Does a vertex at this distance count as on the plane?
+    fn is_on(&mut self, distance: f64) -> bool {
+        let on = distance.abs() <= RESOLUTION;
+        if on {
+            self.on = self.on.max(distance.abs());
+        } else {
+            self.off = self.off.min(distance.abs());
+        }
+        on
+    }
+
+    /// Is every vertex certain to be on its plane or off it?
+    fn is_clear(&self) -> bool {
+        self.on <= FLAT && self.on * CLEAR <= self.off
+    }
+}
 
 /// A bounded convex set with an interior.
 ///

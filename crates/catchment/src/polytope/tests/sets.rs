@@ -77,7 +77,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
     #[test]
-    fn parts_make_the_whole((dimension, points) in cloud(1..=5, 12), planes in prop::collection::vec(plane(), 1..10), probes in prop::collection::vec(real(6), 10)) {
+    fn parts_make_the_whole(
+        (dimension, points) in cloud(1..=5, 12),
+        planes in prop::collection::vec(plane(), 1..10),
+        probes in prop::collection::vec(real(6), 10),
+    ) {
         let Some(whole) = Polytope::hull(dimension, &points) else { return Ok(()) };
         let mut rest = whole;
         // Bodies in five dimensions soon have hundreds of vertices.
@@ -101,12 +105,17 @@ proptest! {
                 }
             }
             let larger = inside.into_iter().chain(outside).max_by(|a, b| a.volume().total_cmp(&b.volume()));
-            rest = larger.unwrap();
+            // None where both halves are too thin.
+            let Some(larger) = larger else { break };
+            rest = larger;
         }
     }
 
     #[test]
-    fn nearly_flat_bodies_are_cut_as_well((dimension, points) in nearly_flat_cloud(2..=4, 10), planes in prop::collection::vec(plane(), 1..6)) {
+    fn nearly_flat_bodies_are_cut_as_well(
+        (dimension, points) in nearly_flat_cloud(2..=4, 10),
+        planes in prop::collection::vec(plane(), 1..6),
+    ) {
         let Some(mut rest) = Polytope::hull(dimension, &points) else { return Ok(()) };
         for plane in planes {
             let Some(by) = plane.of(&rest) else { continue };
@@ -115,21 +124,29 @@ proptest! {
             for part in &parts {
                 check(part)?;
             }
-            prop_assert!((volume(&parts) - rest.volume()).abs() < SLIVERS, "{} {} {by:?} {rest:?}", volume(&parts), rest.volume());
+            let sum = volume(&parts);
+            prop_assert!((sum - rest.volume()).abs() < SLIVERS, "{sum} {} {by:?} {rest:?}", rest.volume());
             let larger = parts.into_iter().max_by(|a, b| a.volume().total_cmp(&b.volume()));
-            rest = larger.unwrap();
+            let Some(larger) = larger else { break };
+            rest = larger;
         }
     }
 
     #[test]
-    fn what_is_not_shared_is_the_difference((dimension, a) in cloud(1..=4, 9), b in cloud(4..=4, 9), share in 0..3usize, probes in prop::collection::vec(real(6), 20)) {
+    fn what_is_not_shared_is_the_difference(
+        (dimension, a) in cloud(1..=4, 9),
+        b in cloud(4..=4, 9),
+        share in 0..3usize,
+        probes in prop::collection::vec(real(6), 20),
+    ) {
         let mut b: Vec<Point> = b.1;
         for point in &mut b {
             point[dimension..].fill(0.0);
         }
         // Bodies that share vertices, edges or facets.
         b.extend(a.iter().take(share * dimension / 2));
-        let (Some(a), Some(b)) = (Polytope::hull(dimension, &a), Polytope::hull(dimension, &b)) else { return Ok(()) };
+        let hull = |points: &[Point]| Polytope::hull(dimension, points);
+        let (Some(a), Some(b)) = (hull(&a), hull(&b)) else { return Ok(()) };
         let (pieces, shared) = (a.difference(&b), a.intersection(&b));
         for piece in pieces.iter().chain(&shared) {
             check(piece)?;
@@ -156,9 +173,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
-    fn unions_obey_the_algebra_of_sets(bodies in prop::collection::vec(cloud(3..=3, 7), 6), planar in any::<bool>(), probes in prop::collection::vec(real(6), 40)) {
+    fn unions_obey_the_algebra_of_sets(
+        bodies in prop::collection::vec(cloud(3..=3, 7), 6),
+        planar in any::<bool>(),
+        probes in prop::collection::vec(real(6), 40),
+    ) {
         let dimension = if planar { 2 } else { 3 };
-        let mut bodies: Vec<Polytope> = bodies.iter().filter_map(|(_, points)| Polytope::hull(3, points)).collect();
+        let mut bodies: Vec<Polytope> =
+            bodies.iter().filter_map(|(_, points)| Polytope::hull(3, points)).collect();
         if planar {
             bodies = bodies.iter().filter_map(|body| body.project(&[2, 0])).collect();
         }
@@ -187,9 +209,16 @@ proptest! {
     }
 
     #[test]
-    fn sums_and_shadows_of_unions(one in cloud(3..=3, 6), other in cloud(3..=3, 6), third in prop::collection::vec(real(3), 4), probe in real(3)) {
+    fn sums_and_shadows_of_unions(
+        one in cloud(3..=3, 6),
+        other in cloud(3..=3, 6),
+        third in prop::collection::vec(real(3), 4),
+        probe in real(3),
+    ) {
         let hull = |points: &[Point]| Polytope::hull(3, points);
-        let (Some(one), Some(other), Some(third)) = (hull(&one.1), hull(&other.1), hull(&third)) else { return Ok(()) };
+        let (Some(one), Some(other), Some(third)) = (hull(&one.1), hull(&other.1), hull(&third)) else {
+            return Ok(());
+        };
         let union = Collection { polytopes: vec![one, other] };
         let sum = union.minkowski_sum(&third.into());
         let shadow = sum.project(&[0, 2]);
