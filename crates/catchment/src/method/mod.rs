@@ -32,8 +32,7 @@ pub enum Method {
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 5] =
-        [Self::Transport, Self::Descent, Self::Flood, Self::Steepest, Self::Partition];
+    pub const ALL: [Self; 5] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest, Self::Partition];
 
     /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
     pub const ON_GRIDS: [Self; 4] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest];
@@ -58,7 +57,9 @@ impl Method {
             }
             Self::Flood => "fast flooding of the heights over the grid; biased, made for comparisons",
             Self::Steepest => "flooding along the steepest neighbour; biased too, made for comparisons",
-            Self::Partition => "watersheds of the contact space as polytopes, without a grid; two or three errors",
+            Self::Partition => {
+                "watersheds of the contact space as polytopes, without a grid; two or three errors"
+            }
         }
     }
 

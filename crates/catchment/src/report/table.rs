@@ -46,8 +46,16 @@ pub fn table(report: &Report) -> String {
         let counts = found.counts;
         let [polytopes, cells, parts, rests] =
             [counts.polytopes, counts.cells, counts.parts, counts.rests].map(grouped);
-        row(&mut text, "partition", &format!("{:.4} {} accepted, exactly", found.sum, report.acceptance.unit));
-        row(&mut text, "", &format!("{polytopes} polytopes, {cells} cells, {parts} parts, {rests} places of rest"));
+        row(
+            &mut text,
+            "partition",
+            &format!("{:.4} {} accepted, exactly", found.sum, report.acceptance.unit),
+        );
+        row(
+            &mut text,
+            "",
+            &format!("{polytopes} polytopes, {cells} cells, {parts} parts, {rests} places of rest"),
+        );
     }
     if !report.warnings.is_empty() {
         text.push('\n');

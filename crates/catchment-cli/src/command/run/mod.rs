@@ -95,8 +95,12 @@ impl HowArgs {
     /// The settings of the partition; `None` of its options may be given for any other method.
     fn partition(&self, design: &Design) -> Result<partition::Settings, Failure> {
         if self.method != Method::Partition && (self.slices.is_some() || self.strips.is_some()) {
-            let message = format!("--slices and --strips are settings of partition; {} has none", self.method.name());
-            return Err(Failure::with_help(message, Some("add --method partition, or leave them out".to_owned())));
+            let message =
+                format!("--slices and --strips are settings of partition; {} has none", self.method.name());
+            return Err(Failure::with_help(
+                message,
+                Some("add --method partition, or leave them out".to_owned()),
+            ));
         }
         let default = partition::Settings::for_rotations(design.alignment.free.rotations());
         Ok(partition::Settings {
@@ -231,7 +235,8 @@ fn check_requirements(
         correction::estimate(&grid, &by, &settings, &Exec::new(), aligned)
     })?;
     let basins = job.basins_of(&grid)?;
-    let computed = Computed { acceptance, settings: job.settings()?, sample, landscape: None, basins, partition: None };
+    let computed =
+        Computed { acceptance, settings: job.settings()?, sample, landscape: None, basins, partition: None };
     let timing = Some(Timing { total_s: 0.0, threads: 1 });
     let empty = report(job, &computed, Vec::new(), distribution.cloned(), timing, &Exec::new())?;
     unmet(requirements, &serde_json::to_value(&empty)?).map(drop)

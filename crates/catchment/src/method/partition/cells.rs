@@ -70,7 +70,7 @@ pub(super) enum Beyond {
 #[derive(Debug)]
 pub(super) struct Cells {
     /// The cells.
-    pub(super) cells: Vec<Cell>,
+    pub(super) all: Vec<Cell>,
     index: RTree<Boxed>,
     /// Lowest and highest pose error of every free rotation, at its place among the coordinates.
     limits: Vec<(usize, [f64; 2])>,
@@ -96,11 +96,10 @@ impl Cells {
             .flat_map(|(_, patches)| patches)
             .map(|patch| Cell::new(patch, free, rotation_length))
             .collect();
-        let boxed = |(k, cell): (usize, &Cell)| {
-            Boxed::new(Rectangle::from_aabb(rectangle(&cell.region, 0.0)), k)
-        };
+        let boxed =
+            |(k, cell): (usize, &Cell)| Boxed::new(Rectangle::from_aabb(rectangle(&cell.region, 0.0)), k);
         let index = RTree::bulk_load(cells.iter().enumerate().map(boxed).collect());
-        Self { cells, index, limits }
+        Self { all: cells, index, limits }
     }
 
     /// The cells whose boxes meet that of `polytope`, in order.
@@ -119,7 +118,7 @@ impl Cells {
             .index
             .locate_in_envelope_intersecting(envelope)
             .map(|boxed| boxed.data)
-            .filter(|k| self.cells[*k].region.contains(q))
+            .filter(|k| self.all[*k].region.contains(q))
             .collect();
         holding.sort_unstable();
         holding
@@ -127,7 +126,7 @@ impl Cells {
 
     /// The gates of one cell.
     pub(super) fn gates_of(&self, k: usize) -> Vec<Gate> {
-        let cell = &self.cells[k];
+        let cell = &self.all[k];
         let near = self.near(&cell.region);
         let mut gates = Vec::new();
         for (facet, plane) in cell.region.facets().iter().enumerate() {
@@ -138,7 +137,7 @@ impl Cells {
             let Some(whole) = cell.region.facet_projected(facet, dropped) else { continue };
             let mut open = vec![whole];
             for &other in near.iter().filter(|other| **other != k) {
-                let neighbour = &self.cells[other];
+                let neighbour = &self.all[other];
                 let Some(back) = facing(&neighbour.region, plane) else { continue };
                 let Some(side) = neighbour.region.facet_projected(back, dropped) else { continue };
                 let shared: Vec<Polytope> = open.iter().filter_map(|part| part.intersection(&side)).collect();
@@ -182,7 +181,7 @@ impl Cells {
         plane: &Halfspace,
         dropped: usize,
     ) -> Vec<(Polytope, Step)> {
-        let [from, to] = [from, to].map(|k| self.cells[k].height);
+        let [from, to] = [from, to].map(|k| self.all[k].height);
         let rises = |polytope: &Polytope| {
             let rise = |y: &Point| {
                 let q = lifted(y, plane, dropped);

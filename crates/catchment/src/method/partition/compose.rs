@@ -51,8 +51,8 @@ impl Compartment {
 /// always a slice, because a composite is exact on slices only.
 pub(super) fn slices(half_range: f64, count: usize) -> Vec<f64> {
     let step = 2.0 * half_range / count as f64;
-    let whole = (count / 2) as i32;
-    let mut angles: Vec<f64> = (-whole..=whole).map(|k| f64::from(k) * step).collect();
+    let whole = count / 2;
+    let mut angles: Vec<f64> = (0..=2 * whole).map(|k| (k as f64 - whole as f64) * step).collect();
     if count % 2 == 1 {
         angles.insert(0, -half_range);
         angles.push(half_range);

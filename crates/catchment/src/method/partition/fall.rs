@@ -25,14 +25,14 @@ const ROUND: usize = 64;
 
 /// Where the point of first contact at `q` ends.
 pub(super) fn fate(cells: &Cells, q: &Point) -> Fate {
-    let top = cells.holding(q).into_iter().map(|k| cells.cells[k].height.at(q)).max_by(f64::total_cmp);
+    let top = cells.holding(q).into_iter().map(|k| cells.all[k].height.at(q)).max_by(f64::total_cmp);
     top.map_or(Fate::Lost, |height| fate_from(cells, q, height))
 }
 
 /// Where motion ends that is at `q` at a height: below first contact, beside a wall.
 pub(super) fn fate_from(cells: &Cells, start: &Point, height: f64) -> Fate {
     let (mut q, mut height) = (*start, height);
-    let at = |k: usize, q: &Point| cells.cells[k].height.at(q);
+    let at = |k: usize, q: &Point| cells.all[k].height.at(q);
     let mut falling_from = f64::INFINITY;
     for step in 0.. {
         if step % ROUND == 0 {
@@ -50,7 +50,7 @@ pub(super) fn fate_from(cells: &Cells, start: &Point, height: f64) -> Fate {
                 height = at(k, &next);
                 let beyond = cells.holding(&next);
                 if beyond.iter().all(|other| *other == k) {
-                    let border = cells.on_border(&cells.cells[k].region.facets()[facet]);
+                    let border = cells.on_border(&cells.all[k].region.facets()[facet]);
                     return if border { Fate::Left } else { Fate::Lost };
                 }
                 q = next;
@@ -75,17 +75,17 @@ pub(super) fn fate_from(cells: &Cells, start: &Point, height: f64) -> Fate {
 /// The cell whose motion leads into it from `q`: the steepest.
 fn leading(cells: &Cells, under: &[usize], q: &Point) -> Option<usize> {
     let inward = |k: &usize| {
-        let cell = &cells.cells[*k];
+        let cell = &cells.all[*k];
         let mut active = cell.region.facets().iter().filter(|facet| facet.excess(q) >= -RESOLUTION);
         cell.descent > LEVEL * LEVEL && !active.any(|facet| cell.crosses(facet))
     };
-    let steeper = |a: &usize, b: &usize| cells.cells[*a].descent.total_cmp(&cells.cells[*b].descent);
+    let steeper = |a: &usize, b: &usize| cells.all[*a].descent.total_cmp(&cells.all[*b].descent);
     under.iter().copied().filter(inward).max_by(|a, b| steeper(a, b).then(b.cmp(a)))
 }
 
 /// Where motion from `q` leaves the cell, and through which facet.
 fn crossed(cells: &Cells, k: usize, q: &Point) -> (Point, usize) {
-    let cell = &cells.cells[k];
+    let cell = &cells.all[k];
     let time = |facet: usize| {
         let plane = &cell.region.facets()[facet];
         (-plane.excess(q)).max(0.0) / dot(&cell.velocity, &plane.normal)
@@ -102,7 +102,7 @@ fn crossed(cells: &Cells, k: usize, q: &Point) -> (Point, usize) {
 fn ravine(cells: &Cells, under: &[usize], q: &Point, height: f64) -> Option<Point> {
     let mut best: Option<(f64, Point)> = None;
     for &k in under {
-        let cell = &cells.cells[k];
+        let cell = &cells.all[k];
         for gate in cell.gates.iter().filter(|gate| gate.to == Beyond::Ravine) {
             let plane = &cell.region.facets()[gate.facet];
             if plane.excess(q).abs() > LEVEL || !gate.region.contains(&without(q, gate.dropped)) {
@@ -121,7 +121,7 @@ fn ravine(cells: &Cells, under: &[usize], q: &Point, height: f64) -> Option<Poin
 
 /// The lowest point of a gate and its height.
 pub(super) fn lowest(cells: &Cells, k: usize, gate: &Gate) -> (f64, Point) {
-    let cell = &cells.cells[k];
+    let cell = &cells.all[k];
     let plane = &cell.region.facets()[gate.facet];
     gate.region
         .vertices()
@@ -134,7 +134,7 @@ pub(super) fn lowest(cells: &Cells, k: usize, gate: &Gate) -> (f64, Point) {
 
 /// Where motion rests that reaches a level gate: the aligned pose if the gate holds it, else its middle.
 pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<Point> {
-    let cell = &cells.cells[k];
+    let cell = &cells.all[k];
     let plane = &cell.region.facets()[gate.facet];
     let heights = gate.region.vertices().iter().map(|y| cell.height.at(&lifted(y, plane, gate.dropped)));
     let [low, high] =
@@ -151,7 +151,7 @@ pub(super) fn level(cells: &Cells, k: usize, gate: &Gate) -> Option<Point> {
 fn resting(cells: &Cells, under: &[usize], q: &Point) -> Fate {
     let mut fate = Fate::Rest(*q);
     for &k in under {
-        let cell = &cells.cells[k];
+        let cell = &cells.all[k];
         for gate in &cell.gates {
             let plane = &cell.region.facets()[gate.facet];
             if plane.excess(q).abs() > LEVEL || !gate.region.contains(&without(q, gate.dropped)) {

@@ -36,10 +36,10 @@ use crate::pose::{Dof, PoseError, rotation_angle};
 use cells::Cells;
 use compose::Compartment;
 use glam::{DMat3, DVec3};
+pub use outline::Corner;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-pub use outline::Corner;
 use watershed::{Parts, Watersheds};
 
 /// What changes the answer.
@@ -177,7 +177,9 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
     let threads = exec.threads() as u64;
     exec.reserve(
         "the partition",
-        polytopes.saturating_mul(POLYTOPE_BYTES * threads).saturating_add(count.saturating_mul(polytopes * CELL_BYTES / 4)),
+        polytopes
+            .saturating_mul(POLYTOPE_BYTES * threads)
+            .saturating_add(count.saturating_mul(polytopes * CELL_BYTES / 4)),
         |_| "use fewer --slices or --strips, or allow more with --memory".to_owned(),
     )?;
     let compartments = Compartment::all(&slices);
@@ -192,7 +194,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
     let mut cells = Cells::new(&found, free, alignment.rotation_length, limits);
     drop(found);
     let gates: Vec<Vec<cells::Gate>> = exec.install(|| {
-        (0..cells.cells.len())
+        (0..cells.all.len())
             .into_par_iter()
             .map(|k| {
                 exec.check()?;
@@ -200,7 +202,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
             })
             .collect::<Result<_, Cancelled>>()
     })?;
-    for (cell, gates) in cells.cells.iter_mut().zip(gates) {
+    for (cell, gates) in cells.all.iter_mut().zip(gates) {
         cell.gates = gates;
     }
     let watersheds = watershed::drain(&cells, |rest| is_aligned(alignment, rest), exec)?;
@@ -210,7 +212,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
     });
     let counts = Counts {
         polytopes: (polytopes * count) as usize,
-        cells: cells.cells.len(),
+        cells: cells.all.len(),
         parts: parts.sum(),
         rests: watersheds.rests.len(),
     };
@@ -260,7 +262,7 @@ impl Partition {
     fn labelled(&self) -> impl Iterator<Item = (usize, Polytope, Outcome)> + '_ {
         self.watersheds.parts.iter().enumerate().flat_map(|(k, parts)| {
             let parts = match parts {
-                Parts::Whole(label) => vec![(self.cells.cells[k].region.clone(), *label)],
+                Parts::Whole(label) => vec![(self.cells.all[k].region.clone(), *label)],
                 Parts::Cut(parts) => parts.clone(),
             };
             parts.into_iter().map(move |(region, label)| (k, region, label))
@@ -347,7 +349,7 @@ impl Partition {
                 };
         }
         let holding = self.cells.holding(&q);
-        let height = |k: &usize| self.cells.cells[*k].height.at(&q);
+        let height = |k: &usize| self.cells.all[*k].height.at(&q);
         let Some(top) = holding.into_iter().max_by(|a, b| height(a).total_cmp(&height(b))) else {
             return Outcome::Missed;
         };

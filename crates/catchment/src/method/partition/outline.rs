@@ -60,7 +60,8 @@ impl Partition {
                 let dropped = usize::from(plane.normal[1].abs() > plane.normal[0].abs());
                 let mut open: Vec<Polytope> = region.facet_projected(facet, dropped).into_iter().collect();
                 for (_, other) in near.iter().filter(|other| **other != k).map(|other| &accepted[*other]) {
-                    let Some(side) = facing(other, plane).and_then(|back| other.facet_projected(back, dropped))
+                    let Some(side) =
+                        facing(other, plane).and_then(|back| other.facet_projected(back, dropped))
                     else {
                         continue;
                     };
@@ -79,7 +80,9 @@ impl Partition {
     fn of_face(&self, cell: usize, q: &Point) -> Corner {
         let shift = self.face_from_cor(cell, q);
         let mut corner = [q[0], q[1]];
-        for (value, dof) in corner.iter_mut().zip(self.alignment.free.iter()).filter(|(_, d)| !d.is_rotation()) {
+        for (value, dof) in
+            corner.iter_mut().zip(self.alignment.free.iter()).filter(|(_, d)| !d.is_rotation())
+        {
             let (level, slope) = shift[dof.index()];
             *value += level + slope.iter().zip(q).map(|(s, q)| s * q).sum::<f64>();
         }

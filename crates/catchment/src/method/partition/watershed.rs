@@ -74,7 +74,7 @@ pub(super) fn drain(
     exec: &Exec,
 ) -> Result<Watersheds, Cancelled> {
     let fates: Vec<Vec<Option<Fate>>> = exec.install(|| {
-        (0..cells.cells.len())
+        (0..cells.all.len())
             .into_par_iter()
             .map(|k| {
                 exec.check()?;
@@ -82,7 +82,7 @@ pub(super) fn drain(
             })
             .collect::<Result<_, Cancelled>>()
     })?;
-    let count = cells.cells.len();
+    let count = cells.all.len();
     let mut draining = Draining {
         cells,
         is_aligned,
@@ -99,7 +99,7 @@ pub(super) fn drain(
     for _ in 0..count {
         graph.add_node(());
     }
-    for (k, cell) in cells.cells.iter().enumerate() {
+    for (k, cell) in cells.all.iter().enumerate() {
         for gate in &cell.gates {
             if let Beyond::Cell(to) = gate.to {
                 graph.add_edge(NodeIndex::new(k), NodeIndex::new(to), ());
@@ -127,22 +127,19 @@ pub(super) fn drain(
 
 /// Where the gates lead that do not lead into a cell.
 fn gate_fates(cells: &Cells, k: usize) -> Vec<Option<Fate>> {
-    let cell = &cells.cells[k];
+    let cell = &cells.all[k];
     cell.gates
         .iter()
         .map(|gate| match gate.to {
             Beyond::Cell(_) => None,
             Beyond::Nothing => Some(Fate::Lost),
             Beyond::Border => Some(Fate::Left),
-            Beyond::Ravine => {
-                Some(match fall::level(cells, k, gate) {
-                    Some(place) => Fate::Rest(place),
-                    None => {
-                        let (height, bottom) = fall::lowest(cells, k, gate);
-                        fall::fate_from(cells, &bottom, height)
-                    }
-                })
-            }
+            Beyond::Ravine => Some(if let Some(place) = fall::level(cells, k, gate) {
+                Fate::Rest(place)
+            } else {
+                let (height, bottom) = fall::lowest(cells, k, gate);
+                fall::fate_from(cells, &bottom, height)
+            }),
         })
         .collect()
 }
@@ -166,7 +163,7 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
 
     /// The parts of a cell above those of its gates that are known.
     fn through_gates(&self, k: usize) -> Vec<(Option<Polytope>, Outcome)> {
-        let cell = &self.cells.cells[k];
+        let cell = &self.cells.all[k];
         let mut parts = Vec::new();
         for (gate, label) in cell.gates.iter().zip(&self.labels[k]) {
             let whole = match (gate.to, label) {
@@ -189,8 +186,13 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
     }
 
     /// The parts of a cell above the parts below one of its gates. What of the gate they share is joined first.
-    fn above(&self, k: usize, gate: &Gate, below: &[(Polytope, Outcome)]) -> Vec<(Option<Polytope>, Outcome)> {
-        let cell = &self.cells.cells[k];
+    fn above(
+        &self,
+        k: usize,
+        gate: &Gate,
+        below: &[(Polytope, Outcome)],
+    ) -> Vec<(Option<Polytope>, Outcome)> {
+        let cell = &self.cells.all[k];
         let mut parts = Vec::new();
         for outcome in [Outcome::Aligned, Outcome::Jammed, Outcome::Missed] {
             let sides = below.iter().filter(|(_, other)| *other == outcome);
@@ -207,13 +209,13 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
 
     /// What of a gate leads into a part of the cell below.
     fn side(&self, k: usize, gate: &Gate, part: &Polytope) -> Option<Polytope> {
-        let plane = &self.cells.cells[k].region.facets()[gate.facet];
+        let plane = &self.cells.all[k].region.facets()[gate.facet];
         gate.region.intersection(&part.facet_projected(facing(part, plane)?, gate.dropped)?)
     }
 
     /// What of a cell drains through a gate into a part of the cell below.
     fn through(&self, k: usize, gate: &Gate, part: &Polytope) -> Option<Polytope> {
-        self.cells.cells[k].upstream(gate.facet, gate.dropped, &self.side(k, gate, part)?)
+        self.cells.all[k].upstream(gate.facet, gate.dropped, &self.side(k, gate, part)?)
     }
 
     /// Gives a cell its parts: one label if they have only one.
@@ -224,7 +226,7 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
             Some((_, first)) if parts.iter().all(|(_, label)| label == first) => Some(*first),
             Some(_) => None,
             // Level ground.
-            None => Some(self.of_middle(&self.cells.cells[k].region)),
+            None => Some(self.of_middle(&self.cells.all[k].region)),
         };
         self.parts[k] = Some(whole.map_or(Parts::Cut(parts), Parts::Whole));
     }
@@ -239,7 +241,7 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
         // Which gates of which members lead into each member.
         let mut above: Vec<Vec<(usize, usize)>> = vec![Vec::new(); members.len()];
         for &k in members {
-            for (g, gate) in self.cells.cells[k].gates.iter().enumerate() {
+            for (g, gate) in self.cells.all[k].gates.iter().enumerate() {
                 if let Beyond::Cell(to) = gate.to
                     && let Some(to) = place(to)
                 {
@@ -262,7 +264,7 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
             for &(k, g) in &above[m] {
                 let (part, label) = &parts[m][p];
                 let label = *label;
-                let Some(swept) = self.through(k, &self.cells.cells[k].gates[g], part) else { continue };
+                let Some(swept) = self.through(k, &self.cells.all[k].gates[g], part) else { continue };
                 let Some(to) = place(k) else { continue };
                 parts[to].push((swept, label));
                 waiting.push((to, parts[to].len() - 1));
@@ -273,7 +275,7 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
             }
         }
         for (&k, mut parts) in members.iter().zip(parts) {
-            let region = &self.cells.cells[k].region;
+            let region = &self.cells.all[k].region;
             let known: f64 = parts.iter().map(|(part, _)| part.volume()).sum();
             if known < region.volume() * (1.0 - ROUNDING) {
                 let mut rest = vec![region.clone()];

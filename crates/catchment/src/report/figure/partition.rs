@@ -44,15 +44,18 @@ pub fn partition(
         Scale::new(units.label(dof), -half, half, dof.is_rotation())
     };
     let frame = Frame { rect, x: scale(first), y: scale(second) };
-    let at = |corner: &[f64; 2]| frame.at([corner[0] * units.factor(first), corner[1] * units.factor(second)]);
+    let at =
+        |corner: &[f64; 2]| frame.at([corner[0] * units.factor(first), corner[1] * units.factor(second)]);
     svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::outcome(Outcome::Missed))));
     svg.begin_clip(rect);
     for (corners, outcome) in &polygons {
         let fill = hex(colour::outcome(*outcome));
-        let style = format!(r##"fill="{fill}" stroke="#ffffff" stroke-opacity="0.55" stroke-width="0.4" {JOIN}"##);
+        let style =
+            format!(r##"fill="{fill}" stroke="#ffffff" stroke-opacity="0.55" stroke-width="0.4" {JOIN}"##);
         svg.path(&polyline(corners.iter().map(at), true), &style);
     }
-    let outline: String = partition.outline().iter().map(|ends| polyline(ends.iter().map(at), false)).collect();
+    let outline: String =
+        partition.outline().iter().map(|ends| polyline(ends.iter().map(at), false)).collect();
     svg.path(&outline, &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
     svg.end();
     zero_lines(&mut svg, &frame);
