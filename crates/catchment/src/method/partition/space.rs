@@ -137,8 +137,15 @@ impl Roof {
         Some(Self { shadow, facets, top })
     }
 
-    /// The half-spaces within which this roof lies above a plane; `None` if it nowhere does.
-    fn covers(&self, plane: &Affine, tie: bool) -> Option<Vec<Halfspace>> {
+    /// The half-spaces within which this roof lies above a facet's plane; `None` if it nowhere does over the facet.
+    fn covers(&self, facet: &Polytope, plane: &Affine, tie: bool) -> Option<Vec<Halfspace>> {
+        // Most roofs are lower all over the facet, or beside it: a few products tell.
+        let corners = facet.vertices();
+        let lower = |roof: &Affine| corners.iter().all(|q| roof.at(q) < plane.at(q) - RESOLUTION);
+        let beside = |side: &Halfspace| corners.iter().all(|q| side.excess(q) >= 0.0);
+        if self.facets.iter().any(|(_, roof)| lower(roof)) || self.shadow.facets().iter().any(beside) {
+            return None;
+        }
         let mut cover = self.shadow.facets().to_vec();
         for (_, roof) in &self.facets {
             match roof.above(plane, tie) {
@@ -176,7 +183,7 @@ pub(super) fn envelope(roofs: &[Roof]) -> Vec<Patch> {
                 if !boxes_meet(&cover.shadow, &left) {
                     continue;
                 }
-                if let Some(cover) = cover.covers(plane, other < k) {
+                if let Some(cover) = cover.covers(facet, plane, other < k) {
                     left = left.into_iter().flat_map(|part| without(part, &cover)).collect();
                 }
             }
