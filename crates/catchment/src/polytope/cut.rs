@@ -9,7 +9,8 @@
 //! ```
 //!
 //! Nothing but the classes of the vertices depends on numbers: what is kept and what is joined follows from which
-//! vertex lies on which facet. Both halves share the new vertices to the last bit.
+//! vertex lies on which facet. Both halves share the new vertices to the last bit, unless one had to be made anew as a
+//! hull, which rounds them.
 //!
 //! Cost: vertices inside × vertices outside words, and one search for a third vertex per edge.
 

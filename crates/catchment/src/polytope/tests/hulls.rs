@@ -13,7 +13,7 @@ proptest! {
 
     #[test]
     fn a_hull_holds_its_points_and_no_more(
-        (dimension, points) in cloud(1..=5, 14),
+        (dimension, points) in cloud(1..=6, 14),
         directions in prop::collection::vec(real(6), 20),
     ) {
         let Some(hull) = Polytope::hull(dimension, &points) else { return Ok(()) };
