@@ -249,3 +249,25 @@ fn an_interrupt_ends_the_run_and_leaves_nothing() {
     assert_eq!(stderr, "interrupted; nothing was written\n");
     assert_eq!(entries(home.path()), ["v.toml"]);
 }
+
+#[test]
+fn a_partition_says_how_large_it_is_and_draws_its_outline() {
+    let home = home();
+    let how = ["--method", "partition", "--slices", "8", "--strips", "4", "--json", "-o", "out"];
+    let report = super::json(home.path(), &[&["run", "v.toml"], &how[..]].concat());
+    let (sum, grid) = (&report["partition"]["sum"], &report["acceptance"]["sum"]);
+    let (sum, grid) = (sum.as_f64().unwrap(), grid.as_f64().unwrap());
+    assert!((sum / grid - 1.0).abs() < 0.02, "{sum} exactly, {grid} over the grid");
+    assert_eq!(report["settings"], serde_json::json!({ "slices": 8, "strips": 4 }));
+    let pictures = entries(&home.path().join("out"));
+    assert!(["partition.png", "partition.svg"].iter().all(|name| pictures.contains(&(*name).to_owned())));
+}
+
+#[test]
+fn slices_and_strips_belong_to_the_partition() {
+    let home = home();
+    let said = run(home.path(), &["run", "v.toml", "--slices", "8"]);
+    assert!(said.starts_with("exit 2") && said.contains("settings of partition"), "{said}");
+    let said = run(home.path(), &["run", "v.toml", "--method", "partition", "--strips", "0"]);
+    assert!(said.starts_with("exit 2") && said.contains("strips must be at least 1"), "{said}");
+}

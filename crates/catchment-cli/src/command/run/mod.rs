@@ -83,10 +83,10 @@ struct HowArgs {
     /// Flooding: basins shallower than this are merged, in D [default: in the widest gap between the depths of the basins]
     #[arg(long, value_name = "DEPTH", value_parser = depth)]
     depth_tolerance: Option<f64>,
-    /// Partition: rotation slices across the error box of every free angle [default: 20 for one angle, 4 for two]
+    /// Partition: rotation slices across the error box of every free angle [default: 24 for one angle, 4 for two]
     #[arg(long, value_name = "COUNT")]
     slices: Option<usize>,
-    /// Partition: strips per D into which the moving half is cut; 1 is the dissertation's method [default: 8, or 1 for two angles]
+    /// Partition: strips per D into which the moving half is cut; 1 is the dissertation's method [default: 12, or 1 for two angles]
     #[arg(long, value_name = "COUNT")]
     strips: Option<usize>,
 }

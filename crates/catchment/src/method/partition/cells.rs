@@ -22,6 +22,9 @@ use std::array;
 /// Heights closer than this are equal, in D: ten times what a vertex on a plane may be off by, at slopes up to 10.
 pub(super) const LEVEL: f64 = 100.0 * RESOLUTION;
 
+/// Cells meet where they come this close, in D and radians: cuts move their corners by a few times the resolution.
+pub(super) const TOUCH: f64 = 16.0 * RESOLUTION;
+
 /// Largest sine of the angle between motion and a facet along which the motion counts as running, not crossing.
 const GRAZING: f64 = 1e-9;
 
@@ -104,7 +107,7 @@ impl Cells {
 
     /// The cells whose boxes meet that of `polytope`, in order.
     fn near(&self, polytope: &Polytope) -> Vec<usize> {
-        let envelope = rectangle(polytope, RESOLUTION);
+        let envelope = rectangle(polytope, TOUCH);
         let mut near: Vec<usize> =
             self.index.locate_in_envelope_intersecting(envelope).map(|boxed| boxed.data).collect();
         near.sort_unstable();
@@ -113,12 +116,12 @@ impl Cells {
 
     /// The cells that hold `q`, in order.
     pub(super) fn holding(&self, q: &Point) -> Vec<usize> {
-        let envelope = AABB::from_corners(q.map(|v| v - RESOLUTION), q.map(|v| v + RESOLUTION));
+        let envelope = AABB::from_corners(q.map(|v| v - TOUCH), q.map(|v| v + TOUCH));
         let mut holding: Vec<usize> = self
             .index
             .locate_in_envelope_intersecting(envelope)
             .map(|boxed| boxed.data)
-            .filter(|k| self.all[*k].region.contains(q))
+            .filter(|k| touches(&self.all[*k].region, q))
             .collect();
         holding.sort_unstable();
         holding
@@ -158,7 +161,13 @@ impl Cells {
                 }
             }
             let to = if self.on_border(plane) { Beyond::Border } else { Beyond::Nothing };
-            gates.extend(open.into_iter().map(|region| Gate { facet, dropped, region, to }));
+            // Narrower gaps are left by rounding between cells that meet.
+            let is_gap = |region: &Polytope| {
+                let (low, high) = region.bounds();
+                (0..region.dimension()).any(|k| high[k] - low[k] <= LEVEL)
+            };
+            let open = open.into_iter().filter(|region| !is_gap(region));
+            gates.extend(open.map(|region| Gate { facet, dropped, region, to }));
         }
         gates
     }
@@ -285,6 +294,11 @@ fn mobility(q: &Point, free: DofSet, rotation_length: f64, g: &Point) -> Point {
         }
     }
     mobile
+}
+
+/// Whether a point is in a polytope, or touches it.
+pub(super) fn touches(polytope: &Polytope, q: &Point) -> bool {
+    polytope.facets().iter().all(|facet| facet.excess(q) <= TOUCH)
 }
 
 /// The facet of `polytope` that lies on `plane` and faces it.

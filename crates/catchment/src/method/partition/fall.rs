@@ -5,8 +5,8 @@
 //! rule, section 5.1.6; over two pose errors that is exact, over more a ravine's own slope would bend it). Where there is no lower
 //! one, it has come to rest.
 
-use super::cells::{Beyond, Cells, Gate, LEVEL, dot, lifted};
-use crate::polytope::{MAX_DIMENSION, Point, RESOLUTION};
+use super::cells::{Beyond, Cells, Gate, LEVEL, TOUCH, dot, lifted, touches};
+use crate::polytope::{MAX_DIMENSION, Point};
 use std::array;
 
 /// Where motion ends.
@@ -76,7 +76,7 @@ pub(super) fn fate_from(cells: &Cells, start: &Point, height: f64) -> Fate {
 fn leading(cells: &Cells, under: &[usize], q: &Point) -> Option<usize> {
     let inward = |k: &usize| {
         let cell = &cells.all[*k];
-        let mut active = cell.region.facets().iter().filter(|facet| facet.excess(q) >= -RESOLUTION);
+        let mut active = cell.region.facets().iter().filter(|facet| facet.excess(q) >= -TOUCH);
         cell.descent > LEVEL * LEVEL && !active.any(|facet| cell.crosses(facet))
     };
     let steeper = |a: &usize, b: &usize| cells.all[*a].descent.total_cmp(&cells.all[*b].descent);
@@ -105,7 +105,7 @@ fn ravine(cells: &Cells, under: &[usize], q: &Point, height: f64) -> Option<Poin
         let cell = &cells.all[k];
         for gate in cell.gates.iter().filter(|gate| gate.to == Beyond::Ravine) {
             let plane = &cell.region.facets()[gate.facet];
-            if plane.excess(q).abs() > LEVEL || !gate.region.contains(&without(q, gate.dropped)) {
+            if plane.excess(q).abs() > LEVEL || !touches(&gate.region, &without(q, gate.dropped)) {
                 continue;
             }
             let (low, bottom) = lowest(cells, k, gate);
@@ -154,7 +154,7 @@ fn resting(cells: &Cells, under: &[usize], q: &Point) -> Fate {
         let cell = &cells.all[k];
         for gate in &cell.gates {
             let plane = &cell.region.facets()[gate.facet];
-            if plane.excess(q).abs() > LEVEL || !gate.region.contains(&without(q, gate.dropped)) {
+            if plane.excess(q).abs() > LEVEL || !touches(&gate.region, &without(q, gate.dropped)) {
                 continue;
             }
             match gate.to {

@@ -56,7 +56,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { slices: 20, strips: 8 }
+        Self { slices: 24, strips: 12 }
     }
 }
 

@@ -177,7 +177,9 @@ fn sums_come_to_those_of_exact_descents() {
     for (family, ratio, cor) in FIVE {
         let pair = pair(family, ratio, cor, 1.0, &[]);
         let exact = exact(&pair, 100);
-        let partition = run(&pair, &Settings { slices: 25, strips: 16 }, &Exec::new()).unwrap();
+        // In the thin ravine of the last one the crest that parts two watersheds is a ten-thousandth of D high.
+        let strips = if (family, ratio) == (Family::VFace, 0.5) { 64 } else { 24 };
+        let partition = run(&pair, &Settings { slices: 50, strips }, &Exec::new()).unwrap();
         let sum = partition.measure(Outcome::Aligned);
         println!("{} AR {ratio} COR {cor}: {sum:.4} for {exact:.4}", family.name());
         assert!((sum / exact - 1.0).abs() < 0.03, "{} AR {ratio} COR {cor}: {sum} {exact}", family.name());
