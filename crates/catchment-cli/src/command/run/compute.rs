@@ -108,8 +108,7 @@ pub(crate) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
         Method::Descent => ("the outcome of every cell", DESCENT_BYTES),
         Method::Transport => ("transport", transport::bytes(job.pair, &job.grid).div_ceil(cells.max(1))),
         Method::Flood | Method::Steepest => ("flooding", flood::bytes(1)),
-        Method::Partition => ("the outcome of every cell", size_of::<Outcome>() as u64),
-        Method::Kinematic => ("the outcome of every cell", size_of::<Outcome>() as u64),
+        Method::Partition | Method::Kinematic => ("the outcome of every cell", size_of::<Outcome>() as u64),
     };
     let heights = job.heights && job.method.rule().is_none();
     let per_cell = per_cell + if heights { Landscape::bytes(1) } else { 0 };
