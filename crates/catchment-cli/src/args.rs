@@ -22,6 +22,7 @@ use std::path::PathBuf;
         catchment new pyramid -o design.toml    a commented starting point\n  \
         catchment check design.toml             everything that is wrong with it\n  \
         catchment run design.toml -o out        its area of acceptance, with pictures\n  \
+        catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
         catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
         catchment outcome design.toml --poses poses.csv\n                                          what becomes of listed errors\n  \
         catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" -o trace.png\n                                          the way of one of them\n  \

@@ -26,6 +26,15 @@ impl Failure {
         Self { reports: vec![Report::new(diagnostic)], closing: None, broken_pipe: false }
     }
 
+    /// What went wrong, in a line.
+    pub(crate) fn message(&self) -> String {
+        let one = |report: &Report| match report.help() {
+            Some(help) => format!("{report}; {help}"),
+            None => report.to_string(),
+        };
+        self.reports.iter().map(one).collect::<Vec<_>>().join("; ")
+    }
+
     /// The reader of stdout went away.
     pub(crate) fn broken_pipe() -> Self {
         Self { reports: Vec::new(), closing: None, broken_pipe: true }

@@ -4,10 +4,14 @@ use crate::failure::Failure;
 use catchment::exec::Exec;
 use catchment::report::figure::Picture;
 use catchment::report::{write, zarr};
+use std::fmt::Display;
 use std::path::Path;
 
 /// The name of the JSON report in such a folder.
 pub(crate) const REPORT: &str = "report.json";
+
+/// The name of the Zarr group in the folder of a run.
+pub(crate) const RESULT: &str = "result.zarr";
 
 /// Pixels per unit of the drawing in PNG files: sharp on screens and slides.
 const PNG_SCALE: f32 = 2.0;
@@ -16,7 +20,7 @@ const PNG_SCALE: f32 = 2.0;
 pub(crate) type Files = Vec<(String, Vec<u8>)>;
 
 /// Every picture as SVG and PNG, with the name of its file.
-pub(crate) fn encode(drawn: &[(&'static str, Picture)], exec: &Exec) -> Result<Files, Failure> {
+pub(crate) fn encode<N: Display>(drawn: &[(N, Picture)], exec: &Exec) -> Result<Files, Failure> {
     let mut files = Vec::with_capacity(2 * drawn.len());
     for (name, picture) in drawn {
         exec.check()?;
@@ -67,7 +71,19 @@ impl Study<'_> {
         exec: &Exec,
         more: impl FnOnce(&Path) -> Result<(), Failure>,
     ) -> Result<String, Failure> {
-        let mut files = encode(&[(self.name, picture)], exec)?;
+        self.write_files(json, records, encode(&[(self.name, picture)], exec)?, exec, more)
+    }
+
+    /// The same with pictures that are encoded already, or none.
+    pub(crate) fn write_files(
+        &self,
+        json: &str,
+        records: &[Vec<String>],
+        mut files: Files,
+        exec: &Exec,
+        more: impl FnOnce(&Path) -> Result<(), Failure>,
+    ) -> Result<String, Failure> {
+        let drawn = if files.is_empty() { String::new() } else { format!(", {} as PNG and SVG", self.name) };
         files.push((format!("{}.csv", self.name), csv(records)?));
         write::folder(
             self.path,
@@ -80,7 +96,7 @@ impl Study<'_> {
             },
         )?;
         let (place, name) = (self.path.display(), self.name);
-        Ok(format!("wrote {place}: {REPORT}, {name}.csv, {name} as PNG and SVG"))
+        Ok(format!("wrote {place}: {REPORT}, {name}.csv{drawn}"))
     }
 
     /// Whether a folder was written by the same study, or is empty: replacing it loses nothing else.

@@ -4,6 +4,7 @@
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// The computation was asked to stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -51,6 +52,7 @@ pub struct Exec {
     cancel: Arc<AtomicBool>,
     progress: Option<Progress>,
     memory_budget: Option<u64>,
+    deadline: Option<Instant>,
 }
 
 impl fmt::Debug for Exec {
@@ -92,14 +94,22 @@ impl Exec {
         self
     }
 
+    /// Stops at `deadline` as if a stop had been asked for: the result is whole or there is none.
+    #[must_use]
+    pub fn with_deadline(mut self, deadline: Instant) -> Self {
+        self.deadline = Some(deadline);
+        self
+    }
+
     /// The flag that stops the computation when set: hand it to a signal handler.
     pub fn cancel_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.cancel)
     }
 
-    /// Whether a stop was asked for.
+    /// Whether a stop was asked for, or the deadline is over.
     pub fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
+            || self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// `Err` once a stop was asked for. Rooms call this at least once per rotation or per pose.
@@ -189,6 +199,15 @@ mod tests {
         let exec = Exec::new().with_progress(Arc::new(move |f, stage| log.lock().unwrap().push((f, stage))));
         exec.part([0.5, 0.75], "whole").report(0.5, "part");
         assert_eq!(*seen.lock().unwrap(), [(0.625, "whole")]);
+    }
+
+    #[test]
+    fn a_deadline_stops_this_one_and_its_parts_alone() {
+        let exec = Exec::new();
+        let late = exec.clone().with_deadline(Instant::now());
+        assert!(
+            late.check().is_err() && late.part([0.0, 1.0], "part").is_cancelled() && !exec.is_cancelled()
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! One file per subcommand.
 
 mod check;
+mod compare;
 mod completions;
 mod man;
 mod new;
@@ -22,6 +23,7 @@ pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
     Run(Box<run::RunArgs>),
+    Compare(compare::CompareArgs),
     Slices(slices::SlicesArgs),
     Outcome(outcome::OutcomeArgs),
     Trace(trace::TraceArgs),
@@ -39,6 +41,7 @@ impl Command {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
             Self::Run(args) => run::run(&args),
+            Self::Compare(args) => compare::run(&args),
             Self::Slices(args) => slices::run(&args),
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),

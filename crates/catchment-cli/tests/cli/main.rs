@@ -4,6 +4,7 @@
 
 mod area;
 mod check;
+mod compare;
 mod meshes;
 mod new;
 mod plumbing;

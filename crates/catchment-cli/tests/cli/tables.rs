@@ -60,16 +60,17 @@ fn a_published_table_beside_ours() {
     let report = json(&folder, &["reproduce", "3.3", "5.7", "--json"]);
     let [kinematic, discrete] = [0, 1].map(|k| &report["tables"][k]);
     assert_eq!(
-        (&kinematic["summary"]["exact"], &kinematic["warnings"]),
+        (&kinematic["summary"]["as_printed"], &kinematic["warnings"]),
         (&121.into(), &serde_json::json!([]))
     );
-    assert_eq!(discrete["summary"]["exact"], 25);
+    assert_eq!(discrete["summary"]["as_printed"], 25);
     assert_eq!(discrete["warnings"][0]["kind"], "dissertation-conventions");
     let output = catchment(&folder).args(["reproduce", "3.3", "--csv"]).output().unwrap();
     let csv = String::from_utf8(output.stdout).unwrap();
     assert_eq!(csv.lines().count(), 1 + 121);
     assert!(
-        csv.starts_with("table,row,column,unit,published,ours,ratio,exact,matches,known_difference\n3.3,")
+        csv.starts_with("table,row,column,unit,published,ours,ratio,as_printed,matches,exact,")
+            && csv.contains("\n3.3,")
     );
     assert!(output.stderr.is_empty());
 }
@@ -77,4 +78,33 @@ fn a_published_table_beside_ours() {
 #[test]
 fn an_unknown_table_is_recognised() {
     insta::assert_snapshot!("reproduce_unknown", run(&designs(), &["reproduce", "5.77"]));
+}
+
+#[test]
+fn tables_are_written_with_pictures_and_exact_values() {
+    let dir = tempfile::tempdir().unwrap();
+    let told = run(dir.path(), &["reproduce", "2.1", "3.3", "-o", "out"]);
+    assert!(told.contains("wrote out: report.json, tables.csv, 2 pictures as PNG and SVG"), "{told}");
+    assert!(
+        told.contains("Held or known, and not computed") && told.contains("measured forces of latches"),
+        "{told}"
+    );
+    let names = super::entries(&dir.path().join("out"));
+    assert_eq!(
+        names,
+        ["report.json", "table-2.1.png", "table-2.1.svg", "table-3.3.png", "table-3.3.svg", "tables.csv"]
+    );
+    // Its own folder is replaced, another is not.
+    assert!(run(dir.path(), &["reproduce", "2.1", "-o", "out"]).starts_with("exit 0\n"));
+    fs::write(dir.path().join("out/holiday.png"), "").unwrap();
+    assert!(run(dir.path(), &["reproduce", "2.1", "-o", "out"]).contains("cannot write"));
+}
+
+#[test]
+fn exact_values_stand_beside_printed_ones() {
+    let report = json(&designs(), &["reproduce", "slices", "--exact", "--json"]);
+    let table = &report["tables"][0];
+    assert_eq!((table["method"].as_str(), table["summary"]["computed"].as_u64()), (Some("drop"), Some(0)));
+    let exact = table["entries"][0][0]["exact"]["value"].as_f64().unwrap();
+    assert!((0.1..0.3).contains(&exact), "{table}");
 }

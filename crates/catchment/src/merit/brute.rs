@@ -77,3 +77,16 @@ pub fn largest_cube(shape: &[usize], accepted: &[bool]) -> usize {
     }
     largest
 }
+
+/// Squared distance from every cell's centre to the nearest marked cell's, by comparing all; infinite where none is
+/// marked. `spacing` is the distance of neighbours along each axis.
+pub fn squared_distances(grid: &Grid, spacing: &[f64], marked: &[bool]) -> Vec<f64> {
+    let between = |a: usize, b: usize| -> f64 {
+        let steps = grid.cell(a).into_iter().zip(grid.cell(b));
+        steps.zip(spacing).map(|((i, j), w)| (w * (i as f64 - j as f64)).powi(2)).sum()
+    };
+    let nearest = |a: usize| {
+        (0..marked.len()).filter(|b| marked[*b]).map(|b| between(a, b)).fold(f64::INFINITY, f64::min)
+    };
+    (0..marked.len()).map(nearest).collect()
+}

@@ -17,6 +17,8 @@
 
 pub mod brute;
 pub mod centered;
+pub mod comparison;
+mod distance;
 pub mod estimate;
 mod mask;
 pub mod onaa;

@@ -11,6 +11,7 @@ pub mod zraa;
 
 use crate::connector::Half;
 use crate::contact::Pair;
+use crate::design::Design;
 use crate::landscape::Resolution;
 use serde::{Deserialize, Serialize};
 
@@ -28,14 +29,44 @@ pub enum Method {
     Steepest,
     /// [`partition`]: polytopes of the contact space, sampled at every cell's centre.
     Partition,
+    /// [`kinematic`]: bounds and stepping of planar faces.
+    Kinematic,
+}
+
+/// A method that cannot decide a design.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{} does not apply to this design: {reason}", method.name())]
+pub struct NotApplicable {
+    /// The method.
+    pub method: Method,
+    /// Why.
+    pub reason: String,
 }
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 5] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest, Self::Partition];
+    pub const ALL: [Self; 6] =
+        [Self::Transport, Self::Descent, Self::Flood, Self::Steepest, Self::Partition, Self::Kinematic];
 
     /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
     pub const ON_GRIDS: [Self; 4] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest];
+
+    /// Whether it can decide a design.
+    ///
+    /// # Errors
+    /// When it cannot, with the reason.
+    pub fn applies_to(self, design: &Design) -> Result<(), NotApplicable> {
+        match self {
+            Self::Kinematic => kinematic::Settings::of(design)
+                .map(|_| ())
+                .map_err(|unfit| NotApplicable { method: self, reason: unfit.to_string() }),
+            Self::Partition if design.alignment.free.len() < 2 || design.alignment.free.rotations() == 0 => {
+                let reason = "it needs at least two free errors, one of them a rotation".to_owned();
+                Err(NotApplicable { method: self, reason })
+            }
+            Self::Transport | Self::Descent | Self::Partition | Self::Flood | Self::Steepest => Ok(()),
+        }
+    }
 
     /// The lower-case name used in files, reports and options.
     pub const fn name(self) -> &'static str {
@@ -45,6 +76,7 @@ impl Method {
             Self::Flood => "flood",
             Self::Steepest => "steepest",
             Self::Partition => "partition",
+            Self::Kinematic => "kinematic",
         }
     }
 
@@ -60,6 +92,7 @@ impl Method {
             Self::Partition => {
                 "watersheds of the contact space as polytopes, without a grid; two or three errors"
             }
+            Self::Kinematic => "planar bounds and stepping of the dissertation; v-face, s-face and x-face",
         }
     }
 
@@ -68,7 +101,7 @@ impl Method {
         match self {
             Self::Flood => Some(flood::Rule::Lowest),
             Self::Steepest => Some(flood::Rule::Steepest),
-            Self::Transport | Self::Descent | Self::Partition => None,
+            Self::Transport | Self::Descent | Self::Partition | Self::Kinematic => None,
         }
     }
 
@@ -88,7 +121,7 @@ impl Method {
                 })
             }
             // Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once.
-            Self::Transport => [1000, 200, 50, 30, 20],
+            Self::Transport | Self::Kinematic => [1000, 200, 50, 30, 20],
             Self::Flood | Self::Steepest | Self::Partition => Resolution::DEFAULT_CELLS,
         }
     }
@@ -99,7 +132,7 @@ impl Method {
         const LEAST: f64 = 200.0;
         match self {
             Self::Descent | Self::Transport => (SIMPLE * affordable(pair)).max(LEAST) as usize,
-            Self::Flood | Self::Steepest | Self::Partition => 0,
+            Self::Flood | Self::Steepest | Self::Partition | Self::Kinematic => 0,
         }
     }
 }

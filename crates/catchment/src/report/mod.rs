@@ -11,6 +11,7 @@
 //! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians in
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
+mod comparison;
 mod convergence;
 #[cfg(feature = "figure")]
 pub mod figure;
@@ -23,6 +24,7 @@ pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
 
+pub use comparison::{Agreement, AgreementReport, ComparisonReport, Decided, MethodResult, Side};
 pub use convergence::ConvergenceReport;
 pub use requirement::{Requirement, RequirementError};
 pub use schema::Report;

@@ -10,15 +10,19 @@
 //! The grid's first axis runs fastest in memory, so in the row-major order of Zarr its dimensions are reversed. The
 //! metadata are consolidated. The same run writes the same bytes but for the report's `timing`.
 
+mod read;
+
+pub use read::read;
+
 use super::schema::{Report, Unit};
 use super::write::{self, WriteError};
 use crate::acceptance::{Acceptance, Outcome};
-use crate::exec::{Cancelled, Exec};
+use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, GridAxis};
 use crate::merit::MeritError;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use zarrs::array::codec::GzipCodec;
 use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, DataType, Element, FillValue, data_type};
@@ -33,7 +37,7 @@ const CHUNK_CELLS: usize = 1 << 20;
 /// Level of compression: outcomes are long runs, more effort gains nothing.
 const COMPRESSION: u32 = 5;
 
-/// Why a group could not be written.
+/// Why a group could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum ZarrError {
     /// Its files could not.
@@ -50,8 +54,19 @@ pub enum ZarrError {
         /// Number of cells.
         cells: usize,
     },
+    /// What is there is no group to read.
+    #[error("cannot read {}: {reason}", path.display())]
+    Content {
+        /// The group.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
     /// The storage library refused.
-    #[error("cannot write the Zarr group: {reason}")]
+    #[error("the Zarr group: {reason}")]
     Storage {
         /// What it says.
         reason: String,

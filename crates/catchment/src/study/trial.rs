@@ -71,6 +71,12 @@ pub enum TrialError {
     /// There is no corrected Sum.
     #[error(transparent)]
     Correction(#[from] CorrectionError),
+    /// The method does not decide every design.
+    #[error("{} decides some designs only: it has no part in studies of methods", method.name())]
+    NotGeneral {
+        /// The method.
+        method: Method,
+    },
     /// A figure of merit is not to be had.
     #[error(transparent)]
     Merit(#[from] MeritError),
@@ -131,6 +137,7 @@ impl Decided {
             }
             Method::Partition => partition::run(pair, &partition::Settings::default(), exec)?
                 .acceptance(Domain::Grid(grid.clone()), exec)?,
+            Method::Kinematic => return Err(TrialError::NotGeneral { method }),
         };
         Ok(Self { grid, acceptance, arrival, seconds: started.elapsed().as_secs_f64() })
     }

@@ -10,53 +10,53 @@ use catchment::method::correction::{self, ByFraction, ByNeighbours, Corrected, C
 use catchment::method::flood::{self, Hierarchy};
 use catchment::method::partition::{self, Partition};
 use catchment::method::transport::{self, Arrival};
-use catchment::method::{Method, descent};
+use catchment::method::{Method, descent, kinematic};
 use serde_json::Value;
 
 /// What to compute.
-pub(super) struct Job<'a> {
+pub(crate) struct Job<'a> {
     /// The design.
-    pub(super) design: &'a Design,
+    pub(crate) design: &'a Design,
     /// Its halves, ready for contact.
-    pub(super) pair: &'a Pair,
+    pub(crate) pair: &'a Pair,
     /// The error grid.
-    pub(super) grid: Grid,
+    pub(crate) grid: Grid,
     /// Decides the cells.
-    pub(super) method: Method,
+    pub(crate) method: Method,
     /// Flooding's tolerance, if not the default.
-    pub(super) depth_tolerance: Option<f64>,
+    pub(crate) depth_tolerance: Option<f64>,
     /// Slices and strips of the partition.
-    pub(super) partition: partition::Settings,
+    pub(crate) partition: partition::Settings,
     /// Random poses that correct the Sum, if any shall.
-    pub(super) sample: Option<correction::Settings>,
+    pub(crate) sample: Option<correction::Settings>,
     /// Whether the heights are wanted even where the method needs none.
-    pub(super) heights: bool,
+    pub(crate) heights: bool,
 }
 
 /// What came out.
-pub(super) struct Computed {
+pub(crate) struct Computed {
     /// Outcomes over the grid.
-    pub(super) acceptance: Acceptance,
+    pub(crate) acceptance: Acceptance,
     /// The settings of the method.
-    pub(super) settings: Value,
+    pub(crate) settings: Value,
     /// The corrected Sum, if random poses were drawn.
-    pub(super) sample: Option<Sample>,
+    pub(crate) sample: Option<Sample>,
     /// Heights over the grid, if the method needed them or they were wanted.
-    pub(super) landscape: Option<Landscape>,
+    pub(crate) landscape: Option<Landscape>,
     /// The basins, if the method knows any.
-    pub(super) basins: Option<Hierarchy>,
+    pub(crate) basins: Option<Hierarchy>,
     /// The polytopes, if the method made any.
-    pub(super) partition: Option<Partition>,
+    pub(crate) partition: Option<Partition>,
 }
 
 /// The corrected Sum.
-pub(super) struct Sample {
+pub(crate) struct Sample {
     /// What the poses say.
-    pub(super) corrected: Corrected,
+    pub(crate) corrected: Corrected,
     /// The seed of their poses.
-    pub(super) seed: u64,
+    pub(crate) seed: u64,
     /// The settings of the descents.
-    pub(super) settings: Value,
+    pub(crate) settings: Value,
 }
 
 impl Job<'_> {
@@ -72,6 +72,7 @@ impl Job<'_> {
             Method::Transport => serde_json::to_value(transport::Settings::default())?,
             Method::Flood | Method::Steepest => serde_json::to_value(self.flood_settings())?,
             Method::Partition => serde_json::to_value(self.partition)?,
+            Method::Kinematic => serde_json::to_value(kinematic::Settings::of(self.design)?)?,
         })
     }
 
@@ -99,7 +100,7 @@ impl Job<'_> {
 }
 
 /// Computes all that the report and the pictures need.
-pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
+pub(crate) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
     let mut settings = job.settings()?;
     let cells = job.grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let axes = job.grid.axes.len();
@@ -107,7 +108,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
         Method::Descent => ("the outcome of every cell", DESCENT_BYTES),
         Method::Transport => ("transport", transport::bytes(job.pair, &job.grid).div_ceil(cells.max(1))),
         Method::Flood | Method::Steepest => ("flooding", flood::bytes(1)),
-        Method::Partition => ("the outcome of every cell", size_of::<Outcome>() as u64),
+        Method::Partition | Method::Kinematic => ("the outcome of every cell", size_of::<Outcome>() as u64),
     };
     let heights = job.heights && job.method.rule().is_none();
     let per_cell = per_cell + if heights { Landscape::bytes(1) } else { 0 };
@@ -124,6 +125,7 @@ pub(super) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             let found = transport::run(job.pair, &job.grid, &transport::Settings::default(), exec)?;
             (arrival.insert(found).acceptance(exec)?, None)
         }
+        Method::Kinematic => (kinematic::accept(job.design, &job.grid, exec)?, None),
         Method::Flood | Method::Steepest => {
             let landscape = Landscape::compute(job.pair, &job.grid, exec)?;
             let flooding = flood::flood(&landscape, &job.design.alignment, &job.flood_settings(), exec)?;

@@ -23,6 +23,11 @@ pub(crate) struct ErrorArgs {
 struct Sizes(Vec<(Dof, Quantity)>);
 
 impl ErrorArgs {
+    /// Whether any errors are asked about.
+    pub(super) const fn is_some(&self) -> bool {
+        self.error_sigma.is_some() || self.error_uniform.is_some()
+    }
+
     /// The distribution asked for, in D and radians.
     pub(super) fn distribution(&self, design: &Design) -> Result<Option<Distribution>, Failure> {
         let mean = PoseError::default();

@@ -5,7 +5,8 @@
 //!                                       └──▶ random poses correct the Sum ──┘
 //! ```
 
-mod compute;
+mod all;
+pub(super) mod compute;
 mod errors;
 mod pictures;
 mod place;
@@ -18,6 +19,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
 use catchment::acceptance::{Acceptance, Outcome, Warning};
+use catchment::contact::Pair;
 use catchment::design::Design;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Resolution};
@@ -44,6 +46,7 @@ use std::time::Instant;
     catchment run design.toml --tolerance 1%            until the Sum is known to ± 1 %\n  \
     catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' --require 'success.probability>=0.99'\n  \
     catchment run design.toml --json | jq .onaa.edge\n  \
+    catchment run design.toml --method all              every method, and how they agree\n  \
     catchment run design.toml --converge -o out         finer grids until stable, with every method\n  \
     catchment run design.toml --sensitivity             slopes against rho, COR and aspect ratio\n\n\
     The JSON of equal runs is equal byte for byte, whatever the number of threads, but for `timing` (and the seconds of\n\
@@ -75,8 +78,8 @@ pub(crate) struct RunArgs {
 #[derive(Debug, Args)]
 struct HowArgs {
     /// How outcomes are decided
-    #[arg(long, value_name = "METHOD", default_value = Method::ALL[0].name(), value_parser = method_parser())]
-    method: Method,
+    #[arg(long, value_name = "METHOD", default_value = Method::ALL[0].name(), value_parser = choice_parser())]
+    method: Choice,
     /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
@@ -93,10 +96,10 @@ struct HowArgs {
 
 impl HowArgs {
     /// The settings of the partition; `None` of its options may be given for any other method.
-    fn partition(&self, design: &Design) -> Result<partition::Settings, Failure> {
-        if self.method != Method::Partition && (self.slices.is_some() || self.strips.is_some()) {
+    fn partition(&self, method: Method, design: &Design) -> Result<partition::Settings, Failure> {
+        if method != Method::Partition && (self.slices.is_some() || self.strips.is_some()) {
             let message =
-                format!("--slices and --strips are settings of partition; {} has none", self.method.name());
+                format!("--slices and --strips are settings of partition; {} has none", method.name());
             return Err(Failure::with_help(
                 message,
                 Some("add --method partition, or leave them out".to_owned()),
@@ -110,14 +113,47 @@ impl HowArgs {
     }
 }
 
-fn method_parser() -> ValueParser {
-    let values = Method::ALL.map(|method| PossibleValue::new(method.name()).help(method.summary()));
-    PossibleValuesParser::new(values)
-        .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("no such method"))
+/// One method, or all of them.
+#[derive(Debug, Clone, Copy)]
+enum Choice {
+    One(Method),
+    All,
+}
+
+/// What stands for all methods.
+const ALL: &str = "all";
+
+/// What a person may write for a method.
+fn possible_methods() -> [PossibleValue; Method::ALL.len()] {
+    Method::ALL.map(|method| PossibleValue::new(method.name()).help(method.summary()))
+}
+
+fn method_of(name: &str) -> Option<Method> {
+    Method::ALL.into_iter().find(|method| method.name() == name)
+}
+
+/// Reads the name of one method.
+pub(super) fn method_parser() -> ValueParser {
+    PossibleValuesParser::new(possible_methods())
+        .try_map(|name| method_of(&name).ok_or("no such method"))
         .into()
 }
 
-fn resolution(text: &str) -> Result<Resolution, String> {
+/// Reads the name of one method, or `all`.
+fn choice_parser() -> ValueParser {
+    let all = PossibleValue::new(ALL).help("every method that applies, side by side, and how they agree");
+    PossibleValuesParser::new(possible_methods().into_iter().chain([all]))
+        .map(|name| method_of(&name).map_or(Choice::All, Choice::One))
+        .into()
+}
+
+/// Cells per axis where several methods share a grid and nothing was said, for one to five axes: what descent can
+/// afford, and even, which keeps cells off the mirror planes where transport is weak.
+pub(super) fn even_cells(pair: &Pair) -> [usize; 5] {
+    Method::Descent.default_cells(pair).map(|cells| (cells - 1).max(Resolution::LEAST))
+}
+
+pub(super) fn resolution(text: &str) -> Result<Resolution, String> {
     text.parse::<Resolution>().map_err(|error| error.to_string())
 }
 
@@ -136,28 +172,43 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     if let Some(studied) = study::run(args) {
         return studied;
     }
-    let started = Instant::now();
     let how = &args.how;
-    if how.depth_tolerance.is_some() && how.method.rule().is_none() {
-        let message = format!("--depth-tolerance is a setting of flooding; {} has none", how.method.name());
+    let method = match how.method {
+        Choice::One(method) => method,
+        Choice::All => return all::run(args),
+    };
+    if args.study.time_limit.is_some() {
+        let message = "--time-limit is for --converge and --method all".to_owned();
+        return Err(Failure::with_help(
+            message,
+            Some("--budget limits the time of the random poses".to_owned()),
+        ));
+    }
+    let started = Instant::now();
+    if how.depth_tolerance.is_some() && method.rule().is_none() {
+        let message = format!("--depth-tolerance is a setting of flooding; {} has none", method.name());
         return Err(Failure::with_help(message, Some("add --method flood, or leave it out".to_owned())));
     }
     let place = args.place.checked()?;
     let (built, pair, doubts) = args.design.build()?.into_pair()?;
     let design = &built.input.design;
+    if let Err(refusal) = method.applies_to(design) {
+        let finding = built.input.finding("connector.family", format!("--method {refusal}"), None);
+        return Err(built.input.refused(vec![finding]).into());
+    }
     let grid = how
         .resolution
         .unwrap_or_default()
-        .grid(&design.alignment, &how.method.default_cells(&pair))
+        .grid(&design.alignment, &method.default_cells(&pair))
         .map_err(|error| Failure::with_help(format!("--resolution: {error}"), None))?;
     let job = Job {
         design,
         pair: &pair,
         grid,
-        method: how.method,
+        method,
         depth_tolerance: how.depth_tolerance,
-        partition: how.partition(design)?,
-        sample: args.sample.settings(how.method, &pair),
+        partition: how.partition(method, design)?,
+        sample: args.sample.settings(method, &pair),
         heights: place.wants_heights(),
     };
     let distribution = args.errors.distribution(design)?;
@@ -184,7 +235,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
 }
 
 /// Everything that was found, evaluated.
-fn report(
+pub(super) fn report(
     job: &Job,
     computed: &Computed,
     doubts: Vec<String>,

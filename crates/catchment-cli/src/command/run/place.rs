@@ -11,14 +11,12 @@ use super::compute::{Computed, Job};
 use super::pictures;
 use crate::failure::Failure;
 use crate::geometry::Built;
-use crate::result_folder::{REPORT, Study, encode, has_only, is_report, write_all};
+use crate::result_folder::{REPORT, RESULT, Study, encode, has_only, is_report, write_all};
 use catchment::exec::Exec;
 use catchment::report::write;
 use catchment::report::{Report, zarr};
 use clap::Args;
 use std::path::{Path, PathBuf};
-
-const RESULT: &str = "result.zarr";
 
 /// Where the files of a run go.
 #[derive(Debug, Args)]
@@ -58,6 +56,11 @@ impl PlaceArgs {
         places.group.map_or(Ok(()), |path| write::check_folder(path, zarr::is_group))?;
         places.figures.map_or(Ok(()), |path| write::check_folder(path, has_only_pictures))?;
         Ok(places)
+    }
+
+    /// Whether pictures alone are wanted.
+    pub(super) const fn wants_figures_alone(&self) -> bool {
+        self.figures.is_some()
     }
 
     /// The folder of a study of this name, if one is to be written; refused now if it cannot be.

@@ -22,9 +22,9 @@ pub(super) struct StudyArgs {
     #[arg(long, help_heading = STUDIES, conflicts_with_all = ["sensitivity", "budget", "figures", "require"],
           conflicts_with_all = ["method", "resolution", "depth_tolerance", "ErrorArgs"])]
     converge: bool,
-    /// --converge: how long each method may take, such as "20s" or "2 min" [default: 60s]
-    #[arg(long, help_heading = STUDIES, value_name = "TIME", value_parser = duration, requires = "converge")]
-    time_limit: Option<Duration>,
+    /// --converge, --method all: how long each method may take, such as "20s" or "2 min" [default: 60s]
+    #[arg(long, help_heading = STUDIES, value_name = "TIME", value_parser = duration)]
+    pub(super) time_limit: Option<Duration>,
     /// How the Sum moves with rho, the centre of rotation and the aspect ratio, by the same random poses
     #[arg(long, help_heading = STUDIES, conflicts_with_all = ["figures", "require", "budget", "tolerance"],
           conflicts_with_all = ["method", "resolution", "depth_tolerance", "ErrorArgs"])]

@@ -52,6 +52,8 @@ pub struct Settings {
     pub errors: Errors,
     /// Depth below which basins are merged, in D.
     pub depth_tolerance: f64,
+    /// Samples per axis in the plane, both ends included: [`Self::PLANAR_SAMPLES`] in the tables, others in figure 5.13.
+    pub planar_samples: usize,
 }
 
 /// The samples and which of them the target basin holds.
@@ -101,8 +103,6 @@ fn list(problems: &[Problem]) -> String {
 
 /// Half-range of x and y, in D.
 const LATERAL: f64 = 2.0;
-/// Samples per axis in the plane, both ends included.
-const PLANAR: usize = 101;
 /// Samples of x and y in space, both ends included.
 const SPATIAL: usize = 31;
 /// Heights are rounded to this, in D, so that heights that are equal in exact arithmetic are equal here: flat cells
@@ -112,11 +112,13 @@ const HEIGHT_STEP: f64 = 1e-9;
 impl Settings {
     /// Depth tolerance as a share of H.
     pub const DEPTH_PER_FACE_HEIGHT: f64 = 0.1;
+    /// Samples per axis of the planar tables, both ends included.
+    pub const PLANAR_SAMPLES: usize = 101;
 
     /// An entry with the tolerance that the text names.
     pub fn new(family: Family, errors: Errors, aspect_ratio: f64, cor: f64) -> Self {
         let depth_tolerance = Self::DEPTH_PER_FACE_HEIGHT * aspect_ratio;
-        Self { family, aspect_ratio, cor, errors, depth_tolerance }
+        Self { family, aspect_ratio, cor, errors, depth_tolerance, planar_samples: Self::PLANAR_SAMPLES }
     }
 
     /// Thickness of the block behind both planar faces, in D.
@@ -178,19 +180,20 @@ struct Samples {
 }
 
 impl Samples {
-    fn of(errors: Errors) -> Self {
+    fn of(errors: Errors, in_plane: usize) -> Self {
         let ends =
             |count: usize| Lattice { first: -LATERAL, step: 2.0 * LATERAL / (count - 1) as f64, count };
         let locked = Lattice { first: 0.0, step: 0.0, count: 1 };
         let middle = |lattice: &Lattice| lattice.count / 2;
         // Both ends in the plane; in space the lower end is left out.
-        let planar: Vec<f64> = (0..PLANAR).map(|k| PI * k as f64 / (PLANAR - 1) as f64 - FRAC_PI_2).collect();
+        let planar: Vec<f64> =
+            (0..in_plane).map(|k| PI * k as f64 / (in_plane - 1) as f64 - FRAC_PI_2).collect();
         let spatial: Vec<f64> =
             (1..SPATIAL).map(|k| PI * k as f64 / (SPATIAL - 1) as f64 - FRAC_PI_2).collect();
         let (x, y, angles, rotations): (_, _, _, Vec<DMat3>) = match errors {
             Errors::XTheta => {
                 let rotations = planar.iter().map(|a| DMat3::from_rotation_y(*a)).collect();
-                (ends(PLANAR), locked, vec![PLANAR], rotations)
+                (ends(in_plane), locked, vec![in_plane], rotations)
             }
             Errors::XYPitch => {
                 let rotations = spatial.iter().map(|a| DMat3::from_rotation_x(*a)).collect();
@@ -208,14 +211,14 @@ impl Samples {
             }
         };
         let (weights, per_axis): (Vec<f64>, usize) = match errors {
-            Errors::XTheta => (vec![2.0 * LATERAL, PI], PLANAR - 1),
+            Errors::XTheta => (vec![2.0 * LATERAL, PI], in_plane - 1),
             Errors::XYPitch => (vec![2.0 * LATERAL, 2.0 * LATERAL, PI], SPATIAL),
             Errors::XPitchRoll => (vec![2.0 * LATERAL, PI, PI], SPATIAL),
         };
         let cell_measure = weights.iter().map(|range| range / per_axis as f64).product();
         // Without the lower end the sample at 0 is the 15th of 30, number 14.
         let zero = match errors {
-            Errors::XTheta => PLANAR / 2,
+            Errors::XTheta => in_plane / 2,
             Errors::XYPitch | Errors::XPitchRoll => SPATIAL / 2 - 1,
         };
         let rotation = angles.iter().rev().fold(0, |index, count| index * count + zero);
@@ -248,7 +251,7 @@ impl Samples {
 /// When the family cannot be drawn with this aspect ratio, or the computation is cancelled.
 pub fn accept(settings: &Settings, exec: &Exec) -> Result<Sampled, DissertationError> {
     let pair = settings.pair()?;
-    let samples = Samples::of(settings.errors);
+    let samples = Samples::of(settings.errors, settings.planar_samples.max(2));
     let heights = samples.heights(&pair, exec)?;
     let shape = samples.shape();
     let around = Neighbourhood::new(&shape);
@@ -298,7 +301,7 @@ mod tests {
             (Errors::XYPitch, vec![31, 31, 30]),
             (Errors::XPitchRoll, vec![31, 30, 30]),
         ] {
-            let samples = Samples::of(errors);
+            let samples = Samples::of(errors, Settings::PLANAR_SAMPLES);
             assert_eq!(samples.shape(), shape);
             let slab = samples.x.count * samples.y.count;
             let (lateral, rotation) = (samples.mated % slab, samples.rotations[samples.mated / slab]);
@@ -321,7 +324,9 @@ mod tests {
     #[test]
     fn a_planar_cell_counts_four_pi_over_ten_thousand() {
         let expected = 4.0 * PI / 1e4;
-        assert!((Samples::of(Errors::XTheta).cell_measure - expected).abs() < 1e-16);
+        assert!(
+            (Samples::of(Errors::XTheta, Settings::PLANAR_SAMPLES).cell_measure - expected).abs() < 1e-16
+        );
     }
 
     #[test]

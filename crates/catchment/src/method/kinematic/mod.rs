@@ -1,5 +1,5 @@
-//! The dissertation's planar kinematic method (chapter 3), in the closed form that its printed bounds take for the
-//! V-Face and the S-Face.
+//! The dissertation's planar kinematic method (chapter 3): closed bounds for the V-Face and the S-Face, in the form that
+//! its printed tables take, and the X-Face stepped by its one contact.
 //!
 //! ```text
 //!         ● rotation point, r_p half-widths behind mid height
@@ -8,25 +8,41 @@
 //!      ───┼───▼tip      and must meet the face it will slide down:
 //!      ╲  ┊  ╱          V: |x₀ + L sin θ₀| < D/2
 //!       ╲ ┊ ╱           S: |x₀ + L sin θ₀ + (D/6)(cos θ₀ − 1)| < D/3
-//!        ╲ ╱
+//!        ╲ ╱            X: see [`stepping`]
 //! ```
 //!
-//! Both also need θ₀ below a right angle less the slope of the outer edge (V: 2H/D, S: 3H/(2D)) and
+//! V and S also need |θ₀| below a right angle less the slope of the outer edge (V: 2H/D, S: 3H/(2D)) and
 //! `|x₀| < r_p·D + H/2`. All bounds are strict; D = 1.
 //!
-//! The starts are `x₀ = (i − 20)·D/20`, i = 0…40, and θ₀ = j·π/80, j = 0…40: 41 values on [0, π/2]. Each counts
+//! The starts of the tables are `x₀ = (i − 20)·D/20`, i = 0…40, and θ₀ = j·π/80, j = 0…40: 41 values on [0, π/2]. Each counts
 //! (2/40)(π/40) all the same, so that the one-sided count stands for ±π/2. They are indexed by integers: added-up
 //! floating-point steps would break ties.
 //!
-//! This reproduces the printed tables 3.3 and 3.4 in every entry, and departs from a literal reading of the text in three
+//! The bounds reproduce the printed tables 3.3 and 3.4 in every entry, and depart from a literal reading of the text in three
 //! places: the range of θ₀, half dimensions in the lever and in the limit on |x₀|, and the outer edge's angle for S. The
-//! coefficient of `r_p` in that limit cannot be told from the tables: it binds at `r_p` = 0 only. Nothing here knows
-//! about contact beyond these bounds; for that, see [`crate::method::descent`].
+//! coefficient of `r_p` in that limit cannot be told from the tables: it binds at `r_p` = 0 only. Table 3.2, of the
+//! X-Face, does not follow from its text; the stepping stands beside it, not in its place.
+//!
+//! **As a method** ([`accept`]) it decides pose errors of a planar family: θ₀ = −pitch, x₀ the place of the rotation point,
+//! `x₀ = x − cor·sin pitch`, and `r_p = −2·cor`: a rotation point `r_p` half-widths behind mid
+//! height is a COR of −`r_p`/2. Accepted is aligned; beyond the limit on |x₀|, or without contact, missed; the rest jammed.
+//!
+//! Not promised: that a start within the bounds succeeds (they are the best case), or that the rotation point keeps its
+//! x in a real docking, as it does here. For free motion see [`crate::method::descent`].
 
+pub mod stepping;
+
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::design::{ConnectorSpec, Design, Family};
+use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::landscape::Grid;
+use crate::pose::{Dof, DofSet, Mount};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
+use stepping::{Faces, Fate};
 
-/// A planar face with a closed-form bound.
+/// A planar face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Face {
@@ -34,6 +50,8 @@ pub enum Face {
     VFace,
     /// Sawtooth of three edges.
     SFace,
+    /// Two crossed ramps in two layers.
+    XFace,
 }
 
 /// What the answer depends on; lengths in D.
@@ -53,39 +71,164 @@ const STEPS: i32 = 40;
 /// Area that one successful start counts, D·rad.
 pub const START_MEASURE: f64 = (2.0 / STEPS as f64) * (PI / STEPS as f64);
 
+/// Why the method cannot decide a design.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Unfit {
+    /// Another connector.
+    #[error("it knows the faces v-face, s-face and x-face alone")]
+    Face,
+    /// Other errors.
+    #[error("x and pitch must be free, and nothing else")]
+    Free,
+    /// Material behind the face.
+    #[error("its faces have no base_thickness")]
+    Base,
+    /// The rotation point is in front.
+    #[error("its rotation point lies at or behind mid height: center_of_rotation must not be above 0")]
+    RotationPoint,
+    /// Mounted the other way.
+    #[error("its halves are mounted about y")]
+    Mount,
+}
+
+/// Why there is no acceptance.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum KinematicError {
+    /// The design is none of the method's.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
 impl Settings {
+    /// The settings that stand for a design.
+    ///
+    /// # Errors
+    /// See [`Unfit`].
+    pub fn of(design: &Design) -> Result<Self, Unfit> {
+        let ConnectorSpec::Family(spec) = &design.connector else { return Err(Unfit::Face) };
+        let face = match spec.family {
+            Family::VFace => Face::VFace,
+            Family::SFace => Face::SFace,
+            Family::XFace => Face::XFace,
+            _ => return Err(Unfit::Face),
+        };
+        let alignment = &design.alignment;
+        if alignment.free != DofSet::EMPTY.with(Dof::X).with(Dof::Pitch) {
+            return Err(Unfit::Free);
+        }
+        if spec.base_thickness.is_some_and(|base| base > 0.0) {
+            return Err(Unfit::Base);
+        }
+        if alignment.center_of_rotation > 0.0 {
+            return Err(Unfit::RotationPoint);
+        }
+        if alignment.mount != Mount::Y {
+            return Err(Unfit::Mount);
+        }
+        let rotation_point = -2.0 * alignment.center_of_rotation;
+        Ok(Self { face, aspect_ratio: spec.aspect_ratio, rotation_point })
+    }
+
     /// Whether the start (x₀ in D, θ₀ in radians) slides home.
     pub fn succeeds(&self, x0: f64, theta0: f64) -> bool {
-        let Self { face, aspect_ratio: h, rotation_point } = *self;
-        let lever = f64::midpoint(rotation_point, h);
-        let tip = x0 + lever * theta0.sin();
-        let (tip, reach, outer_slope) = match face {
-            Face::VFace => (tip, 0.5, 2.0 * h),
-            // The base minimum that the tip must find sits D/6 off the axis, and swings with the body.
-            Face::SFace => (tip + (theta0.cos() - 1.0) / 6.0, 1.0 / 3.0, 1.5 * h),
-        };
-        tip.abs() < reach && theta0 < FRAC_PI_2 - outer_slope.atan() && x0.abs() < rotation_point + h / 2.0
+        self.starts().outcome(x0, theta0) == Outcome::Aligned
     }
 
-    /// Number of successful starts.
+    /// What becomes of starts.
+    fn starts(&self) -> Starts<'_> {
+        let faces = (self.face == Face::XFace).then(|| Faces::new(self.aspect_ratio, self.rotation_point));
+        Starts { settings: self, faces }
+    }
+
+    /// Number of successful starts of the tables' 41 × 41.
     pub fn successes(&self) -> u32 {
-        let starts = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j)));
-        let succeeds = |&(i, j): &(i32, i32)| {
+        let starts = self.starts();
+        let succeeds = |(i, j): (i32, i32)| {
             let x0 = f64::from(i - STEPS / 2) / f64::from(STEPS / 2);
-            self.succeeds(x0, f64::from(j) * PI / f64::from(2 * STEPS))
+            starts.outcome(x0, f64::from(j) * PI / f64::from(2 * STEPS)) == Outcome::Aligned
         };
-        starts.filter(succeeds).count() as u32
+        (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))).filter(|start| succeeds(*start)).count()
+            as u32
     }
 
-    /// The area of acceptance, D·rad.
+    /// The area of acceptance as the tables have it, D·rad.
     pub fn area(&self) -> f64 {
         f64::from(self.successes()) * START_MEASURE
     }
 }
 
+/// Starts of one pair of faces.
+struct Starts<'a> {
+    settings: &'a Settings,
+    /// Of an X-Face.
+    faces: Option<Faces>,
+}
+
+impl Starts<'_> {
+    fn outcome(&self, x0: f64, theta0: f64) -> Outcome {
+        let Settings { face, aspect_ratio: h, rotation_point } = *self.settings;
+        if let Some(faces) = &self.faces {
+            return match faces.follow(x0, theta0, stepping::STEP) {
+                Fate::Success => Outcome::Aligned,
+                Fate::Missed => Outcome::Missed,
+                Fate::Beside | Fate::Away | Fate::Bound | Fate::AtRest => Outcome::Jammed,
+            };
+        }
+        let lever = f64::midpoint(rotation_point, h);
+        let tip = x0 + lever * theta0.sin();
+        let (tip, reach, outer_slope) = match face {
+            // The base minimum that the tip must find sits D/6 off the axis, and swings with the body.
+            Face::SFace => (tip + (theta0.cos() - 1.0) / 6.0, 1.0 / 3.0, 1.5 * h),
+            Face::VFace | Face::XFace => (tip, 0.5, 2.0 * h),
+        };
+        if x0.abs() >= rotation_point + h / 2.0 {
+            Outcome::Missed
+        } else if tip.abs() < reach && theta0.abs() < FRAC_PI_2 - outer_slope.atan() {
+            Outcome::Aligned
+        } else {
+            Outcome::Jammed
+        }
+    }
+}
+
+/// Decides the cells of an error grid over x and pitch.
+///
+/// # Errors
+/// A design that it does not apply to, a grid that does not fit into memory, a cancelled run.
+pub fn accept(design: &Design, grid: &Grid, exec: &Exec) -> Result<Acceptance, KinematicError> {
+    let settings = Settings::of(design)?;
+    let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
+    exec.reserve("the outcome of every cell", cells, |_| "lower the resolution".to_owned())?;
+    let (starts, cor) = (settings.starts(), design.alignment.center_of_rotation);
+    let outcome = |cell: usize| {
+        exec.check()?;
+        let error = grid.pose(cell);
+        Ok(starts.outcome(error.x - cor * error.pitch.sin(), -error.pitch))
+    };
+    let outcomes: Vec<Outcome> =
+        exec.install(|| (0..grid.len()).into_par_iter().map(outcome).collect::<Result<_, Cancelled>>())?;
+    let text = match settings.face {
+        Face::VFace | Face::SFace => {
+            "the kinematic bounds are the best case: outside them a start fails, inside it may"
+        }
+        Face::XFace => {
+            "the kinematic stepping knows one contact at a time, both halves pivot, and their x is kept"
+        }
+    };
+    let warnings = vec![Warning::Note { text: text.to_owned() }];
+    Ok(Acceptance { method: "kinematic", domain: Domain::Grid(grid.clone()), outcomes, warnings })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::design::{Alignment, FamilySpec};
 
     #[test]
     fn without_rotation_the_bounds_are_nilssons() {
@@ -134,5 +277,62 @@ mod tests {
         assert!(edges(Face::VFace).abs() < 1e-3);
         // Twice (D/6)(1 − cos θ), to the grid's step.
         assert!((edges(Face::SFace) - (1.0 - theta.cos()) / 3.0).abs() < 3e-4);
+    }
+
+    fn design(family: Family, cor: f64) -> Design {
+        let alignment = Alignment { center_of_rotation: cor, ..Alignment::default_for(Some(family)) };
+        let connector = ConnectorSpec::Family(FamilySpec { aspect_ratio: 0.5, ..FamilySpec::new(family) });
+        Design { name: String::new(), connector, width: 1.0, unit: None, alignment }
+    }
+
+    #[test]
+    fn a_design_is_decided_about_its_own_rotation_point() {
+        // The tip of a V whose rotation point lies a width behind mid height (r_p = 2): in D and radians of our frame it
+        // is at x − (H/2)·sin(pitch)·(−1): at the face centre plus half the height along the tilted axis.
+        let design = design(Family::VFace, -1.0);
+        let settings = Settings::of(&design).unwrap();
+        assert_eq!((settings.face, settings.rotation_point), (Face::VFace, 2.0));
+        let grid = Grid::over(&design.alignment, |_| 60);
+        let found = accept(&design, &grid, &Exec::new()).unwrap();
+        for (cell, outcome) in found.outcomes.iter().enumerate() {
+            let e = grid.pose(cell);
+            let tip = e.x - 0.25 * e.pitch.sin();
+            let rotation_point = e.x + e.pitch.sin();
+            let accepted =
+                tip.abs() < 0.5 && e.pitch.abs() < FRAC_PI_2 - 1f64.atan() && rotation_point.abs() < 2.25;
+            assert_eq!(*outcome == Outcome::Aligned, accepted, "{e:?}");
+        }
+    }
+
+    #[test]
+    fn threads_do_not_change_it_and_what_it_does_not_know_is_refused() {
+        let x_face = design(Family::XFace, -0.5);
+        let grid = Grid::over(&x_face.alignment, |_| 20);
+        let with = |threads| accept(&x_face, &grid, &Exec::new().with_threads(threads).unwrap()).unwrap();
+        assert_eq!(with(1), with(2));
+        let counts = with(1).counts();
+        assert!(counts[0] > 20 && counts[1] > 20 && counts[2] > 20, "{counts:?}");
+        assert_eq!(Settings::of(&design(Family::Pyramid, 0.0)), Err(Unfit::Face));
+        assert_eq!(Settings::of(&design(Family::XFace, 0.5)), Err(Unfit::RotationPoint));
+        let mut other = design(Family::SFace, 0.0);
+        other.alignment.free = DofSet::ALL;
+        assert_eq!(Settings::of(&other), Err(Unfit::Free));
+    }
+
+    /// A sample of the whole set of the tables (11 × 11 designs, 41 × 41 starts), spread by a low-discrepancy sequence.
+    #[test]
+    fn half_the_step_changes_hardly_any_outcome() {
+        const SAMPLE: u32 = 4000;
+        let spread = |k: u32, prime: f64| (f64::from(k) * prime.sqrt()).fract();
+        let different = (0..SAMPLE)
+            .filter(|k| {
+                let pick = |prime: f64, n: f64| (spread(*k, prime) * n).floor();
+                let faces = Faces::new((0.8 * pick(2.0, 11.0) - 4.0).exp2(), pick(3.0, 11.0));
+                let (x0, theta) = ((pick(5.0, 41.0) - 20.0) / 20.0, pick(7.0, 41.0) * PI / 80.0);
+                let success = |step| faces.follow(x0, theta, step) == Fate::Success;
+                success(stepping::STEP) != success(0.5 * stepping::STEP)
+            })
+            .count();
+        assert!(different * 100 < SAMPLE as usize, "{different} of {SAMPLE}");
     }
 }

@@ -4,6 +4,10 @@
 //!   slices      outcomes over pairs of errors, the border of the accepted set, the ONAA cube
 //!   matrix      slices of all pairs of errors, in a triangle with shared axes
 //!   convergence Sum and ONAA against resolution and time, every method
+//!   difference  where two acceptances differ, and the border of the first
+//!   agreement   how each two methods of a design agree
+//!   published   a published table beside ours, in colours
+//!   resolution  figure 5.13: Sum and time over the resolution
 //!   sensitivity the Sum against rho
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
@@ -23,6 +27,8 @@ mod basins;
 mod chart;
 mod colour;
 mod convergence;
+mod difference;
+mod heat;
 mod heights;
 mod map;
 mod matrix;
@@ -30,6 +36,7 @@ mod overview;
 mod partition;
 mod raster;
 mod region;
+mod resolution;
 mod section;
 mod sensitivity;
 mod slices;
@@ -39,11 +46,14 @@ mod trajectory;
 
 pub use basins::basins;
 pub use convergence::convergence;
+pub use difference::difference;
+pub use heat::{agreement, published};
 pub use heights::heights;
 pub use matrix::slice_matrix;
 pub use overview::overview;
 pub use partition::partition;
 pub use region::region;
+pub use resolution::resolution;
 pub use section::{Placement, section};
 pub use sensitivity::sensitivity;
 pub use slices::slices;

@@ -7,36 +7,55 @@
 //!   └────────┘   └────────┘    └────────┘
 //! ```
 //!
-//! The kinematic bounds (3.3, 3.4) are exact. The discrete tables (5.4 to 5.9) are computed with conventions that were
+//! Beside both stands the exact value, where there is one: the same solids and rotation point, followed exactly
+//! ([`Exact`]).
+//!
+//! The kinematic bounds (3.3, 3.4) are exact reproductions. The discrete tables (5.4 to 5.9) are computed with conventions that were
 //! fitted to these very tables ([`crate::method::flood::dissertation`]): agreement shows that the conventions are
 //! understood, not that the numbers are right as physics.
 
+mod markdown;
 mod published;
+mod recipe;
+pub mod resolution;
 mod tables;
 mod text;
 
-pub use tables::{TABLES, Table};
+pub use markdown::page;
+pub use recipe::{Exact, RHO};
+pub use tables::{HELD, Held, TABLES, Table};
 
 use crate::exec::{Cancelled, Exec};
 use crate::method::flood::dissertation::DissertationError;
 use rayon::prelude::*;
 use serde::Serialize;
 
+/// What to compute.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Settings {
+    /// Also the exact value of every entry: seconds to minutes per table.
+    pub exact: bool,
+}
+
 /// One entry of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Entry {
     /// The printed value.
     pub published: f64,
-    /// What this program computes.
-    pub ours: f64,
+    /// What this program computes by the same method; null where it cannot.
+    pub ours: Option<f64>,
     /// `ours / published`.
-    pub ratio: f64,
+    pub ratio: Option<f64>,
     /// Whether the two agree to the printed digits, or as the integer counts that they stand for.
-    pub exact: bool,
-    /// Whether the two agree within the table's tolerance.
-    pub matches: bool,
+    pub as_printed: bool,
+    /// Whether the two agree within the table's tolerance; null where nothing is promised or computed.
+    pub matches: Option<bool>,
     /// Why the entry is known not to match.
     pub known_difference: Option<&'static str>,
+    /// The exact value; null where there is none or it was not asked for.
+    pub exact: Option<Exact>,
+    /// `exact / published`.
+    pub exact_ratio: Option<f64>,
 }
 
 /// How well a table is reproduced.
@@ -44,14 +63,18 @@ pub struct Entry {
 pub struct Summary {
     /// Number of entries.
     pub entries: usize,
-    /// How many are exact.
-    pub exact: usize,
+    /// Entries that were computed by the same method.
+    pub computed: usize,
+    /// How many agree to the printed digits, or as counts.
+    pub as_printed: usize,
     /// How many agree within the table's tolerance.
     pub matching: usize,
-    /// Median of |ratio − 1|.
-    pub median_error: f64,
-    /// Mean of |ln ratio|.
-    pub mean_log_ratio: f64,
+    /// Median of |ratio − 1|; null where nothing was computed.
+    pub median_error: Option<f64>,
+    /// Mean of |ln ratio|; null where nothing was computed.
+    pub mean_log_ratio: Option<f64>,
+    /// Mean of |ln ratio| of the exact values; null where there are none.
+    pub exact_mean_log_ratio: Option<f64>,
 }
 
 /// A published table beside ours.
@@ -61,24 +84,27 @@ pub struct TableComparison {
     pub table: &'static str,
     /// What it holds.
     pub title: &'static str,
+    /// The method that it was made with.
+    pub method: &'static str,
     /// Unit of its values.
     pub unit: &'static str,
-    /// Relative error within which an entry counts as matching; 0 where integer counts must agree.
-    pub tolerance: f64,
+    /// Relative error within which an entry counts as matching; 0 where integer counts must agree; null where nothing is
+    /// promised.
+    pub tolerance: Option<f64>,
     /// What the rows are, with their unit.
     pub row_name: &'static str,
-    /// Values of the rows.
-    pub rows: Vec<f64>,
+    /// Names or values of the rows.
+    pub rows: Vec<String>,
     /// What the columns are, with their unit.
     pub column_name: &'static str,
-    /// Values of the columns.
-    pub columns: Vec<f64>,
+    /// Names or values of the columns.
+    pub columns: Vec<String>,
     /// The entries, row by row.
     pub entries: Vec<Vec<Entry>>,
     /// How well they agree.
     pub summary: Summary,
     /// What a reader must know.
-    pub notes: Vec<&'static str>,
+    pub notes: Vec<String>,
 }
 
 /// Why a table cannot be reproduced.
@@ -101,6 +127,12 @@ pub enum ReproduceError {
     /// An entry cannot be computed.
     #[error(transparent)]
     Entry(#[from] DissertationError),
+    /// An exact value cannot be computed.
+    #[error("no exact value: {reason}")]
+    Exact {
+        /// Why.
+        reason: String,
+    },
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -110,67 +142,120 @@ fn known() -> String {
     TABLES.iter().map(|t| t.name).collect::<Vec<_>>().join(", ")
 }
 
+/// An entry's value by the same method, and its exact one.
+type Found = (Option<f64>, Option<Exact>);
+
 /// Computes a published table and sets it beside the printed one.
 ///
 /// # Errors
 /// When there is no such table (the message lists those there are), or the computation is cancelled.
-pub fn reproduce(table: &str, exec: &Exec) -> Result<TableComparison, ReproduceError> {
+pub fn reproduce(table: &str, settings: &Settings, exec: &Exec) -> Result<TableComparison, ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: table.to_owned() };
     let table = TABLES.iter().find(|t| t.name == table).ok_or_else(unknown)?;
     let published = published::read(table)?;
     let columns = published.columns.len();
     let places = published.rows.len() * columns;
-    let ours: Vec<f64> = exec.install(|| {
-        (0..places)
-            .into_par_iter()
-            .map(|k| table.compute(k / columns, k % columns, exec))
-            .collect::<Result<_, _>>()
+    let found: Vec<Found> = exec.install(|| {
+        let compute = |k: usize| -> Result<Found, ReproduceError> {
+            let (row, column) = (k / columns, k % columns);
+            let ours = table.recipe.compute(row, column, exec)?;
+            let exact = if settings.exact { table.recipe.exact(row, column, exec)? } else { None };
+            Ok((ours, exact))
+        };
+        (0..places).into_par_iter().map(compute).collect::<Result<_, _>>()
     })?;
-    let entry = |(k, &ours): (usize, &f64)| {
+    let entry = |(k, &(ours, exact)): (usize, &Found)| {
         let (row, column) = (k / columns, k % columns);
         let printed = published.values[row][column];
-        let ratio = ours / printed;
         Entry {
             published: printed,
             ours,
-            ratio,
-            exact: table.exact(printed, ours),
-            matches: table.matches(printed, ours),
+            ratio: ours.map(|ours| ours / printed),
+            as_printed: ours.is_some_and(|ours| table.recipe.agree(printed, ours)),
+            matches: ours.and_then(|ours| table.matches(printed, ours)),
             known_difference: table.known_difference(row, column),
+            exact,
+            exact_ratio: exact.map(|exact| exact.value / printed),
         }
     };
-    let flat: Vec<Entry> = ours.iter().enumerate().map(entry).collect();
+    let flat: Vec<Entry> = found.iter().enumerate().map(entry).collect();
+    let mut notes: Vec<String> = table.notes.iter().map(|note| (*note).to_owned()).collect();
+    if table.name == "3.2" {
+        notes.extend(mean_ratios(&flat)?);
+    }
+    if settings.exact && flat.iter().any(|entry| entry.exact.is_some()) {
+        notes.push(format!(
+            "Exact: frictionless quasi-static motion from the same rotation point, ρ = {RHO} D."
+        ));
+    }
     Ok(TableComparison {
         table: table.name,
         title: table.title,
+        method: table.recipe.method(),
         unit: table.unit,
         tolerance: table.tolerance,
-        row_name: "H/D",
+        row_name: table.recipe.row_name(),
         rows: published.rows,
         column_name: table.column_name,
         columns: published.columns,
         summary: summarise(&flat),
         entries: flat.chunks(columns).map(<[Entry]>::to_vec).collect(),
-        notes: table.notes.to_vec(),
+        notes,
     })
 }
 
+/// Means over all entries of X-Face over V-Face and X-Face over S-Face, of the printed tables and of ours.
+fn mean_ratios(x_face: &[Entry]) -> Result<Vec<String>, ReproduceError> {
+    let mut notes = Vec::new();
+    for (face, table, text) in [("V", "3.3", "1.8838"), ("S", "3.4", "2.3846")] {
+        let [printed, ours] = mean_ratio(x_face, table)?;
+        let follows = if (printed - text.parse().unwrap_or(printed)).abs() < 2e-4 {
+            "as the text says to its digits"
+        } else {
+            "which the text's own tables do not give"
+        };
+        notes.push(format!(
+            "Mean over all entries of X/{face}: {printed:.4} from the printed tables (the text: {text}, {follows}), {ours:.4} \
+             from ours."
+        ));
+    }
+    Ok(notes)
+}
+
+/// Mean over all entries of the X-Face over another face: printed, ours.
+fn mean_ratio(x_face: &[Entry], other: &str) -> Result<[f64; 2], ReproduceError> {
+    let unknown = || ReproduceError::Unknown { name: other.to_owned() };
+    let table = TABLES.iter().find(|t| t.name == other).ok_or_else(unknown)?;
+    let values = published::read(table)?.values.concat();
+    let of = |value: &dyn Fn(&Entry) -> f64| {
+        x_face.iter().zip(&values).map(|(entry, other)| value(entry) / other).sum::<f64>()
+            / values.len() as f64
+    };
+    // The printed tables of the other two faces are ours in every entry.
+    Ok([of(&|entry| entry.published), of(&|entry| entry.ours.unwrap_or(f64::NAN))])
+}
+
 fn summarise(entries: &[Entry]) -> Summary {
-    let count = |has: fn(&Entry) -> bool| entries.iter().filter(|e| has(e)).count();
-    let mut errors: Vec<f64> = entries.iter().map(|e| (e.ratio - 1.0).abs()).collect();
+    let mean_log = |ratios: &mut dyn Iterator<Item = f64>| {
+        let logs: Vec<f64> = ratios.map(|ratio| ratio.ln().abs()).collect();
+        (!logs.is_empty()).then(|| logs.iter().sum::<f64>() / logs.len() as f64)
+    };
+    let mut errors: Vec<f64> = entries.iter().filter_map(|e| Some((e.ratio? - 1.0).abs())).collect();
     errors.sort_by(f64::total_cmp);
     let middle = errors.len() / 2;
-    let median_error = if errors.len() % 2 == 1 {
-        errors[middle]
-    } else {
-        f64::midpoint(errors[middle - 1], errors[middle])
+    let median_error = match errors.len() {
+        0 => None,
+        n if n % 2 == 1 => Some(errors[middle]),
+        _ => Some(f64::midpoint(errors[middle - 1], errors[middle])),
     };
     Summary {
         entries: entries.len(),
-        exact: count(|e| e.exact),
-        matching: count(|e| e.matches),
+        computed: errors.len(),
+        as_printed: entries.iter().filter(|e| e.as_printed).count(),
+        matching: entries.iter().filter(|e| e.matches == Some(true)).count(),
         median_error,
-        mean_log_ratio: entries.iter().map(|e| e.ratio.ln().abs()).sum::<f64>() / entries.len() as f64,
+        mean_log_ratio: mean_log(&mut entries.iter().filter_map(|e| e.ratio)),
+        exact_mean_log_ratio: mean_log(&mut entries.iter().filter_map(|e| e.exact_ratio)),
     }
 }
 

@@ -4,28 +4,30 @@ use super::{ReproduceError, Table};
 
 /// A printed table.
 pub(super) struct Published {
-    pub(super) rows: Vec<f64>,
-    pub(super) columns: Vec<f64>,
+    pub(super) rows: Vec<String>,
+    pub(super) columns: Vec<String>,
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// Reads a table: a header `aspect_ratio,cor_-1,…` or `aspect_ratio,rp_0,…`, then one line per row. Every row has a
-/// positive value in every column.
+/// Reads a table: a header `aspect_ratio,cor_-1,…`, `aspect_ratio,rp_0,…` or of plain names, then one line per row that
+/// begins with its name. Every row has a positive value in every column.
 pub(super) fn read(table: &Table) -> Result<Published, ReproduceError> {
     let bad = |reason: String| ReproduceError::Published { table: table.name, reason };
     let number = |text: &str| text.trim().parse::<f64>().map_err(|e| bad(format!("`{text}`: {e}")));
+    // `1.0` and `1` are one name.
+    let name =
+        |text: &str| text.trim().parse::<f64>().map_or_else(|_| text.trim().to_owned(), |v| v.to_string());
     let mut lines = table.csv.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty());
     let header = lines.next().ok_or_else(|| bad("it is empty".to_owned()))?;
-    let columns: Vec<f64> = header
-        .split(',')
-        .skip(1)
-        .map(|name| number(name.split_once('_').map_or(name, |(_, value)| value)))
-        .collect::<Result<_, _>>()?;
+    let value =
+        |head: &str| ["cor_", "rp_"].iter().find_map(|start| head.strip_prefix(start)).map(str::to_owned);
+    let columns: Vec<String> =
+        header.split(',').skip(1).map(|head| value(head).unwrap_or_else(|| head.replace('_', " "))).collect();
     let mut published = Published { rows: Vec::new(), columns, values: Vec::new() };
     for line in lines {
-        let mut cells = line.split(',').map(number);
-        published.rows.push(cells.next().unwrap_or_else(|| Err(bad("an empty row".to_owned())))?);
-        let values: Vec<f64> = cells.collect::<Result<_, _>>()?;
+        let mut cells = line.split(',');
+        published.rows.push(name(cells.next().unwrap_or_default()));
+        let values: Vec<f64> = cells.map(number).collect::<Result<_, _>>()?;
         if values.len() != published.columns.len() || values.iter().any(|v| *v <= 0.0) {
             return Err(bad(format!("row `{line}` does not fit its header")));
         }

@@ -1,20 +1,23 @@
 //! Published numbers, with a ratchet: an entry that is listed as not matching must not match.
 
+use super::recipe::Recipe;
 use super::*;
+use crate::method::flood::dissertation::Errors;
 use crate::method::kinematic::START_MEASURE;
 
 fn comparison(table: &str) -> TableComparison {
-    reproduce(table, &Exec::new()).unwrap()
+    reproduce(table, &Settings::default(), &Exec::new()).unwrap()
 }
 
 #[test]
 fn every_entry_matches_unless_it_is_listed_and_every_listed_one_does_not() {
-    for table in TABLES {
+    for table in TABLES.iter().filter(|table| table.tolerance.is_some()) {
         let comparison = comparison(table.name);
         for (row, entries) in comparison.rows.iter().zip(&comparison.entries) {
             for (column, entry) in comparison.columns.iter().zip(entries) {
+                // Nothing is known of what is not computed.
                 assert_eq!(
-                    entry.matches,
+                    entry.matches.unwrap_or(true),
                     entry.known_difference.is_none(),
                     "table {} at ({row}, {column}): {entry:?}",
                     table.name
@@ -29,7 +32,7 @@ fn the_kinematic_tables_are_reproduced_in_all_242_integers() {
     let mut exact = 0;
     for name in ["3.3", "3.4"] {
         for entry in comparison(name).entries.iter().flatten() {
-            let counts = [entry.published, entry.ours].map(|v| v / START_MEASURE);
+            let counts = [entry.published, entry.ours.unwrap()].map(|v| v / START_MEASURE);
             // The printed values have four digits: never further than an eighth from the integer they stand for.
             assert!((counts[0] - counts[0].round()).abs() < 0.13);
             assert_eq!(counts[0].round(), counts[1].round());
@@ -41,42 +44,97 @@ fn the_kinematic_tables_are_reproduced_in_all_242_integers() {
 
 #[test]
 fn the_planar_onaa_tables_are_reproduced_to_the_cell() {
-    assert_eq!(comparison("5.7").summary.exact, 25);
-    assert!(comparison("5.6").summary.exact >= 24);
+    assert_eq!(comparison("5.7").summary.as_printed, 25);
+    assert!(comparison("5.6").summary.as_printed >= 24);
 }
 
 #[test]
 fn the_planar_sum_tables_have_a_median_error_below_one_percent() {
-    assert!(comparison("5.4").summary.median_error < 0.006);
-    assert!(comparison("5.5").summary.median_error < 0.003);
+    assert!(comparison("5.4").summary.median_error.unwrap() < 0.006);
+    assert!(comparison("5.5").summary.median_error.unwrap() < 0.003);
 }
 
 #[test]
 fn the_pyramid_tables_are_reproduced_as_far_as_their_conventions_are_known() {
     let summary = comparison("5.8").summary;
-    assert!(summary.matching == 20 && summary.mean_log_ratio < 0.0595, "{summary:?}");
+    assert!(summary.matching == 20 && summary.mean_log_ratio.unwrap() < 0.0595, "{summary:?}");
     let summary = comparison("5.9").summary;
-    assert!(summary.matching >= 11 && summary.mean_log_ratio < 0.43, "{summary:?}");
+    assert!(summary.matching >= 11 && summary.mean_log_ratio.unwrap() < 0.43, "{summary:?}");
 }
 
 #[test]
 fn threads_do_not_change_a_table() {
-    let with = |threads| reproduce("5.8", &Exec::new().with_threads(threads).unwrap()).unwrap();
+    let with = |threads| {
+        reproduce("5.8", &Settings::default(), &Exec::new().with_threads(threads).unwrap()).unwrap()
+    };
     assert_eq!(with(1), with(2));
 }
 
 #[test]
 fn an_unknown_table_lists_the_known_ones() {
-    let error = reproduce("5.3", &Exec::new()).unwrap_err();
+    let error = reproduce("5.33", &Settings::default(), &Exec::new()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "there is no table `5.3` to reproduce; known are 3.3, 3.4, 5.4, 5.5, 5.6, 5.7, 5.8, 5.9"
+        "there is no table `5.33` to reproduce; known are 2.1, 3.2, 3.3, 3.4, 5.2, 5.3, 5.4, 5.5, 5.6, 5.7, 5.8, 5.9, \
+         slices"
     );
 }
 
 #[test]
 fn the_text_marks_what_does_not_match_and_says_why() {
     let text = comparison("5.6").to_string();
-    assert!(text.contains("exact: 24 of 25"), "{text}");
+    assert!(text.contains("as printed: 24 of 25"), "{text}");
     assert!(text.contains("1.129*") && text.contains("* (0.5, 0): the square is one cell larger"), "{text}");
+}
+
+/// The text's mean for S does not follow from its own tables, that for V does.
+#[test]
+fn the_means_over_the_kinematic_tables_are_those_of_the_printed_ones() {
+    let table = TABLES.iter().find(|t| t.name == "3.2").unwrap();
+    let entry = |published: &f64| Entry {
+        published: *published,
+        ours: Some(2.0 * published),
+        ratio: None,
+        as_printed: false,
+        matches: None,
+        known_difference: None,
+        exact: None,
+        exact_ratio: None,
+    };
+    let entries: Vec<Entry> = published::read(table).unwrap().values.concat().iter().map(entry).collect();
+    for (other, mean) in [("3.3", 1.8837), ("3.4", 2.2965)] {
+        let [printed, ours] = mean_ratio(&entries, other).unwrap();
+        assert!((printed - mean).abs() < 5e-5 && (ours - 2.0 * printed).abs() < 1e-12);
+    }
+    let notes = mean_ratios(&entries).unwrap();
+    assert!(notes[0].contains("1.8837 from the printed tables (the text: 1.8838, as"), "{notes:?}");
+    assert!(notes[1].contains("2.2965 from the printed tables (the text: 2.3846, which"), "{notes:?}");
+}
+
+#[test]
+fn zero_rotation_areas_are_computed_where_the_geometry_is_known() {
+    let table = comparison("2.1");
+    assert_eq!((table.summary.entries, table.summary.computed, table.summary.matching), (11, 3, 3));
+    assert_eq!(table.rows[1], "Polybot");
+}
+
+#[test]
+fn what_has_no_method_yet_is_held_with_its_exact_value() {
+    let table = comparison("5.2");
+    assert_eq!((table.summary.computed, table.summary.entries), (0, 25));
+    // H/D 1, COR 1: the rotation point is the apex.
+    let exact = Recipe::Partition(crate::design::Family::VFace).exact(2, 4, &Exec::new()).unwrap().unwrap();
+    let other = Recipe::Sum(crate::design::Family::VFace, Errors::XTheta);
+    assert_eq!(Some(exact), other.exact(2, 4, &Exec::new()).unwrap());
+    assert!(exact.value > 2.0 && exact.value < 3.5, "{exact:?}");
+}
+
+#[test]
+fn the_page_has_every_table_and_what_is_left_out() {
+    let tables = [comparison("3.3"), comparison("5.2"), comparison("5.6")];
+    let page = page(&tables, None, "It took no time.").unwrap();
+    for words in ["## 3.3:", "## 5.2:", "| 0.38279", "measured forces", "(1.13\\*)", "| 3.3 V-Face"] {
+        let words = words.replace("| 0.38279", "0.3828 / –");
+        assert!(page.contains(&words), "{words}: {page}");
+    }
 }

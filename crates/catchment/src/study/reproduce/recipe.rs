@@ -1,0 +1,301 @@
+//! How an entry is computed: by the method that the table was made with, and exactly.
+//!
+//! ```text
+//!   by the same method   kinematic starts · flooded samples of the preset · closed forms
+//!   exact                the same rotation point and solids; every sample followed exactly (descent), or a sampled grid
+//!                        whose Sum random descents make unbiased, with its 95 % interval
+//! ```
+//!
+//! Exact means frictionless, quasi-static and overdamped with ρ = [`RHO`], which the dissertation leaves open.
+
+use super::ReproduceError;
+use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::connector::Connector;
+use crate::contact::Pair;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::exec::Exec;
+use crate::landscape::{Grid, GridAxis};
+use crate::merit::brute::largest_cube;
+use crate::merit::onaa::Onaa;
+use crate::method::correction::{self, ByFraction, Stop};
+use crate::method::descent;
+use crate::method::flood::dissertation::{self, Errors};
+use crate::method::kinematic::{self, Face};
+use crate::method::transport;
+use crate::method::zraa::{self, Zraa};
+use crate::pose::{Dof, DofSet, PoseError};
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// ρ of the exact values, in D.
+pub const RHO: f64 = 0.5;
+
+/// What to compute.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Recipe {
+    /// Starts that slide home, by the kinematic method.
+    Kinematic(Face),
+    /// Sum by the polyhedral partition.
+    Partition(Family),
+    /// Sum of the flooded target basin.
+    Sum(Family, Errors),
+    /// Area of the largest square in the flooded target basin.
+    Onaa(Family),
+    /// Zero-rotation area of a system: of those whose geometry is known.
+    Zraa,
+    /// Slices of the 3-D X-Face by drop tests: the first column is the Sum, the second the ONAA edge.
+    Slices,
+}
+
+/// An exact value.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Exact {
+    /// The value, in the table's unit.
+    pub value: f64,
+    /// Its 95 % interval where random poses gave it; else the doubt is that of the samples' spacing.
+    pub ci95: Option<[f64; 2]>,
+}
+
+/// H/D of the rows of chapter 5.
+const ASPECT_RATIOS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+/// COR of the columns of chapter 5.
+const CORS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
+/// What one planar sample counts, D·rad.
+const PLANAR_CELL: f64 = 4.0 * PI / 1e4;
+/// Planar samples per axis, on the rotation point's own coordinates, both ends included.
+const PLANAR: usize = 101;
+/// Cells per axis of the grids whose Sums are corrected, and the random descents that correct them.
+const SPATIAL: usize = 24;
+const DESCENTS: usize = 4000;
+const SEED: u64 = 1;
+/// Cells per axis of a slice of the 3-D X-Face.
+const SLICE: usize = 71;
+
+impl Recipe {
+    /// The method's name.
+    pub(super) const fn method(self) -> &'static str {
+        match self {
+            Self::Kinematic(_) => "kinematic",
+            Self::Partition(_) => "partition",
+            Self::Sum(..) | Self::Onaa(_) => "flood, dissertation preset",
+            Self::Zraa => "closed form",
+            Self::Slices => "drop",
+        }
+    }
+
+    /// What the rows are.
+    pub(super) const fn row_name(self) -> &'static str {
+        match self {
+            Self::Zraa => "system",
+            Self::Slices => "slice",
+            _ => "H/D",
+        }
+    }
+
+    /// Our value of one entry by the method that the table was made with; `None` where that method, or the geometry, is
+    /// not there.
+    pub(super) fn compute(
+        self,
+        row: usize,
+        column: usize,
+        exec: &Exec,
+    ) -> Result<Option<f64>, ReproduceError> {
+        exec.check()?;
+        Ok(match self {
+            Self::Kinematic(face) => {
+                // The printed 0.108819 is 2^(−4 + 0.8), rounded.
+                let aspect_ratio = (0.8 * row as f64 - 4.0).exp2();
+                Some(kinematic::Settings { face, aspect_ratio, rotation_point: column as f64 }.area())
+            }
+            Self::Sum(family, errors) => {
+                Some(dissertation::accept(&settings(family, errors, row, column), exec)?.sum())
+            }
+            Self::Onaa(family) => {
+                let sampled = dissertation::accept(&settings(family, Errors::XTheta, row, column), exec)?;
+                Some(square(largest_cube(&sampled.shape, &sampled.accepted)))
+            }
+            Self::Zraa => zero_rotation(row, exec)?,
+            // The methods that made these tables are not in this program.
+            Self::Partition(_) | Self::Slices => None,
+        })
+    }
+
+    /// The exact value of one entry; `None` where there is no such thing: the rotation point of the kinematic method keeps
+    /// its x, which is another problem, and zero-rotation areas are exact already.
+    pub(super) fn exact(
+        self,
+        row: usize,
+        column: usize,
+        exec: &Exec,
+    ) -> Result<Option<Exact>, ReproduceError> {
+        exec.check()?;
+        Ok(match self {
+            Self::Kinematic(_) | Self::Zraa => None,
+            Self::Sum(_, Errors::XYPitch | Errors::XPitchRoll) => Some(self.corrected(row, column, exec)?),
+            Self::Sum(family, Errors::XTheta) | Self::Partition(family) => {
+                let accepted = followed(family, row, column, exec)?;
+                let count = accepted.iter().filter(|accepted| **accepted).count();
+                Some(Exact { value: count as f64 * PLANAR_CELL, ci95: None })
+            }
+            Self::Onaa(family) => {
+                let edge = largest_cube(&[PLANAR; 2], &followed(family, row, column, exec)?);
+                Some(Exact { value: square(edge), ci95: None })
+            }
+            Self::Slices => Some(Exact { value: slice(row, column, exec)?, ci95: None }),
+        })
+    }
+
+    /// Whether two values agree as the integers they stand for, or to the three printed digits.
+    pub(super) fn agree(self, published: f64, ours: f64) -> bool {
+        let count = |value: f64| match self {
+            Self::Kinematic(_) => (value / kinematic::START_MEASURE).round(),
+            _ => (value / PLANAR_CELL).sqrt().round(),
+        };
+        match self {
+            Self::Kinematic(_) | Self::Onaa(_) => count(published) == count(ours),
+            Self::Sum(..) | Self::Partition(_) | Self::Zraa | Self::Slices => {
+                let half_a_digit = 0.5 * 10f64.powf(published.log10().floor() - 2.0);
+                (ours - published).abs() <= half_a_digit
+            }
+        }
+    }
+
+    /// The Sum of a pyramid: a grid by transport, corrected. A pyramid is its own image with x and y exchanged, which turns
+    /// the dissertation's (x; pitch about x, roll about y) into (y; pitch about y, roll about x).
+    fn corrected(self, row: usize, column: usize, exec: &Exec) -> Result<Exact, ReproduceError> {
+        let Self::Sum(family, errors) = self else {
+            return Err(ReproduceError::Exact { reason: "no such table".to_owned() });
+        };
+        let free: DofSet = match errors {
+            Errors::XPitchRoll => [Dof::Y, Dof::Roll, Dof::Pitch].into_iter().collect(),
+            _ => [Dof::X, Dof::Y, Dof::Pitch].into_iter().collect(),
+        };
+        let settings = settings(family, errors, row, column);
+        let pair = pair(family, settings.aspect_ratio, None, settings.center_of_rotation(), free)?;
+        let grid = Grid::over(&pair.alignment, |_| SPATIAL);
+        let arrival = transport::run(&pair, &grid, &transport::Settings::default(), exec).map_err(failed)?;
+        let by = ByFraction::new(|cell| arrival.fraction(cell), grid.shape());
+        let sample = correction::Settings { seed: SEED, stop: Stop::Samples(DESCENTS) };
+        let descents = descent::Settings::default();
+        let found = correction::correct(&pair, &grid, &by, &sample, &descents, exec).map_err(failed)?;
+        Ok(Exact { value: found.sum, ci95: Some(found.ci95) })
+    }
+}
+
+/// The area that a square of this many samples stands for.
+fn square(edge: usize) -> f64 {
+    (edge * edge) as f64 * PLANAR_CELL
+}
+
+fn settings(family: Family, errors: Errors, row: usize, column: usize) -> dissertation::Settings {
+    dissertation::Settings::new(family, errors, ASPECT_RATIOS[row], CORS[column])
+}
+
+fn failed<E: std::error::Error>(error: E) -> ReproduceError {
+    ReproduceError::Exact { reason: error.to_string() }
+}
+
+/// A family with the x and y of its error box large enough for the tables.
+pub(super) fn design(
+    family: Family,
+    aspect_ratio: f64,
+    base_thickness: Option<f64>,
+    cor: f64,
+    free: DofSet,
+) -> Design {
+    /// Half-range of x and y, in D.
+    const LATERAL: f64 = 2.0;
+    let spec = FamilySpec { aspect_ratio, base_thickness, ..FamilySpec::new(family) };
+    let mut alignment = Alignment {
+        free,
+        center_of_rotation: cor,
+        rotation_length: RHO,
+        ..Alignment::default_for(Some(family))
+    };
+    for dof in [Dof::X, Dof::Y] {
+        alignment.half_ranges[dof.index()] = LATERAL;
+    }
+    let connector = ConnectorSpec::Family(spec);
+    Design { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment }
+}
+
+fn pair(
+    family: Family,
+    aspect_ratio: f64,
+    base_thickness: Option<f64>,
+    cor: f64,
+    free: DofSet,
+) -> Result<Pair, ReproduceError> {
+    let design = design(family, aspect_ratio, base_thickness, cor, free);
+    let reason = |problems: Vec<crate::connector::Problem>| ReproduceError::Exact {
+        reason: problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
+    };
+    Ok(Pair::new(&Connector::build(&design).map_err(reason)?, &design.alignment))
+}
+
+/// Thickness of the block behind both planar faces of chapter 5, in D.
+pub(super) const PLANAR_BASE: f64 = 0.5;
+
+/// Whether each of a planar table's own samples docks, followed exactly; x of the rotation point runs fastest.
+fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Vec<bool>, ReproduceError> {
+    let settings = settings(family, Errors::XTheta, row, column);
+    let cor = settings.center_of_rotation();
+    let free = [Dof::X, Dof::Pitch].into_iter().collect();
+    let pair = pair(family, settings.aspect_ratio, Some(PLANAR_BASE), cor, free)?;
+    let last = (PLANAR - 1) as f64;
+    let pose = |k: usize| {
+        let x = 4.0 * (k % PLANAR) as f64 / last - 2.0;
+        let pitch = PI * (k / PLANAR) as f64 / last - PI / 2.0;
+        // The samples are places of the rotation point, an error is the place of the face centre.
+        PoseError { x: x + cor * pitch.sin(), pitch, ..PoseError::default() }
+    };
+    let poses = Domain::Poses((0..PLANAR * PLANAR).map(pose).collect());
+    let (acceptance, _) = descent::run(&pair, poses, &descent::Settings::default(), exec)?;
+    Ok(acceptance.accepted().collect())
+}
+
+/// Zero-rotation areas of the systems of table 2.1 whose geometry is known, by row; widths are 1.
+fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, ReproduceError> {
+    /// A pin of radius 2 mm on a face of 50 mm finds its hole from that far.
+    const POLYBOT: f64 = 2.0 / 50.0;
+    /// Radius of the circle from which the four cones and funnels find each other.
+    const DRAGON: f64 = 0.335;
+    Ok(match row {
+        1 => Some(PI * POLYBOT * POLYBOT),
+        9 => Some(PI * DRAGON * DRAGON),
+        10 => {
+            // The cone has width 1; the one that circumscribes a square of width 1 is √2 as wide.
+            let free = [Dof::X, Dof::Y].into_iter().collect();
+            let pair = pair(Family::Cone, FamilySpec::new(Family::Cone).aspect_ratio, None, 0.0, free)?;
+            match zraa::run(&pair, &zraa::Settings::default(), exec).map_err(failed)? {
+                Zraa::Region { area, .. } => Some(2.0 * area),
+                Zraa::Interval { .. } => None,
+            }
+        }
+        _ => None,
+    })
+}
+
+/// A slice of the 3-D X-Face over ± D and ± 90°, all free, followed exactly: its Sum as a share of the plane (column 0), or its
+/// ONAA edge. The centre of mass of the published model is not stated: the rotation point is the face centre here.
+fn slice(row: usize, column: usize, exec: &Exec) -> Result<f64, ReproduceError> {
+    const SECOND: [Dof; 4] = [Dof::Y, Dof::Roll, Dof::Pitch, Dof::Yaw];
+    let family = Family::XFace3d;
+    let mut design = design(family, FamilySpec::new(family).aspect_ratio, None, 0.0, DofSet::ALL);
+    design.alignment.half_ranges = Alignment::DEFAULT_HALF_RANGES;
+    let connector =
+        Connector::build(&design).map_err(|_| ReproduceError::Exact { reason: family.name().to_owned() })?;
+    let pair = Pair::new(&connector, &design.alignment);
+    let axis = |dof: Dof| {
+        let half = pair.alignment.half_range(dof);
+        GridAxis { dof, lo: -half, hi: half, cells: SLICE }
+    };
+    let grid = Grid { axes: vec![axis(Dof::X), axis(SECOND[row])] };
+    let (acceptance, _): (Acceptance, _) =
+        descent::run(&pair, Domain::Grid(grid), &descent::Settings::default(), exec)?;
+    if column == 0 {
+        let aligned = acceptance.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count();
+        return Ok(aligned as f64 / acceptance.outcomes.len() as f64);
+    }
+    Ok(Onaa::of(&acceptance, exec).map_err(failed)?.edge)
+}

@@ -1,0 +1,169 @@
+//! Figure 5.13: how the Sum and the time of a method move with the resolution, for the V-Face at H/D ¼, COR −½.
+//!
+//! ```text
+//!   Sum ▲  ○__                     the dissertation: its Sum begins larger, slowly decreases, and its time grows like N²
+//!       │     ○──○──○  preset      (its figure is lost, no point of it is held)
+//!       │  ●──●──●──●  exact       here: its own method, and every general method of this program, at the same rotation
+//!       └────────────▶ N           point, with the exact Sum and its 95 % interval
+//! ```
+//!
+//! Samples or cells per axis N over x in ±2 D and θ in ±90°. Seconds are wall-clock time and differ between runs.
+
+use super::recipe::{PLANAR_BASE, design};
+use super::{RHO, ReproduceError};
+use crate::connector::Connector;
+use crate::contact::Pair;
+use crate::design::{Design, Family};
+use crate::exec::Exec;
+use crate::method::Method;
+use crate::method::correction::{self, Stop};
+use crate::method::flood::dissertation::{self, Errors};
+use crate::pose::Dof;
+use crate::study::trial::Decided;
+use serde::Serialize;
+use std::time::Instant;
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Settings {
+    /// Samples or cells per axis, coarse to fine; even.
+    pub resolutions: Vec<usize>,
+    /// The finest resolution of descent, which takes its time.
+    pub finest_descent: usize,
+    /// Random descents behind the exact Sum.
+    pub descents: usize,
+    /// Their seed.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { resolutions: vec![26, 50, 100, 200, 400, 800], finest_descent: 200, descents: 20_000, seed: 1 }
+    }
+}
+
+/// One method.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Curve {
+    /// Its name.
+    pub name: &'static str,
+    /// Coarse to fine.
+    pub points: Vec<Point>,
+}
+
+/// One method at one resolution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Point {
+    /// Samples or cells per axis.
+    pub resolution: usize,
+    /// The Sum, D·rad.
+    pub sum: f64,
+    /// Wall-clock time.
+    pub seconds: f64,
+}
+
+/// The figure.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// What else changes the answer.
+    pub settings: Settings,
+    /// The exact Sum, D·rad.
+    pub exact: f64,
+    /// Its 95 % interval.
+    pub exact_ci95: [f64; 2],
+    /// ρ of the methods that know one, in D.
+    pub rotation_length: f64,
+    /// One per method, the dissertation's own first.
+    pub curves: Vec<Curve>,
+}
+
+/// The figure's design: H/D, and COR in the dissertation's sense.
+const ASPECT_RATIO: f64 = 0.25;
+const COR: f64 = -0.5;
+
+/// Name of the dissertation's own method.
+const PRESET: &str = "dissertation's";
+
+/// Computes the figure.
+///
+/// # Errors
+/// When it is cancelled, or does not fit into memory.
+pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
+    let failed = |error: &dyn std::error::Error| ReproduceError::Exact { reason: error.to_string() };
+    let preset = dissertation::Settings::new(Family::VFace, Errors::XTheta, ASPECT_RATIO, COR);
+    let free = [Dof::X, Dof::Pitch].into_iter().collect();
+    let cor = preset.center_of_rotation();
+    let design: Design = design(Family::VFace, ASPECT_RATIO, Some(PLANAR_BASE), cor, free);
+    let connector =
+        Connector::build(&design).map_err(|_| ReproduceError::Exact { reason: design.name.clone() })?;
+    let pair = Pair::new(&connector, &design.alignment);
+    let mut own = Curve { name: PRESET, points: Vec::new() };
+    for &resolution in &settings.resolutions {
+        exec.check()?;
+        let started = Instant::now();
+        // Both ends are samples: one more than intervals.
+        let at = dissertation::Settings { planar_samples: resolution + 1, ..preset };
+        let sum = dissertation::accept(&at, exec)?.sum();
+        own.points.push(Point { resolution, sum, seconds: started.elapsed().as_secs_f64() });
+    }
+    let mut curves = vec![own];
+    let mut finest = None;
+    for method in Method::ON_GRIDS {
+        let mut curve = Curve { name: method.name(), points: Vec::new() };
+        for &resolution in &settings.resolutions {
+            if method == Method::Descent && resolution > settings.finest_descent {
+                continue;
+            }
+            let decided = Decided::by(method, &pair, resolution, exec).map_err(|error| failed(&error))?;
+            let trial = decided.trial(&pair, exec).map_err(|error| failed(&error))?;
+            curve.points.push(Point { resolution, sum: trial.sum, seconds: trial.seconds });
+            if method == Method::Transport {
+                finest = Some(decided);
+            }
+        }
+        curves.push(curve);
+    }
+    let Some(finest) = finest else {
+        return Err(ReproduceError::Exact { reason: "no resolution was asked for".to_owned() });
+    };
+    let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
+    let exact = finest.correct(&pair, &sample, exec).map_err(|error| failed(&error))?;
+    let settings = settings.clone();
+    Ok(Found { settings, exact: exact.sum, exact_ci95: exact.ci95, rotation_length: RHO, curves })
+}
+
+impl Found {
+    /// Every point as a record for programs, the names of the columns first.
+    pub fn records(&self) -> Vec<Vec<String>> {
+        let mut records =
+            vec![["method", "resolution", "sum", "seconds", "exact"].map(str::to_owned).to_vec()];
+        for curve in &self.curves {
+            for point in &curve.points {
+                let mut record = vec![curve.name.to_owned(), point.resolution.to_string()];
+                record.extend([point.sum, point.seconds, self.exact].map(|value| value.to_string()));
+                records.push(record);
+            }
+        }
+        records
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_methods_come_nearer() {
+        let settings = Settings {
+            resolutions: vec![20, 40, 80],
+            finest_descent: 80,
+            descents: 2000,
+            ..Settings::default()
+        };
+        let found = run(&settings, &Exec::new()).unwrap();
+        let last = |name: &str| found.curves.iter().find(|c| c.name == name).unwrap().points[2].sum;
+        assert!((last("descent") / found.exact - 1.0).abs() < 0.03, "{found:?}");
+        assert!(found.curves[0].points.iter().all(|p| p.sum > 0.2 && p.sum < 1.0), "{found:?}");
+        assert_eq!(found.records().len(), 1 + 5 * 3);
+    }
+}
