@@ -233,7 +233,7 @@ fn spaces(
             .par_iter()
             .map(|compartment| {
                 exec.check()?;
-                let patches = space::patches(meetings, compartment, alignment.free);
+                let patches = space::patches(meetings, compartment, alignment.free, exec)?;
                 let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 exec.report(done as f64 / compartments.len() as f64, "contact space");
                 Ok((compartment.clone(), patches))

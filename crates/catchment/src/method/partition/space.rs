@@ -17,6 +17,7 @@
 
 use super::compose::{Compartment, compose};
 use super::pieces::Meeting;
+use crate::exec::{Cancelled, Exec};
 use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION, minkowski_sum_of};
 use crate::pose::DofSet;
 use std::array;
@@ -80,23 +81,34 @@ pub(super) struct Patch {
 }
 
 /// The contact space over one compartment.
-pub(super) fn patches(meetings: &[Meeting], compartment: &Compartment, free: DofSet) -> Vec<Patch> {
-    envelope(&roofs(meetings, compartment, free))
+pub(super) fn patches(
+    meetings: &[Meeting],
+    compartment: &Compartment,
+    free: DofSet,
+    exec: &Exec,
+) -> Result<Vec<Patch>, Cancelled> {
+    envelope(&roofs(meetings, compartment, free, exec)?, exec)
 }
 
 /// All polytopes of the sum over one compartment, highest first.
-pub(super) fn roofs(meetings: &[Meeting], compartment: &Compartment, free: DofSet) -> Vec<Roof> {
+pub(super) fn roofs(
+    meetings: &[Meeting],
+    compartment: &Compartment,
+    free: DofSet,
+    exec: &Exec,
+) -> Result<Vec<Roof>, Cancelled> {
     let mut roofs: Vec<Roof> = Vec::new();
     for Meeting { fixed, moving } in meetings {
         let dimension = moving.dimension + compartment.spans.len();
         for composite in compose(moving, compartment) {
+            exec.check()?;
             let Some(sum) = minkowski_sum_of(dimension, &composite, &fixed.vertices) else { continue };
             roofs.extend(unlocked(sum, moving.dimension, free).and_then(|(sum, z)| Roof::of(&sum, z)));
         }
     }
     // Ties in height keep their order, so the result is the same on every machine.
     roofs.sort_by(|a, b| b.top.total_cmp(&a.top));
-    roofs
+    Ok(roofs)
 }
 
 /// The cross-section at the aligned position of every translation that is locked, and the axis of the approach in it.
@@ -166,10 +178,11 @@ impl Roof {
 }
 
 /// What of every facet is met first. `roofs` are sorted, highest first.
-pub(super) fn envelope(roofs: &[Roof]) -> Vec<Patch> {
+pub(super) fn envelope(roofs: &[Roof], exec: &Exec) -> Result<Vec<Patch>, Cancelled> {
     let mut patches = Vec::new();
     for (k, roof) in roofs.iter().enumerate() {
         for (facet, plane) in &roof.facets {
+            exec.check()?;
             let lowest = facet.vertices().iter().map(|q| plane.at(q)).fold(f64::INFINITY, f64::min);
             let mut left = vec![facet.clone()];
             for (other, cover) in roofs.iter().enumerate() {
@@ -190,7 +203,7 @@ pub(super) fn envelope(roofs: &[Roof]) -> Vec<Patch> {
             patches.extend(joined(left).into_iter().map(|region| Patch { region, height: *plane }));
         }
     }
-    patches
+    Ok(patches)
 }
 
 fn boxes_meet(shadow: &Polytope, parts: &[Polytope]) -> bool {

@@ -41,8 +41,8 @@ fn spaces_of(pair: &Pair, settings: &Settings) -> Vec<(Vec<Roof>, Vec<Patch>, Co
     Compartment::all(&angles)
         .into_iter()
         .map(|compartment| {
-            let roofs = roofs(&meetings, &compartment, free);
-            let patches = envelope(&roofs);
+            let roofs = roofs(&meetings, &compartment, free, &Exec::new()).unwrap();
+            let patches = envelope(&roofs, &Exec::new()).unwrap();
             (roofs, patches, compartment)
         })
         .collect()

@@ -21,6 +21,7 @@ use crate::method::correction::{self, ByFraction, Stop};
 use crate::method::descent;
 use crate::method::flood::dissertation::{self, Errors};
 use crate::method::kinematic::{self, Face};
+use crate::method::partition;
 use crate::method::transport;
 use crate::method::zraa::{self, Zraa};
 use crate::pose::{Dof, DofSet, PoseError};
@@ -114,9 +115,10 @@ impl Recipe {
                 let sampled = dissertation::accept(&settings(family, Errors::XTheta, row, column), exec)?;
                 Some(square(largest_cube(&sampled.shape, &sampled.accepted)))
             }
+            Self::Partition(family) => Some(partitioned(family, row, column, exec)?),
             Self::Zraa => zero_rotation(row, exec)?,
             // The methods that made these tables are not in this program.
-            Self::Partition(_) | Self::Slices => None,
+            Self::Slices => None,
         })
     }
 
@@ -252,6 +254,16 @@ fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Ve
     let poses = Domain::Poses((0..PLANAR * PLANAR).map(pose).collect());
     let (acceptance, _) = descent::run(&pair, poses, &descent::Settings::default(), exec)?;
     Ok(acceptance.accepted().collect())
+}
+
+/// The Sum of a planar face by the partition with the dissertation's own settings: 12 slices, and no strips.
+fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result<f64, ReproduceError> {
+    const AS_PUBLISHED: partition::Settings = partition::Settings { slices: 12, strips: 1 };
+    let settings = settings(family, Errors::XTheta, row, column);
+    let free = [Dof::X, Dof::Pitch].into_iter().collect();
+    let cor = settings.center_of_rotation();
+    let pair = pair(family, settings.aspect_ratio, Some(PLANAR_BASE), cor, free)?;
+    Ok(partition::run(&pair, &AS_PUBLISHED, exec).map_err(failed)?.measure(Outcome::Aligned))
 }
 
 /// Zero-rotation areas of the systems of table 2.1 whose geometry is known, by row; widths are 1.
