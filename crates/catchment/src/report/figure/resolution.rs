@@ -1,7 +1,6 @@
 //! Figure 5.13 of the dissertation, drawn again: Sum and time over the resolution.
 
 use super::Picture;
-use super::axis::short;
 use super::chart::{Chart, Line, Point, legend};
 use super::colour::CURVES;
 use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
@@ -15,11 +14,11 @@ pub fn resolution(found: &Found) -> Picture {
     let (left, right, top, size) = (78.0, 560.0, 96.0, [400.0, 300.0]);
     let mut svg = Svg::new(right + size[0] + 28.0, top + size[1] + 56.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, "Figure 5.13: V-Face, H/D 1/4, COR −1/2");
-    let [lo, hi] = found.exact_ci95.map(short);
+    let [lo, hi] = found.exact_ci95;
     let story = format!(
-        "exact {} D·rad, 95 % interval {lo} … {hi}  ·  the published figure is lost; its text: larger at first, slowly \
+        "exact {:.4} D·rad, 95 % interval {lo:.4} … {hi:.4}  ·  the published figure is lost; its text: larger at first, slowly \
          decreasing",
-        short(found.exact)
+        found.exact
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let curves = |y: fn(f64, f64) -> f64| -> Vec<Line> {
