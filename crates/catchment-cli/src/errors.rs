@@ -1,7 +1,9 @@
 //! Pose errors as a person writes them: what a number, its unit and the design allow.
 
-use catchment::design::{Design, Quantity};
-use catchment::pose::Dof;
+use crate::failure::Failure;
+use catchment::design::{Complaint, Design, Quantity, nearest};
+use catchment::pose::{Dof, PoseError};
+use miette::{MietteDiagnostic, Report};
 use std::f64::consts::PI;
 
 /// Largest offset that is tried, in D: beyond it a file is in the wrong unit.
@@ -50,4 +52,60 @@ fn locked(dof: Dof, quantity: Quantity) -> Objection {
         format!("{name} = {quantity}, but {name} is locked: {stays}"),
         format!("leave {name} out, or free it with --free or in [alignment] of the design"),
     )
+}
+
+/// Reads `x=0.2,pitch=10 deg`, the text of `--pose`; everything that is wrong with it at once.
+pub(crate) fn pose(text: &str, design: &Design) -> Result<PoseError, Failure> {
+    let mut values = [None; 5];
+    let mut objections = Vec::new();
+    for part in text.split(',') {
+        match term(part, design) {
+            Ok((dof, value)) => {
+                if values[dof.index()].replace(value).is_some() {
+                    objections.push(Objection::new(format!("{} is given twice", dof.name()), "name it once"));
+                }
+            }
+            Err(objection) => objections.push(objection),
+        }
+    }
+    if objections.is_empty() {
+        Ok(PoseError::from_array(values.map(|value| value.unwrap_or(0.0))))
+    } else {
+        Err(refusal(text, objections))
+    }
+}
+
+/// Reads `pitch=10 deg`.
+fn term(part: &str, design: &Design) -> Result<(Dof, f64), Objection> {
+    const FORM: &str = "write errors such as \"x=0.2,pitch=10 deg\"";
+    let part = part.trim();
+    let Some((name, number)) = part.split_once('=') else {
+        return Err(Objection::new(format!("`{part}` is no error"), FORM));
+    };
+    let name = name.trim();
+    let Some(dof) = Dof::ALL.into_iter().find(|dof| dof.name() == name) else {
+        let help = nearest(name, Dof::ALL.map(Dof::name)).map_or_else(
+            || "one of x, y, roll, pitch, yaw".to_owned(),
+            |meant| format!("did you mean {meant}?"),
+        );
+        return Err(Objection::new(format!("there is no error `{name}`"), help));
+    };
+    let quantity: Quantity = number
+        .parse()
+        .map_err(|c: Complaint| Objection { message: format!("{name}: {c}"), help: c.help() })?;
+    Ok((dof, checked(dof, quantity, design)?))
+}
+
+fn refusal(text: &str, objections: Vec<Objection>) -> Failure {
+    let count = objections.len();
+    let reports = objections
+        .into_iter()
+        .map(|objection| {
+            let mut diagnostic = MietteDiagnostic::new(format!("--pose: {}", objection.message));
+            diagnostic.help = objection.help;
+            Report::new(diagnostic)
+        })
+        .collect();
+    let shown: String = text.chars().filter(|c| !c.is_control()).take(80).collect();
+    Failure::many(reports, (count > 1).then(|| format!("{count} problems in --pose \"{shown}\"")))
 }

@@ -4,6 +4,7 @@
 
 mod args;
 mod command;
+mod drop_args;
 mod errors;
 mod exec_args;
 mod exit;

@@ -169,3 +169,22 @@ fn the_engine_confirms_the_v_face_border() {
     // Every one of these poses lies within two cells of the border, where agreement is hardest.
     assert!(same * 100 >= of * 98, "{same} of {of}");
 }
+
+/// Two ways that share no line of code: exact quasi-static motion, and a rigid-body engine with masses, springs and time steps.
+#[cfg(feature = "drop")]
+#[test]
+fn drop_tests_agree_with_descent() {
+    use catchment::method::drop;
+    // One pose in so many: all 1400 take half a minute on two cores.
+    const EVERY: usize = 4;
+    for file in SETS {
+        let trials = read(file);
+        let poses: Vec<PoseError> = trials.poses.iter().copied().step_by(EVERY).collect();
+        let domain = || Domain::Poses(poses.clone());
+        let (descents, _) = descent::run(&trials.pair, domain(), &Settings::default(), &Exec::new()).unwrap();
+        let (drops, _) = drop::run(&trials.pair, domain(), &drop::Settings::default(), &Exec::new()).unwrap();
+        let same = descents.accepted().zip(drops.accepted()).filter(|(a, b)| a == b).count();
+        println!("{}: {same} of {}", trials.name, poses.len());
+        assert!(same * 100 >= poses.len() * 95, "{}: {same} of {}", trials.name, poses.len());
+    }
+}

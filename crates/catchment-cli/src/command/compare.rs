@@ -20,6 +20,7 @@ use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::merit::comparison::{Comparison, Paired};
 use catchment::method::correction::{Settings, Stop};
+use catchment::method::drop::Settings as DropSettings;
 use catchment::method::{Method, partition};
 use catchment::report::figure::FigureError;
 use catchment::report::schema::Timing;
@@ -177,9 +178,19 @@ fn decide(
         .map_err(|error| Failure::with_help(format!("{}: {error}", path.display()), None))?;
     let samples = method.default_samples(&pair);
     let sample = (samples > 0).then_some(Settings { seed: SEED, stop: Stop::Samples(samples) });
+    let drop = (method == Method::Drop).then(DropSettings::default);
     let partition = partition::Settings::for_rotations(design.alignment.free.rotations());
-    let job =
-        Job { design, pair: &pair, grid, method, depth_tolerance: None, partition, sample, heights: false };
+    let job = Job {
+        design,
+        pair: &pair,
+        grid,
+        method,
+        depth_tolerance: None,
+        partition,
+        drop,
+        sample,
+        heights: false,
+    };
     let computed = compute(&job, exec)?;
     let report = super::run::report(&job, &computed, Vec::new(), None, None, exec)?;
     Ok((Side { source: path.display().to_string(), report }, computed.acceptance))

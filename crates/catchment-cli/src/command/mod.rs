@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod completions;
+mod export;
 mod man;
 mod new;
 mod outcome;
@@ -24,10 +25,11 @@ pub(crate) enum Command {
     Check(check::CheckArgs),
     Run(Box<run::RunArgs>),
     Compare(compare::CompareArgs),
-    Slices(slices::SlicesArgs),
-    Outcome(outcome::OutcomeArgs),
+    Slices(Box<slices::SlicesArgs>),
+    Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
+    Export(Box<export::ExportArgs>),
     Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
     Completions(completions::CompletionsArgs),
@@ -46,6 +48,7 @@ impl Command {
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
+            Self::Export(args) => export::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),
             Self::Completions(args) => completions::run(&args),

@@ -1,6 +1,7 @@
 //! `catchment outcome`: what becomes of listed pose errors.
 
 use crate::args::DesignArgs;
+use crate::drop_args::DropArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -8,7 +9,8 @@ use crate::output::{OutputArgs, number, to_stderr};
 use crate::poses::Poses;
 use catchment::acceptance::{Acceptance, Domain, Outcome};
 use catchment::design::Design;
-use catchment::method::descent::{self, End, Settings};
+use catchment::method::descent::{self, End};
+use catchment::method::drop;
 use catchment::pose::PoseError;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -23,7 +25,8 @@ use std::path::PathBuf;
 #[command(after_long_help = "Examples:\n  \
     catchment outcome design.toml --poses poses.csv -o outcomes.csv\n  \
     printf 'x_mm,pitch_deg\\n5,10\\n20,-30\\n' | catchment outcome design.toml --poses -\n  \
-    catchment outcome design.toml --poses poses.csv --json | jq .counts\n\n\
+    catchment outcome design.toml --poses poses.csv --json | jq .counts\n  \
+    catchment outcome design.toml --poses poses.csv --method drop --friction 0.2\n\n\
     Columns: x, y, roll, pitch, yaw in any order, in D and radians; missing ones are 0. A unit after an underscore \
     changes that: x_mm, y_in, x_D, pitch_deg, yaw_rad. Other columns are carried through. Final errors come in the \
     units of their columns. At most 64 MiB and 1000000 poses.")]
@@ -36,6 +39,8 @@ pub(crate) struct OutcomeArgs {
     /// What decides
     #[arg(long, value_enum, default_value_t = Method::Descent)]
     method: Method,
+    #[command(flatten)]
+    drop: DropArgs,
     /// Print JSON, in D and radians
     #[arg(long)]
     json: bool,
@@ -50,6 +55,8 @@ pub(crate) struct OutcomeArgs {
 enum Method {
     /// Exact quasi-static motion of every pose
     Descent,
+    /// Three drop tests in a rigid-body engine
+    Drop,
 }
 
 /// Version of the JSON that `--json` prints.
@@ -60,16 +67,23 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     let (built, pair, doubts) = args.design.build()?.into_pair()?;
     let design = &built.input.design;
     let poses = Poses::read(&args.poses, design)?;
+    let dropped = match args.method {
+        Method::Descent => args.drop.refuse("descent").map(|()| None),
+        Method::Drop => args.drop.settings().map(Some),
+    }?;
     let running = args.exec.start()?;
     let domain = Domain::Poses(poses.errors.clone());
-    let (acceptance, ends) = match args.method {
-        Method::Descent => descent::run(&pair, domain, &Settings::default(), &running.exec)?,
+    let (settings, (acceptance, ends)) = if let Some(settings) = &dropped {
+        (serde_json::to_value(settings)?, drop::run(&pair, domain, settings, &running.exec)?)
+    } else {
+        let settings = descent::Settings::default();
+        (serde_json::to_value(&settings)?, descent::run(&pair, domain, &settings, &running.exec)?)
     };
-    drop(running);
+    std::mem::drop(running);
     let warnings: Vec<String> =
         doubts.into_iter().chain(acceptance.warnings.iter().map(ToString::to_string)).collect();
     if args.json {
-        args.output.write(&json(design, &poses, &acceptance, &ends, &warnings)?)?;
+        args.output.write(&json(design, settings, &poses, &acceptance, &ends, &warnings)?)?;
     } else {
         args.output.write(&csv(design, &poses, &ends)?)?;
     }
@@ -109,7 +123,7 @@ struct Answer<'a> {
     schema: u32,
     design: &'a Design,
     method: &'static str,
-    settings: Settings,
+    settings: serde_json::Value,
     counts: BTreeMap<&'static str, usize>,
     warnings: &'a [String],
     poses: Vec<Row>,
@@ -129,6 +143,7 @@ struct Row {
 
 fn json(
     design: &Design,
+    settings: serde_json::Value,
     poses: &Poses,
     acceptance: &Acceptance,
     ends: &[End],
@@ -145,7 +160,7 @@ fn json(
         schema: JSON_SCHEMA,
         design,
         method: acceptance.method,
-        settings: Settings::default(),
+        settings,
         counts: Outcome::ALL.iter().map(|outcome| outcome.name()).zip(acceptance.counts()).collect(),
         warnings,
         poses: rows.collect(),

@@ -1,6 +1,7 @@
 //! `catchment slices`: two errors at a time, finely, with everything free.
 
 use crate::args::DesignArgs;
+use crate::drop_args::DropArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -11,19 +12,20 @@ use catchment::pose::Dof;
 use catchment::report::schema::Timing;
 use catchment::report::{Report, SlicesReport, figure, zarr};
 use catchment::study::slices::{Settings, run as compute};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Instant;
 
 /// Slices: two errors vary finely, all free ones move
 ///
-/// Every cell of a plane through zero is followed exactly. The errors that do not vary begin at zero and are as free
+/// Every cell of a plane through zero is followed exactly, or dropped in a rigid-body engine. The errors that do not vary begin at zero and are as free
 /// to move as the design says; `run --free` locks them instead, which is another question.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment slices design.toml -o out                 all pairs of free errors, in one picture\n  \
     catchment slices design.toml --axes x,pitch --axes x,yaw --resolution 201\n  \
-    catchment slices design.toml --json | jq '.slices[].onaa.edge'\n\n\
+    catchment slices design.toml --json | jq '.slices[].onaa.edge'\n  \
+    catchment slices designs/x-face-3d.toml --axes x,y --axes x,roll --axes x,pitch --axes x,yaw --method drop\n                                                        the slices that the dissertation published\n\n\
     -o DIR: slices.png, slices.svg, slices.csv, report.json, and a Zarr group such as x-pitch.zarr for each.")]
 pub(crate) struct SlicesArgs {
     #[command(flatten)]
@@ -34,6 +36,11 @@ pub(crate) struct SlicesArgs {
     /// Cells per axis, such as 201 or x=201,yaw=91
     #[arg(long, value_name = "CELLS", default_value = "71", value_parser = resolution)]
     resolution: Resolution,
+    /// What decides every cell
+    #[arg(long, value_enum, default_value_t = Method::Descent)]
+    method: Method,
+    #[command(flatten)]
+    drop: DropArgs,
     /// Write pictures, table, report and outcomes into this folder
     #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]
     output: Option<PathBuf>,
@@ -42,6 +49,15 @@ pub(crate) struct SlicesArgs {
     json: bool,
     #[command(flatten)]
     exec: ExecArgs,
+}
+
+/// Methods that decide every cell by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Method {
+    /// Exact quasi-static motion
+    Descent,
+    /// Three drop tests in a rigid-body engine
+    Drop,
 }
 
 fn pair(text: &str) -> Result<[Dof; 2], String> {
@@ -70,7 +86,12 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     }
     let (built, pair, doubts) = args.design.build()?.into_pair()?;
     let design = &built.input.design;
-    let settings = Settings { resolution: args.resolution, pairs: args.axes.clone(), ..Settings::default() };
+    let drop = match args.method {
+        Method::Descent => args.drop.refuse("descent").map(|()| None),
+        Method::Drop => args.drop.settings().map(Some),
+    }?;
+    let settings =
+        Settings { resolution: args.resolution, pairs: args.axes.clone(), drop, ..Settings::default() };
 
     let running = args.exec.start()?;
     let found = compute(&pair, &settings, &running.exec)?;
@@ -80,7 +101,10 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let mut notes: Vec<String> = doubts.into_iter().map(|doubt| format!("warning: {doubt}")).collect();
     if let Some(folder) = &folder {
         let picture = figure::slice_matrix(design, &built.connector, &found)?;
-        let settings = serde_json::to_value(&report.settings.descent)?;
+        let settings = match &report.settings.drop {
+            Some(drop) => serde_json::to_value(drop)?,
+            None => serde_json::to_value(&report.settings.descent)?,
+        };
         let written = folder.write(&json, &report.records(), picture, &running.exec, |folder| {
             for (slice, of) in found.slices.iter().zip(&report.slices) {
                 running.exec.check()?;
@@ -92,7 +116,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
         })?;
         notes.push(format!("{written}, {} Zarr groups", found.slices.len()));
     }
-    drop(running);
+    std::mem::drop(running);
     to_stdout(&if args.json { json } else { report.table() })?;
     to_stderr(&notes);
     Ok(ExitStatus::Done)

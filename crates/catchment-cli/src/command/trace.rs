@@ -1,16 +1,15 @@
 //! `catchment trace`: the way of one pose from first contact to its end.
 
 use crate::args::DesignArgs;
-use crate::errors::{Objection, checked};
+use crate::errors::pose;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, number, to_stderr, to_stdout};
-use catchment::design::{Design, Quantity, nearest};
+use catchment::design::Design;
 use catchment::method::descent::{self, Settings, Trajectory, Waypoint};
 use catchment::pose::{Dof, PoseError};
 use catchment::report::figure;
 use clap::Args;
-use miette::{MietteDiagnostic, Report};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -49,7 +48,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
     let (built, pair, doubts) = args.design.build()?.into_pair()?;
     let design = &built.input.design;
-    let error = pose(&args.pose, design).map_err(|objections| refusal(&args.pose, objections))?;
+    let error = pose(&args.pose, design)?;
     let path = descent::trace(&pair, &error, &Settings::default());
     match kind {
         Some("csv") => args.file.write(&csv(&path)?)?,
@@ -67,63 +66,6 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     to_stdout(&if args.json { json(design, &error, &path, &doubts) } else { table(design, &path)? })?;
     to_stderr(&doubts.iter().map(|doubt| format!("warning: {doubt}")).collect::<Vec<_>>());
     Ok(ExitStatus::Done)
-}
-
-/// Reads `x=0.2,pitch=10 deg`; everything that is wrong with it at once.
-fn pose(text: &str, design: &Design) -> Result<PoseError, Vec<Objection>> {
-    let mut values = [None; 5];
-    let mut objections = Vec::new();
-    for part in text.split(',') {
-        match term(part, design) {
-            Ok((dof, value)) => {
-                if values[dof.index()].replace(value).is_some() {
-                    objections.push(Objection::new(format!("{} is given twice", dof.name()), "name it once"));
-                }
-            }
-            Err(objection) => objections.push(objection),
-        }
-    }
-    if objections.is_empty() {
-        Ok(PoseError::from_array(values.map(|value| value.unwrap_or(0.0))))
-    } else {
-        Err(objections)
-    }
-}
-
-/// Reads `pitch=10 deg`.
-fn term(part: &str, design: &Design) -> Result<(Dof, f64), Objection> {
-    const FORM: &str = "write errors such as \"x=0.2,pitch=10 deg\"";
-    let part = part.trim();
-    let Some((name, number)) = part.split_once('=') else {
-        return Err(Objection::new(format!("`{part}` is no error"), FORM));
-    };
-    let name = name.trim();
-    let Some(dof) = Dof::ALL.into_iter().find(|dof| dof.name() == name) else {
-        let help = nearest(name, Dof::ALL.map(Dof::name)).map_or_else(
-            || "one of x, y, roll, pitch, yaw".to_owned(),
-            |meant| format!("did you mean {meant}?"),
-        );
-        return Err(Objection::new(format!("there is no error `{name}`"), help));
-    };
-    let quantity: Quantity = number.parse().map_err(|c: catchment::design::Complaint| Objection {
-        message: format!("{name}: {c}"),
-        help: c.help(),
-    })?;
-    Ok((dof, checked(dof, quantity, design)?))
-}
-
-fn refusal(text: &str, objections: Vec<Objection>) -> Failure {
-    let count = objections.len();
-    let reports = objections
-        .into_iter()
-        .map(|objection| {
-            let mut diagnostic = MietteDiagnostic::new(format!("--pose: {}", objection.message));
-            diagnostic.help = objection.help;
-            Report::new(diagnostic)
-        })
-        .collect();
-    let shown: String = text.chars().filter(|c| !c.is_control()).take(80).collect();
-    Failure::many(reports, (count > 1).then(|| format!("{count} problems in --pose \"{shown}\"")))
 }
 
 /// Waypoints spread evenly over the path, the first and the last among them.

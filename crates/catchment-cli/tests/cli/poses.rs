@@ -143,3 +143,66 @@ fn everything_that_is_wrong_with_a_pose_at_once() {
     let pose = "x=0.1,pich=3,yaw=0.2,pitch=400 deg,x=2,y,roll=1 mm";
     insta::assert_snapshot!("trace_bad_pose", run(&designs(), &["trace", "v-face.toml", "--pose", pose]));
 }
+
+#[test]
+fn drop_tests_decide_poses_and_friction_counts() {
+    let table = "x_mm,yaw_deg\n5,0\n-10,8\n40,40\n";
+    let outcomes = |args: &[&str]| -> Vec<String> {
+        let output = outcome(table, args);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        cells(&output.stdout)[1..].iter().map(|row| row[2].clone()).collect()
+    };
+    assert_eq!(outcomes(&["--method", "drop"]), outcomes(&[]));
+    assert_eq!(outcomes(&["--method", "drop", "--friction", "3"])[..2], ["jammed", "jammed"]);
+    let [one, two] = ["1", "2"]
+        .map(|threads| outcome(table, &["--method", "drop", "--json", "--threads", threads]).stdout);
+    assert_eq!(one, two);
+    let report: serde_json::Value = serde_json::from_slice(&one).unwrap();
+    assert_eq!(report["method"], "drop");
+    assert_eq!(report["settings"]["push"]["force"], 5000.0);
+}
+
+#[test]
+fn settings_of_drop_tests_that_cannot_be() {
+    insta::assert_snapshot!(run(&designs(), &["run", "pyramid.toml", "--friction", "0.1"]));
+    insta::assert_snapshot!(run(
+        &designs(),
+        &["slices", "pyramid.toml", "--method", "drop", "--trials", "2"]
+    ));
+}
+
+#[test]
+fn a_drop_test_is_exported_with_all_that_it_needs() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name);
+    let design = designs().join("v-face.toml");
+    let export = |place: &str| {
+        let args = [
+            "export",
+            design.to_str().unwrap(),
+            "--pose",
+            "x=0.1,pitch=5 deg",
+            "-o",
+            place,
+            "--friction",
+            "0.2",
+        ];
+        run(dir.path(), &args)
+    };
+    assert!(export("trial").starts_with("exit 0\n"), "{}", export("trial"));
+    let mjcf = fs::read_to_string(path("trial/trial.xml")).unwrap();
+    // x and pitch are free, and the approach; two pieces make the notch, one the tip.
+    assert_eq!(mjcf.matches("<joint").count(), 3);
+    assert_eq!(mjcf.matches("<mesh").count(), 3);
+    assert!(mjcf.contains("friction=\"0.2 0 0\"") && mjcf.contains("biasprm=\"-5000 0 0\""));
+    let sdf = fs::read_to_string(path("trial/trial.sdf")).unwrap();
+    assert_eq!(sdf.matches("<joint").count(), 3);
+    for mesh in ["fixed-0.stl", "fixed-1.stl", "moving-0.stl"] {
+        assert!(sdf.contains(mesh) && path("trial/meshes").join(mesh).is_file(), "{mesh}");
+    }
+    // Again over its own files, but not over others.
+    assert!(export("trial").starts_with("exit 0\n"));
+    fs::create_dir(path("other")).unwrap();
+    fs::write(path("other/holiday.png"), "").unwrap();
+    assert!(export("other").starts_with("exit 2\n"));
+}

@@ -157,3 +157,17 @@ fn a_study_takes_no_options_of_a_run() {
         assert_eq!(output.status.code(), Some(2), "{study} {option:?}");
     }
 }
+
+#[test]
+fn slices_and_runs_by_drop_tests_say_so() {
+    let home = home();
+    let args = ["--resolution", "5", "--method", "drop", "--trials", "1"];
+    let slices = json(home.path(), &[&["slices", "v.toml", "--json"], &args[..]].concat());
+    assert_eq!(slices["slices"][0]["method"], "drop");
+    assert_eq!(slices["settings"]["drop"]["trials"], 1);
+    let whole = json(home.path(), &[&["run", "v.toml", "--json", "--samples", "20"], &args[..]].concat());
+    assert_eq!(whole["method"], "drop");
+    // The same poses, and the random ones dropped as well.
+    assert_eq!(whole["acceptance"]["outcomes"], slices["slices"][0]["acceptance"]["outcomes"]);
+    assert_eq!(whole["acceptance"]["sample"]["settings"], whole["settings"]);
+}

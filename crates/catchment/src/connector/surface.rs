@@ -150,6 +150,38 @@ impl Surface {
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)))
     }
 
+    /// The facets cut into triangles of corner numbers, counter-clockwise seen from outside; none of them is flat, even where
+    /// corners of a facet lie on one line.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        let mut triangles = Vec::new();
+        for facet in &self.facets {
+            let mut rest = facet.corners.clone();
+            while rest.len() > 3 {
+                let n = rest.len();
+                let at = |k: u32| self.vertices[k as usize];
+                let area = |corners: &[u32]| {
+                    corners
+                        .windows(2)
+                        .map(|w| (at(w[0]) - at(corners[0])).cross(at(w[1]) - at(corners[0])))
+                        .sum::<DVec3>()
+                        .length()
+                };
+                let ear = |k: usize| [rest[(k + n - 1) % n], rest[k], rest[(k + 1) % n]];
+                let whole = area(&rest);
+                // Neither the ear nor what it leaves may be flat.
+                let worth = |k: usize| {
+                    let cut = area(&ear(k));
+                    cut.min(whole - cut)
+                };
+                let best = (0..n).max_by(|&a, &b| worth(a).total_cmp(&worth(b))).unwrap_or(0);
+                triangles.push(ear(best));
+                rest.remove(best);
+            }
+            triangles.push([rest[0], rest[1], rest[2]]);
+        }
+        triangles
+    }
+
     /// Enclosed volume, in D³.
     pub fn volume(&self) -> f64 {
         let at = |i: u32| self.vertices[i as usize];

@@ -2,9 +2,10 @@
 
 use super::Family;
 use super::complaint::Complaint;
-use crate::pose::{Dof, DofSet, Mount};
+use crate::pose::{Dof, DofSet, Mount, rotation_angle};
+use glam::DMat3;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// The alignment problem of a pair of halves. Stored with every result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,6 +66,21 @@ impl Alignment {
         // "90 deg" may round to one unit in the last place above π/2.
         let beyond = self.half_ranges[Dof::Pitch.index()] > FRAC_PI_2 * (1.0 + 4.0 * f64::EPSILON);
         (self.free.rotations() == 3 && beyond).then_some(Complaint::PitchBeyondPole)
+    }
+
+    /// How far a rotation is from the nearest one that counts as aligned, in radians: the mated one and those of the symmetry;
+    /// a yaw that does not matter is left out.
+    pub fn turned_by(&self, rotation: &DMat3) -> f64 {
+        if self.dont_care.contains(Dof::Yaw) {
+            let tilt = rotation.z_axis;
+            return tilt.truncate().length().atan2(tilt.z);
+        }
+        (0..self.symmetry.max(1))
+            .map(|k| {
+                let turn = DMat3::from_rotation_z(-TAU * f64::from(k) / f64::from(self.symmetry));
+                rotation_angle(&(*rotation * turn))
+            })
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Half-range of one degree of freedom: 0 when it is not free.

@@ -3,6 +3,8 @@
 
 pub mod correction;
 pub mod descent;
+#[cfg(feature = "drop")]
+pub mod drop;
 pub mod flood;
 pub mod kinematic;
 pub mod partition;
@@ -31,6 +33,9 @@ pub enum Method {
     Partition,
     /// [`kinematic`]: bounds and stepping of planar faces.
     Kinematic,
+    /// [`drop`]: every cell's centre let go in a rigid-body engine.
+    #[cfg(feature = "drop")]
+    Drop,
 }
 
 /// A method that cannot decide a design.
@@ -45,8 +50,16 @@ pub struct NotApplicable {
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 6] =
-        [Self::Transport, Self::Descent, Self::Flood, Self::Steepest, Self::Partition, Self::Kinematic];
+    pub const ALL: [Self; 6 + cfg!(feature = "drop") as usize] = [
+        Self::Transport,
+        Self::Descent,
+        Self::Flood,
+        Self::Steepest,
+        Self::Partition,
+        Self::Kinematic,
+        #[cfg(feature = "drop")]
+        Self::Drop,
+    ];
 
     /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
     pub const ON_GRIDS: [Self; 4] = [Self::Transport, Self::Descent, Self::Flood, Self::Steepest];
@@ -65,6 +78,8 @@ impl Method {
                 Err(NotApplicable { method: self, reason })
             }
             Self::Transport | Self::Descent | Self::Partition | Self::Flood | Self::Steepest => Ok(()),
+            #[cfg(feature = "drop")]
+            Self::Drop => Ok(()),
         }
     }
 
@@ -77,6 +92,8 @@ impl Method {
             Self::Steepest => "steepest",
             Self::Partition => "partition",
             Self::Kinematic => "kinematic",
+            #[cfg(feature = "drop")]
+            Self::Drop => "drop",
         }
     }
 
@@ -93,6 +110,10 @@ impl Method {
                 "watersheds of the contact space as polytopes, without a grid; two or three errors"
             }
             Self::Kinematic => "planar bounds and stepping of the dissertation; v-face, s-face and x-face",
+            #[cfg(feature = "drop")]
+            Self::Drop => {
+                "drop tests of every cell's centre in a rigid-body engine: friction, mass, speed, bounce"
+            }
         }
     }
 
@@ -102,6 +123,8 @@ impl Method {
             Self::Flood => Some(flood::Rule::Lowest),
             Self::Steepest => Some(flood::Rule::Steepest),
             Self::Transport | Self::Descent | Self::Partition | Self::Kinematic => None,
+            #[cfg(feature = "drop")]
+            Self::Drop => None,
         }
     }
 
@@ -123,6 +146,9 @@ impl Method {
             // Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once.
             Self::Transport | Self::Kinematic => [1000, 200, 50, 30, 20],
             Self::Flood | Self::Steepest | Self::Partition => Resolution::DEFAULT_CELLS,
+            // Half a minute at some 20 ms per pose.
+            #[cfg(feature = "drop")]
+            Self::Drop => [101, 31, 11, 7, 5],
         }
     }
 
@@ -133,6 +159,8 @@ impl Method {
         match self {
             Self::Descent | Self::Transport => (SIMPLE * affordable(pair)).max(LEAST) as usize,
             Self::Flood | Self::Steepest | Self::Partition | Self::Kinematic => 0,
+            #[cfg(feature = "drop")]
+            Self::Drop => 0,
         }
     }
 }

@@ -34,6 +34,8 @@ pub struct SlicesReport {
 pub struct SliceReport {
     /// The two errors that vary.
     pub axes: Vec<Axis>,
+    /// Name of the method that decided.
+    pub method: String,
     /// The accepted set.
     pub acceptance: AcceptanceReport,
     /// The largest axis-oriented square.
@@ -47,6 +49,7 @@ impl SlicesReport {
     pub fn new(design: &Design, found: &Slices, settings: Settings, timing: Option<Timing>) -> Self {
         let slice = |s: &Slice| SliceReport {
             axes: axes(&s.acceptance),
+            method: s.acceptance.method.to_owned(),
             acceptance: AcceptanceReport {
                 sum_bracket: Some(s.bracket),
                 ..AcceptanceReport::new(&s.acceptance, &design.alignment)
@@ -70,7 +73,8 @@ impl SlicesReport {
     pub fn table(&self) -> String {
         let mut text = String::new();
         heading(&mut text, &self.design);
-        row(&mut text, "slices", "through zero, by descent: two errors vary, all free ones move");
+        let method = self.slices.first().map_or("", |slice| &slice.method);
+        row(&mut text, "slices", &format!("through zero, by {method}: two errors vary, all free ones move"));
         text.push('\n');
         let mut columns =
             |slice: &str, cells: &str, sum: &str, share: &str, star: &str, doubt: &str, edge: &str| {

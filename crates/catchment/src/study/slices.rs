@@ -2,7 +2,7 @@
 //! never be computed at.
 //!
 //! ```text
-//!   error box of 5 axes ──  yaw ▲ ░░░░          every cell of the plane is followed exactly (descent),
+//!   error box of 5 axes ──  yaw ▲ ░░░░          every cell of the plane is followed, by descent or drop,
 //!                               │░░░░░░         the other errors begin at 0 and are free to move
 //!                               └──────▶ x      n (n − 1)/2 planes of n free errors
 //! ```
@@ -24,6 +24,8 @@ use crate::merit::onaa::Onaa;
 use crate::merit::sum::{Sum, bracket};
 use crate::merit::{MeritError, doubts, slice};
 use crate::method::descent;
+#[cfg(feature = "drop")]
+use crate::method::drop;
 use crate::pose::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +39,10 @@ pub struct Settings {
     pub pairs: Vec<[Dof; 2]>,
     /// How every cell is followed.
     pub descent: descent::Settings,
+    /// Drop tests in the place of descent, if so.
+    #[cfg(feature = "drop")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drop: Option<drop::Settings>,
 }
 
 impl Settings {
@@ -47,7 +53,13 @@ impl Settings {
 impl Default for Settings {
     fn default() -> Self {
         let resolution = Resolution::uniform(Self::CELLS).unwrap_or_default();
-        Self { resolution, pairs: Vec::new(), descent: descent::Settings::default() }
+        Self {
+            resolution,
+            pairs: Vec::new(),
+            descent: descent::Settings::default(),
+            #[cfg(feature = "drop")]
+            drop: None,
+        }
     }
 }
 
@@ -101,6 +113,10 @@ pub enum SlicesError {
     /// A resolution for an axis that is not there.
     #[error("--resolution: {0}")]
     Resolution(#[from] ResolutionError),
+    /// Drop tests refuse.
+    #[cfg(feature = "drop")]
+    #[error(transparent)]
+    Drop(#[from] drop::DropError),
     /// A figure of merit that is not to be had.
     #[error(transparent)]
     Merit(#[from] MeritError),
@@ -132,7 +148,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Slices, Slic
         .enumerate()
         .map(|(k, (axes, grid))| {
             let part = exec.part([k as f64 / total, (k + 1) as f64 / total], "slices");
-            let (acceptance, _) = descent::run(pair, Domain::Grid(grid), &settings.descent, &part)?;
+            let acceptance = decide(pair, grid, settings, &part)?;
             let sum = Sum::of(&acceptance, &pair.alignment);
             let onaa = Onaa::of(&acceptance, &part)?;
             let bracket = bracket(&acceptance, &part)?;
@@ -142,6 +158,15 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Slices, Slic
         .collect::<Result<Vec<Slice>, SlicesError>>()?;
     let estimate = estimate(pair, &slices);
     Ok(Slices { slices, estimate })
+}
+
+/// What becomes of every cell of a plane.
+fn decide(pair: &Pair, grid: Grid, settings: &Settings, exec: &Exec) -> Result<Acceptance, SlicesError> {
+    #[cfg(feature = "drop")]
+    if let Some(settings) = &settings.drop {
+        return Ok(drop::run(pair, Domain::Grid(grid), settings, exec)?.0);
+    }
+    Ok(descent::run(pair, Domain::Grid(grid), &settings.descent, exec)?.0)
 }
 
 /// The pairs to vary, each once and in the order of [`Dof::ALL`], with their grids.

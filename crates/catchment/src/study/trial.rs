@@ -68,6 +68,10 @@ pub enum TrialError {
     /// There is no partition.
     #[error(transparent)]
     Partition(#[from] PartitionError),
+    /// Drop tests refuse.
+    #[cfg(feature = "drop")]
+    #[error(transparent)]
+    Drop(#[from] crate::method::drop::DropError),
     /// There is no corrected Sum.
     #[error(transparent)]
     Correction(#[from] CorrectionError),
@@ -138,6 +142,11 @@ impl Decided {
             Method::Partition => partition::run(pair, &partition::Settings::default(), exec)?
                 .acceptance(Domain::Grid(grid.clone()), exec)?,
             Method::Kinematic => return Err(TrialError::NotGeneral { method }),
+            #[cfg(feature = "drop")]
+            Method::Drop => {
+                let settings = crate::method::drop::Settings::default();
+                crate::method::drop::run(pair, Domain::Grid(grid.clone()), &settings, exec)?.0
+            }
         };
         Ok(Self { grid, acceptance, arrival, seconds: started.elapsed().as_secs_f64() })
     }

@@ -31,6 +31,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         .grid(&design.alignment, &even_cells(&pair))
         .map_err(|error| Failure::with_help(format!("--resolution: {error}"), None))?;
     let limit = args.study.time_limit.unwrap_or(TIME_LIMIT);
+    let drops = args.how.drop.settings()?;
     let running = args.exec.start()?;
     let total = Method::ALL.len() as f64;
     let mut found: Vec<Acceptance> = Vec::new();
@@ -44,6 +45,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
             method,
             depth_tolerance: None,
             partition: args.how.partition(Method::Partition, design)?,
+            drop: (method == Method::Drop).then(|| drops.clone()),
             sample: args.sample.settings(method, &pair),
             heights: false,
         };

@@ -10,7 +10,7 @@ use catchment::method::correction::{self, ByFraction, ByNeighbours, Corrected, C
 use catchment::method::flood::{self, Hierarchy};
 use catchment::method::partition::{self, Partition};
 use catchment::method::transport::{self, Arrival};
-use catchment::method::{Method, descent, kinematic};
+use catchment::method::{Method, descent, drop, kinematic};
 use serde_json::Value;
 
 /// What to compute.
@@ -27,6 +27,8 @@ pub(crate) struct Job<'a> {
     pub(crate) depth_tolerance: Option<f64>,
     /// Slices and strips of the partition.
     pub(crate) partition: partition::Settings,
+    /// The settings of drop tests, if they decide.
+    pub(crate) drop: Option<drop::Settings>,
     /// Random poses that correct the Sum, if any shall.
     pub(crate) sample: Option<correction::Settings>,
     /// Whether the heights are wanted even where the method needs none.
@@ -73,6 +75,7 @@ impl Job<'_> {
             Method::Flood | Method::Steepest => serde_json::to_value(self.flood_settings())?,
             Method::Partition => serde_json::to_value(self.partition)?,
             Method::Kinematic => serde_json::to_value(kinematic::Settings::of(self.design)?)?,
+            Method::Drop => serde_json::to_value(&self.drop)?,
         })
     }
 
@@ -94,8 +97,12 @@ impl Job<'_> {
     ) -> Result<Option<Sample>, Failure> {
         let Some(settings) = &self.sample else { return Ok(None) };
         let corrected = correct(settings)?;
-        let descents = serde_json::to_value(descent::Settings::default())?;
-        Ok(Some(Sample { corrected, seed: settings.seed, settings: descents }))
+        // Drop tests are corrected by drop tests: descents would know nothing of friction.
+        let settings_of = match &self.drop {
+            Some(drop) => serde_json::to_value(drop)?,
+            None => serde_json::to_value(descent::Settings::default())?,
+        };
+        Ok(Some(Sample { corrected, seed: settings.seed, settings: settings_of }))
     }
 }
 
@@ -105,7 +112,7 @@ pub(crate) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
     let cells = job.grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let axes = job.grid.axes.len();
     let (what, per_cell) = match job.method {
-        Method::Descent => ("the outcome of every cell", DESCENT_BYTES),
+        Method::Descent | Method::Drop => ("the outcome of every cell", DESCENT_BYTES),
         Method::Transport => ("transport", transport::bytes(job.pair, &job.grid).div_ceil(cells.max(1))),
         Method::Flood | Method::Steepest => ("flooding", flood::bytes(1)),
         Method::Partition | Method::Kinematic => ("the outcome of every cell", size_of::<Outcome>() as u64),
@@ -121,6 +128,7 @@ pub(crate) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
     let (mut arrival, mut basins, mut partition) = (None, None, None);
     let (mut acceptance, flooded) = match job.method {
         Method::Descent => (descend(job.pair, Domain::Grid(job.grid.clone()), exec)?, None),
+        Method::Drop => (dropped(job, Domain::Grid(job.grid.clone()), exec)?, None),
         Method::Transport => {
             let found = transport::run(job.pair, &job.grid, &transport::Settings::default(), exec)?;
             (arrival.insert(found).acceptance(exec)?, None)
@@ -152,6 +160,11 @@ pub(crate) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
             correction::correct(job.pair, &job.grid, &by, settings, &descents, exec)
         } else {
             let by = ByNeighbours::new(&acceptance.outcomes, shape);
+            if job.drop.is_some() {
+                return correction::estimate(&job.grid, &by, settings, exec, |poses, exec| {
+                    Ok(dropped(job, Domain::Poses(poses), exec)?.outcomes)
+                });
+            }
             correction::correct(job.pair, &job.grid, &by, settings, &descents, exec)
         }
     })?;
@@ -185,6 +198,12 @@ fn settle(
 /// Bytes per descent while they run: the end and the outcome of each, and the ends once more while the parts of
 /// the threads are put together.
 const DESCENT_BYTES: u64 = (2 * size_of::<descent::End>() + size_of::<Outcome>()) as u64;
+
+/// Drops every pose of a domain.
+fn dropped(job: &Job, domain: Domain, exec: &Exec) -> Result<Acceptance, drop::DropError> {
+    let settings = job.drop.clone().unwrap_or_default();
+    Ok(drop::run(job.pair, domain, &settings, exec)?.0)
+}
 
 /// Follows every pose of a domain exactly.
 pub(super) fn descend(pair: &Pair, domain: Domain, exec: &Exec) -> Result<Acceptance, Failure> {

@@ -14,6 +14,7 @@ mod sample;
 mod study;
 
 use crate::args::DesignArgs;
+use crate::drop_args::DropArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -47,6 +48,7 @@ use std::time::Instant;
     catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' --require 'success.probability>=0.99'\n  \
     catchment run design.toml --json | jq .onaa.edge\n  \
     catchment run design.toml --method all              every method, and how they agree\n  \
+    catchment run design.toml --free x,yaw --method drop --friction 0.2\n  \
     catchment run design.toml --converge -o out         finer grids until stable, with every method\n  \
     catchment run design.toml --sensitivity             slopes against rho, COR and aspect ratio\n\n\
     The JSON of equal runs is equal byte for byte, whatever the number of threads, but for `timing` (and the seconds of\n\
@@ -92,6 +94,8 @@ struct HowArgs {
     /// Partition: strips per D into which the moving half is cut; 1 is the dissertation's method [default: 12, or 1 for two angles]
     #[arg(long, value_name = "COUNT")]
     strips: Option<usize>,
+    #[command(flatten)]
+    drop: DropArgs,
 }
 
 impl HowArgs {
@@ -189,6 +193,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         let message = format!("--depth-tolerance is a setting of flooding; {} has none", method.name());
         return Err(Failure::with_help(message, Some("add --method flood, or leave it out".to_owned())));
     }
+    let dropped = match method {
+        Method::Drop => how.drop.settings().map(Some),
+        other => how.drop.refuse(other.name()).map(|()| None),
+    }?;
     let place = args.place.checked()?;
     let (built, pair, doubts) = args.design.build()?.into_pair()?;
     let design = &built.input.design;
@@ -208,6 +216,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         method,
         depth_tolerance: how.depth_tolerance,
         partition: how.partition(method, design)?,
+        drop: dropped,
         sample: args.sample.settings(method, &pair),
         heights: place.wants_heights(),
     };

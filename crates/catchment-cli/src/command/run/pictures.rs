@@ -93,9 +93,9 @@ fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
     favourites.into_iter().find(|pair| pairs.contains(pair)).or_else(|| pairs.first().copied())
 }
 
-/// Slices through zero, finer than the grid, each pose followed exactly: where flooding was not asked for, and some other error is free.
+/// Slices through zero, finer than the grid, each pose followed exactly: where neither flooding nor drop tests were asked for, and some other error is free.
 fn finer_slices(job: &Job, main: [Dof; 2], exec: &Exec) -> Result<Vec<Acceptance>, Failure> {
-    if job.method.rule().is_some() || job.grid.axes.len() < 3 {
+    if job.method.rule().is_some() || job.method == Method::Drop || job.grid.axes.len() < 3 {
         return Ok(Vec::new());
     }
     // Where descents are dear, so are their slices.

@@ -19,7 +19,7 @@ pub enum Format {
 /// moving one is mounted; to get it as a design file wants it, turn it back with `mapped(|p| mount.apply(p))`
 /// and give `face_height = 0`.
 pub fn write(half: &Half, format: Format, out: &mut impl Write) -> io::Result<()> {
-    let triangles: Vec<[DVec3; 3]> = half.surfaces.iter().flat_map(triangles).collect();
+    let triangles: Vec<[DVec3; 3]> = half.surfaces.iter().flat_map(corners).collect();
     match format {
         Format::Ascii => {
             writeln!(out, "solid half")?;
@@ -56,32 +56,7 @@ fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// Cuts the facets into triangles, none of them flat even where corners of a facet lie on one line.
-fn triangles(surface: &Surface) -> Vec<[DVec3; 3]> {
-    let mut triangles = Vec::new();
-    for facet in &surface.facets {
-        let mut rest: Vec<DVec3> = facet.corners.iter().map(|&k| surface.vertices[k as usize]).collect();
-        while rest.len() > 3 {
-            let n = rest.len();
-            let area = |corners: &[DVec3]| {
-                corners
-                    .windows(2)
-                    .map(|w| (w[0] - corners[0]).cross(w[1] - corners[0]))
-                    .sum::<DVec3>()
-                    .length()
-            };
-            let ear = |k: usize| [rest[(k + n - 1) % n], rest[k], rest[(k + 1) % n]];
-            let whole = area(&rest);
-            // Neither the ear nor what it leaves may be flat.
-            let worth = |k: usize| {
-                let cut = area(&ear(k));
-                cut.min(whole - cut)
-            };
-            let best = (0..n).max_by(|&a, &b| worth(a).total_cmp(&worth(b))).unwrap_or(0);
-            triangles.push(ear(best));
-            rest.remove(best);
-        }
-        triangles.push([rest[0], rest[1], rest[2]]);
-    }
-    triangles
+/// The corners of the triangles of a surface.
+fn corners(surface: &Surface) -> Vec<[DVec3; 3]> {
+    surface.triangles().into_iter().map(|t| t.map(|k| surface.vertices[k as usize])).collect()
 }

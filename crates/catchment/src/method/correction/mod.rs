@@ -62,6 +62,10 @@ pub enum CorrectionError {
         /// What was given.
         share: f64,
     },
+    /// Drop tests refuse, where they decide.
+    #[cfg(feature = "drop")]
+    #[error(transparent)]
+    Drop(#[from] super::drop::DropError),
     /// A grid without cells has no poses to draw.
     #[error("the grid has no cells")]
     NoCells,

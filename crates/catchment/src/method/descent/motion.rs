@@ -9,9 +9,8 @@ use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair};
-use crate::pose::{CorPose, Dof, PoseError, face_from_cor, rotation, rotation_angle};
+use crate::pose::{CorPose, Dof, PoseError, face_from_cor, rotation};
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use std::f64::consts::TAU;
 
 /// Position of the moving half.
 #[derive(Debug, Clone, Copy)]
@@ -440,17 +439,7 @@ impl<'a> Motion<'a> {
         let alignment = &self.pair.alignment;
         let tolerance = self.settings.aligned_within;
         let face = state.cor + face_from_cor(&state.rotation, alignment.center_of_rotation);
-        if face.truncate().length() > tolerance {
-            return false;
-        }
-        if alignment.dont_care.contains(Dof::Yaw) {
-            let tilt = state.rotation.z_axis;
-            return tilt.truncate().length().atan2(tilt.z) <= tolerance;
-        }
-        (0..alignment.symmetry).any(|k| {
-            let turn = DMat3::from_rotation_z(-TAU * f64::from(k) / f64::from(alignment.symmetry));
-            rotation_angle(&(state.rotation * turn)) <= tolerance
-        })
+        face.truncate().length() <= tolerance && alignment.turned_by(&state.rotation) <= tolerance
     }
 
     fn error_of(&self, state: &State) -> PoseError {

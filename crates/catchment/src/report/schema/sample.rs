@@ -39,7 +39,8 @@ impl Report {
         acceptance.sum_ci95 = Some(ci95);
         acceptance.fraction = fraction;
         acceptance.sample = Some(SampleReport {
-            method: "descent".to_owned(),
+            // Drop tests are corrected by drop tests, everything else by descents.
+            method: if self.method == "drop" { "drop" } else { "descent" }.to_owned(),
             settings,
             seed,
             descents,

@@ -1,0 +1,91 @@
+//! `catchment export`: a drop test as world files of other engines.
+
+use crate::args::DesignArgs;
+use crate::drop_args::DropArgs;
+use crate::errors::pose;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{to_stderr, to_stdout};
+use crate::result_folder::has_only;
+use catchment::method::drop::export::{Scene, mjcf, sdf};
+use catchment::report::write;
+use clap::Args;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Write a drop test for other engines: MJCF for MuJoCo, SDF for Gazebo
+///
+/// The same pieces, mass, inertia, damping, friction, force, start and locked degrees of freedom as `--method drop`, so that
+/// whoever doubts it can run it again. A comment in each file says the units and what was set.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment export design.toml --pose \"x=0.2,pitch=10 deg\" -o trial\n  \
+    catchment export design.toml --pose x=0.1 --friction 0.3 -o trial\n  \
+    python -m mujoco.viewer --mjcf=trial/trial.xml      then load key 0\n  \
+    gz sim trial/trial.sdf\n\n\
+    -o DIR: trial.xml (MJCF, all inside), trial.sdf and the meshes that it names. Pieces are convex; a mesh with undercuts is\n\
+    refused, because other engines would replace it by its convex hull.")]
+pub(crate) struct ExportArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// The pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
+    #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
+    pose: String,
+    /// Write into this folder
+    #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]
+    output: PathBuf,
+    /// Print what was written as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    drop: DropArgs,
+}
+
+/// Version of the JSON that `--json` prints.
+const JSON_SCHEMA: u32 = 1;
+const MJCF: &str = "trial.xml";
+const SDF: &str = "trial.sdf";
+
+pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
+    write::check_folder(&args.output, is_ours)?;
+    let (built, pair, doubts) = args.design.build()?.into_pair()?;
+    let design = &built.input.design;
+    let error = pose(&args.pose, design)?;
+    let settings = args.drop.settings()?;
+    let scene = Scene::new(&design.name, &pair, &settings, &error)?;
+    let world = sdf::write(&scene)?;
+    write::folder(&args.output, is_ours, |folder| -> Result<(), Failure> {
+        let inside = folder.join(sdf::MESHES);
+        std::fs::create_dir(&inside)?;
+        for (name, bytes) in &world.meshes {
+            write::file(&inside.join(name), bytes)?;
+        }
+        write::file(&folder.join(SDF), world.text.as_bytes())?;
+        Ok(write::file(&folder.join(MJCF), mjcf::write(&scene).as_bytes())?)
+    })?;
+    let file = |name: &str| args.output.join(name).display().to_string();
+    if args.json {
+        let answer = json!({
+            "schema": JSON_SCHEMA, "design": design, "settings": settings, "start": error,
+            "mjcf": file(MJCF), "sdf": file(SDF), "meshes": world.meshes.len(),
+        });
+        to_stdout(&format!("{answer:#}\n"))?;
+    } else {
+        to_stdout(&format!("{}\n{}\n", file(MJCF), file(SDF)))?;
+    }
+    to_stderr(&doubts.iter().map(|doubt| format!("warning: {doubt}")).collect::<Vec<_>>());
+    Ok(ExitStatus::Done)
+}
+
+/// Whether a folder was written by this command, or is empty: replacing it loses nothing else.
+fn is_ours(path: &Path) -> bool {
+    has_only(path, |name| {
+        let meshes = || {
+            has_only(&path.join(name), |mesh| {
+                mesh.strip_suffix(".stl")
+                    .is_some_and(|mesh| mesh.starts_with("fixed-") || mesh.starts_with("moving-"))
+            })
+        };
+        name == MJCF || name == SDF || name == sdf::MESHES && meshes()
+    })
+}

@@ -1,0 +1,170 @@
+//! Dynamic drop tests in a rigid-body engine: what quasi-statics leaves out, friction, speed, mass and bounce.
+//!
+//! ```text
+//!       │ F      let go above first contact, pushed along the approach through the COR (or falling by gravity)
+//!     ╲_▼_╱      friction with the surroundings −c·(v, ρ²ω) at the COR, Coulomb friction μ and bounce e in contact
+//!     ╲   ╱      aligned   face centres and rotation within a threshold, and it stays there
+//!      ╲_╱       jammed    at rest in contact elsewhere       missed   the face centres are too far apart
+//!                undecided still moving when the time is up
+//! ```
+//!
+//! Three trials with perturbed starts decide by majority. The default is heavily damped, without friction and bounce: the
+//! motion of [`descent`], reached by an independent way. There c·(|v|² + ρ²|ω|²), v at the COR, is what friction dissipates,
+//! and the default inertia mass·ρ² about the COR has the same metric, so that ρ means the same in both.
+//!
+//! Locked errors are locked as in [`descent`]: translations at the COR, rotations as hinges one inside the other.
+//! Geometry is exact: convex pieces, or the triangles of a mesh; see `pieces`.
+//!
+//! Not promised: contacts of the engine are springs, so halves overlap by some 10⁻³ D under load, and time goes in steps; poses
+//! near the border of the accepted set may fall on either side. Meshes with undercuts are surfaces without an inside to
+//! the engine: what is pushed through one stays there.
+//!
+//! Units: D, s, kg; see [`Settings`]. Engine: rapier, with bits that do not depend on threads or machine. Source of the test: the
+//! dissertation, section 4.2.
+
+mod engine;
+pub mod export;
+mod mass;
+mod pieces;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod turning;
+
+pub use settings::{Body, Push, SettingError, Settings};
+
+use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::landscape::Resolution;
+use crate::method::descent::End;
+use crate::pose::PoseError;
+use engine::Engine;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Why there are no drop tests.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DropError {
+    /// A setting that no trial can be made with.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    /// The engine does not take the geometry.
+    #[error("the engine does not take this geometry: {reason}")]
+    Shape {
+        /// What it says.
+        reason: String,
+    },
+    /// A translation is locked at the COR, but the centre of mass swings about it.
+    #[error(
+        "the centre of mass of the solid lies at {center} D from the centre of rotation, and a translation is locked there while \
+         rotations are free: give a mass instead of a density, or free the translation"
+    )]
+    OffCenter {
+        /// Where the centre of mass lies, from the COR, in D.
+        center: DVec3,
+    },
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Bytes per pose while they run: the end and the outcome of each, and the ends once more while the parts of the threads
+/// are put together.
+const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
+
+/// Drops every pose of a domain, in parallel; the ends are in the order of the domain. The end of a pose is that of its first
+/// trial that agrees with the verdict.
+///
+/// # Errors
+/// See [`DropError`]. A stop is looked for every 64 time steps.
+pub fn run(
+    pair: &Pair,
+    domain: Domain,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<(Acceptance, Vec<End>), DropError> {
+    let engine = Engine::new(pair, settings)?;
+    let (count, axes) = match &domain {
+        Domain::Grid(grid) => (grid.checked_len(), grid.axes.len()),
+        Domain::Poses(poses) => (Some(poses.len()), 0),
+    };
+    let needed = count.map_or(u64::MAX, |count| (count as u64).saturating_mul(POSE_BYTES));
+    exec.reserve("the outcome of every pose", needed, |budget| {
+        if axes == 0 {
+            return "try fewer poses at a time, or allow more with --memory".to_owned();
+        }
+        let fits = Resolution::largest_that_fits(budget, POSE_BYTES, axes);
+        format!("use at most --resolution {fits}, or allow more with --memory")
+    })?;
+    let count = count.unwrap_or_default();
+    let pose = |k: usize| match &domain {
+        Domain::Grid(grid) => grid.pose(k),
+        Domain::Poses(poses) => poses[k],
+    };
+    let done = AtomicUsize::new(0);
+    let ends: Vec<End> = exec.install(|| {
+        (0..count)
+            .into_par_iter()
+            .map(|k| {
+                let end = decide(&engine, pair, settings, &pose(k), k as u64, exec)?;
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                if done.is_multiple_of(16) {
+                    exec.report(done as f64 / count as f64, "drop tests");
+                }
+                Ok(end)
+            })
+            .collect::<Result<_, Cancelled>>()
+    })?;
+    let outcomes: Vec<Outcome> = ends.iter().map(|e| e.outcome).collect();
+    let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();
+    let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
+    Ok((Acceptance { method: "drop", domain, outcomes, warnings }, ends))
+}
+
+/// Drops one pose until its verdict cannot change.
+fn decide(
+    engine: &Engine,
+    pair: &Pair,
+    settings: &Settings,
+    error: &PoseError,
+    number: u64,
+    exec: &Exec,
+) -> Result<End, Cancelled> {
+    let mut ends: Vec<End> = Vec::with_capacity(settings.trials as usize);
+    for trial in 0..settings.trials {
+        ends.push(engine.fall(&perturbed(pair, settings, error, number, trial), exec)?);
+        let agree = ends.iter().filter(|e| e.outcome == ends[ends.len() - 1].outcome).count();
+        if agree > settings.trials as usize / 2 {
+            break;
+        }
+    }
+    Ok(verdict(&ends))
+}
+
+/// The first end with the outcome that more than half of them have, or else of those that are not aligned the most frequent
+/// one, the first among equals.
+fn verdict(ends: &[End]) -> End {
+    let votes = |outcome: Outcome| ends.iter().filter(|e| e.outcome == outcome).count();
+    let majority = ends.iter().find(|e| 2 * votes(e.outcome) > ends.len());
+    let most = ends.iter().rev().filter(|e| e.outcome != Outcome::Aligned).max_by_key(|e| votes(e.outcome));
+    let missing = End { outcome: Outcome::Undecided, error: PoseError::default() };
+    majority.or(most).copied().unwrap_or(missing)
+}
+
+/// Where a trial starts: uniform within the perturbation around the pose, and a function of the seed, the number of the pose
+/// and of the trial alone.
+fn perturbed(pair: &Pair, settings: &Settings, error: &PoseError, number: u64, trial: u32) -> PoseError {
+    let stream = Stream::new(settings.seed).branch(number).branch(u64::from(trial));
+    let mut start = error.to_array();
+    for dof in pair.alignment.free.iter() {
+        let unit = if dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 };
+        let by = 2.0 * stream.uniform(dof.index() as u64) - 1.0;
+        start[dof.index()] += settings.perturbation * by / unit;
+    }
+    PoseError::from_array(start)
+}

@@ -1,0 +1,175 @@
+//! What changes the answer of a drop test.
+//!
+//! Units: lengths in D, times in s, masses in kg, so a force of 1 is 1 kg·D/s² (1 N where D is a metre) and
+//! gravity on a connector of D = 50 mm is 9.81 m/s² = 196 D/s².
+
+use serde::{Deserialize, Serialize};
+
+/// What may change the answer of [`run`](super::run).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// What drives the moving half along the approach.
+    pub push: Push,
+    /// What the moving half weighs, and how it resists turning.
+    pub body: Body,
+    /// Friction with the surroundings per velocity of the COR and per mass, in 1/s: the force −mass·`damping`·v.
+    pub damping: f64,
+    /// The same for turning, in 1/s: the torque −mass·`angular_damping`·ρ²·ω, with ρ the `rotation_length` of the alignment.
+    /// Equal to `damping` it makes friction dissipate c·(|v|² + ρ²|ω|²), c = mass·`damping`: the metric of `descent`.
+    pub angular_damping: f64,
+    /// Coefficient of Coulomb friction between the halves.
+    pub friction: f64,
+    /// Share of the approach speed that a bounce gives back, in [0, 1].
+    pub restitution: f64,
+    /// Height above first contact from which the half is let go, at rest, in D.
+    pub drop_height: f64,
+    /// Time between two states of the engine, in s.
+    pub timestep: f64,
+    /// Simulated time after which a trial ends, in s: jammed if it is at rest, else undecided.
+    pub timeout: f64,
+    /// Aligned: face centres this close (D) and rotation within this angle (radians) of the mated pose or a declared
+    /// symmetry, for ten steps in a row.
+    pub aligned_within: f64,
+    /// Missed: the face centres are farther apart than at first contact by this much, in D.
+    pub lost_beyond: f64,
+    /// At rest: moving more slowly than this, v at the COR and ρ·ω together, in D/s, averaged over 64 steps, twice in a row.
+    pub rest_speed: f64,
+    /// Trials per pose; more than half of them must align.
+    pub trials: u32,
+    /// Largest perturbation of the start of a trial, uniform and independent in every free error: D, and for angles
+    /// radians times ρ.
+    pub perturbation: f64,
+    /// Seed of the perturbations.
+    pub seed: u64,
+}
+
+/// What drives the moving half against the fixed one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Push {
+    /// A constant force along the approach through the COR, in kg·D/s².
+    Force(f64),
+    /// Gravity along the approach, through the centre of mass, in D/s².
+    Gravity(f64),
+}
+
+/// Mass and inertia of the moving half.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub enum Body {
+    /// Given, with the centre of mass at the COR.
+    Given {
+        /// In kg.
+        mass: f64,
+        /// Radius of gyration about every axis, in D: the inertia is mass·gyration². `None`: ρ, so that the metric of inertia is
+        /// that of friction.
+        gyration: Option<f64>,
+    },
+    /// A solid of this density: mass, centre of mass and inertia follow from the geometry. Pieces that overlap count twice.
+    Solid {
+        /// In kg/D³.
+        density: f64,
+    },
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            push: Push::Force(5000.0),
+            body: Body::Given { mass: 1.0, gyration: None },
+            damping: 1000.0,
+            angular_damping: 1000.0,
+            friction: 0.0,
+            restitution: 0.0,
+            drop_height: 0.01,
+            timestep: 1e-3,
+            timeout: 20.0,
+            aligned_within: 0.02,
+            lost_beyond: 1.0,
+            rest_speed: 5e-4,
+            trials: 3,
+            perturbation: 1e-3,
+            seed: 1,
+        }
+    }
+}
+
+/// A setting that no trial can be made with.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{name} = {value}: {advice}")]
+pub struct SettingError {
+    /// The setting.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// What it may be.
+    pub advice: &'static str,
+}
+
+/// Most steps of one trial: an hour of computing, not a hang.
+const MOST_STEPS: f64 = 1e8;
+
+impl Settings {
+    /// Refuses what no trial can be made with.
+    ///
+    /// # Errors
+    /// The first setting that is out of its range.
+    pub fn check(&self) -> Result<(), SettingError> {
+        let positive = |name, value: f64| {
+            let advice = "give a number above 0";
+            if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SettingError { name, value, advice }) }
+        };
+        let at_least_zero = |name, value: f64| {
+            let advice = "give 0 or more";
+            if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(SettingError { name, value, advice }) }
+        };
+        match self.push {
+            Push::Force(force) => positive("force", force)?,
+            Push::Gravity(gravity) => positive("gravity", gravity)?,
+        }
+        match self.body {
+            Body::Given { mass, gyration } => {
+                positive("mass", mass)?;
+                gyration.map_or(Ok(()), |gyration| positive("gyration", gyration))?;
+            }
+            Body::Solid { density } => positive("density", density)?,
+        }
+        for (name, value) in [
+            ("damping", self.damping),
+            ("angular_damping", self.angular_damping),
+            ("friction", self.friction),
+            ("drop_height", self.drop_height),
+            ("rest_speed", self.rest_speed),
+            ("perturbation", self.perturbation),
+        ] {
+            at_least_zero(name, value)?;
+        }
+        if !(0.0..=1.0).contains(&self.restitution) {
+            let advice = "give a share between 0 and 1";
+            return Err(SettingError { name: "restitution", value: self.restitution, advice });
+        }
+        for (name, value) in [
+            ("timestep", self.timestep),
+            ("timeout", self.timeout),
+            ("aligned_within", self.aligned_within),
+            ("lost_beyond", self.lost_beyond),
+        ] {
+            positive(name, value)?;
+        }
+        if self.timeout / self.timestep > MOST_STEPS {
+            let advice = "that is over 100 million time steps: give a shorter timeout or a longer step";
+            return Err(SettingError { name: "timeout", value: self.timeout, advice });
+        }
+        if self.trials.is_multiple_of(2) {
+            let (value, advice) = (f64::from(self.trials), "give an odd number, so that there is a majority");
+            return Err(SettingError { name: "trials", value, advice });
+        }
+        Ok(())
+    }
+
+    /// Steps of one trial, at most.
+    pub(super) fn steps(&self) -> usize {
+        (self.timeout / self.timestep).ceil() as usize
+    }
+}

@@ -1,0 +1,185 @@
+//! Closed forms, and what must not change a verdict.
+
+use super::*;
+use crate::connector::Connector;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::landscape::Grid;
+use crate::pose::{Dof, DofSet};
+
+/// A family with its defaults and the COR of the example designs, free in `free`.
+pub(super) fn pair(family: Family, free: DofSet) -> Pair {
+    let alignment = Alignment { free, center_of_rotation: 0.5, ..Alignment::default_for(Some(family)) };
+    let spec = FamilySpec { aspect_ratio: 0.5, chord_error: 0.02, ..FamilySpec::new(family) };
+    let design = Design {
+        name: String::new(),
+        connector: ConnectorSpec::Family(spec),
+        width: 1.0,
+        unit: None,
+        alignment,
+    };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
+fn x(x: f64) -> PoseError {
+    PoseError { x, ..PoseError::default() }
+}
+
+fn outcomes(pair: &Pair, poses: Vec<PoseError>, settings: &Settings) -> Vec<Outcome> {
+    run(pair, Domain::Poses(poses), settings, &Exec::new()).unwrap().0.outcomes
+}
+
+/// How far inside the closed form an offset lies.
+type Margin = fn(f64, f64) -> f64;
+
+#[test]
+fn without_rotation_a_pyramid_seats_from_half_its_width_and_an_x_face_from_a_diamond() {
+    const CELLS: usize = 13;
+    let sliding = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
+    let settings = Settings { trials: 1, ..Settings::default() };
+    // |x|, |y| < 1/2, and |x| + |y| < 1, of which the area is 2.
+    let closed: [(Family, Margin); 2] = [
+        (Family::Pyramid, |x, y| 0.5 - x.abs().max(y.abs())),
+        (Family::XFace3d, |x, y| 1.0 - x.abs() - y.abs()),
+    ];
+    for (family, inside) in closed {
+        let pair = pair(family, sliding);
+        let grid = Grid::over(&pair.alignment, |_| CELLS);
+        let (acceptance, _) = run(&pair, Domain::Grid(grid.clone()), &settings, &Exec::new()).unwrap();
+        let mut area = 0.0;
+        for (cell, accepted) in acceptance.accepted().enumerate() {
+            let pose = grid.pose(cell);
+            let margin = inside(pose.x, pose.y);
+            area += if accepted { grid.cell_measure() } else { 0.0 };
+            // Cells that the perturbation does not carry over the border.
+            assert!(margin.abs() < 0.01 || accepted == (margin > 0.0), "{family:?} {pose:?}");
+        }
+        if family == Family::XFace3d {
+            // The border is 4√2 D long, and a cell of 2/13 D across it is right to half its width.
+            assert!((area - 2.0).abs() < 4.0 * 2f64.sqrt() / CELLS as f64, "{area}");
+        }
+    }
+}
+
+#[test]
+fn friction_holds_a_half_on_a_slope_no_steeper_than_its_cone() {
+    // Faces of aspect ratio 1/2 are as steep as 1 : 1, so they hold from μ = 1 on; with and without a locked error.
+    for (family, free) in [
+        (Family::VFace, DofSet::EMPTY.with(Dof::X)),
+        (Family::Pyramid, DofSet::EMPTY.with(Dof::X).with(Dof::Y)),
+    ] {
+        let pair = pair(family, free);
+        let poses = || [-0.3, -0.1, 0.2].map(x).to_vec();
+        for (friction, expected) in [(0.0, Outcome::Aligned), (0.9, Outcome::Aligned), (1.1, Outcome::Jammed)]
+        {
+            let settings = Settings { friction, ..Settings::default() };
+            assert_eq!(outcomes(&pair, poses(), &settings), [expected; 3], "{family:?} {friction}");
+        }
+    }
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let pair = pair(Family::Pyramid, DofSet::ALL);
+    let [one, two] = [1, 2].map(|threads| {
+        let exec = Exec::new().with_threads(threads).unwrap();
+        run(&pair, Domain::random(&pair.alignment, 24, 3), &Settings::default(), &exec).unwrap()
+    });
+    assert_eq!(one, two);
+    let other = Settings { seed: 2, ..Settings::default() };
+    let (_, ends) = run(&pair, one.0.domain.clone(), &other, &Exec::new()).unwrap();
+    assert_ne!(ends, one.1, "another seed perturbs otherwise");
+}
+
+#[test]
+fn hinges_stay_hinges() {
+    // Roll and pitch without yaw: turning to and fro must not add up to a yaw. A locked y stays 0 at the COR.
+    let free = DofSet::EMPTY.with(Dof::X).with(Dof::Roll).with(Dof::Pitch);
+    let pair = pair(Family::Cone, free);
+    let poses: Vec<PoseError> =
+        [0.1, 0.2, 0.3].map(|a| PoseError { roll: a, pitch: -a, ..x(a / 2.0) }).to_vec();
+    let (_, ends) = run(&pair, Domain::Poses(poses), &Settings::default(), &Exec::new()).unwrap();
+    for end in ends {
+        assert_eq!(end.error.yaw, 0.0);
+        let cor = crate::pose::CorPose::from_error(&end.error, 0.5, DofSet::ALL).lateral;
+        assert!(cor.y.abs() < 1e-12, "{end:?}");
+        assert_eq!(end.outcome, Outcome::Aligned, "{end:?}");
+    }
+}
+
+#[test]
+fn a_solid_falls_by_gravity_like_a_given_mass() {
+    let pair = pair(Family::Pyramid, DofSet::ALL);
+    let settings =
+        Settings { body: Body::Solid { density: 2.0 }, push: Push::Gravity(5000.0), ..Settings::default() };
+    let poses = vec![x(0.1), PoseError { yaw: 0.2, ..x(0.0) }, x(0.9)];
+    assert_eq!(outcomes(&pair, poses, &settings), [Outcome::Aligned, Outcome::Aligned, Outcome::Missed]);
+    // Its centre of mass is not at the COR, so locking y there is not what the engine would do.
+    let locked = super::tests::pair(Family::Pyramid, DofSet::ALL.without(Dof::Y));
+    let refused = run(&locked, Domain::Poses(vec![x(0.1)]), &settings, &Exec::new()).unwrap_err();
+    assert!(matches!(refused, DropError::OffCenter { .. }), "{refused}");
+}
+
+#[test]
+fn a_bouncing_half_is_undecided_when_the_time_is_up() {
+    let pair = pair(Family::VFace, DofSet::EMPTY.with(Dof::X));
+    let bouncing = Settings {
+        push: Push::Gravity(10.0),
+        damping: 0.0,
+        angular_damping: 0.0,
+        restitution: 1.0,
+        drop_height: 0.5,
+        timeout: 1.0,
+        ..Settings::default()
+    };
+    let (acceptance, _) = run(&pair, Domain::Poses(vec![x(0.2)]), &bouncing, &Exec::new()).unwrap();
+    assert_eq!(acceptance.outcomes, [Outcome::Undecided]);
+    assert_eq!(acceptance.warnings, [Warning::Undecided { cells: 1 }]);
+    let damped = Settings { restitution: 0.0, damping: 20.0, timeout: 20.0, ..bouncing };
+    assert_eq!(outcomes(&pair, vec![x(0.2)], &damped), [Outcome::Aligned]);
+}
+
+#[test]
+fn the_majority_decides() {
+    let of = |outcomes: &[Outcome]| {
+        let ends: Vec<End> =
+            outcomes.iter().enumerate().map(|(k, o)| End { outcome: *o, error: x(k as f64) }).collect();
+        let end = verdict(&ends);
+        (end.outcome, end.error.x)
+    };
+    assert_eq!(of(&[Outcome::Aligned, Outcome::Jammed, Outcome::Aligned]), (Outcome::Aligned, 0.0));
+    assert_eq!(of(&[Outcome::Aligned, Outcome::Jammed, Outcome::Jammed]), (Outcome::Jammed, 1.0));
+    assert_eq!(of(&[Outcome::Aligned, Outcome::Missed, Outcome::Jammed]), (Outcome::Missed, 1.0));
+    assert_eq!(of(&[Outcome::Undecided, Outcome::Undecided, Outcome::Aligned]), (Outcome::Undecided, 0.0));
+}
+
+#[test]
+fn what_cannot_run_is_refused() {
+    let pair = pair(Family::Pyramid, DofSet::ALL);
+    let refused = |settings: &Settings, exec: &Exec| {
+        run(&pair, Domain::Poses(vec![x(0.1)]), settings, exec).unwrap_err()
+    };
+    for settings in [
+        Settings { trials: 2, ..Settings::default() },
+        Settings { friction: f64::NAN, ..Settings::default() },
+        Settings { restitution: 1.5, ..Settings::default() },
+        Settings { timestep: 1e-9, ..Settings::default() },
+        Settings { push: Push::Force(0.0), ..Settings::default() },
+        Settings { body: Body::Solid { density: -1.0 }, ..Settings::default() },
+    ] {
+        assert!(matches!(refused(&settings, &Exec::new()), DropError::Setting(_)));
+    }
+    let small = Exec::new().with_memory_budget(10);
+    assert!(matches!(refused(&Settings::default(), &small), DropError::OutOfBudget(_)));
+    let stopped = Exec::new();
+    stopped.cancel_flag().store(true, Ordering::Relaxed);
+    assert_eq!(refused(&Settings::default(), &stopped), DropError::Cancelled(Cancelled));
+}
+
+#[test]
+fn settings_survive_json_and_refuse_what_they_do_not_know() {
+    let settings =
+        Settings { push: Push::Gravity(9.81), body: Body::Solid { density: 3.0 }, ..Settings::default() };
+    let text = serde_json::to_string(&settings).unwrap();
+    assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
+    assert!(serde_json::from_str::<Settings>("{\"fricton\": 0.1}").is_err());
+}

@@ -1,0 +1,103 @@
+"""Drops 100 random poses of a design in MuJoCo and compares their outcomes with `catchment outcome`.
+
+    python tests/mujoco_agrees.py target/debug/catchment designs/pyramid.toml
+
+MuJoCo runs the world that `catchment export` wrote; catchment answers by exact quasi-static motion. Both describe the same
+frictionless, heavily damped drop, so they must agree on at least 95 of 100 poses. Exits with a message if they do not.
+"""
+
+import csv
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+POSES = 100
+AGREE = 0.95
+# MuJoCo's contacts are springs of two time steps: they give way by force · (2 · timestep)² / mass = 8e-4 D. Damping makes the
+# half stop within 0.02 D.
+SETTINGS = ["--push", "50", "--damping", "50", "--mass", "1", "--timestep", "0.002"]
+TIMEOUT_S = 20.0
+# Seconds between two looks at a trial, and the way within them that counts as rest (a slope of 1e-3).
+LOOK_S = 0.1
+REST = 1e-4
+ALIGNED = 0.02
+LOST = 1.0
+
+
+def rotation(roll: float, pitch: float, yaw: float) -> np.ndarray:
+    """Rz(yaw) · Ry(pitch) · Rx(roll)."""
+    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a), np.sin(a)) for a in (roll, pitch, yaw))
+    x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
+    return z @ y @ x
+
+
+def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: float, above: float, symmetry: int) -> bool:
+    """Whether a pose error ends aligned."""
+    turned = rotation(*pose[2:])
+    quaternion = np.zeros(4)
+    mujoco.mju_mat2Quat(quaternion, turned.flatten())
+    mujoco.mj_resetData(model, data)
+    face = cor * turned[:, 2]
+    # From above everything, as there is no height of first contact here.
+    data.qpos[:] = [pose[0] - face[0], pose[1] - face[1], above, *quaternion]
+    site = model.site("moving_face").id
+    last = None
+    steps = round(LOOK_S / model.opt.timestep)
+    touched = None
+    for _ in range(round(TIMEOUT_S / LOOK_S)):
+        mujoco.mj_step(model, data, steps)
+        mujoco.mj_kinematics(model, data)
+        apart = np.linalg.norm(data.site_xpos[site])
+        now = np.concatenate([data.site_xpos[site], data.site_xmat[site]])
+        angles = [
+            np.arccos(np.clip((np.trace(data.site_xmat[site].reshape(3, 3) @ rotation(0, 0, -2 * np.pi * k / symmetry)) - 1) / 2, -1, 1))
+            for k in range(symmetry)
+        ]
+        if apart <= ALIGNED and min(angles) <= ALIGNED:
+            return True
+        if data.ncon and touched is None:
+            touched = apart
+        if data.site_xpos[site][2] < -LOST - 1 or (touched is not None and apart > touched + LOST):
+            return False
+        if data.ncon and last is not None and np.abs(now - last).max() < REST:
+            return False
+        last = now
+    return False
+
+
+def main(program: str, design: str) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        trial, poses = Path(folder) / "trial", Path(folder) / "poses.csv"
+        said = subprocess.run(
+            [program, "export", design, "--pose", "x=0", "-o", trial, "--json", *SETTINGS],
+            check=True, capture_output=True, text=True,
+        )
+        alignment = json.loads(said.stdout)["design"]["alignment"]
+        half = np.array([0.5, 0.5, np.pi / 4, np.pi / 4, np.pi / 4])
+        errors = (np.random.default_rng(1).uniform(-1, 1, (POSES, 5)) * half).tolist()
+        with poses.open("w", newline="") as file:
+            csv.writer(file).writerows([["x", "y", "roll", "pitch", "yaw"], *errors])
+        said = subprocess.run(
+            [program, "outcome", design, "--poses", poses, "--method", "descent", "--json"],
+            check=True, capture_output=True, text=True,
+        )
+        expected = [row["outcome"] == "aligned" for row in json.loads(said.stdout)["poses"]]
+        model = mujoco.MjModel.from_xml_path(str(trial / "trial.xml"))
+    data = mujoco.MjData(model)
+    cor, symmetry = alignment["center_of_rotation"], alignment["symmetry"]
+    found = [drop(model, data, pose, cor, 1.5, symmetry) for pose in errors]
+    same = sum(a == b for a, b in zip(found, expected, strict=True))
+    print(f"{same} of {POSES} poses end alike, {sum(found)} of them aligned in MuJoCo, {sum(expected)} by descent")
+    if same < AGREE * POSES:
+        sys.exit(f"MuJoCo and catchment agree on {same} of {POSES} poses only")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
