@@ -154,16 +154,11 @@ pub fn reproduce(table: &str, settings: &Settings, exec: &Exec) -> Result<TableC
     let table = TABLES.iter().find(|t| t.name == table).ok_or_else(unknown)?;
     let published = published::read(table)?;
     let columns = published.columns.len();
-    let places = published.rows.len() * columns;
-    let found: Vec<Found> = exec.install(|| {
-        let compute = |k: usize| -> Result<Found, ReproduceError> {
-            let (row, column) = (k / columns, k % columns);
-            let ours = table.recipe.compute(row, column, exec)?;
-            let exact = if settings.exact { table.recipe.exact(row, column, exec)? } else { None };
-            Ok((ours, exact))
-        };
-        (0..places).into_par_iter().map(compute).collect::<Result<_, _>>()
+    let rows: Vec<Vec<Found>> = exec.install(|| {
+        let row = |row: usize| table.recipe.row(row, columns, settings.exact, exec);
+        (0..published.rows.len()).into_par_iter().map(row).collect::<Result<_, _>>()
     })?;
+    let found: Vec<Found> = rows.into_iter().flatten().collect();
     let entry = |(k, &(ours, exact)): (usize, &Found)| {
         let (row, column) = (k / columns, k % columns);
         let printed = published.values[row][column];

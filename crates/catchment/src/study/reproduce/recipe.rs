@@ -8,7 +8,7 @@
 //!
 //! Exact means frictionless, quasi-static and overdamped with ρ = [`RHO`], which the dissertation leaves open.
 
-use super::ReproduceError;
+use super::{Found, ReproduceError};
 use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::connector::Connector;
 use crate::contact::Pair;
@@ -25,6 +25,7 @@ use crate::method::partition;
 use crate::method::transport;
 use crate::method::zraa::{self, Zraa};
 use crate::pose::{Dof, DofSet, PoseError};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -93,14 +94,35 @@ impl Recipe {
         }
     }
 
-    /// Our value of one entry by the method that the table was made with; `None` where that method, or the geometry, is
-    /// not there.
-    pub(super) fn compute(
+    /// Our values and the exact ones of a row of entries.
+    pub(super) fn row(
         self,
         row: usize,
-        column: usize,
+        columns: usize,
+        exact: bool,
         exec: &Exec,
-    ) -> Result<Option<f64>, ReproduceError> {
+    ) -> Result<Vec<Found>, ReproduceError> {
+        if matches!(self, Self::Slices) {
+            let ours = dropped(row, exec)?;
+            let exact = if exact { Some(slice(row, followed_exactly, exec)?) } else { None };
+            let value = |values: Option<[f64; 2]>, k: usize| values.map(|values| values[k]);
+            return Ok((0..columns)
+                .map(|k| (value(ours, k), value(exact, k).map(|value| Exact { value, ci95: None })))
+                .collect());
+        }
+        (0..columns)
+            .into_par_iter()
+            .map(|column| {
+                let ours = self.compute(row, column, exec)?;
+                let exact = if exact { self.exact(row, column, exec)? } else { None };
+                Ok((ours, exact))
+            })
+            .collect()
+    }
+
+    /// Our value of one entry by the method that the table was made with; `None` where that method, or the geometry, is
+    /// not there.
+    fn compute(self, row: usize, column: usize, exec: &Exec) -> Result<Option<f64>, ReproduceError> {
         exec.check()?;
         Ok(match self {
             Self::Kinematic(face) => {
@@ -117,7 +139,7 @@ impl Recipe {
             }
             Self::Partition(family) => Some(partitioned(family, row, column, exec)?),
             Self::Zraa => zero_rotation(row, exec)?,
-            // The methods that made these tables are not in this program.
+            // Made a row at a time.
             Self::Slices => None,
         })
     }
@@ -132,7 +154,7 @@ impl Recipe {
     ) -> Result<Option<Exact>, ReproduceError> {
         exec.check()?;
         Ok(match self {
-            Self::Kinematic(_) | Self::Zraa => None,
+            Self::Kinematic(_) | Self::Zraa | Self::Slices => None,
             Self::Sum(_, Errors::XYPitch | Errors::XPitchRoll) => Some(self.corrected(row, column, exec)?),
             Self::Sum(family, Errors::XTheta) | Self::Partition(family) => {
                 let accepted = followed(family, row, column, exec)?;
@@ -143,7 +165,6 @@ impl Recipe {
                 let edge = largest_cube(&[PLANAR; 2], &followed(family, row, column, exec)?);
                 Some(Exact { value: square(edge), ci95: None })
             }
-            Self::Slices => Some(Exact { value: slice(row, column, exec)?, ci95: None }),
         })
     }
 
@@ -288,9 +309,34 @@ fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, ReproduceError>
     })
 }
 
-/// A slice of the 3-D X-Face over ± D and ± 90°, all free, followed exactly: its Sum as a share of the plane (column 0), or its
-/// ONAA edge. The centre of mass of the published model is not stated: the rotation point is the face centre here.
-fn slice(row: usize, column: usize, exec: &Exec) -> Result<f64, ReproduceError> {
+/// Outcomes of the cells of a grid.
+type Decide = fn(&Pair, Grid, &Exec) -> Result<Acceptance, ReproduceError>;
+
+fn followed_exactly(pair: &Pair, grid: Grid, exec: &Exec) -> Result<Acceptance, ReproduceError> {
+    Ok(descent::run(pair, Domain::Grid(grid), &descent::Settings::default(), exec)?.0)
+}
+
+/// The same slice by drop tests; `None` without the engine.
+#[cfg(feature = "drop")]
+fn dropped(row: usize, exec: &Exec) -> Result<Option<[f64; 2]>, ReproduceError> {
+    use crate::method::drop;
+    let decide: Decide = |pair, grid, exec| {
+        let (acceptance, _) =
+            drop::run(pair, Domain::Grid(grid), &drop::Settings::default(), exec).map_err(failed)?;
+        Ok(acceptance)
+    };
+    slice(row, decide, exec).map(Some)
+}
+
+#[cfg(not(feature = "drop"))]
+fn dropped(_: usize, exec: &Exec) -> Result<Option<[f64; 2]>, ReproduceError> {
+    exec.check()?;
+    Ok(None)
+}
+
+/// A slice of the 3-D X-Face over ± D and ± 90°, all free: its Sum as a share of the plane, and its ONAA edge. The centre of mass of
+/// the published model is not stated: the rotation point is the face centre here.
+fn slice(row: usize, decide: Decide, exec: &Exec) -> Result<[f64; 2], ReproduceError> {
     const SECOND: [Dof; 4] = [Dof::Y, Dof::Roll, Dof::Pitch, Dof::Yaw];
     let family = Family::XFace3d;
     let mut design = design(family, FamilySpec::new(family).aspect_ratio, None, 0.0, DofSet::ALL);
@@ -302,12 +348,7 @@ fn slice(row: usize, column: usize, exec: &Exec) -> Result<f64, ReproduceError> 
         let half = pair.alignment.half_range(dof);
         GridAxis { dof, lo: -half, hi: half, cells: SLICE }
     };
-    let grid = Grid { axes: vec![axis(Dof::X), axis(SECOND[row])] };
-    let (acceptance, _): (Acceptance, _) =
-        descent::run(&pair, Domain::Grid(grid), &descent::Settings::default(), exec)?;
-    if column == 0 {
-        let aligned = acceptance.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count();
-        return Ok(aligned as f64 / acceptance.outcomes.len() as f64);
-    }
-    Ok(Onaa::of(&acceptance, exec).map_err(failed)?.edge)
+    let acceptance = decide(&pair, Grid { axes: vec![axis(Dof::X), axis(SECOND[row])] }, exec)?;
+    let share = acceptance.counts()[0] as f64 / acceptance.outcomes.len() as f64;
+    Ok([share, Onaa::of(&acceptance, exec).map_err(failed)?.edge])
 }
