@@ -33,7 +33,7 @@ pub enum Method {
     Partition,
     /// [`kinematic`]: bounds and stepping of planar faces.
     Kinematic,
-    /// [`drop`]: every cell's centre let go in a rigid-body engine.
+    /// [`mod@drop`]: every cell's centre let go in a rigid-body engine.
     #[cfg(feature = "drop")]
     Drop,
 }

@@ -9,10 +9,10 @@
 //! ```
 //!
 //! Three trials with perturbed starts decide by majority. The default is heavily damped, without friction and bounce: the
-//! motion of [`descent`], reached by an independent way. There c·(|v|² + ρ²|ω|²), v at the COR, is what friction dissipates,
+//! motion of [`descent`](super::descent), reached by an independent way. There c·(|v|² + ρ²|ω|²), v at the COR, is what friction dissipates,
 //! and the default inertia mass·ρ² about the COR has the same metric, so that ρ means the same in both.
 //!
-//! Locked errors are locked as in [`descent`]: translations at the COR, rotations as hinges one inside the other.
+//! Locked errors are locked as in [`descent`](super::descent): translations at the COR, rotations as hinges one inside the other.
 //! Geometry is exact: convex pieces, or the triangles of a mesh; see `pieces`.
 //!
 //! Not promised: contacts of the engine are springs, so halves overlap by some 10⁻³ D under load, and time goes in steps; poses
