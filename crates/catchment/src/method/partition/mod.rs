@@ -11,7 +11,7 @@
 //! outline. It works in any number of free errors from two (x and an angle: polytopes in 3-D) to five (6-D); the number of
 //! polytopes grows with the product of the slices of all rotations, so up to three errors are practical.
 //!
-//! What is approximate is the rotation between slices ([`compose`]'s chords) and, over three errors and more, the ravine rule.
+//! What is approximate is the rotation between slices (a corner runs along its chord) and, over three errors and more, the ravine rule.
 //! Not promised: convergence of the watersheds at a fixed number of strips, see [`Settings::strips`].
 //!
 //! Source: dissertation, sections 5.1 and 5.2, figures 5.5–5.8.
