@@ -49,10 +49,12 @@ pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> R
     };
     let extent = |n: usize, gap: f64| n as f64 * (side + gap) - gap;
     let maps = [extent(columns.len(), GAP[0]), extent(rows.len(), GAP[1])];
-    let (width, height) = ((LEFT + maps[0] + 28.0).max(LEAST_WIDTH), TOP + maps[1] + BELOW);
+    let story = subtitle(design, found);
+    let least = LEAST_WIDTH.max(48.0 + width_of(&story, LABEL));
+    let (width, height) = ((LEFT + maps[0] + 28.0).max(least), TOP + maps[1] + BELOW);
     let mut svg = Svg::new(width, height);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &subtitle(design, found));
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
 
     let units = Units::of(design);
     let at = |axes: &[Dof], dof: Dof| axes.iter().position(|a| *a == dof).unwrap_or(0);
@@ -95,7 +97,8 @@ const SHOWN: PoseError = PoseError { x: 0.0, y: 0.0, roll: 0.0, pitch: 0.0, yaw:
 
 fn subtitle(design: &Design, found: &Slices) -> String {
     let free: Vec<&str> = design.alignment.free.iter().map(Dof::name).collect();
-    let varied = "slices through zero by descent: two errors vary";
+    let method = found.slices.first().map_or("descent", |slice| slice.acceptance.method);
+    let varied = format!("slices through zero by {method}: two errors vary");
     match found.estimate {
         Some(e) => format!(
             "{varied}, {} are free to move  ·  estimated ONAA edge of the whole {} … {}",
