@@ -12,17 +12,11 @@ pub struct PartitionReport {
     pub counts: Counts,
     /// Measure of the accepted polytopes inside the error box, in the unit of the Sum. No grid is involved.
     pub sum: f64,
-    /// Measure of the parts whose motion leaves through the last slice of a rotation, likewise.
-    pub undecided: f64,
 }
 
 impl PartitionReport {
     /// Measures a partition.
     pub fn new(partition: &Partition) -> Self {
-        Self {
-            counts: partition.counts(),
-            sum: partition.measure(Outcome::Aligned),
-            undecided: partition.measure(Outcome::Undecided),
-        }
+        Self { counts: partition.counts(), sum: partition.measure(Outcome::Aligned) }
     }
 }
