@@ -333,7 +333,7 @@ fn inserted(y: &Point, axis: usize) -> Point {
 }
 
 /// `q` without its coordinate `axis`.
-fn removed(q: &Point, axis: usize) -> Point {
+pub(super) fn removed(q: &Point, axis: usize) -> Point {
     array::from_fn(|k| match k {
         k if k < axis => q[k],
         k if k + 1 < MAX_DIMENSION => q[k + 1],

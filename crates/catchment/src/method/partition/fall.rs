@@ -5,7 +5,7 @@
 //! rule, section 5.1.6; over two pose errors that is exact, over more a ravine's own slope would bend it). Where there is no lower
 //! one, it has come to rest.
 
-use super::cells::{Beyond, Cells, Gate, LEVEL, TOUCH, dot, lifted, touches};
+use super::cells::{Beyond, Cells, Gate, LEVEL, TOUCH, dot, lifted, removed, touches};
 use crate::polytope::{MAX_DIMENSION, Point};
 use std::array;
 
@@ -105,7 +105,7 @@ fn ravine(cells: &Cells, under: &[usize], q: &Point, height: f64) -> Option<Poin
         let cell = &cells.all[k];
         for gate in cell.gates.iter().filter(|gate| gate.to == Beyond::Ravine) {
             let plane = &cell.region.facets()[gate.facet];
-            if plane.excess(q).abs() > LEVEL || !touches(&gate.region, &without(q, gate.dropped)) {
+            if plane.excess(q).abs() > LEVEL || !touches(&gate.region, &removed(q, gate.dropped)) {
                 continue;
             }
             let (low, bottom) = lowest(cells, k, gate);
@@ -154,7 +154,7 @@ fn resting(cells: &Cells, under: &[usize], q: &Point) -> Fate {
         let cell = &cells.all[k];
         for gate in &cell.gates {
             let plane = &cell.region.facets()[gate.facet];
-            if plane.excess(q).abs() > LEVEL || !touches(&gate.region, &without(q, gate.dropped)) {
+            if plane.excess(q).abs() > LEVEL || !touches(&gate.region, &removed(q, gate.dropped)) {
                 continue;
             }
             match gate.to {
@@ -165,12 +165,4 @@ fn resting(cells: &Cells, under: &[usize], q: &Point) -> Fate {
         }
     }
     fate
-}
-
-fn without(q: &Point, axis: usize) -> Point {
-    let mut y = [0.0; MAX_DIMENSION];
-    for (to, from) in (0..q.len()).filter(|k| *k != axis).enumerate() {
-        y[to] = q[from];
-    }
-    y
 }

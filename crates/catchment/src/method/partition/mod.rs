@@ -78,12 +78,14 @@ pub enum PartitionError {
         free: usize,
     },
     /// A setting that makes no partition.
-    #[error("{setting} must be at least {least}, not {given}")]
+    #[error("{setting} must be at least {least} and at most {most}, not {given}")]
     Setting {
         /// Its name.
         setting: &'static str,
         /// The least it may be.
         least: usize,
+        /// The most it may be.
+        most: usize,
         /// What was given.
         given: usize,
     },
@@ -92,6 +94,12 @@ pub enum PartitionError {
         "a half has more than {most} convex pieces; the partition is made for halves of few facets, use another method"
     )]
     TooManyPieces {
+        /// The most there may be.
+        most: usize,
+    },
+    /// Strips and pieces make more pairs than can be summed.
+    #[error("there are more than {most} pairs of pieces that may meet; use fewer --strips")]
+    TooManyStrips {
         /// The most there may be.
         most: usize,
     },
@@ -141,6 +149,10 @@ pub struct Part {
     pub outcome: Outcome,
 }
 
+/// Least and most slices of a rotation, and strips per D: beyond them rounding is as large as a cell.
+const SLICES: [usize; 2] = [2, 1000];
+const STRIPS: [usize; 2] = [1, 200];
+
 /// Bytes of a cell with its gates and parts, roughly: a region of a dozen corners, three times over.
 const CELL_BYTES: u64 = 6_000;
 /// Polytopes of the sum held per compartment while it is worked on.
@@ -156,9 +168,10 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
     if free.len() < 2 || free.rotations() == 0 {
         return Err(PartitionError::TooFewErrors { free: free.len() });
     }
-    for (setting, least, given) in [("slices", 2, settings.slices), ("strips", 1, settings.strips)] {
-        if given < least {
-            return Err(PartitionError::Setting { setting, least, given });
+    let Settings { slices, strips } = *settings;
+    for (setting, [least, most], given) in [("slices", SLICES, slices), ("strips", STRIPS, strips)] {
+        if !(least..=most).contains(&given) {
+            return Err(PartitionError::Setting { setting, least, most, given });
         }
     }
     let slices: Vec<(Dof, Vec<f64>)> = free
@@ -180,7 +193,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
         "the partition",
         polytopes
             .saturating_mul(POLYTOPE_BYTES * threads)
-            .saturating_add(count.saturating_mul(polytopes * CELL_BYTES / 4)),
+            .saturating_add(count.saturating_mul(polytopes).saturating_mul(CELL_BYTES / 4)),
         |_| "use fewer --slices or --strips, or allow more with --memory".to_owned(),
     )?;
     let compartments = Compartment::all(&slices);

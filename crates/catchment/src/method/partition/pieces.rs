@@ -37,6 +37,9 @@ pub(super) struct Meeting {
 /// Most convex pieces of a half: beyond it the surface is a mesh that this method is not made for.
 const MOST_PIECES: usize = 512;
 
+/// Most pairs of pieces that can meet.
+const MOST_MEETINGS: usize = 100_000;
+
 /// The pairs of convex pieces that can meet, moving ones cut into strips narrower than `width`.
 pub(super) fn meetings(pair: &Pair, width: f64) -> Result<Vec<Meeting>, PartitionError> {
     let [fixed, moving] = [&pair.fixed, &pair.moving].map(convex_pieces);
@@ -60,6 +63,9 @@ pub(super) fn meetings(pair: &Pair, width: f64) -> Result<Vec<Meeting>, Partitio
             for strip in strips(polytope, &[0, 1], width) {
                 let met = |other| Meeting { fixed: piece(other), moving: piece(&strip) };
                 meetings.extend(fixed.iter().map(met));
+                if meetings.len() > MOST_MEETINGS {
+                    return Err(PartitionError::TooManyStrips { most: MOST_MEETINGS });
+                }
             }
         }
     }

@@ -259,6 +259,13 @@ fn what_cannot_be_partitioned_is_said() {
     let planar = pair(Family::VFace, 0.5, 0.0, 0.5, &[]);
     let error = run(&planar, &Settings { slices: 1, strips: 1 }, &Exec::new()).unwrap_err();
     assert!(error.to_string().contains("slices must be at least 2"), "{error}");
+    for settings in [Settings { slices: usize::MAX, strips: 1 }, Settings { slices: 8, strips: usize::MAX }] {
+        let error = run(&planar, &settings, &Exec::new()).unwrap_err();
+        assert!(error.to_string().contains("at most"), "{error}");
+    }
+    let all = pair(Family::Pyramid, 0.5, 0.0, 0.5, &Dof::ALL);
+    let error = run(&all, &Settings { slices: 1000, strips: 200 }, &Exec::new()).unwrap_err();
+    assert!(matches!(error, PartitionError::TooManyStrips { .. }), "{error}");
     let small = Exec::new().with_memory_budget(1000);
     assert!(matches!(run(&planar, &Settings::default(), &small), Err(PartitionError::OutOfBudget(_))));
     let cancelled = Exec::new();
