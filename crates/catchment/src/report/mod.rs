@@ -15,7 +15,6 @@ mod comparison;
 mod convergence;
 #[cfg(feature = "figure")]
 pub mod figure;
-mod requirement;
 pub mod schema;
 mod sensitivity;
 mod slices;
@@ -26,7 +25,6 @@ pub mod zarr;
 
 pub use comparison::{Agreement, AgreementReport, ComparisonReport, Decided, MethodResult, Side};
 pub use convergence::ConvergenceReport;
-pub use requirement::{Requirement, RequirementError};
 pub use schema::Report;
 pub use sensitivity::SensitivityReport;
 pub use slices::SlicesReport;
