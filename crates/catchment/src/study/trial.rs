@@ -124,10 +124,14 @@ impl Decided {
         let acceptance = match method {
             Method::Descent => {
                 let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
-                exec.reserve("the outcome of every cell", cells.saturating_mul(pose_bytes()), |budget| {
-                    let fits = Resolution::largest_that_fits(budget, pose_bytes(), grid.axes.len());
-                    format!("at most {fits} cells per axis fit")
-                })?;
+                exec.ensure_fits(
+                    "the outcome of every cell",
+                    cells.saturating_mul(pose_bytes()),
+                    |budget| {
+                        let fits = Resolution::largest_that_fits(budget, pose_bytes(), grid.axes.len());
+                        format!("at most {fits} cells per axis fit")
+                    },
+                )?;
                 descent::run(pair, Domain::Grid(grid.clone()), &descent::Settings::default(), exec)?.0
             }
             Method::Transport => {
