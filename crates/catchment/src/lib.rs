@@ -82,7 +82,7 @@
 //! - [`report`]: JSON, text, pictures, Zarr.
 //!
 //! [`pose`] owns frames, signs and the order of angles; [`exec`] owns threads, cancelling, progress and the
-//! memory budget, none of which changes a bit of a result. [`polytope`] is the geometry of convex sets in up to six
+//! memory budget, none of which changes a bit of a result; [`suggest`] knows what a misspelt word meant. [`polytope`] is the geometry of convex sets in up to six
 //! dimensions.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
@@ -107,3 +107,4 @@ pub mod problem;
 pub mod report;
 pub mod run;
 pub mod study;
+pub mod suggest;

@@ -429,7 +429,7 @@ pub fn ensure_fits(
     axes: usize,
     exec: &Exec,
 ) -> Result<(), OutOfBudget> {
-    exec.reserve(what, needed, |budget| match Resolution::largest_that_fits(budget, per_cell, axes) {
+    exec.ensure_fits(what, needed, |budget| match Resolution::largest_that_fits(budget, per_cell, axes) {
         fits if fits < Resolution::LEAST => "allow more with --memory".to_owned(),
         fits => format!("use at most --resolution {fits}, or allow more with --memory"),
     })

@@ -3,7 +3,7 @@
 use super::schema::{SCHEMA, Timing};
 use super::table::{grouped, heading, line, row, significant, wrapped};
 use crate::design::Design;
-use crate::study::convergence::{Convergence, End};
+use crate::study::convergence::{Convergence, StopReason};
 use serde::Serialize;
 
 /// What refinement has to say.
@@ -76,16 +76,16 @@ impl ConvergenceReport {
                 );
             }
             let ended = match &sequence.end {
-                End::Stable => "stable".to_owned(),
-                End::Time { resolution, expected_s } => format!(
+                StopReason::Stable => "stable".to_owned(),
+                StopReason::Time { resolution, expected_s } => format!(
                     "stopped, not stable: {resolution} cells per axis would take about {expected_s:.0} s more, and \
                      {:.0} s are allowed for each method",
                     settings.time_limit_s
                 ),
-                End::Memory { resolution, message } => {
+                StopReason::Memory { resolution, message } => {
                     format!("stopped, not stable: at {resolution} cells per axis {message}")
                 }
-                End::Cells { resolution } => format!(
+                StopReason::Cells { resolution } => format!(
                     "stopped, not stable: {resolution} cells per axis are more than {} cells",
                     grouped(settings.most_cells as usize)
                 ),

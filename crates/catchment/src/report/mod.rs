@@ -23,7 +23,7 @@ pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
 
-pub use comparison::{Agreement, AgreementReport, ComparisonReport, Decided, MethodResult, Side};
+pub use comparison::{Agreement, AgreementReport, Compared, ComparisonReport, Decided, MethodResult};
 pub use convergence::ConvergenceReport;
 pub use schema::Report;
 pub use sensitivity::SensitivityReport;

@@ -62,7 +62,7 @@ pub struct Sequence {
     /// Coarse to fine.
     pub trials: Vec<Refinement>,
     /// Why there are no more.
-    pub end: End,
+    pub end: StopReason,
     /// What exact descents say of the finest grid's Sum, if any were asked for.
     pub corrected: Option<CorrectedSum>,
 }
@@ -81,7 +81,7 @@ pub struct CorrectedSum {
 /// Why a sequence ended.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
-pub enum End {
+pub enum StopReason {
     /// Two refinements in a row changed little enough.
     Stable,
     /// The next refinement would take too long.
@@ -172,15 +172,15 @@ fn sequence(
     let end = loop {
         if let Some(last) = trials.last() {
             if stable(&trials, settings.tolerance) {
-                break End::Stable;
+                break StopReason::Stable;
             }
             let expected_s = last.seconds * cells(resolution) / cells(last.resolution);
             if spent + expected_s > settings.time_limit_s {
-                break End::Time { resolution, expected_s };
+                break StopReason::Time { resolution, expected_s };
             }
         }
         if cells(resolution) > settings.most_cells as f64 && !trials.is_empty() {
-            break End::Cells { resolution };
+            break StopReason::Cells { resolution };
         }
         // Each refinement is dearer than all before it together: half of what is left.
         let done = 1.0 - 0.5f64.powf(trials.len() as f64);
@@ -194,7 +194,7 @@ fn sequence(
                 finest = Some(sampled);
             }
             Err(RefinementError::OutOfBudget(refusal)) if !trials.is_empty() => {
-                break End::Memory { resolution, message: needs(&refusal) };
+                break StopReason::Memory { resolution, message: needs(&refusal) };
             }
             Err(error) => return Err(error.into()),
         }
@@ -271,7 +271,7 @@ mod tests {
         assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), ["transport", "descent", "flood", "steepest"]);
         assert_eq!(found.unit, "D·rad");
         for sequence in &found.sequences {
-            assert_eq!(sequence.end, End::Stable);
+            assert_eq!(sequence.end, StopReason::Stable);
             assert!(sequence.trials.len() >= 3 && sequence.trials[0].resolution == 11);
             let corrected = sequence.corrected.unwrap();
             assert!(corrected.ci95[0] < corrected.sum && corrected.sum < corrected.ci95[1]);
@@ -283,16 +283,19 @@ mod tests {
         let few = Settings { most_cells: 300, tolerance: 1e-9, descents: 0, ..settings.clone() };
         let found = run(&problem, &few, &Exec::new()).unwrap();
         assert!(
-            found.sequences.iter().all(|s| s.end == End::Cells { resolution: 21 } && s.trials.len() == 2)
+            found
+                .sequences
+                .iter()
+                .all(|s| s.end == StopReason::Cells { resolution: 21 } && s.trials.len() == 2)
         );
         let hasty = Settings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
         let found = run(&problem, &hasty, &Exec::new()).unwrap();
-        let once = |s: &Sequence| s.trials.len() == 1 && matches!(s.end, End::Time { resolution: 15, .. });
+        let once = |s: &Sequence| s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. });
         assert!(found.sequences.iter().all(once));
         let small = Exec::new().with_memory_budget(2_000_000);
         let strict = Settings { tolerance: 1e-9, ..settings.clone() };
         let found = run(&problem, &strict, &small).unwrap();
-        assert!(found.sequences.iter().all(|s| matches!(s.end, End::Memory { .. })), "{found:?}");
+        assert!(found.sequences.iter().all(|s| matches!(s.end, StopReason::Memory { .. })), "{found:?}");
         assert!(matches!(
             run(&problem, &settings, &Exec::new().with_memory_budget(10)),
             Err(ConvergenceError::Refinement(RefinementError::OutOfBudget(_)))

@@ -144,7 +144,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices
     let largest = planes.iter().map(|(_, grid)| cells(grid)).max().unwrap_or(0);
     let kept = planes.iter().map(|(_, grid)| cells(grid)).fold(0, u64::saturating_add);
     let needed = largest.saturating_mul(pose_bytes()).saturating_add(kept);
-    exec.reserve("the largest slice", needed, |budget| {
+    exec.ensure_fits("the largest slice", needed, |budget| {
         let fits = Resolution::largest_that_fits(budget, pose_bytes() + planes.len() as u64, 2);
         format!("use at most --resolution {fits}, or allow more with --memory")
     })?;

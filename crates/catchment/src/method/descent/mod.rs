@@ -97,14 +97,7 @@ pub fn run(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
-    let count = match &domain {
-        Domain::Grid(grid) => grid.len(),
-        Domain::Poses(poses) => poses.len(),
-    };
-    let pose = |k: usize| match &domain {
-        Domain::Grid(grid) => grid.pose(k),
-        Domain::Poses(poses) => poses[k],
-    };
+    let count = domain.len();
     let done = AtomicUsize::new(0);
     let ends: Vec<End> = exec.install(|| {
         (0..count)
@@ -113,7 +106,7 @@ pub fn run(
                 || Motion::new(pair, settings),
                 |motion, k| {
                     exec.check()?;
-                    let (outcome, error) = motion.follow(&pose(k), None);
+                    let (outcome, error) = motion.follow(&domain.pose(k), None);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(256) {
                         exec.report(done as f64 / count as f64, "descents");

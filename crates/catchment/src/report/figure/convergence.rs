@@ -64,7 +64,7 @@ mod tests {
     use crate::method::Method;
     use crate::pose::Dof;
     use crate::report::schema::testing::design;
-    use crate::study::convergence::{End, Settings};
+    use crate::study::convergence::{Settings, StopReason};
 
     #[test]
     fn every_method_has_a_line_in_every_chart() {
@@ -86,7 +86,7 @@ mod tests {
         let sequence = |(k, method): (usize, &Method)| Sequence {
             method: method.name(),
             trials: [11, 15, 21, 29, 41].map(|n| trial(n, 2.4 + 0.1 * k as f64)).to_vec(),
-            end: End::Stable,
+            end: StopReason::Stable,
             corrected: None,
         };
         let found = Convergence {

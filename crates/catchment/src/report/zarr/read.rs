@@ -44,7 +44,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     }
     let cells = grid.checked_len().ok_or_else(|| bad("it has too many cells".to_owned()))?;
     // The codes as they are stored, and the outcomes that they become.
-    exec.reserve("the outcomes of a stored result", 2 * cells as u64, |_| {
+    exec.ensure_fits("the outcomes of a stored result", 2 * cells as u64, |_| {
         "allow more with --memory".to_owned()
     })?;
     exec.check()?;
