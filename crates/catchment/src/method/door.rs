@@ -22,7 +22,6 @@ use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::method::flood::Hierarchy;
 use crate::method::partition::Partition;
-use crate::pose::PoseError;
 use crate::problem::Problem;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -415,12 +414,6 @@ pub fn affordable(pair: &Pair) -> f64 {
     (SIMPLE / facets.max(SIMPLE)).powi(3)
 }
 
-/// Refuses outcomes that would not fit into memory, with the resolution that would.
-pub(super) fn ensure_poses_fit(grid: &Grid, per_cell: u64, exec: &Exec) -> Result<(), OutOfBudget> {
-    let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
-    ensure_fits("the outcome of every cell", cells.saturating_mul(per_cell), per_cell, grid.axes.len(), exec)
-}
-
 /// Refuses what would not fit into memory, with the resolution that would.
 pub fn ensure_fits(
     what: &'static str,
@@ -433,14 +426,4 @@ pub fn ensure_fits(
         fits if fits < Resolution::LEAST => "allow more with --memory".to_owned(),
         fits => format!("use at most --resolution {fits}, or allow more with --memory"),
     })
-}
-
-/// Ends of listed poses, from a method that follows them.
-pub fn follow(
-    method: &dyn Follow,
-    problem: &Problem,
-    poses: Vec<PoseError>,
-    exec: &Exec,
-) -> Result<Vec<End>, DecideError> {
-    Ok(method.follow(problem, Domain::Poses(poses), exec)?.1)
 }

@@ -12,7 +12,6 @@ use crate::merit::success::{Distribution, Success, success};
 use crate::merit::sum::Sum;
 use crate::merit::tolerance::Tolerance;
 use crate::merit::{MeritError, Merits};
-use crate::method::partition::Partition;
 use crate::pose::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -276,13 +275,6 @@ impl Report {
         let found = success(acceptance, &distribution, exec)?;
         self.success = Some(SuccessReport::new(distribution, &found));
         Ok(self)
-    }
-
-    /// Adds the partition behind the outcomes.
-    #[must_use]
-    pub fn with_partition(mut self, partition: &Partition) -> Self {
-        self.partition = Some(PartitionReport::new(partition));
-        self
     }
 
     /// The report as indented JSON, ending with a line break.

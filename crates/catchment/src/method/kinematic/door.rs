@@ -23,7 +23,7 @@ pub(in crate::method) const ENTRY: Entry = Entry::of::<Kinematic>(&INFO);
 /// The bounds and the stepping of planar faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Kinematic {}
+pub(in crate::method) struct Kinematic {}
 
 impl Decide for Kinematic {
     fn info(&self) -> &'static Info {

@@ -23,11 +23,11 @@ pub(in crate::method) const ENTRY: Entry = Entry::of::<Partitioned>(&INFO);
 /// The partition; what is not said follows from the number of free rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Partitioned {
+pub(in crate::method) struct Partitioned {
     /// Rotation slices across the error box of every free rotation.
-    pub slices: Option<usize>,
+    pub(in crate::method) slices: Option<usize>,
     /// Strips per D into which the moving half is cut.
-    pub strips: Option<usize>,
+    pub(in crate::method) strips: Option<usize>,
 }
 
 impl Partitioned {
