@@ -82,7 +82,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
 fn within(job: &Job, limit: Duration, exec: &Exec) -> Result<(MethodResult, Acceptance), Failure> {
     job.method.applies_to(job.design).map_err(|refusal| Failure::with_help(refusal.reason, None))?;
     let started = Instant::now();
-    let timed = exec.clone().with_deadline(started + limit);
+    let timed = exec.clone().with_time_limit(limit);
     let outcome = || -> Result<(Computed, MethodResult), Failure> {
         let computed = compute(job, &timed)?;
         let seconds = started.elapsed().as_secs_f64();
