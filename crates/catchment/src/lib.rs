@@ -103,6 +103,8 @@ pub mod merit;
 pub mod method;
 pub mod polytope;
 pub mod pose;
+pub mod problem;
 pub mod report;
+pub mod run;
 pub mod study;
 pub mod suggest;

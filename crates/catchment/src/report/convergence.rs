@@ -58,7 +58,7 @@ impl ConvergenceReport {
             &format!("  per axis         cells  seconds {sum:>14}  {:<19}  ONAA edge", "one cell of doubt"),
         );
         for sequence in &self.found.sequences {
-            line(&mut text, sequence.method.name());
+            line(&mut text, sequence.method);
             for t in &sequence.trials {
                 undecided += t.undecided;
                 let [lo, hi] = t.bracket.map(significant);
@@ -115,7 +115,7 @@ impl ConvergenceReport {
         let mut records = vec![head.map(str::to_owned).to_vec()];
         for sequence in &self.found.sequences {
             for t in &sequence.trials {
-                let mut record = vec![sequence.method.name().to_owned()];
+                let mut record = vec![sequence.method.to_owned()];
                 record.extend([t.resolution, t.cells].map(|n| n.to_string()));
                 record.extend([t.seconds, t.sum, t.bracket[0], t.bracket[1]].map(|v| v.to_string()));
                 record.push(t.onaa_edge.to_string());

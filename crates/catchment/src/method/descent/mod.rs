@@ -10,12 +10,14 @@
 //! Not promised: friction, speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
 //! the motion could go either way, may be reported as jammed there.
 
+pub(super) mod door;
 mod motion;
 mod projection;
 #[cfg(test)]
 mod tests;
 mod trajectory;
 
+pub(in crate::method) use door::default_samples;
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
@@ -29,7 +31,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What may change the answer of [`run`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Longest step in the ρ-metric, in D; twice as long where motion is straight. Halving it must not change outcomes; it is
     /// here to be tested.

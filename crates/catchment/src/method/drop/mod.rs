@@ -23,6 +23,7 @@
 //! dissertation, section 4.2.
 
 mod engine;
+pub(super) mod door;
 pub mod export;
 mod mass;
 mod pieces;

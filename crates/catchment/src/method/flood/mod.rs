@@ -43,6 +43,7 @@
 
 pub mod brute;
 pub mod dissertation;
+pub(super) mod door;
 mod drain;
 pub mod meyer;
 mod passes;
@@ -90,6 +91,7 @@ impl Rule {
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Basins shallower than this are merged, in D; 0 keeps every minimum. Without one it is chosen from the depths.
     pub depth_tolerance: Option<f64>,

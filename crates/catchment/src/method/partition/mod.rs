@@ -18,6 +18,7 @@
 
 mod cells;
 mod compose;
+pub(super) mod door;
 mod fall;
 mod frame;
 mod outline;

@@ -26,6 +26,7 @@
 //! Bremer and Pascucci 2012; D-infinity, Tarboton 1997; simplices, Freudenthal 1942. Lengths in D, angles in radians.
 
 pub mod brute;
+pub(super) mod door;
 mod links;
 mod metric;
 mod solve;
@@ -46,7 +47,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What may change the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Motion that leaves the error box is followed exactly when the grid has at most this many cells at its surface.
     pub followed_out: usize,
