@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms that must build where there is no system, such as a page in a browser.
-const CORE: [&str; 11] = [
+const CORE: [&str; 12] = [
     "pose",
     "exec",
     "suggest",
@@ -19,6 +19,7 @@ const CORE: [&str; 11] = [
     "acceptance",
     "method",
     "merit",
+    "run",
 ];
 
 /// What asks the system for something, and what for.
