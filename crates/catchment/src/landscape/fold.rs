@@ -12,7 +12,7 @@ use crate::contact::Mirror;
 use crate::pose::Dof;
 
 /// The lateral axes and the rotations of a grid, folded by the mirror symmetries of a pair.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fold {
     /// Cells per lateral axis, x and y; 1 where the axis is not sampled.
     lateral: [usize; 2],

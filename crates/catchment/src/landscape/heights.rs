@@ -1,11 +1,13 @@
 //! Heights of first contact over the whole error grid.
 
-use super::{Grid, Resolution};
-use crate::contact::{Lattice, Pair};
+use super::backend::{Backend, Fast, slab};
+use super::{Grid, LandscapePart, Resolution};
+use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
-use crate::pose::{self, Dof};
+use crate::pose::Dof;
 use rayon::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The height of first contact at every cell of an error grid.
 ///
@@ -43,6 +45,14 @@ pub enum LandscapeError {
         /// How many can be numbered.
         most: usize,
     },
+    /// A part beyond the grid.
+    #[error("there are no rotations {} to {} in a grid of {of}", .range.start, .range.end)]
+    NoSuchRotations {
+        /// Which were asked for.
+        range: Range<usize>,
+        /// How many there are.
+        of: usize,
+    },
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),
@@ -57,6 +67,11 @@ impl Landscape {
         cells.saturating_mul(size_of::<f32>() as u64)
     }
 
+    /// How many rotations a grid has.
+    pub fn rotations(grid: &Grid) -> usize {
+        grid.axes.iter().filter(|a| a.dof.is_rotation()).map(|a| a.cells).product()
+    }
+
     /// Heights of `pair` over `grid`, one rotation at a time, in parallel.
     ///
     /// An error without an axis is 0; a translation that the design locks stays at the COR.
@@ -65,20 +80,68 @@ impl Landscape {
     /// When the grid samples a locked translation or has no cell, does not fit into the memory budget, or when
     /// the computation is cancelled.
     pub fn compute(pair: &Pair, grid: &Grid, exec: &Exec) -> Result<Self, LandscapeError> {
-        let cells = usable(pair, grid)?;
-        let slab: usize = grid.axes.iter().filter(|a| !a.dof.is_rotation()).map(|a| a.cells).product();
-        let buffers = (exec.threads() * slab * size_of::<f64>()) as u64;
-        exec.ensure_fits(
-            "the height landscape",
-            Self::bytes(cells as u64).saturating_add(buffers),
-            |budget| {
-                let largest = Resolution::largest_that_fits(budget, size_of::<f32>() as u64, grid.axes.len());
-                format!("use at most --resolution {largest}")
-            },
-        )?;
-        let mut heights = vec![0.0f32; cells];
-        exec.install(|| fill(pair, grid, slab, &mut heights, exec))?;
+        Self::compute_by(&Fast, pair, grid, exec)
+    }
+
+    /// The same by any backend.
+    ///
+    /// # Errors
+    /// As [`Landscape::compute`].
+    pub fn compute_by(
+        backend: &impl Backend,
+        pair: &Pair,
+        grid: &Grid,
+        exec: &Exec,
+    ) -> Result<Self, LandscapeError> {
+        usable(pair, grid)?;
+        let heights = heights(backend, pair, grid, 0..Self::rotations(grid), exec)?;
         Ok(Self { grid: grid.clone(), heights })
+    }
+
+    /// The heights of some of the grid's rotations: those of the whole, bit for bit. [`Landscape::merge`] puts parts
+    /// together.
+    ///
+    /// # Errors
+    /// As [`Landscape::compute`], and when the grid has no such rotations.
+    pub fn part(
+        pair: &Pair,
+        grid: &Grid,
+        rotations: Range<usize>,
+        exec: &Exec,
+    ) -> Result<LandscapePart, LandscapeError> {
+        usable(pair, grid)?;
+        within(&rotations, Self::rotations(grid))?;
+        let heights = heights(&Fast, pair, grid, rotations.clone(), exec)?;
+        Ok(LandscapePart { grid: grid.clone(), rotations, heights })
+    }
+}
+
+/// Heights over rotations of a usable grid.
+fn heights(
+    backend: &impl Backend,
+    pair: &Pair,
+    grid: &Grid,
+    rotations: Range<usize>,
+    exec: &Exec,
+) -> Result<Vec<f32>, LandscapeError> {
+    let cells = rotations.len() * slab(grid);
+    let buffers = (exec.threads() * slab(grid) * size_of::<f64>()) as u64;
+    let needed = Landscape::bytes(cells as u64).saturating_add(buffers);
+    exec.ensure_fits("the height landscape", needed, |budget| {
+        let largest = Resolution::largest_that_fits(budget, size_of::<f32>() as u64, grid.axes.len());
+        format!("use at most --resolution {largest}")
+    })?;
+    let mut heights = vec![0.0f32; cells];
+    fill(backend, pair, grid, rotations, &mut heights, exec)?;
+    Ok(heights)
+}
+
+/// Whether there are such rotations.
+pub(super) fn within(range: &Range<usize>, of: usize) -> Result<(), LandscapeError> {
+    if range.start <= range.end && range.end <= of {
+        Ok(())
+    } else {
+        Err(LandscapeError::NoSuchRotations { range: range.clone(), of })
     }
 }
 
@@ -94,45 +157,35 @@ pub(super) fn usable(pair: &Pair, grid: &Grid) -> Result<usize, LandscapeError> 
         .ok_or_else(|| LandscapeError::Unusable { shape: grid.shape() })
 }
 
-/// Fills one slab of lateral positions per rotation. Slabs do not depend on each other, so neither does any
+/// Rotations that a thread does in one go: enough to use what it prepares again, few enough to share them evenly.
+const AT_ONCE: usize = 8;
+
+/// Fills the slabs of lateral positions of a range of rotations. Slabs do not depend on each other, so neither does any
 /// height on the number of threads.
 fn fill(
+    backend: &impl Backend,
     pair: &Pair,
     grid: &Grid,
-    slab: usize,
+    rotations: Range<usize>,
     heights: &mut [f32],
     exec: &Exec,
-) -> Result<(), LandscapeError> {
+) -> Result<(), Cancelled> {
     const STAGE: &str = "heights";
-    let rotations = heights.len() / slab;
-    let done = Mutex::new(0usize);
-    heights.par_chunks_exact_mut(slab).enumerate().try_for_each_init(
-        || vec![0.0f64; slab],
-        |buffer, (k, out)| {
+    let slab = slab(grid);
+    let count = rotations.len();
+    let at_once = (count / (4 * exec.threads())).clamp(1, AT_ONCE);
+    let done = AtomicUsize::new(0);
+    exec.install(|| {
+        heights.par_chunks_mut(slab * at_once).enumerate().try_for_each(|(k, out)| {
             exec.check()?;
-            let rotation = grid.pose(k * slab).rotation();
-            let face = pose::face_from_cor(&rotation, pair.alignment.center_of_rotation);
-            let lattice = |dof, face| lateral_lattice(pair, grid, dof, face);
-            pair.at_rotation(rotation).heights(lattice(Dof::X, face.x), lattice(Dof::Y, face.y), buffer);
-            for (out, height) in out.iter_mut().zip(&*buffer) {
-                *out = *height as f32;
-            }
-            // Reported under the lock, so that the fraction never goes back.
-            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-            *done += 1;
-            exec.report(*done as f64 / rotations as f64, STAGE);
+            let first = rotations.start + k * at_once;
+            let here = out.len() / slab;
+            backend.heights(pair, grid, first..first + here, out);
+            let done = done.fetch_add(here, Ordering::Relaxed) + here;
+            exec.report(done as f64 / count as f64, STAGE);
             Ok(())
-        },
-    )
-}
-
-/// COR positions along x or y at one rotation; `face` is the face centre's coordinate as seen from the COR.
-pub(super) fn lateral_lattice(pair: &Pair, grid: &Grid, dof: Dof, face: f64) -> Lattice {
-    match grid.axis(dof) {
-        Some(axis) => Lattice { first: axis.center(0) - face, step: axis.step(), count: axis.cells },
-        None if pair.alignment.free.contains(dof) => Lattice { first: -face, step: 0.0, count: 1 },
-        None => Lattice { first: 0.0, step: 0.0, count: 1 },
-    }
+        })
+    })
 }
 
 #[cfg(test)]

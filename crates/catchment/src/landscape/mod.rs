@@ -10,16 +10,21 @@
 //! ```
 //!
 //! Lengths in D, angles in radians. The heights are exact at the cells' centres up to single precision; nothing is
-//! promised about what lies between two centres.
+//! promised about what lies between two centres. Any range of a grid's rotations can be computed apart, and parts put
+//! together are the whole, bit for bit.
 
+mod backend;
 mod fold;
 mod grid;
 mod heights;
+mod part;
 mod relief;
 mod resolution;
 
+pub use backend::{Backend, Brute, Fast};
 pub use fold::{Fold, Image};
 pub use grid::{Grid, GridAxis};
 pub use heights::{Landscape, LandscapeError};
-pub use relief::{Gradient, Patch, Relief};
+pub use part::{LandscapePart, MergeError, ReliefPart};
+pub use relief::{Gradient, Patch, Patches, Relief};
 pub use resolution::{Resolution, ResolutionError};

@@ -11,15 +11,16 @@
 //! Six bytes per cell, and only one of every set of rotations that are mirror images ([`Fold`]). Where several contacts
 //! carry the half at once, a cell keeps the first of them.
 
-use super::heights::{lateral_lattice, usable};
-use super::{Fold, Grid, LandscapeError, Resolution};
+use super::backend::{lateral, lateral_lattices};
+use super::heights::{usable, within};
+use super::{Fold, Grid, LandscapeError, ReliefPart, Resolution};
 use crate::contact::{Envelope, Pair};
 use crate::exec::Exec;
-use crate::pose::{self, Dof};
+use crate::pose;
 use glam::DVec2;
 use rayon::prelude::*;
-use std::sync::Mutex;
-use std::sync::PoisonError;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Five numbers of a gradient: ∂h/∂x and ∂h/∂y at the COR (D/D), ∂h/∂ω about the COR in world axes (D/rad); or
 /// what a method makes of them.
@@ -51,6 +52,9 @@ impl Patch {
     }
 }
 
+/// Per representative rotation: its patches.
+pub type Patches = Vec<Box<[Patch]>>;
+
 /// Heights and gradients over the kept half, or quarter, of an error grid.
 #[derive(Debug, Clone)]
 pub struct Relief {
@@ -63,7 +67,7 @@ pub struct Relief {
     /// Per kept cell: number of its patch within its rotation; [`Relief::NOTHING`] without contact.
     pub carriers: Vec<u16>,
     /// Per representative rotation: its patches.
-    pub patches: Vec<Box<[Patch]>>,
+    pub patches: Patches,
 }
 
 impl Relief {
@@ -89,41 +93,82 @@ impl Relief {
     where
         L: Fn(&Gradient) -> Gradient,
     {
-        usable(pair, grid)?;
-        let unusable = || LandscapeError::Unusable { shape: grid.shape() };
-        let fold = Fold::new(grid, pair.mirrors()).ok_or_else(unusable)?;
-        let kept = fold.kept_cells();
-        exec.ensure_fits("heights and their gradients", kept as u64 * Self::BYTES_PER_CELL, |budget| {
-            let share = kept as f64 / grid.len() as f64;
-            let budget = (budget as f64 / share) as u64;
-            let largest = Resolution::largest_that_fits(budget, Self::BYTES_PER_CELL, grid.axes.len());
-            format!("use at most --resolution {largest}")
-        })?;
-        let mut heights = vec![0f32; kept];
-        let mut carriers = vec![0u16; kept];
-        let slab = fold.slab();
-        let done = Mutex::new(0usize);
-        let patches = exec.install(|| {
-            heights
-                .par_chunks_exact_mut(slab)
-                .zip(carriers.par_chunks_exact_mut(slab))
-                .enumerate()
-                .map_init(
-                    || Slab::new(pair, slab),
-                    |buffer, (representative, (heights, carriers))| {
-                        exec.check()?;
-                        let rotation = grid.pose(fold.rotation(representative) * slab);
-                        let patches = buffer.fill(grid, &rotation, linear(&rotation), heights, carriers)?;
-                        let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-                        *done += 1;
-                        exec.report(*done as f64 / fold.representatives() as f64, "heights");
-                        Ok(patches)
-                    },
-                )
-                .collect::<Result<Vec<_>, LandscapeError>>()
-        })?;
-        Ok(Self { grid: grid.clone(), fold, heights, carriers, patches })
+        let fold = folded(pair, grid)?;
+        let all = 0..fold.representatives();
+        let ReliefPart { grid, fold, heights, carriers, patches, .. } =
+            reliefs(pair, grid, fold, all, exec, linear)?;
+        Ok(Self { grid, fold, heights, carriers, patches })
     }
+
+    /// The relief of some of the representative rotations, numbered as in the [`Fold`] of the grid: that of the whole, bit
+    /// for bit. [`Relief::merge`] puts parts together.
+    ///
+    /// # Errors
+    /// As [`Relief::compute`], and when there are no such rotations.
+    pub fn part<L>(
+        pair: &Pair,
+        grid: &Grid,
+        representatives: Range<usize>,
+        exec: &Exec,
+        linear: impl Fn(&pose::PoseError) -> L + Sync,
+    ) -> Result<ReliefPart, LandscapeError>
+    where
+        L: Fn(&Gradient) -> Gradient,
+    {
+        let fold = folded(pair, grid)?;
+        within(&representatives, fold.representatives())?;
+        reliefs(pair, grid, fold, representatives, exec, linear)
+    }
+}
+
+/// The fold of a grid that suits the pair.
+fn folded(pair: &Pair, grid: &Grid) -> Result<Fold, LandscapeError> {
+    usable(pair, grid)?;
+    Fold::new(grid, pair.mirrors()).ok_or_else(|| LandscapeError::Unusable { shape: grid.shape() })
+}
+
+/// The relief of a range of representative rotations.
+fn reliefs<L>(
+    pair: &Pair,
+    grid: &Grid,
+    fold: Fold,
+    representatives: Range<usize>,
+    exec: &Exec,
+    linear: impl Fn(&pose::PoseError) -> L + Sync,
+) -> Result<ReliefPart, LandscapeError>
+where
+    L: Fn(&Gradient) -> Gradient,
+{
+    let slab = fold.slab();
+    let kept = representatives.len() * slab;
+    exec.ensure_fits("heights and their gradients", kept as u64 * Relief::BYTES_PER_CELL, |budget| {
+        let share = kept as f64 / grid.len() as f64;
+        let budget = (budget as f64 / share) as u64;
+        let largest = Resolution::largest_that_fits(budget, Relief::BYTES_PER_CELL, grid.axes.len());
+        format!("use at most --resolution {largest}")
+    })?;
+    let mut heights = vec![0f32; kept];
+    let mut carriers = vec![0u16; kept];
+    let done = AtomicUsize::new(0);
+    let patches = exec.install(|| {
+        heights
+            .par_chunks_exact_mut(slab)
+            .zip(carriers.par_chunks_exact_mut(slab))
+            .enumerate()
+            .map_init(
+                || Slab::new(pair, slab),
+                |buffer, (k, (heights, carriers))| {
+                    exec.check()?;
+                    let error = grid.pose(fold.rotation(representatives.start + k) * slab);
+                    let patches = buffer.fill(grid, &error, linear(&error), heights, carriers)?;
+                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                    exec.report(done as f64 / representatives.len() as f64, "heights");
+                    Ok(patches)
+                },
+            )
+            .collect::<Result<Patches, LandscapeError>>()
+    })?;
+    Ok(ReliefPart { grid: grid.clone(), fold, representatives, heights, carriers, patches })
 }
 
 /// What one thread needs to fill slabs.
@@ -151,9 +196,7 @@ impl<'a> Slab<'a> {
         carriers: &mut [u16],
     ) -> Result<Box<[Patch]>, LandscapeError> {
         let rotation = error.rotation();
-        let face = pose::face_from_cor(&rotation, self.pair.alignment.center_of_rotation);
-        let x = lateral_lattice(self.pair, grid, Dof::X, face.x);
-        let y = lateral_lattice(self.pair, grid, Dof::Y, face.y);
+        let lattices @ [x, y] = lateral_lattices(self.pair, grid, &rotation);
         self.envelope.turn(&rotation);
         self.envelope.relief(x, y, &mut self.heights, &mut self.carriers);
         self.numbers.clear();
@@ -173,7 +216,7 @@ impl<'a> Slab<'a> {
                     }
                     self.numbers[slot] = patches.len() as u16;
                     // One step of the lattice apart, or one D where it has no step: the patch is then constant.
-                    let at = |kx: f64, ky: f64| DVec2::new(x.first + kx * x.step, y.first + ky * y.step);
+                    let at = |kx: f64, ky: f64| lateral(lattices, kx, ky);
                     let gradient = |lateral: DVec2| {
                         let (contact, cor) = self.envelope.carried_by(*carrier, lateral);
                         let ([gx, gy], turn) = contact.gradient(cor);
@@ -195,7 +238,7 @@ mod tests {
     use crate::contact::Contact;
     use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
     use crate::landscape::Landscape;
-    use crate::pose::CorPose;
+    use crate::pose::{CorPose, Dof};
 
     fn pair(family: Family) -> Pair {
         let mut alignment = Alignment::default_for(Some(family));

@@ -34,7 +34,7 @@ pub use part::{Part, PartAnswer, PartError};
 pub use plan::Plan;
 pub use requirement::{Requirement, RequirementError, Verdict};
 
-use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{LandscapeError, Resolution, ResolutionError};
 use crate::merit::MeritError;
 use crate::merit::success::Distribution;
@@ -42,7 +42,6 @@ use crate::method::correction::{CorrectionError, Stop};
 use crate::method::{DecideError, Method, NotApplicable};
 use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
-use std::time::Instant;
 
 /// Everything that changes an answer, beside the problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -160,7 +159,7 @@ impl Run {
     pub fn on(&self, problem: &Problem, exec: &Exec) -> Result<Answer, RunError> {
         let plan = self.plan(problem)?;
         plan.ensure_fits(exec)?;
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let decided = stages::decide(&plan, problem, exec)?;
         stages::finish(self, plan, problem, decided, started, exec)
     }

@@ -16,12 +16,11 @@
 
 use super::{Answer, Plan, Run, RunError, stages};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
-use crate::exec::Exec;
+use crate::exec::{Exec, Stopwatch};
 use crate::method::{DecideError, Decided};
 use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
-use std::time::Instant;
 
 /// Which part of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -60,7 +59,9 @@ pub struct PartAnswer {
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     /// The method decides cells from one another.
-    #[error("{method} decides the cells of a grid from one another, so its grid cannot be divided; divide a stream of random poses")]
+    #[error(
+        "{method} decides the cells of a grid from one another, so its grid cannot be divided; divide a stream of random poses"
+    )]
     Indivisible {
         /// Which method.
         method: &'static str,
@@ -121,8 +122,13 @@ impl Run {
     ///
     /// # Errors
     /// The parts do not belong to this run and problem, or do not make a whole.
-    pub fn merge(&self, problem: &Problem, mut parts: Vec<PartAnswer>, exec: &Exec) -> Result<Answer, PartError> {
-        let started = Instant::now();
+    pub fn merge(
+        &self,
+        problem: &Problem,
+        mut parts: Vec<PartAnswer>,
+        exec: &Exec,
+    ) -> Result<Answer, PartError> {
+        let started = Stopwatch::start();
         let plan = self.divisible(problem)?;
         plan.ensure_fits(exec).map_err(RunError::from)?;
         parts.sort_by_key(|part| part.part.number);
@@ -194,7 +200,9 @@ mod letters {
         let text = String::deserialize(deserializer)?;
         let read = |c: char| Outcome::ALL.into_iter().find(|outcome| letter(*outcome) == c);
         text.chars()
-            .map(|c| read(c).ok_or_else(|| D::Error::custom(format!("`{}` is no outcome", c.escape_default()))))
+            .map(|c| {
+                read(c).ok_or_else(|| D::Error::custom(format!("`{}` is no outcome", c.escape_default())))
+            })
             .collect()
     }
 }

@@ -2,14 +2,13 @@
 
 use super::{Answer, Corrected, Plan, Run, RunError};
 use crate::acceptance::{Acceptance, Domain, Warning};
-use crate::exec::Exec;
+use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
 use crate::merit::Merits;
 use crate::merit::success::success;
 use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError};
 use crate::method::{Decided, Doubts, Follow, Method, descent};
 use crate::problem::Problem;
-use std::time::Instant;
 
 /// What follows random poses and doubtful cells exactly: the method itself where it decides each pose by itself (descents would know
 /// nothing of the friction of a drop test), else exact descent.
@@ -40,7 +39,7 @@ pub(super) fn finish(
     plan: Plan,
     problem: &Problem,
     decided: Decided,
-    started: Instant,
+    started: Stopwatch,
     exec: &Exec,
 ) -> Result<Answer, RunError> {
     let Decided { mut acceptance, doubts, mut by_products, settings } = decided;

@@ -4,7 +4,7 @@
 //! settled by descent. [`Sampled::correct`] gives the unbiased Sum that a run reports.
 
 use crate::acceptance::{Domain, Outcome};
-use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::Grid;
 use crate::merit::MeritError;
 use crate::merit::onaa::Onaa;
@@ -14,7 +14,6 @@ use crate::method::{DecideError, Decided, Method, ensure_fits};
 use crate::problem::Problem;
 use crate::run;
 use serde::Serialize;
-use std::time::Instant;
 
 /// What one method says at one resolution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -81,13 +80,18 @@ impl Sampled {
     ///
     /// # Errors
     /// See [`RefinementError`].
-    pub fn by(method: &Method, problem: &Problem, resolution: usize, exec: &Exec) -> Result<Self, RefinementError> {
+    pub fn by(
+        method: &Method,
+        problem: &Problem,
+        resolution: usize,
+        exec: &Exec,
+    ) -> Result<Self, RefinementError> {
         let grid = Grid::over(problem.alignment(), |_| resolution);
         let cost = method.cost(problem, &grid);
         let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
         let needed = cells.saturating_mul(cost.bytes_per_cell);
         ensure_fits(cost.what, needed, cost.bytes_per_cell, grid.axes.len(), exec)?;
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let decided = method.decide(problem, &Domain::Grid(grid.clone()), exec)?;
         let seconds = started.elapsed().as_secs_f64();
         Ok(Self { method: method.clone(), grid, decided, seconds })

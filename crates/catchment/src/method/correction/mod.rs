@@ -34,14 +34,13 @@ pub use strata::{ByFraction, ByNeighbours, MOST_STRATA, Stratify};
 
 use crate::acceptance::{Domain, Outcome, Stream};
 use crate::contact::Pair;
-use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::Grid;
 use crate::method::{DecideError, descent};
 use crate::pose::{Dof, PoseError};
 use interval::{Seen, Whole};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::time::Instant;
 use strata::Strata;
 
 /// What changes the answer.
@@ -162,7 +161,7 @@ pub fn estimate(
     let present: Vec<usize> = (0..strata.len()).filter(|s| strata.cells(*s) > 0).collect();
     let share = |s: &usize| Seen::new(strata.cells(*s) as f64 / grid.len() as f64);
     let mut seen: Vec<Seen> = present.iter().map(share).collect();
-    let started = Instant::now();
+    let started = Stopwatch::start();
     let mut total = 0;
     let mut whole = Whole::of(&seen, total);
     while let Some(batch) = schedule::next(stop, total, present.len(), started.elapsed(), &whole) {

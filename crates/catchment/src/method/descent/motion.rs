@@ -9,7 +9,7 @@ use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair};
-use crate::pose::{CorPose, Dof, PoseError, face_from_cor, rotation};
+use crate::pose::{CorPose, Dof, PoseError, ROTATIONS, euler_axes, face_from_cor, rotation};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// Position of the moving half.
@@ -370,10 +370,13 @@ impl<'a> Motion<'a> {
         }
         let [_, pitch, yaw] = state.angles;
         let free = self.pair.alignment.free;
-        let about_z = DMat3::from_rotation_z(yaw);
-        let roll = about_z * (DMat3::from_rotation_y(pitch) * DVec3::X);
-        let axes = [(Dof::Roll, roll), (Dof::Pitch, about_z * DVec3::Y), (Dof::Yaw, DVec3::Z)];
-        axes.map(|(dof, axis)| if free.contains(dof) { axis } else { DVec3::ZERO })
+        let mut axes = euler_axes(pitch, yaw);
+        for (axis, dof) in axes.iter_mut().zip(ROTATIONS) {
+            if !free.contains(dof) {
+                *axis = DVec3::ZERO;
+            }
+        }
+        axes
     }
 
     /// The displacement of one step and its length in the ρ-metric, at most `step`.

@@ -12,7 +12,7 @@ use super::drain::{FLAT, OUTSIDE};
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
-use crate::pose::{Dof, face_from_cor};
+use crate::pose::{Dof, angle_between, face_from_cor, step_length};
 use glam::{DMat3, DVec2};
 use rayon::prelude::*;
 use std::sync::atomic::AtomicU32;
@@ -89,14 +89,13 @@ impl Metric<'_> {
         let mut steps = Vec::new();
         for near in self.rotations_around(rotation) {
             let (there, moved) = self.turned(near * slab);
-            let angle = DMat3::to_cols_array(&(here.transpose() * there));
-            let angle = ((angle[0] + angle[4] + angle[8] - 1.0) / 2.0).clamp(-1.0, 1.0).acos();
+            let angle = angle_between(&here, &there);
             for dy in if ny > 1 { -1..=1 } else { 0..=0isize } {
                 for dx in if nx > 1 { -1..=1 } else { 0..=0isize } {
                     let delta = (near * slab).cast_signed() - (rotation * slab).cast_signed();
                     let delta = delta + dx + dy * nx.cast_signed();
                     let offset = DVec2::new(dx as f64 * size[0], dy as f64 * size[1]) + moved - cor;
-                    let length = offset.length().hypot(rho * angle);
+                    let length = step_length(offset, angle, rho);
                     if delta != 0 {
                         steps.push(Step { delta, lateral: [dx, dy], length });
                     }

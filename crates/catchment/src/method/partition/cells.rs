@@ -14,8 +14,7 @@
 use super::compose::Compartment;
 use super::space::{Affine, Tile};
 use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION};
-use crate::pose::{Dof, DofSet};
-use glam::{DMat3, DVec3};
+use crate::pose::{Dof, DofSet, ROTATIONS, euler_rates};
 use rstar::{AABB, RTree, primitives::GeomWithData, primitives::Rectangle};
 use std::array;
 
@@ -268,27 +267,16 @@ impl Cell {
     }
 }
 
-/// `M⁻¹ g` in the metric `|v|² + ρ²|ω|²`, ω from the rates of the free Euler angles at the pose error `q`.
+/// `M⁻¹ g` in the ρ-metric, the turn from the rates of the free Euler angles at the pose error `q`.
 fn mobility(q: &Point, free: DofSet, rotation_length: f64, g: &Point) -> Point {
-    let mut angles = [0.0; 3];
-    let rotations = [Dof::Roll, Dof::Pitch, Dof::Yaw];
     let places: Vec<Dof> = free.iter().collect();
     let place = |dof: Dof| places.iter().position(|free| *free == dof);
-    for (angle, dof) in angles.iter_mut().zip(rotations) {
-        *angle = place(dof).map_or(0.0, |k| q[k]);
-    }
-    let about_z = DMat3::from_rotation_z(angles[2]);
-    let axes = [about_z * (DMat3::from_rotation_y(angles[1]) * DVec3::X), about_z * DVec3::Y, DVec3::Z];
-    let entry = |j: usize, k: usize| match (place(rotations[j]), place(rotations[k])) {
-        (Some(_), Some(_)) => axes[j].dot(axes[k]),
-        _ => f64::from(u8::from(j == k)),
-    };
-    let gram = DMat3::from_cols_array_2d(&array::from_fn(|j| array::from_fn(|k| entry(j, k))));
-    let torque = DVec3::from_array(rotations.map(|dof| place(dof).map_or(0.0, |k| g[k])));
+    let of = |values: &Point, dof: Dof| place(dof).map_or(0.0, |k| values[k]);
+    let torque = ROTATIONS.map(|dof| of(g, dof));
     // Singular at the pole of the Euler angles only, where no cell has its centroid.
-    let rates = gram.inverse() * torque / (rotation_length * rotation_length);
+    let rates = euler_rates(of(q, Dof::Pitch), of(q, Dof::Yaw), free, rotation_length, torque);
     let mut mobile = *g;
-    for (rate, dof) in rates.to_array().into_iter().zip(rotations) {
+    for (rate, dof) in rates.into_iter().zip(ROTATIONS) {
         if let Some(k) = place(dof) {
             mobile[k] = rate;
         }

@@ -9,8 +9,7 @@
 
 use super::Partition;
 use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope};
-use crate::pose::PoseError;
-use glam::DVec3;
+use crate::pose::{PoseError, face_from_cor};
 
 impl Partition {
     /// The sides of the error box, which holds *face centres*, over a part, whose coordinates are of the COR.
@@ -66,7 +65,7 @@ impl Partition {
 
     /// (x, y) of the face centre from the COR at a rotation, in D.
     pub(super) fn offset(&self, error: &PoseError) -> [f64; 2] {
-        let face = error.rotation() * DVec3::new(0.0, 0.0, self.alignment.center_of_rotation);
+        let face = face_from_cor(&error.rotation(), self.alignment.center_of_rotation);
         [face.x, face.y]
     }
 }

@@ -121,10 +121,9 @@ impl Arrival {
     /// than counting cells, because a cell at the border counts in part.
     pub fn mean(&self) -> f64 {
         let slab = self.fold.slab();
-        // Summed in the order of the grid, whatever the threads.
         let per_slab: Vec<f64> = self
             .shares
-            .par_chunks_exact(slab)
+            .chunks_exact(slab)
             .map(|slab| slab.iter().map(|s| f64::from(s.aligned())).sum())
             .collect();
         let total: f64 =

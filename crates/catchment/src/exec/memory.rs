@@ -1,0 +1,53 @@
+//! How much memory a result may take.
+
+use std::fmt;
+
+/// A result would not fit in the memory budget.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{what} needs {} of memory, more than the {} allowed; {advice}", Bytes(*needed), Bytes(*budget))]
+pub struct OutOfBudget {
+    /// What would have been allocated.
+    pub what: &'static str,
+    /// Bytes it needs.
+    pub needed: u64,
+    /// Bytes it may use.
+    pub budget: u64,
+    /// What to do about it.
+    pub advice: String,
+}
+
+/// A byte count that prints in the unit a person would choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bytes(pub u64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
+        let mut value = self.0 as f64;
+        let mut unit = 0;
+        while value >= 1024.0 && unit + 1 < UNITS.len() {
+            value /= 1024.0;
+            unit += 1;
+        }
+        if unit == 0 { write!(f, "{} B", self.0) } else { write!(f, "{value:.1} {}", UNITS[unit]) }
+    }
+}
+
+/// Memory the system can hand out without swapping; 4 GiB where it does not say.
+pub(super) fn available() -> u64 {
+    const FALLBACK: u64 = 4 << 30;
+    said_by_the_system().unwrap_or(FALLBACK)
+}
+
+#[cfg(target_os = "linux")]
+fn said_by_the_system() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    kib.checked_mul(1024)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn said_by_the_system() -> Option<u64> {
+    None
+}

@@ -1,0 +1,65 @@
+//! What a run tells about its progress: a fraction per stage that never goes back.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Called with the fraction done, in [0, 1], and the stage's name. Within a run a stage's fractions never decrease,
+/// whatever the threads and parts that report; calls come one at a time. It must not report by itself.
+pub type Progress = Arc<dyn Fn(f64, &'static str) + Send + Sync>;
+
+/// One run's reports, shared by its clones and parts.
+struct Run {
+    consumer: Progress,
+    /// The greatest fraction told of every stage.
+    told: Mutex<Vec<(&'static str, f64)>>,
+}
+
+/// Where reports go: to the run, or to a part of one of its stages.
+#[derive(Clone)]
+pub(super) struct Reporter {
+    run: Arc<Run>,
+    /// What [0, 1] is within the stage of the run.
+    span: [f64; 2],
+    /// The stage that this is a part of.
+    stage: Option<&'static str>,
+}
+
+impl Reporter {
+    pub(super) fn new(consumer: Progress) -> Self {
+        let run = Run { consumer, told: Mutex::new(Vec::new()) };
+        Self { run: Arc::new(run), span: [0.0, 1.0], stage: None }
+    }
+
+    /// For another run with the same consumer.
+    pub(super) fn anew(&self) -> Self {
+        Self::new(Arc::clone(&self.run.consumer))
+    }
+
+    fn at(&self, fraction: f64) -> f64 {
+        let [from, to] = self.span;
+        (from + (to - from) * fraction.clamp(0.0, 1.0)).clamp(0.0, 1.0)
+    }
+
+    pub(super) fn part(&self, [from, to]: [f64; 2], stage: &'static str) -> Self {
+        Self {
+            run: Arc::clone(&self.run),
+            span: [self.at(from), self.at(to)],
+            stage: Some(self.stage.unwrap_or(stage)),
+        }
+    }
+
+    pub(super) fn report(&self, fraction: f64, stage: &'static str) {
+        let (fraction, stage) = (self.at(fraction), self.stage.unwrap_or(stage));
+        // Held while the consumer is called, so that it hears in the order of the fractions.
+        let mut told = self.run.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = told.iter().position(|(name, _)| *name == stage);
+        let greatest = known.map_or(0.0, |k| told[k].1);
+        // A fraction of nothing is no number, and is not told either.
+        if fraction >= greatest {
+            match known {
+                Some(k) => told[k].1 = fraction,
+                None => told.push((stage, fraction)),
+            }
+            (self.run.consumer)(fraction, stage);
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The threads of a run. The process-wide pool of `rayon` is never asked for: it cannot be sized by a run, and it panics
+//! where the system refuses threads.
+//!
+//! ```text
+//!   with_threads(n)   a pool of n threads of its own, or an error
+//!   otherwise         one pool for all runs that do not ask: a thread per core, half as many while the system refuses,
+//!                     and at last none: the caller's own thread does everything
+//! ```
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::num::NonZero;
+use std::sync::{Arc, OnceLock};
+
+/// Where work runs.
+#[derive(Clone, Default)]
+pub(super) enum Threads {
+    /// In the pool of all runs that did not ask for one.
+    #[default]
+    Shared,
+    /// In a pool of its own.
+    Own(Arc<ThreadPool>),
+}
+
+impl Threads {
+    pub(super) fn exactly(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
+        Ok(Self::Own(Arc::new(ThreadPoolBuilder::new().num_threads(threads).build()?)))
+    }
+
+    fn pool(&self) -> Option<&ThreadPool> {
+        match self {
+            Self::Shared => shared(),
+            Self::Own(pool) => Some(pool),
+        }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.pool().map_or(1, ThreadPool::current_num_threads)
+    }
+
+    pub(super) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match self.pool() {
+            Some(pool) => pool.install(work),
+            None => alone(work),
+        }
+    }
+}
+
+/// The pool of all runs that did not ask for one, if the system gives a thread at all.
+fn shared() -> Option<&'static ThreadPool> {
+    static SHARED: OnceLock<Option<ThreadPool>> = OnceLock::new();
+    SHARED
+        .get_or_init(|| {
+            let start = |threads| ThreadPoolBuilder::new().num_threads(threads).build().ok();
+            let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+            // 0: a thread per core, or what the environment variable of `rayon` says.
+            start(0).or_else(|| most(cores / 2, start))
+        })
+        .as_ref()
+}
+
+/// What `start` makes of the largest of `most`, half of it, … 1 that it accepts.
+fn most<T>(most: usize, start: impl FnMut(usize) -> Option<T>) -> Option<T> {
+    std::iter::successors(Some(most.max(1)), |n| (*n > 1).then_some(n / 2)).find_map(start)
+}
+
+/// Runs `work` on this thread alone, as the only member of a pool.
+fn alone<T>(work: impl FnOnce() -> T) -> T {
+    // Once a thread is its own pool it stays so.
+    if rayon::current_thread_index().is_none() {
+        // Starts no thread, and fails on none but a thread that is in a pool.
+        let _ = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+    }
+    work()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rayon::prelude::*;
+
+    #[test]
+    fn fewer_threads_are_taken_where_more_are_refused() {
+        let limited = |limit: usize| most(13, move |n| (n <= limit).then_some(n));
+        assert_eq!(
+            [20, 13, 12, 5, 2, 1, 0].map(limited),
+            [Some(13), Some(13), Some(6), Some(3), Some(1), Some(1), None]
+        );
+    }
+
+    #[test]
+    fn a_thread_alone_does_everything_itself() {
+        let here = std::thread::spawn(|| {
+            let me = std::thread::current().id();
+            for _ in 0..2 {
+                let there = alone(|| {
+                    (0..1000).into_par_iter().map(|_| std::thread::current().id()).collect::<Vec<_>>()
+                });
+                assert!(there.into_iter().all(|id| id == me));
+                assert_eq!(alone(rayon::current_num_threads), 1);
+            }
+        });
+        here.join().unwrap();
+    }
+}
