@@ -18,7 +18,7 @@ fn design(connector: ConnectorSpec) -> Design {
 }
 
 fn family() -> Design {
-    let spec = FamilySpec { aspect_ratio: HEIGHT, ..FamilySpec::new(Family::Pyramid) };
+    let spec = FamilySpec::new(Family::Pyramid).with_aspect_ratio(HEIGHT);
     design(ConnectorSpec::Family(spec))
 }
 

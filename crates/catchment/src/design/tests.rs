@@ -56,7 +56,7 @@ fn units_become_d_and_radians() {
     let near = |a: f64, b: f64| assert!((a - b).abs() <= 4.0 * f64::EPSILON * b.abs(), "{a} {b}");
     near(design.width, 50.0);
     let ConnectorSpec::Family(spec) = &design.connector else { panic!("a family") };
-    near(spec.base_thickness.unwrap(), 0.2);
+    near(spec.base_thickness().unwrap(), 0.2);
     near(design.alignment.center_of_rotation, -0.5);
     near(design.alignment.rotation_length, 0.25);
     near(design.alignment.half_ranges[0], 0.508);
@@ -257,7 +257,7 @@ fn overrides_follow_the_rules_of_the_file() {
     let longer = cone.clone().with_rotation_length("2".parse().unwrap()).unwrap();
     assert_eq!(longer.alignment.rotation_length, 2.0);
     let flat = cone.clone().with_aspect_ratio(0.25).unwrap();
-    assert!(matches!(flat.connector, ConnectorSpec::Family(FamilySpec { aspect_ratio: 0.25, .. })));
+    assert_eq!(flat.connector, ConnectorSpec::Family(FamilySpec::new(Family::Cone).with_aspect_ratio(0.25)));
 
     assert!(matches!(parse_dofs("x,x"), Err(Complaint::Repeated { dof: Dof::X })));
     assert!(matches!(parse_dofs(""), Err(Complaint::Empty { .. })));

@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn round_halves_get_fewer_descents_and_every_default_is_odd() {
         let simple = pair(FamilySpec::new(Family::Pyramid));
-        let round = pair(FamilySpec { chord_error: 0.0005, ..FamilySpec::new(Family::Cone) });
+        let round = pair(FamilySpec::new(Family::Cone).with_chord_error(0.0005));
         assert_eq!(Method::Descent.default_cells(&simple), [1001, 101, 25, 11, 7]);
         assert_eq!(Method::Descent.default_samples(&simple), 4000);
         assert!(Method::Descent.default_samples(&round) < 4000);

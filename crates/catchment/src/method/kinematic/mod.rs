@@ -281,7 +281,7 @@ mod tests {
 
     fn design(family: Family, cor: f64) -> Design {
         let alignment = Alignment { center_of_rotation: cor, ..Alignment::default_for(Some(family)) };
-        let connector = ConnectorSpec::Family(FamilySpec { aspect_ratio: 0.5, ..FamilySpec::new(family) });
+        let connector = ConnectorSpec::Family(FamilySpec::new(family).with_aspect_ratio(0.5));
         Design { name: String::new(), connector, width: 1.0, unit: None, alignment }
     }
 
