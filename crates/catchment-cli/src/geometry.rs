@@ -1,8 +1,7 @@
 //! From a design to its halves, with geometry's complaints placed in the design file.
 
 use crate::source::{Finding, Input, InputError};
-use catchment::connector::stl::StlProblem;
-use catchment::connector::{Connector, Problem, Side};
+use catchment::connector::{Connector, MeshProblem, Problem, Side};
 use catchment::contact::Pair;
 use catchment::contact::mated::{self, MatedProblem};
 use std::mem::discriminant;
@@ -18,9 +17,12 @@ pub(crate) struct Built {
 
 impl Built {
     /// Builds the halves of a design.
-    pub(crate) fn new(input: Input) -> Result<Self, InputError> {
+    pub(crate) fn new(mut input: Input) -> Result<Self, InputError> {
         match Connector::build(&input.design) {
-            Ok(connector) => Ok(Self { input, connector }),
+            Ok(connector) => {
+                input.design = input.design.with_contents(&connector.contents);
+                Ok(Self { input, connector })
+            }
             Err(problems) => {
                 let findings = problems
                     .chunk_by(same_kind)
@@ -62,8 +64,9 @@ impl Built {
 /// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.
 fn same_kind(a: &Problem, b: &Problem) -> bool {
     match (a, b) {
-        (Problem::Stl { side: a, error: first, .. }, Problem::Stl { side: b, error, .. }) => {
-            a == b && (discriminant(first) == discriminant(error) || matches!(error, StlProblem::More { .. }))
+        (Problem::Mesh { side: a, error: first, .. }, Problem::Mesh { side: b, error, .. }) => {
+            a == b
+                && (discriminant(first) == discriminant(error) || matches!(error, MeshProblem::More { .. }))
         }
         _ => false,
     }
@@ -74,7 +77,7 @@ fn likewise(rest: &[Problem]) -> Option<String> {
     let places: Vec<String> = rest
         .iter()
         .map(|problem| match problem {
-            Problem::Stl { error, .. } => error.to_string(),
+            Problem::Mesh { error, .. } => error.to_string(),
             other => other.to_string(),
         })
         .collect();
@@ -88,7 +91,10 @@ fn place(problem: &Problem) -> String {
         Problem::Surface { side, .. } => format!("connector.{}", key(*side)),
         Problem::PieceCount { side, .. } => format!("connector.{}.pieces", key(*side)),
         Problem::Piece { side, piece, .. } => format!("connector.{}.pieces[{piece}]", key(*side)),
-        Problem::Stl { side, .. } => format!("connector.{}.mesh", key(*side)),
+        Problem::Mesh { side, .. } => format!("connector.{}.mesh", key(*side)),
+        Problem::Triangles { side, .. } | Problem::NotInDesign { side } => {
+            format!("connector.{}", key(*side))
+        }
     }
 }
 

@@ -97,7 +97,7 @@ fn summary(built: &Built) -> Result<String, std::fmt::Error> {
     writeln!(text, "  name                {}", design.name)?;
     match &design.connector {
         ConnectorSpec::Family(spec) => {
-            writeln!(text, "  connector           {}, H/D = {}", spec.family.name(), spec.aspect_ratio)?;
+            writeln!(text, "  connector           {}, H/D = {}", spec.family().name(), spec.aspect_ratio())?;
         }
         ConnectorSpec::Own(own) => {
             writeln!(text, "  fixed half          {}", half(&own.fixed))?;
@@ -136,6 +136,7 @@ fn half(half: &HalfSpec) -> String {
         HalfSpec::Pieces(pieces) if pieces.len() == 1 => "1 convex piece".to_owned(),
         HalfSpec::Pieces(pieces) => format!("{} convex pieces", pieces.len()),
         HalfSpec::Mesh { path, .. } => format!("mesh {}", path.display()),
+        HalfSpec::Memory { content } => format!("{} triangles in memory", content.triangles),
     }
 }
 

@@ -14,6 +14,8 @@
 
 mod alignment;
 mod complaint;
+mod content;
+mod digest;
 pub mod family;
 pub mod keys;
 mod load;
@@ -31,6 +33,7 @@ mod tests;
 
 pub use alignment::Alignment;
 pub use complaint::{Complaint, Dimension};
+pub use content::{Contents, MeshContent};
 pub use family::{Family, FamilySpec};
 pub use load::{LoadError, load};
 pub use model::{ConnectorSpec, Design, HalfSpec, LengthUnit, OwnSpec};

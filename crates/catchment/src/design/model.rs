@@ -1,6 +1,6 @@
 //! The resolved design: no units, no defaults left open.
 
-use super::{Alignment, FamilySpec};
+use super::{Alignment, FamilySpec, MeshContent};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -95,5 +95,13 @@ pub enum HalfSpec {
         path: PathBuf,
         /// Multiplies the file's coordinates to give D.
         scale: f64,
+        /// What the file held, once it was read.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        content: Option<MeshContent>,
+    },
+    /// Triangles that a program gave in memory, in D. The design says only what they were, not the triangles.
+    Memory {
+        /// What they were.
+        content: MeshContent,
     },
 }

@@ -25,8 +25,8 @@ pub struct DesignFile {
     pub sources: Sources,
 }
 
-/// Reads a design file. Paths in it are relative to `base_dir`, the folder it lies in; whether the mesh files
-/// exist is checked, they are not opened.
+/// Reads a design file. Paths in it are relative to `base_dir`, the folder it lies in. No file is touched:
+/// whether the mesh files exist shows when the halves are built.
 ///
 /// # Errors
 /// All problems of the text, in order.
@@ -250,11 +250,8 @@ impl<'t> Walk<'t> {
                 let key = section.place(keys::MESH.name);
                 self.reader.complain(Complaint::Empty { key, advice: "name an STL file" }, span);
                 None
-            } else if path.is_file() {
-                Some(path)
             } else {
-                self.reader.complain(Complaint::NoFile { path }, span);
-                None
+                Some(path)
             }
         });
         let scale = scale?;
@@ -275,7 +272,7 @@ impl<'t> Walk<'t> {
                 return None;
             }
         };
-        Some(HalfSpec::Mesh { path: path?, scale })
+        Some(HalfSpec::Mesh { path: path?, scale, content: None })
     }
 
     fn pieces(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<Vec<Vec<[f64; 3]>>> {

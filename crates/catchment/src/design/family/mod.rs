@@ -111,7 +111,7 @@ macro_rules! parameters {
             pub const DEFAULT: Self = Self { $($field: $default,)* };
 
             /// Every parameter with its key.
-            fn fields(&mut self) -> Vec<(&'static $crate::design::keys::Key, super::Field<'_>)> {
+            pub(super) fn fields(&mut self) -> Vec<(&'static $crate::design::keys::Key, super::Field<'_>)> {
                 vec![$((&$crate::design::keys::$key, super::Field::from(&mut self.$field)),)*]
             }
         }

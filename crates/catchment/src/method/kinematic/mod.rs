@@ -112,7 +112,7 @@ impl Settings {
     /// See [`Unfit`].
     pub fn of(design: &Design) -> Result<Self, Unfit> {
         let ConnectorSpec::Family(spec) = &design.connector else { return Err(Unfit::Face) };
-        let face = match spec.family {
+        let face = match spec.family() {
             Family::VFace => Face::VFace,
             Family::SFace => Face::SFace,
             Family::XFace => Face::XFace,
@@ -122,7 +122,7 @@ impl Settings {
         if alignment.free != DofSet::EMPTY.with(Dof::X).with(Dof::Pitch) {
             return Err(Unfit::Free);
         }
-        if spec.base_thickness.is_some_and(|base| base > 0.0) {
+        if spec.base_thickness().is_some_and(|base| base > 0.0) {
             return Err(Unfit::Base);
         }
         if alignment.center_of_rotation > 0.0 {
@@ -132,7 +132,7 @@ impl Settings {
             return Err(Unfit::Mount);
         }
         let rotation_point = -2.0 * alignment.center_of_rotation;
-        Ok(Self { face, aspect_ratio: spec.aspect_ratio, rotation_point })
+        Ok(Self { face, aspect_ratio: spec.aspect_ratio(), rotation_point })
     }
 
     /// Whether the start (x₀ in D, θ₀ in radians) slides home.

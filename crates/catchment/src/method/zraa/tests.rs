@@ -229,7 +229,7 @@ fn through_stl(pair: &Pair, format: stl::Format) -> Pair {
     };
     let face = glam::DVec3::new(0.0, 0.0, pair.alignment.center_of_rotation);
     let moving = pair.moving.mapped(|p| p - face);
-    let connector = Connector { fixed: read(&pair.fixed), moving: read(&moving) };
+    let connector = Connector::from_halves(read(&pair.fixed), read(&moving));
     Pair::new(&connector, &pair.alignment)
 }
 
