@@ -68,9 +68,7 @@ impl DropArgs {
         };
         add("--push", "push", self.push.map(|force| json!({ "force": force })));
         add("--gravity", "push", self.gravity.map(|gravity| json!({ "gravity": gravity })));
-        let given = |mass: Option<f64>, gyration: Option<f64>| {
-            json!({ "given": { "mass": mass.unwrap_or(1.0), "gyration": gyration } })
-        };
+        let given = |mass: Option<f64>, gyration: Option<f64>| json!({ "given": { "mass": mass.unwrap_or(1.0), "gyration": gyration } });
         add("--mass", "body", self.mass.map(|mass| given(Some(mass), self.gyration)));
         add("--gyration", "body", self.gyration.map(|gyration| given(self.mass, Some(gyration))));
         add("--density", "body", self.density.map(|density| json!({ "solid": { "density": density } })));

@@ -103,7 +103,8 @@ pub(crate) fn with_changes(method: &Method, changes: &[Change]) -> Result<Method
         MethodError::NoSuchSetting { method, setting, owners } => {
             let option = changes.iter().find(|change| change.setting == setting).map_or("", |c| c.option);
             let message = format!("{option} is a setting of {}; {method} has none", owners.join(" and "));
-            let help = format!("add --method {}, or leave it out", owners.first().copied().unwrap_or_default());
+            let help =
+                format!("add --method {}, or leave it out", owners.first().copied().unwrap_or_default());
             Failure::with_help(message, Some(help))
         }
         MethodError::Refused { reason, .. } => Failure::with_help(reason, None),

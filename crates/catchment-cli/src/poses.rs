@@ -7,9 +7,9 @@
 
 use crate::errors::{Objection, checked};
 use crate::failure::Failure;
-use catchment::problem::{Finding, Findings, SourceText};
 use catchment::design::{Design, LengthUnit, Quantity, Unit, nearest};
 use catchment::pose::{Dof, PoseError};
+use catchment::problem::{Finding, Findings, SourceText};
 use csv::StringRecord;
 use std::fs::File;
 use std::io::{self, Read};

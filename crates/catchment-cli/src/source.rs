@@ -54,8 +54,11 @@ impl Failure {
     pub(crate) fn of_findings(findings: Findings) -> Self {
         let Findings { source, list, omitted } = findings;
         let count = list.len() + omitted;
-        let shown =
-            if omitted > 0 { format!(", of which the first {} are shown", list.len()) } else { String::new() };
+        let shown = if omitted > 0 {
+            format!(", of which the first {} are shown", list.len())
+        } else {
+            String::new()
+        };
         let place = source.as_ref().map(|source| printable(&source.path.display().to_string()));
         let closing = place.filter(|_| count > 1).map(|place| format!("{count} problems in {place}{shown}"));
         Self::many(list.into_iter().map(|finding| report(source.as_ref(), finding)).collect(), closing)

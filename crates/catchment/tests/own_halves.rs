@@ -18,7 +18,7 @@ fn design(connector: ConnectorSpec) -> Design {
 }
 
 fn family() -> Design {
-    let spec = FamilySpec { aspect_ratio: HEIGHT, ..FamilySpec::new(Family::Pyramid) };
+    let spec = FamilySpec::new(Family::Pyramid).with_aspect_ratio(HEIGHT);
     design(ConnectorSpec::Family(spec))
 }
 
@@ -37,8 +37,11 @@ fn write(half: &Half, format: stl::Format, folder: &Path, name: &str, size: f64)
 fn meshes(format: stl::Format, folder: &Path, size: f64) -> Design {
     let connector = Connector::build(&family()).unwrap();
     let drawn = connector.moving.mapped(|p| Mount::X.apply(p));
-    let mesh =
-        |half, name| HalfSpec::Mesh { path: write(half, format, folder, name, size), scale: 1.0 / size };
+    let mesh = |half, name| HalfSpec::Mesh {
+        path: write(half, format, folder, name, size),
+        scale: 1.0 / size,
+        content: None,
+    };
     let own = OwnSpec {
         face_height: 0.0,
         fixed: mesh(&connector.fixed, "socket.stl"),
@@ -114,14 +117,14 @@ fn all_problems_of_both_halves_come_at_once() {
     let own = OwnSpec {
         face_height: 0.0,
         fixed: HalfSpec::Pieces(vec![vec![[0.0; 3]; 3], vec![[0.0, f64::NAN, 0.0]; 4]]),
-        moving: HalfSpec::Mesh { path: "no/such.stl".into(), scale: 1.0 },
+        moving: HalfSpec::Mesh { path: "no/such.stl".into(), scale: 1.0, content: None },
     };
     let problems = Connector::build(&design(ConnectorSpec::Own(own))).unwrap_err();
     let places: Vec<_> = problems
         .iter()
         .map(|p| match p {
             Problem::Piece { side, piece, .. } => (*side, Some(*piece)),
-            Problem::Stl { side, .. } => (*side, None),
+            Problem::Mesh { side, .. } => (*side, None),
             other => panic!("{other}"),
         })
         .collect();

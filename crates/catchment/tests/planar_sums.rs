@@ -14,7 +14,7 @@ fn sum(family: Family, aspect_ratio: f64, cor: f64) -> f64 {
     let mut alignment = Alignment::default_for(Some(family));
     alignment.center_of_rotation = cor;
     alignment.rotation_length = 1.0;
-    let spec = FamilySpec { aspect_ratio, ..FamilySpec::new(family) };
+    let spec = FamilySpec::new(family).with_aspect_ratio(aspect_ratio);
     let connector = ConnectorSpec::Family(spec);
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);

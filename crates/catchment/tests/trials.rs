@@ -37,8 +37,7 @@ fn read(file: &str) -> Trials {
     alignment.free = free;
     alignment.center_of_rotation = number("center_of_rotation");
     alignment.rotation_length = number("rotation_length");
-    let mut spec = FamilySpec::new(family);
-    spec.aspect_ratio = number("aspect_ratio");
+    let spec = FamilySpec::new(family).with_aspect_ratio(number("aspect_ratio"));
     let name = set["name"].as_str().unwrap().to_owned();
     let design = Design {
         name: name.clone(),

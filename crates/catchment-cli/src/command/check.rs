@@ -58,7 +58,8 @@ fn print_json(checked: Result<Problem, ProblemError>) -> Result<ExitStatus, Fail
             (report, ExitStatus::Done)
         }
         Err(ProblemError::Findings(Findings { source, list, omitted })) => {
-            let problems: Vec<_> = list.iter().map(|finding| finding_json(source.as_ref(), finding)).collect();
+            let problems: Vec<_> =
+                list.iter().map(|finding| finding_json(source.as_ref(), finding)).collect();
             let report = json!({
                 "schema": JSON_SCHEMA,
                 "file": source.as_ref().map(|source| &source.path),
@@ -96,14 +97,15 @@ fn summary(problem: &Problem) -> Result<String, std::fmt::Error> {
     writeln!(text, "  name                {}", design.name)?;
     match &design.connector {
         ConnectorSpec::Family(spec) => {
-            writeln!(text, "  connector           {}, H/D = {}", spec.family.name(), spec.aspect_ratio)?;
+            writeln!(text, "  connector           {}, H/D = {}", spec.family().name(), spec.aspect_ratio())?;
         }
         ConnectorSpec::Own(own) => {
             writeln!(text, "  fixed half          {}", half(&own.fixed))?;
             writeln!(text, "  moving half         {}", half(&own.moving))?;
         }
     }
-    let alike = if problem.connector().ungendered(alignment.mount) { "alike (ungendered)" } else { "different" };
+    let alike =
+        if problem.connector().ungendered(alignment.mount) { "alike (ungendered)" } else { "different" };
     writeln!(text, "  halves              {alike}")?;
     match design.unit {
         Some(unit) => writeln!(text, "  width D             {} {}", design.width, unit.symbol())?,
@@ -135,6 +137,7 @@ fn half(half: &HalfSpec) -> String {
         HalfSpec::Pieces(pieces) if pieces.len() == 1 => "1 convex piece".to_owned(),
         HalfSpec::Pieces(pieces) => format!("{} convex pieces", pieces.len()),
         HalfSpec::Mesh { path, .. } => format!("mesh {}", path.display()),
+        HalfSpec::Memory { content } => format!("{} triangles in memory", content.triangles),
     }
 }
 

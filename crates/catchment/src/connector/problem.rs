@@ -1,6 +1,6 @@
 //! What can be wrong with a geometry, where, and what to do about it.
 
-use super::stl::StlProblem;
+use super::mesh::MeshProblem;
 use super::{HullError, SurfaceError};
 use std::fmt;
 use std::path::PathBuf;
@@ -68,14 +68,28 @@ pub enum Problem {
         /// Why not.
         error: HullError,
     },
-    /// An STL file that is no half.
+    /// A mesh file that is no half.
     #[error("{side}, {}: {error}", path.display())]
-    Stl {
+    Mesh {
         /// Which half.
         side: Side,
         /// The file.
         path: PathBuf,
         /// Why not.
-        error: StlProblem,
+        error: MeshProblem,
+    },
+    /// Triangles in memory that are no half.
+    #[error("{side}: {error}")]
+    Triangles {
+        /// Which half.
+        side: Side,
+        /// Why not.
+        error: MeshProblem,
+    },
+    /// A design that says of a half only what it held, not what it is.
+    #[error("{side}: it was given in memory, so the design does not hold it: give it again")]
+    NotInDesign {
+        /// Which half.
+        side: Side,
     },
 }

@@ -68,6 +68,7 @@ fn lies_on(a: &Half, b: &Half, tolerance: f64) -> bool {
 mod tests {
     use super::*;
     use crate::connector::{family, stl};
+    use crate::design::family::PinHole;
     use crate::design::{Family, FamilySpec};
 
     fn connector(spec: &FamilySpec, mount: Mount) -> Connector {
@@ -87,7 +88,7 @@ mod tests {
                 );
             }
         }
-        let spec = FamilySpec { hermaphroditic: true, chamfer: 0.05, ..FamilySpec::new(Family::PinHole) };
+        let spec = PinHole { hermaphroditic: true, chamfer: 0.05, ..PinHole::DEFAULT }.into();
         assert!(connector(&spec, Mount::X).ungendered(Mount::X));
     }
 

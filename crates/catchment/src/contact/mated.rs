@@ -114,6 +114,7 @@ fn deepest(pair: &Pair, aligned: f64) -> Option<MatedProblem> {
 mod tests {
     use super::*;
     use crate::connector::Connector;
+    use crate::design::family::{PinHole, XFace3dLocking};
     use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
     use crate::pose::{DofSet, Mount};
 
@@ -127,8 +128,8 @@ mod tests {
     }
 
     fn family(spec: FamilySpec, cor: f64) -> Design {
-        let planar = spec.family.is_planar();
-        let free = match spec.family {
+        let planar = spec.family().is_planar();
+        let free = match spec.family() {
             _ if planar => [Dof::X, Dof::Pitch].into_iter().collect(),
             Family::Cone => DofSet::ALL.without(Dof::Yaw),
             _ => DofSet::ALL,
@@ -139,17 +140,18 @@ mod tests {
 
     #[test]
     fn every_family_is_mated() {
-        let coarse = |family| FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) };
+        let coarse = |family| FamilySpec::new(family).with_chord_error(0.05);
         let mut specs: Vec<FamilySpec> = Family::ALL.into_iter().map(coarse).collect();
-        specs.push(FamilySpec { draft_angle: 0.2, ..coarse(Family::XFace3dLocking) });
-        specs.push(FamilySpec { hermaphroditic: true, chamfer: 0.05, ..coarse(Family::PinHole) });
+        specs.push(XFace3dLocking { draft_angle: 0.2, ..XFace3dLocking::DEFAULT }.into());
+        let pins = PinHole { hermaphroditic: true, chamfer: 0.05, chord_error: 0.05, ..PinHole::DEFAULT };
+        specs.push(pins.into());
         specs.extend(
             [Family::VFace, Family::SFace, Family::XFace, Family::Pyramid]
-                .map(|f| FamilySpec { base_thickness: Some(0.5), ..coarse(f) }),
+                .map(|f| coarse(f).with_base_thickness(Some(0.5))),
         );
         for spec in specs {
             for cor in [-0.5, 0.0, 0.5, 1.0] {
-                assert_eq!(problems(&pair(&family(spec.clone(), cor))), [], "{spec:?} {cor}");
+                assert_eq!(problems(&pair(&family(spec, cor))), [], "{spec:?} {cor}");
             }
         }
     }
@@ -176,8 +178,8 @@ mod tests {
     #[test]
     fn the_wrong_mount_puts_ridges_on_ridges() {
         // Turned about y instead of x a V-notch's tip still fits; pins on a circle of three do not.
-        let spec = FamilySpec { pins: 3, chord_error: 0.05, ..FamilySpec::new(Family::PinHole) };
-        let mut wrong = family(spec, 0.0);
+        let spec = PinHole { pins: 3, chord_error: 0.05, ..PinHole::DEFAULT };
+        let mut wrong = family(spec.into(), 0.0);
         wrong.alignment.mount = Mount::Y;
         assert!(matches!(problems(&pair(&wrong))[0], MatedProblem::Collision { .. }));
     }

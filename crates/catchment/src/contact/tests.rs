@@ -9,9 +9,7 @@ use proptest::prelude::*;
 
 /// A pair of a family, round shapes cut coarsely so that the judge stays affordable.
 fn pair(family: Family, aspect_ratio: f64, cor: f64) -> Pair {
-    let mut spec = FamilySpec::new(family);
-    spec.aspect_ratio = aspect_ratio;
-    spec.chord_error = 0.02;
+    let spec = FamilySpec::new(family).with_aspect_ratio(aspect_ratio).with_chord_error(0.02);
     let mut alignment = Alignment::default_for(Some(family));
     alignment.center_of_rotation = cor;
     alignment.free = DofSet::ALL;

@@ -2,6 +2,7 @@
 
 use super::Family;
 use super::complaint::Complaint;
+use super::family::Freedom;
 use crate::pose::{Dof, DofSet, Mount, rotation_angle};
 use glam::DMat3;
 use serde::{Deserialize, Serialize};
@@ -49,15 +50,13 @@ impl Alignment {
     /// The defaults of a family (`None`: of own halves). Planar families move in x and pitch and are mounted
     /// about y; all others move in all five and are mounted about x. The yaw of a cone does not matter.
     pub fn default_for(family: Option<Family>) -> Self {
-        match family {
-            Some(family) if family.is_planar() => {
-                Self::new(DofSet::EMPTY.with(Dof::X).with(Dof::Pitch), Mount::Y)
-            }
-            Some(Family::Cone) => Self {
+        match family.map(Family::freedom) {
+            Some(Freedom::Planar) => Self::new(DofSet::EMPTY.with(Dof::X).with(Dof::Pitch), Mount::Y),
+            Some(Freedom::Round) => Self {
                 dont_care: DofSet::EMPTY.with(Dof::Yaw),
                 ..Self::new(DofSet::ALL.without(Dof::Yaw), Mount::X)
             },
-            _ => Self::new(DofSet::ALL, Mount::X),
+            Some(Freedom::Spatial) | None => Self::new(DofSet::ALL, Mount::X),
         }
     }
 

@@ -3,7 +3,6 @@
 use super::Family;
 use super::keys::Range;
 use crate::pose::Dof;
-use std::path::PathBuf;
 
 /// Lengths and angles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -234,12 +233,6 @@ pub enum Complaint {
         /// The kind of half.
         key: &'static str,
     },
-    /// A file that is not there.
-    #[error("there is no file {}", path.display())]
-    NoFile {
-        /// The path that was tried.
-        path: PathBuf,
-    },
     /// A format version of another program.
     #[error("this design has schema {found}; this program reads schema {known}")]
     OtherSchema {
@@ -318,7 +311,6 @@ impl Complaint {
             Self::UnsupportedHalf { .. } => {
                 Some("give convex `pieces` or a closed triangle mesh: mesh = \"half.stl\"".to_owned())
             }
-            Self::NoFile { .. } => Some("the path is relative to the folder of the design file".to_owned()),
             Self::TooLarge { .. } => {
                 Some("put large geometry into an STL file: mesh = \"half.stl\"".to_owned())
             }

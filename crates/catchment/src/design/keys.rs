@@ -3,8 +3,8 @@
 //! The reader checks by it, the JSON schema and the commented templates are generated from it, so that they
 //! cannot disagree.
 
-use super::Family;
 use super::complaint::Complaint;
+use super::family::{self, Family};
 use super::quantity::{Quantity, Scale, Unit};
 use std::f64::consts::PI;
 use std::fmt;
@@ -255,8 +255,7 @@ keys! {
         "Half-ranges of the error box: an error x of 0.5 means x from -0.5 D to 0.5 D.");
 
     /// `connector.family`
-    FAMILY = key(Table::Connector, "family", Kind::Family,
-        "Built-in family: v-face, s-face, x-face, pyramid, cone, x-face-3d, x-face-3d-locking or pin-hole.");
+    FAMILY = key(Table::Connector, "family", Kind::Family, family::NAMES);
     /// `connector.width`
     WIDTH = key(Table::Connector, "width", Kind::Width(Range::new(1e-6, 1e6, "")),
         "D, the width of the connector, in `unit`. Results are in D.");

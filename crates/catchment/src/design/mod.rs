@@ -14,6 +14,9 @@
 
 mod alignment;
 mod complaint;
+mod content;
+mod digest;
+pub mod family;
 pub mod keys;
 mod load;
 mod model;
@@ -30,8 +33,11 @@ mod tests;
 pub use crate::suggest::nearest;
 pub use alignment::Alignment;
 pub use complaint::{Complaint, Dimension};
+pub(crate) use content::hex;
+pub use content::{Contents, MeshContent};
+pub use family::{Family, FamilySpec};
 pub use load::{LoadError, load};
-pub use model::{ConnectorSpec, Design, Family, FamilySpec, HalfSpec, LengthUnit, OwnSpec};
+pub use model::{ConnectorSpec, Design, HalfSpec, LengthUnit, OwnSpec};
 pub use overrides::parse_dofs;
 pub use problem::{Problem, Problems, Sources, line_column};
 pub use quantity::{Quantity, Scale, Unit};

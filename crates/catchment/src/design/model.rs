@@ -1,6 +1,6 @@
 //! The resolved design: no units, no defaults left open.
 
-use super::Alignment;
+use super::{Alignment, FamilySpec, MeshContent};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -72,133 +72,6 @@ pub enum ConnectorSpec {
     Own(OwnSpec),
 }
 
-/// The built-in families (spec section 2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Family {
-    /// V notch and tip: planar, gendered.
-    VFace,
-    /// Sawtooth of three edges: planar, ungendered.
-    SFace,
-    /// Two crossed ramps in two layers: planar, ungendered.
-    XFace,
-    /// Square pyramid in its socket: gendered.
-    Pyramid,
-    /// Circular cone in its socket: gendered, yaw does not matter.
-    Cone,
-    /// Saddle of four triangular facets: ungendered.
-    #[serde(rename = "x-face-3d")]
-    XFace3d,
-    /// The saddle with a lip along its centre lines: ungendered.
-    #[serde(rename = "x-face-3d-locking")]
-    XFace3dLocking,
-    /// Pins and chamfered holes on a circle.
-    PinHole,
-}
-
-impl Family {
-    /// Every family, in the order of the documentation.
-    pub const ALL: [Self; 8] = [
-        Self::VFace,
-        Self::SFace,
-        Self::XFace,
-        Self::Pyramid,
-        Self::Cone,
-        Self::XFace3d,
-        Self::XFace3dLocking,
-        Self::PinHole,
-    ];
-
-    /// The name used in design files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::VFace => "v-face",
-            Self::SFace => "s-face",
-            Self::XFace => "x-face",
-            Self::Pyramid => "pyramid",
-            Self::Cone => "cone",
-            Self::XFace3d => "x-face-3d",
-            Self::XFace3dLocking => "x-face-3d-locking",
-            Self::PinHole => "pin-hole",
-        }
-    }
-
-    /// What it is, in a few words.
-    pub const fn summary(self) -> &'static str {
-        match self {
-            Self::VFace => "V notch and tip, planar",
-            Self::SFace => "sawtooth of three edges, planar, both halves alike",
-            Self::XFace => "two crossed ramps in two layers, planar, both halves alike",
-            Self::Pyramid => "square pyramid in its socket",
-            Self::Cone => "circular cone in its socket",
-            Self::XFace3d => "saddle of four triangles, both halves alike",
-            Self::XFace3dLocking => "the saddle with a lip along its centre lines, both halves alike",
-            Self::PinHole => "pins and chamfered holes on a circle",
-        }
-    }
-
-    /// Whether the family is a profile in the x–z plane, extruded along y.
-    pub const fn is_planar(self) -> bool {
-        matches!(self, Self::VFace | Self::SFace | Self::XFace)
-    }
-}
-
-/// A family and its parameters; all lengths in D, angles in radians. Parameters that a family does not have
-/// are ignored by it (the file reader refuses them).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FamilySpec {
-    /// Which family.
-    pub family: Family,
-    /// H/D.
-    pub aspect_ratio: f64,
-    /// Material behind the mating surface, in D, where the family's default is not wanted.
-    pub base_thickness: Option<f64>,
-    /// Largest distance between a circle and the polygon that stands for it, in D (`cone`, `pin-hole`).
-    pub chord_error: f64,
-    /// Height of the lip, in D (`x-face-3d-locking`).
-    pub lip_height: f64,
-    /// Inclination of the lip's mating faces from the vertical, radians (`x-face-3d-locking`).
-    pub draft_angle: f64,
-    /// Pins per half (`pin-hole`).
-    pub pins: u32,
-    /// Pins and holes alternate on both halves instead of all pins on one (`pin-hole`).
-    pub hermaphroditic: bool,
-    /// Radius of a pin, in D (`pin-hole`).
-    pub pin_radius: f64,
-    /// Radial play between pin and hole, in D (`pin-hole`); play between vertical lips, in D
-    /// (`x-face-3d-locking` without draft).
-    pub clearance: f64,
-    /// Width of the chamfer around a hole, and of the point of a pin, in D (`pin-hole`).
-    pub chamfer: f64,
-    /// Radius of the circle on which pins and holes sit, in D (`pin-hole`).
-    pub circle_radius: f64,
-}
-
-impl FamilySpec {
-    /// The family with its default parameters.
-    pub const fn new(family: Family) -> Self {
-        Self {
-            family,
-            aspect_ratio: match family {
-                // tan 30°, the dissertation's choice.
-                Family::XFace3d | Family::XFace3dLocking => 0.577_350_269_189_625_8,
-                Family::PinHole => 0.2,
-                _ => 0.5,
-            },
-            base_thickness: None,
-            chord_error: 0.001,
-            lip_height: 0.1,
-            draft_angle: 0.0,
-            pins: 2,
-            hermaphroditic: false,
-            pin_radius: 0.05,
-            clearance: 0.005,
-            chamfer: 0.1,
-            circle_radius: 0.3,
-        }
-    }
-}
-
 /// The person's own halves, both drawn facing +z.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OwnSpec {
@@ -222,5 +95,13 @@ pub enum HalfSpec {
         path: PathBuf,
         /// Multiplies the file's coordinates to give D.
         scale: f64,
+        /// What the file held, once it was read.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        content: Option<MeshContent>,
+    },
+    /// Triangles that a program gave in memory, in D. The design says only what they were, not the triangles.
+    Memory {
+        /// What they were.
+        content: MeshContent,
     },
 }

@@ -32,7 +32,7 @@ impl Design {
     /// The built-in family, if it is one.
     pub const fn family(&self) -> Option<Family> {
         match &self.connector {
-            ConnectorSpec::Family(spec) => Some(spec.family),
+            ConnectorSpec::Family(spec) => Some(spec.family()),
             ConnectorSpec::Own(_) => None,
         }
     }
@@ -95,7 +95,7 @@ impl Design {
         if let Some(ratio) =
             keys::ASPECT_RATIO.checked(Quantity { value: ratio, unit: Unit::Bare }, Some(&scale))?
         {
-            spec.aspect_ratio = ratio;
+            *spec = spec.with_aspect_ratio(ratio);
         }
         Ok(self)
     }

@@ -1,7 +1,8 @@
 //! From the text of a design file to a [`Design`], or to all its problems at once.
 
 use super::complaint::Complaint;
-use super::keys::{self, Key, Table};
+use super::family::Value;
+use super::keys::{self, Applies, Key, Kind, Table};
 use super::problem::{Problems, Sources};
 use super::quantity::Scale;
 use super::reader::{Reader, Section};
@@ -24,8 +25,8 @@ pub struct DesignFile {
     pub sources: Sources,
 }
 
-/// Reads a design file. Paths in it are relative to `base_dir`, the folder it lies in; whether the mesh files
-/// exist is checked, they are not opened.
+/// Reads a design file. Paths in it are relative to `base_dir`, the folder it lies in. No file is touched:
+/// whether the mesh files exist shows when the halves are built.
 ///
 /// # Errors
 /// All problems of the text, in order.
@@ -169,27 +170,19 @@ impl<'t> Walk<'t> {
         }
     }
 
+    /// Every parameter that is written is checked, also those that the family does not have.
     fn family_spec(&mut self, section: &Section<'t>, family: Family, scale: Option<&Scale>) -> FamilySpec {
-        let default = FamilySpec::new(family);
-        let mut number = |key: &Key| self.reader.number(section, key, scale);
-        let mut spec = FamilySpec {
-            family,
-            aspect_ratio: number(&keys::ASPECT_RATIO).unwrap_or(default.aspect_ratio),
-            base_thickness: number(&keys::BASE_THICKNESS),
-            chord_error: number(&keys::CHORD_ERROR).unwrap_or(default.chord_error),
-            lip_height: number(&keys::LIP_HEIGHT).unwrap_or(default.lip_height),
-            draft_angle: number(&keys::DRAFT_ANGLE).unwrap_or(default.draft_angle),
-            pin_radius: number(&keys::PIN_RADIUS).unwrap_or(default.pin_radius),
-            clearance: number(&keys::CLEARANCE).unwrap_or(default.clearance),
-            chamfer: number(&keys::CHAMFER).unwrap_or(default.chamfer),
-            circle_radius: number(&keys::CIRCLE_RADIUS).unwrap_or(default.circle_radius),
-            ..default
-        };
-        if let Some(pins) = self.reader.whole(section, &keys::PINS) {
-            spec.pins = pins;
-        }
-        if let Some(flag) = self.reader.flag(section, &keys::HERMAPHRODITIC) {
-            spec.hermaphroditic = flag;
+        let mut spec = FamilySpec::new(family);
+        let of_families = |key: &&Key| matches!(key.applies, Applies::AnyFamily | Applies::Families(_));
+        for key in Table::Connector.keys().filter(of_families) {
+            let value = match key.kind {
+                Kind::Whole { .. } => self.reader.whole(section, key).map(Value::Whole),
+                Kind::Flag => self.reader.flag(section, key).map(Value::Flag),
+                _ => self.reader.number(section, key, scale).map(Value::Number),
+            };
+            if let Some(value) = value {
+                spec.set(key, value);
+            }
         }
         spec
     }
@@ -257,11 +250,8 @@ impl<'t> Walk<'t> {
                 let key = section.place(keys::MESH.name);
                 self.reader.complain(Complaint::Empty { key, advice: "name an STL file" }, span);
                 None
-            } else if path.is_file() {
-                Some(path)
             } else {
-                self.reader.complain(Complaint::NoFile { path }, span);
-                None
+                Some(path)
             }
         });
         let scale = scale?;
@@ -282,7 +272,7 @@ impl<'t> Walk<'t> {
                 return None;
             }
         };
-        Some(HalfSpec::Mesh { path: path?, scale })
+        Some(HalfSpec::Mesh { path: path?, scale, content: None })
     }
 
     fn pieces(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<Vec<Vec<[f64; 3]>>> {

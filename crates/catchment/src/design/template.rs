@@ -1,5 +1,6 @@
 //! Commented starting points for `catchment new`.
 
+use super::family::{Freedom, Value};
 use super::keys::{self, Applies, Key, Kind, Table};
 use super::{Alignment, Family, FamilySpec};
 use crate::pose::{Dof, DofSet, Mount};
@@ -40,7 +41,7 @@ fn is_active(key: &Key, family: Family) -> bool {
         }
         Table::Alignment => {
             [keys::FREE, keys::CENTER_OF_ROTATION, keys::ROTATION_LENGTH].contains(key)
-                || (*key == keys::DONT_CARE && family == Family::Cone)
+                || (*key == keys::DONT_CARE && family.freedom() == Freedom::Round)
         }
         Table::Errors => free.iter().any(|dof| keys::ERROR_KEYS[dof.index()] == *key),
         Table::Half => false,
@@ -57,17 +58,7 @@ fn default_text(key: &Key, family: Family) -> Option<String> {
         keys::NAME | keys::FAMILY => Some(format!("\"{}\"", family.name())),
         keys::WIDTH => number(1.0),
         keys::UNIT => Some("\"mm\"".to_owned()),
-        keys::ASPECT_RATIO => number(spec.aspect_ratio),
         keys::BASE_THICKNESS => number(0.25),
-        keys::CHORD_ERROR => number(spec.chord_error),
-        keys::LIP_HEIGHT => number(spec.lip_height),
-        keys::DRAFT_ANGLE => Some(degrees(spec.draft_angle)),
-        keys::PINS => Some(spec.pins.to_string()),
-        keys::HERMAPHRODITIC => Some(spec.hermaphroditic.to_string()),
-        keys::PIN_RADIUS => number(spec.pin_radius),
-        keys::CLEARANCE => number(spec.clearance),
-        keys::CHAMFER => number(spec.chamfer),
-        keys::CIRCLE_RADIUS => number(spec.circle_radius),
         keys::FREE => Some(list(alignment.free)),
         keys::DONT_CARE => Some(list(alignment.dont_care)),
         keys::CENTER_OF_ROTATION => number(alignment.center_of_rotation),
@@ -79,7 +70,12 @@ fn default_text(key: &Key, family: Family) -> Option<String> {
             let value = alignment.half_ranges[dof.index()];
             if matches!(key.kind, Kind::Angle(_)) { Some(degrees(value)) } else { number(value) }
         }
-        _ => None,
+        _ => match spec.get(key)? {
+            Value::Number(value) if matches!(key.kind, Kind::Angle(_)) => Some(degrees(value)),
+            Value::Number(value) => number(value),
+            Value::Whole(value) => Some(value.to_string()),
+            Value::Flag(value) => Some(value.to_string()),
+        },
     }
 }
 

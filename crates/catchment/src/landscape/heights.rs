@@ -206,7 +206,7 @@ mod tests {
         let moving = fixed.mapped(|p| Mount::X.apply(p));
         let mut alignment = Alignment::new(free.iter().copied().collect(), Mount::X);
         alignment.center_of_rotation = cor;
-        Pair::new(&Connector { fixed, moving }, &alignment)
+        Pair::new(&Connector::from_halves(fixed, moving), &alignment)
     }
 
     #[test]

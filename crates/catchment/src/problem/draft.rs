@@ -3,8 +3,8 @@
 use super::finding::{Finding, Findings, SourceText};
 use super::{Problem, ProblemError, places};
 use crate::connector::Connector;
-use crate::contact::mated::{self, MatedProblem};
 use crate::contact::Pair;
+use crate::contact::mated::{self, MatedProblem};
 use crate::design::{Complaint, Design, Sources, load, read};
 use std::path::Path;
 
@@ -112,7 +112,7 @@ impl Draft {
         self.built(|_| true)
     }
 
-    fn built(self, refuses: impl Fn(&MatedProblem) -> bool) -> Result<Problem, ProblemError> {
+    fn built(mut self, refuses: impl Fn(&MatedProblem) -> bool) -> Result<Problem, ProblemError> {
         let connector = match Connector::build(&self.design) {
             Ok(connector) => connector,
             Err(problems) => {
@@ -123,6 +123,7 @@ impl Draft {
                 return Err(Findings { source: self.source, list, omitted: 0 }.into());
             }
         };
+        self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
         let (apart, doubts): (Vec<_>, Vec<_>) = mated::problems(&pair).into_iter().partition(refuses);
         if !apart.is_empty() {

@@ -28,7 +28,7 @@ pub use finding::{Finding, Findings, SourceText};
 use crate::connector::Connector;
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
-use crate::design::{Alignment, Design, LoadError};
+use crate::design::{Alignment, Design, LoadError, hex};
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -74,7 +74,8 @@ impl Problem {
     }
 
     fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {
-        let digest = serde_json::json!([draft.design().connector, draft.design().alignment]).to_string();
+        // What the meshes held is known by now, so that there is a digest.
+        let digest = draft.design().digest().map(|bytes| hex(&bytes)).unwrap_or_default();
         Self(Arc::new(Inner { draft, connector, pair, doubts, digest }))
     }
 

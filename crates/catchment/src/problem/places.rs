@@ -1,7 +1,6 @@
 //! Which key of a design file a complaint of a later room is about.
 
-use crate::connector::stl::StlProblem;
-use crate::connector::{Problem, Side};
+use crate::connector::{MeshProblem, Problem, Side};
 use crate::contact::mated::MatedProblem;
 use crate::design::Complaint;
 use std::mem::discriminant;
@@ -36,8 +35,9 @@ pub(super) fn of_geometry(problems: &[Problem]) -> Vec<(String, String, Option<S
 /// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.
 fn same_kind(a: &Problem, b: &Problem) -> bool {
     match (a, b) {
-        (Problem::Stl { side: a, error: first, .. }, Problem::Stl { side: b, error, .. }) => {
-            a == b && (discriminant(first) == discriminant(error) || matches!(error, StlProblem::More { .. }))
+        (Problem::Mesh { side: a, error: first, .. }, Problem::Mesh { side: b, error, .. }) => {
+            a == b
+                && (discriminant(first) == discriminant(error) || matches!(error, MeshProblem::More { .. }))
         }
         _ => false,
     }
@@ -48,7 +48,7 @@ fn likewise(rest: &[Problem]) -> Option<String> {
     let places: Vec<String> = rest
         .iter()
         .map(|problem| match problem {
-            Problem::Stl { error, .. } => error.to_string(),
+            Problem::Mesh { error, .. } => error.to_string(),
             other => other.to_string(),
         })
         .collect();
@@ -61,7 +61,10 @@ fn key_of(problem: &Problem) -> String {
         Problem::Surface { side, .. } => format!("connector.{}", half(*side)),
         Problem::PieceCount { side, .. } => format!("connector.{}.pieces", half(*side)),
         Problem::Piece { side, piece, .. } => format!("connector.{}.pieces[{piece}]", half(*side)),
-        Problem::Stl { side, .. } => format!("connector.{}.mesh", half(*side)),
+        Problem::Mesh { side, .. } => format!("connector.{}.mesh", half(*side)),
+        Problem::Triangles { side, .. } | Problem::NotInDesign { side } => {
+            format!("connector.{}", half(*side))
+        }
     }
 }
 

@@ -79,7 +79,9 @@ pub(super) fn heading(text: &mut String, design: &Design) {
     line(text, &design.name);
     line(text, &"─".repeat(design.name.chars().count().clamp(24, COLUMNS)));
     let kind = match &design.connector {
-        ConnectorSpec::Family(f) => format!("{}, aspect ratio {}", f.family.name(), number(f.aspect_ratio)),
+        ConnectorSpec::Family(f) => {
+            format!("{}, aspect ratio {}", f.family().name(), number(f.aspect_ratio()))
+        }
         ConnectorSpec::Own(_) => "own halves".to_owned(),
     };
     let width =

@@ -247,7 +247,7 @@ impl Parameter {
             Self::RotationLength => Some(design.alignment.rotation_length),
             Self::CenterOfRotation => Some(design.alignment.center_of_rotation),
             Self::AspectRatio => match &design.connector {
-                ConnectorSpec::Family(spec) => Some(spec.aspect_ratio),
+                ConnectorSpec::Family(spec) => Some(spec.aspect_ratio()),
                 ConnectorSpec::Own(_) => None,
             },
         }

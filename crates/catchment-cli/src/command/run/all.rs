@@ -33,7 +33,8 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let json = serde_json::to_string_pretty(&report)? + "\n";
     let mut notes = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect::<Vec<_>>();
     if let Some(folder) = folder {
-        let pictures = catchment::report::folder::encode(&[(folder.name, figure::agreement(&report))], &running.exec)?;
+        let pictures =
+            catchment::report::folder::encode(&[(folder.name, figure::agreement(&report))], &running.exec)?;
         notes.push(folder.write(&json, &report.records(), pictures, &running.exec, |_| Ok(()))?);
     }
     drop(running);

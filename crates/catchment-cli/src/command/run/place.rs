@@ -31,7 +31,8 @@ impl PlaceArgs {
             let help = Some("-o alone writes the pictures too".to_owned());
             return Err(Failure::with_help("-o and --figures name the same folder".to_owned(), help));
         }
-        let output = output.map(|path| if is_group(path) { Target::Group(path) } else { Target::Folder(path) });
+        let output =
+            output.map(|path| if is_group(path) { Target::Group(path) } else { Target::Folder(path) });
         let targets: Vec<Target> = figures.map(Target::Pictures).into_iter().chain(output).collect();
         targets.iter().try_for_each(Target::check)?;
         Ok(Targets(targets))

@@ -1,8 +1,8 @@
 //! Families whose face is a fan of triangles from one point of the axis to a rim: pyramid, cone, saddle.
 
-use super::{Check, Halves, SOCKET_THICKNESS};
+use super::{Check, Draw, Halves, SOCKET_THICKNESS};
 use crate::connector::{Surface, SurfaceError};
-use crate::design::FamilySpec;
+use crate::design::family::{Cone, Pyramid, XFace3d};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -11,38 +11,46 @@ const CONE_RADIUS: f64 = 0.5;
 /// Most corners of a polygon that stands for a circle: beyond it the pair has more elements than it repays.
 pub(super) const MAX_CORNERS: f64 = 512.0;
 
-/// Socket: four facets from the apex (0, 0, 0) to the rim square at z = H. Plug: its positive.
-pub(super) fn pyramid(spec: &FamilySpec) -> Halves {
-    socket_and_plug(spec, &square())
+impl Draw for Pyramid {
+    /// Socket: four facets from the apex (0, 0, 0) to the rim square at z = H. Plug: its positive.
+    fn halves(&self) -> Halves {
+        socket_and_plug(self.aspect_ratio, self.base_thickness, &square())
+    }
 }
 
-/// Probe and drogue over the same inscribed polygon.
-pub(super) fn cone(spec: &FamilySpec) -> Halves {
-    socket_and_plug(spec, &circle(CONE_RADIUS, corners_of_circle(CONE_RADIUS, spec.chord_error) as usize))
+impl Draw for Cone {
+    /// Refuses a chord error that would take too many corners.
+    fn check(&self, check: &mut Check) {
+        let error = self.chord_error;
+        let corners = corners_of_circle(CONE_RADIUS, error);
+        check.require(
+            "chord_error",
+            error,
+            error > 0.0 && corners <= MAX_CORNERS,
+            format!(
+                "between {:.1e} ({MAX_CORNERS} corners) and the radius",
+                chord_error(CONE_RADIUS, MAX_CORNERS)
+            ),
+        );
+    }
+
+    /// Probe and drogue over the same inscribed polygon.
+    fn halves(&self) -> Halves {
+        let rim = circle(CONE_RADIUS, corners_of_circle(CONE_RADIUS, self.chord_error) as usize);
+        socket_and_plug(self.aspect_ratio, self.base_thickness, &rim)
+    }
 }
 
-/// z = H/2 + H·(|x+y| − |x−y|)/2: corners alternate between H and 0 around the saddle point at H/2.
-pub(super) fn saddle(spec: &FamilySpec) -> Halves {
-    let h = spec.aspect_ratio;
-    let rim: Vec<DVec3> = square().iter().map(|p| p.extend(if p.x * p.y > 0.0 { h } else { 0.0 })).collect();
-    let base = spec.base_thickness.unwrap_or(SOCKET_THICKNESS);
-    let half = vec![fan(DVec3::new(0.0, 0.0, h / 2.0), &rim, base)];
-    [half.clone(), half]
-}
-
-/// Refuses a chord error that would take too many corners.
-pub(super) fn check_chord(check: &mut Check) {
-    let error = check.spec.chord_error;
-    let corners = corners_of_circle(CONE_RADIUS, error);
-    check.require(
-        "chord_error",
-        error,
-        error > 0.0 && corners <= MAX_CORNERS,
-        format!(
-            "between {:.1e} ({MAX_CORNERS} corners) and the radius",
-            chord_error(CONE_RADIUS, MAX_CORNERS)
-        ),
-    );
+impl Draw for XFace3d {
+    /// z = H/2 + H·(|x+y| − |x−y|)/2: corners alternate between H and 0 around the saddle point at H/2.
+    fn halves(&self) -> Halves {
+        let h = self.aspect_ratio;
+        let rim: Vec<DVec3> =
+            square().iter().map(|p| p.extend(if p.x * p.y > 0.0 { h } else { 0.0 })).collect();
+        let base = self.base_thickness.unwrap_or(SOCKET_THICKNESS);
+        let half = vec![fan(DVec3::new(0.0, 0.0, h / 2.0), &rim, base)];
+        [half.clone(), half]
+    }
 }
 
 /// Largest distance between a circle and its inscribed regular polygon.
@@ -80,11 +88,10 @@ fn square() -> [DVec2; 4] {
     [DVec2::new(0.5, -0.5), DVec2::new(0.5, 0.5), DVec2::new(-0.5, 0.5), DVec2::new(-0.5, -0.5)]
 }
 
-fn socket_and_plug(spec: &FamilySpec, rim: &[DVec2]) -> Halves {
-    let h = spec.aspect_ratio;
+fn socket_and_plug(h: f64, base: Option<f64>, rim: &[DVec2]) -> Halves {
     let ring = |z: f64| rim.iter().map(|p| p.extend(z)).collect::<Vec<_>>();
-    let socket = fan(DVec3::ZERO, &ring(h), spec.base_thickness.unwrap_or(SOCKET_THICKNESS));
-    let plug = fan(DVec3::new(0.0, 0.0, h), &ring(0.0), spec.base_thickness.unwrap_or(0.0));
+    let socket = fan(DVec3::ZERO, &ring(h), base.unwrap_or(SOCKET_THICKNESS));
+    let plug = fan(DVec3::new(0.0, 0.0, h), &ring(0.0), base.unwrap_or(0.0));
     [vec![socket], vec![plug]]
 }
 

@@ -15,44 +15,49 @@
 //! With δ = 0 the lip is a vertical step, which needs play to go in: its faces stand back from the centre
 //! lines into the raised quadrants, so that `clearance` is the distance between the two halves' faces.
 
-use super::{Check, Halves, SOCKET_THICKNESS};
+use super::{Check, Draw, Halves, SOCKET_THICKNESS};
 use crate::connector::{Surface, SurfaceError};
-use crate::design::FamilySpec;
+use crate::design::family::XFace3dLocking;
 use glam::{DVec2, DVec3};
 
 /// Smallest draft other than none, radians: below it the mating faces would be slivers narrower than any
 /// workshop makes and than the kernel's seams like.
 const MIN_DRAFT: f64 = 1e-3;
 
-/// Refuses lips that do not fit on the face.
-pub(super) fn check(check: &mut Check) {
-    let spec = check.spec;
-    let (h, lip, draft) = (spec.aspect_ratio, spec.lip_height, spec.draft_angle);
-    check.require("lip_height", lip, lip > 0.0, "give a number above 0, or use x-face-3d");
-    check.require(
-        "clearance",
-        spec.clearance,
-        draft != 0.0 || (spec.clearance > 0.0 && spec.clearance < 0.5),
-        "vertical lips need play to go in: give a number above 0 and below 0.5, or a draft_angle",
-    );
-    let steepest = (1.0 / (h + lip)).atan();
-    check.require(
-        "draft_angle",
-        draft,
-        draft == 0.0 || (MIN_DRAFT..steepest).contains(&draft),
-        format!("give 0, or between {MIN_DRAFT} rad and {steepest:.4} rad: beyond it the lip is wider than the face"),
-    );
+impl Draw for XFace3dLocking {
+    /// Refuses lips that do not fit on the face.
+    fn check(&self, check: &mut Check) {
+        let (h, lip, draft) = (self.aspect_ratio, self.lip_height, self.draft_angle);
+        check.require("lip_height", lip, lip > 0.0, "give a number above 0, or use x-face-3d");
+        check.require(
+            "clearance",
+            self.clearance,
+            draft != 0.0 || (self.clearance > 0.0 && self.clearance < 0.5),
+            "vertical lips need play to go in: give a number above 0 and below 0.5, or a draft_angle",
+        );
+        let steepest = (1.0 / (h + lip)).atan();
+        check.require(
+            "draft_angle",
+            draft,
+            draft == 0.0 || (MIN_DRAFT..steepest).contains(&draft),
+            format!("give 0, or between {MIN_DRAFT} rad and {steepest:.4} rad: beyond it the lip is wider than the face"),
+        );
+    }
+
+    /// Both halves: the same solid.
+    fn halves(&self) -> Halves {
+        let solid = vec![if self.draft_angle == 0.0 { stepped(self) } else { drafted(self) }];
+        [solid.clone(), solid]
+    }
+
+    fn face_height(&self) -> Option<f64> {
+        Some(height(self) / 2.0)
+    }
 }
 
 /// Height of the whole mating face, in D.
-pub(super) fn height(spec: &FamilySpec) -> f64 {
+fn height(spec: &XFace3dLocking) -> f64 {
     spec.aspect_ratio + spec.lip_height
-}
-
-/// Both halves: the same solid.
-pub(super) fn locking(spec: &FamilySpec) -> Halves {
-    let solid = vec![if spec.draft_angle == 0.0 { stepped(spec) } else { drafted(spec) }];
-    [solid.clone(), solid]
 }
 
 /// Vertices of one raised quadrant and the lowered one after it, with vertical lips.
@@ -79,7 +84,7 @@ fn sign(octant: usize) -> f64 {
 }
 
 /// Vertical mating faces, drawn back by half the play into the raised quadrants.
-fn stepped(spec: &FamilySpec) -> Result<Surface, SurfaceError> {
+fn stepped(spec: &XFace3dLocking) -> Result<Surface, SurfaceError> {
     let (h, lip, back) = (spec.aspect_ratio, spec.lip_height, spec.clearance / 2.0);
     let mid = height(spec) / 2.0;
     let base = spec.base_thickness.unwrap_or(SOCKET_THICKNESS);
@@ -128,7 +133,7 @@ fn stepped(spec: &FamilySpec) -> Result<Surface, SurfaceError> {
 }
 
 /// Mating faces inclined by the draft angle.
-fn drafted(spec: &FamilySpec) -> Result<Surface, SurfaceError> {
+fn drafted(spec: &XFace3dLocking) -> Result<Surface, SurfaceError> {
     let (h, lip) = (spec.aspect_ratio, spec.lip_height);
     let mid = height(spec) / 2.0;
     let base = spec.base_thickness.unwrap_or(SOCKET_THICKNESS);

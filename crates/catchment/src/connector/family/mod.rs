@@ -18,7 +18,7 @@ mod pin_hole;
 mod planar;
 
 use super::{Half, Problem, Side, Surface, SurfaceError};
-use crate::design::{Family, FamilySpec};
+use crate::design::FamilySpec;
 
 /// Default backing of a socket half, in D.
 const SOCKET_THICKNESS: f64 = 0.25;
@@ -34,13 +34,42 @@ pub(super) struct Drawn {
     pub(super) face_height: f64,
 }
 
+/// What a family's parameters say how to draw.
+trait Draw {
+    /// Says what is wrong with the parameters that only this family has.
+    fn check(&self, _check: &mut Check) {}
+
+    /// The surfaces, once the parameters are sound.
+    fn halves(&self) -> Halves;
+
+    /// z of both face centres, in D, where they do not lie at H/2.
+    fn face_height(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// The table of families: which parameters are drawn how.
+fn drawing(spec: &FamilySpec) -> &dyn Draw {
+    match spec {
+        FamilySpec::VFace(face) => face,
+        FamilySpec::SFace(face) => face,
+        FamilySpec::XFace(face) => face,
+        FamilySpec::Pyramid(pyramid) => pyramid,
+        FamilySpec::Cone(cone) => cone,
+        FamilySpec::XFace3d(saddle) => saddle,
+        FamilySpec::XFace3dLocking(saddle) => saddle,
+        FamilySpec::PinHole(plate) => plate,
+    }
+}
+
 /// Draws a family.
 pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
-    let mut check = Check { spec, problems: Vec::new() };
-    let height = spec.aspect_ratio;
+    let family = spec.family();
+    let mut check = Check { family: family.name(), problems: Vec::new() };
+    let height = spec.aspect_ratio();
     check.require("aspect_ratio", height, height > 0.0, "the face needs a height: give a number above 0");
-    if let Some(base) = spec.base_thickness {
-        if spec.family.is_planar() {
+    if let Some(base) = spec.base_thickness() {
+        if family.is_planar() {
             check.require("base_thickness", base, base >= 0.0, "give 0 or more");
         } else {
             check.require(
@@ -51,23 +80,10 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
             );
         }
     }
-    match spec.family {
-        Family::Cone => fan::check_chord(&mut check),
-        Family::XFace3dLocking => locking::check(&mut check),
-        Family::PinHole => pin_hole::check(&mut check),
-        _ => {}
-    }
+    let drawing = drawing(spec);
+    drawing.check(&mut check);
     check.done()?;
-    let halves = match spec.family {
-        Family::VFace => planar::v_face(spec),
-        Family::SFace => planar::s_face(spec),
-        Family::XFace => planar::x_face(spec),
-        Family::Pyramid => fan::pyramid(spec),
-        Family::Cone => fan::cone(spec),
-        Family::XFace3d => fan::saddle(spec),
-        Family::XFace3dLocking => locking::locking(spec),
-        Family::PinHole => pin_hole::pin_hole(spec),
-    };
+    let halves = drawing.halves();
     let mut problems = Vec::new();
     let [fixed, moving] = halves;
     let mut half = |side, surfaces: Vec<Result<Surface, SurfaceError>>| {
@@ -81,11 +97,7 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
         half
     };
     let (fixed, moving) = (half(Side::Fixed, fixed), half(Side::Moving, moving));
-    let face_height = match spec.family {
-        Family::XFace3dLocking => locking::height(spec) / 2.0,
-        Family::PinHole => pin_hole::face_height(spec),
-        _ => height / 2.0,
-    };
+    let face_height = drawing.face_height().unwrap_or(height / 2.0);
     if problems.is_empty() { Ok(Drawn { fixed, moving, face_height }) } else { Err(problems) }
 }
 
@@ -93,15 +105,15 @@ pub(super) fn draw(spec: &FamilySpec) -> Result<Drawn, Vec<Problem>> {
 type Halves = [Vec<Result<Surface, SurfaceError>>; 2];
 
 /// Collects what is wrong with a family's parameters.
-struct Check<'a> {
-    spec: &'a FamilySpec,
+struct Check {
+    family: &'static str,
     problems: Vec<Problem>,
 }
 
-impl Check<'_> {
+impl Check {
     fn require(&mut self, parameter: &'static str, value: f64, holds: bool, advice: impl Into<String>) {
         if !holds || !value.is_finite() {
-            let family = self.spec.family.name();
+            let family = self.family;
             self.problems.push(Problem::Parameter { family, parameter, value, advice: advice.into() });
         }
     }
@@ -114,6 +126,8 @@ impl Check<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::design::Family;
+    use crate::design::family::{PinHole, XFace3dLocking};
     use glam::DVec3;
 
     fn volume(half: &Half) -> f64 {
@@ -121,7 +135,7 @@ mod tests {
     }
 
     fn spec(family: Family, aspect_ratio: f64, base_thickness: Option<f64>) -> FamilySpec {
-        FamilySpec { aspect_ratio, base_thickness, ..FamilySpec::new(family) }
+        FamilySpec::new(family).with_aspect_ratio(aspect_ratio).with_base_thickness(base_thickness)
     }
 
     /// Sums of at most a hundred terms below 1 round by less than 1e-14.
@@ -152,7 +166,7 @@ mod tests {
     #[test]
     fn the_cone_is_inscribed_and_within_its_chord_error() {
         for error in [0.05, 0.01, 0.001, 1e-4] {
-            let drawn = draw(&FamilySpec { chord_error: error, ..spec(Family::Cone, 1.0, None) }).unwrap();
+            let drawn = draw(&spec(Family::Cone, 1.0, None).with_chord_error(error)).unwrap();
             let plug = &drawn.moving.surfaces[0];
             let rim: Vec<DVec3> = plug.vertices.iter().copied().filter(|v| v.z == 0.0).collect();
             for (k, p) in rim.iter().enumerate() {
@@ -170,8 +184,9 @@ mod tests {
         // strip over which they stand back: H·m + ℓ over two L-shapes of width c/2.
         let (h, lip, c): (f64, f64, f64) = (0.5, 0.2, 0.02);
         for draft_angle in [0.0, 0.01, 0.3] {
-            let base = spec(Family::XFace3dLocking, h, None);
-            let drawn = draw(&FamilySpec { draft_angle, lip_height: lip, clearance: c, ..base }).unwrap();
+            let default = XFace3dLocking { aspect_ratio: h, ..XFace3dLocking::DEFAULT };
+            let spec = XFace3dLocking { draft_angle, lip_height: lip, clearance: c, ..default };
+            let drawn = draw(&spec.into()).unwrap();
             let area = c / 2.0 - c.powi(2) / 4.0;
             let moment = c.powi(2) / 8.0 - c.powi(3) / 12.0;
             let lost = if draft_angle == 0.0 { 2.0 * (h * moment + lip * area) } else { 0.0 };
@@ -190,8 +205,8 @@ mod tests {
             (2, true, 0.02),
             (3, true, 0.05),
         ] {
-            let s = FamilySpec { pins, hermaphroditic, chamfer, ..FamilySpec::new(Family::PinHole) };
-            let drawn = draw(&s).unwrap();
+            let s = PinHole { pins, hermaphroditic, chamfer, ..PinHole::DEFAULT };
+            let drawn = draw(&s.into()).unwrap();
             // Area of the inscribed n-gon of radius r, and a frustum's volume between two of them.
             let n = super::fan::corners_of_circle(s.pin_radius + s.clearance + chamfer, s.chord_error);
             let unit = n / 2.0 * (2.0 * std::f64::consts::PI / n).sin();
@@ -216,21 +231,21 @@ mod tests {
 
     #[test]
     fn pins_that_overlap_or_leave_the_plate_are_refused() {
-        let default = FamilySpec::new(Family::PinHole);
+        let default = PinHole::DEFAULT;
         for bad in [
-            FamilySpec { pins: 0, ..default.clone() },
-            FamilySpec { pins: 12, ..default.clone() },
-            FamilySpec { circle_radius: 0.4, ..default.clone() },
-            FamilySpec { aspect_ratio: 0.15, ..default.clone() },
-            FamilySpec { chord_error: 1e-9, ..default.clone() },
+            PinHole { pins: 0, ..default },
+            PinHole { pins: 12, ..default },
+            PinHole { circle_radius: 0.4, ..default },
+            PinHole { aspect_ratio: 0.15, ..default },
+            PinHole { chord_error: 1e-9, ..default },
         ] {
-            assert_eq!(draw(&bad).unwrap_err().len(), 1, "{bad:?}");
+            assert_eq!(draw(&bad.into()).unwrap_err().len(), 1, "{bad:?}");
         }
     }
 
     #[test]
     fn every_bad_parameter_is_named_at_once() {
-        let bad = FamilySpec { chord_error: 0.0, ..spec(Family::Cone, f64::NAN, Some(0.0)) };
+        let bad = spec(Family::Cone, f64::NAN, Some(0.0)).with_chord_error(0.0);
         let names: Vec<_> = draw(&bad)
             .unwrap_err()
             .into_iter()

@@ -14,9 +14,9 @@
 //! and holes alternate on both halves, hole bottoms at z = 0, the plate at H, tips at 2H.
 
 use super::fan::{circle, corners_of_circle};
-use super::{Check, Halves, SOCKET_THICKNESS};
+use super::{Check, Draw, Halves, SOCKET_THICKNESS};
 use crate::connector::{Surface, SurfaceError};
-use crate::design::FamilySpec;
+use crate::design::family::PinHole;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
@@ -31,90 +31,92 @@ enum Feature {
     Hole,
 }
 
-/// Refuses layouts that overlap, leave the plate or leave no straight part.
-pub(super) fn check(check: &mut Check) {
-    let s = check.spec;
-    let outer = mouth(s);
-    let features = features(s);
-    check.require("pins", f64::from(s.pins), s.pins >= 1, "give at least one pin");
-    check.require("pin_radius", s.pin_radius, s.pin_radius > 0.0, "give a number above 0");
-    check.require("clearance", s.clearance, s.clearance >= 0.0, "give 0 or more");
-    check.require("chamfer", s.chamfer, s.chamfer > 0.0, "give a number above 0");
-    let needed = s.chamfer + point(s) + s.clearance;
-    check.require(
-        "aspect_ratio",
-        s.aspect_ratio,
-        s.aspect_ratio > needed,
-        format!("chamfer, point and clearance leave no straight part: give more than {needed:.4}"),
-    );
-    check.require(
-        "circle_radius",
-        s.circle_radius,
-        s.circle_radius >= 0.0 && s.circle_radius + outer < 0.5,
-        format!("holes with their chamfers leave the plate: give less than {:.4}", 0.5 - outer),
-    );
-    let spacing = s.circle_radius * (PI / f64::from(features.max(2))).sin();
-    check.require(
-        "circle_radius",
-        s.circle_radius,
-        features < 2 || spacing > outer,
-        format!(
-            "neighbours on the circle overlap: they are {:.4} apart and need {:.4}",
-            2.0 * spacing,
-            2.0 * outer
-        ),
-    );
-    let corners = corners_of_circle(outer, s.chord_error) * f64::from(features);
-    check.require(
-        "chord_error",
-        s.chord_error,
-        s.chord_error > 0.0 && corners <= MAX_CORNERS,
-        format!("this takes {corners} corners, more than {MAX_CORNERS}: give a larger one"),
-    );
-}
+impl Draw for PinHole {
+    /// Refuses layouts that overlap, leave the plate or leave no straight part.
+    fn check(&self, check: &mut Check) {
+        let s = self;
+        let outer = mouth(s);
+        let features = features(s);
+        check.require("pins", f64::from(s.pins), s.pins >= 1, "give at least one pin");
+        check.require("pin_radius", s.pin_radius, s.pin_radius > 0.0, "give a number above 0");
+        check.require("clearance", s.clearance, s.clearance >= 0.0, "give 0 or more");
+        check.require("chamfer", s.chamfer, s.chamfer > 0.0, "give a number above 0");
+        let needed = s.chamfer + point(s) + s.clearance;
+        check.require(
+            "aspect_ratio",
+            s.aspect_ratio,
+            s.aspect_ratio > needed,
+            format!("chamfer, point and clearance leave no straight part: give more than {needed:.4}"),
+        );
+        check.require(
+            "circle_radius",
+            s.circle_radius,
+            s.circle_radius >= 0.0 && s.circle_radius + outer < 0.5,
+            format!("holes with their chamfers leave the plate: give less than {:.4}", 0.5 - outer),
+        );
+        let spacing = s.circle_radius * (PI / f64::from(features.max(2))).sin();
+        check.require(
+            "circle_radius",
+            s.circle_radius,
+            features < 2 || spacing > outer,
+            format!(
+                "neighbours on the circle overlap: they are {:.4} apart and need {:.4}",
+                2.0 * spacing,
+                2.0 * outer
+            ),
+        );
+        let corners = corners_of_circle(outer, s.chord_error) * f64::from(features);
+        check.require(
+            "chord_error",
+            s.chord_error,
+            s.chord_error > 0.0 && corners <= MAX_CORNERS,
+            format!("this takes {corners} corners, more than {MAX_CORNERS}: give a larger one"),
+        );
+    }
 
-/// z of the face centre as drawn.
-pub(super) fn face_height(spec: &FamilySpec) -> f64 {
-    if spec.hermaphroditic { spec.aspect_ratio } else { spec.aspect_ratio / 2.0 }
-}
+    /// The plate with its pins and holes; gendered: holes on the fixed half, pins on the moving one.
+    fn halves(&self) -> Halves {
+        let m = features(self);
+        let all =
+            |feature| (0..m).map(|k| (f64::from(k) * 2.0 * PI / f64::from(m), feature)).collect::<Vec<_>>();
+        let h = self.aspect_ratio;
+        if self.hermaphroditic {
+            // Between the axes: mirrored about x, every pin finds a hole.
+            let layout: Vec<_> = (0..m)
+                .map(|k| {
+                    let angle = (f64::from(k) + 0.5) * 2.0 * PI / f64::from(m);
+                    (angle, if k % 2 == 0 { Feature::Pin } else { Feature::Hole })
+                })
+                .collect();
+            let half = vec![plate(self, &layout, h)];
+            [half.clone(), half]
+        } else {
+            [vec![plate(self, &all(Feature::Hole), h)], vec![plate(self, &all(Feature::Pin), 0.0)]]
+        }
+    }
 
-/// The plate with its pins and holes; gendered: holes on the fixed half, pins on the moving one.
-pub(super) fn pin_hole(spec: &FamilySpec) -> Halves {
-    let m = features(spec);
-    let all = |feature| (0..m).map(|k| (f64::from(k) * 2.0 * PI / f64::from(m), feature)).collect::<Vec<_>>();
-    let h = spec.aspect_ratio;
-    if spec.hermaphroditic {
-        // Between the axes: mirrored about x, every pin finds a hole.
-        let layout: Vec<_> = (0..m)
-            .map(|k| {
-                let angle = (f64::from(k) + 0.5) * 2.0 * PI / f64::from(m);
-                (angle, if k % 2 == 0 { Feature::Pin } else { Feature::Hole })
-            })
-            .collect();
-        let half = vec![plate(spec, &layout, h)];
-        [half.clone(), half]
-    } else {
-        [vec![plate(spec, &all(Feature::Hole), h)], vec![plate(spec, &all(Feature::Pin), 0.0)]]
+    fn face_height(&self) -> Option<f64> {
+        Some(if self.hermaphroditic { self.aspect_ratio } else { self.aspect_ratio / 2.0 })
     }
 }
 
 /// Pins and holes per half.
-fn features(spec: &FamilySpec) -> u32 {
+fn features(spec: &PinHole) -> u32 {
     if spec.hermaphroditic { spec.pins.saturating_mul(2) } else { spec.pins }
 }
 
 /// Radius of a hole's mouth.
-fn mouth(spec: &FamilySpec) -> f64 {
+fn mouth(spec: &PinHole) -> f64 {
     spec.pin_radius + spec.clearance + spec.chamfer
 }
 
 /// Width of a pin's point.
-fn point(spec: &FamilySpec) -> f64 {
+fn point(spec: &PinHole) -> f64 {
     spec.chamfer.min(spec.pin_radius)
 }
 
 /// A plate whose upper face lies at `top`, with its features at the given angles in increasing order.
-fn plate(spec: &FamilySpec, layout: &[(f64, Feature)], top: f64) -> Result<Surface, SurfaceError> {
+fn plate(spec: &PinHole, layout: &[(f64, Feature)], top: f64) -> Result<Surface, SurfaceError> {
     let base = spec.base_thickness.unwrap_or(SOCKET_THICKNESS);
     let corners = corners_of_circle(mouth(spec), spec.chord_error) as usize;
     let mut mesh = Mesh::default();
@@ -160,7 +162,7 @@ fn plate(spec: &FamilySpec, layout: &[(f64, Feature)], top: f64) -> Result<Surfa
 }
 
 /// (radius, height over the plate) of a feature's rings, from the plate inwards.
-fn profile(spec: &FamilySpec, feature: Feature) -> Vec<(f64, f64)> {
+fn profile(spec: &PinHole, feature: Feature) -> Vec<(f64, f64)> {
     let (h, r, bore) = (spec.aspect_ratio, spec.pin_radius, spec.pin_radius + spec.clearance);
     let (point, tip) = (point(spec), r - point(spec));
     match feature {

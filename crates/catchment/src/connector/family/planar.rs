@@ -1,8 +1,8 @@
 //! Planar families: profiles in the x–z plane, extruded along y.
 
-use super::Halves;
+use super::{Draw, Halves};
 use crate::connector::{Surface, SurfaceError};
-use crate::design::FamilySpec;
+use crate::design::family::{SFace, VFace, XFace};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
@@ -13,35 +13,41 @@ const LAYERS: [[f64; 2]; 2] = [[0.05, 0.5], [-0.5, -0.05]];
 
 type Cell = Vec<DVec2>;
 
-/// Notch z = H·2|x| and tip z = H·(1 − 2|x|).
-pub(super) fn v_face(spec: &FamilySpec) -> Halves {
-    let (h, b) = (spec.aspect_ratio, spec.base_thickness.unwrap_or(0.0));
-    // With b = 0 the two sides of the notch touch along a line only: two solids. Otherwise they are one.
-    let left = cell(&[(-0.5, -b), (0.0, -b), (0.0, 0.0), (-0.5, h)]);
-    let right = cell(&[(0.0, -b), (0.5, -b), (0.5, h), (0.0, 0.0)]);
-    let notch = if b > 0.0 { vec![vec![left, right]] } else { vec![vec![left], vec![right]] };
-    let tip = cell(&[(-0.5, -b), (0.5, -b), (0.5, 0.0), (0.0, h), (-0.5, 0.0)]);
-    [notch.iter().map(|cells| extrude(cells, SLAB)).collect(), vec![extrude(&[tip], SLAB)]]
+impl Draw for VFace {
+    /// Notch z = H·2|x| and tip z = H·(1 − 2|x|).
+    fn halves(&self) -> Halves {
+        let (h, b) = (self.aspect_ratio, self.base_thickness.unwrap_or(0.0));
+        // With b = 0 the two sides of the notch touch along a line only: two solids. Otherwise they are one.
+        let left = cell(&[(-0.5, -b), (0.0, -b), (0.0, 0.0), (-0.5, h)]);
+        let right = cell(&[(0.0, -b), (0.5, -b), (0.5, h), (0.0, 0.0)]);
+        let notch = if b > 0.0 { vec![vec![left, right]] } else { vec![vec![left], vec![right]] };
+        let tip = cell(&[(-0.5, -b), (0.5, -b), (0.5, 0.0), (0.0, h), (-0.5, 0.0)]);
+        [notch.iter().map(|cells| extrude(cells, SLAB)).collect(), vec![extrude(&[tip], SLAB)]]
+    }
 }
 
-/// Polyline with its maximum H at x = −1/6 and its minimum 0 at x = 1/6; ends at H/2.
-pub(super) fn s_face(spec: &FamilySpec) -> Halves {
-    let (h, b) = (spec.aspect_ratio, spec.base_thickness.unwrap_or(0.0));
-    let x = 1.0 / 6.0;
-    let left = cell(&[(-0.5, -b), (x, -b), (x, 0.0), (-x, h), (-0.5, h / 2.0)]);
-    let right = cell(&[(x, -b), (0.5, -b), (0.5, h / 2.0), (x, 0.0)]);
-    let half = if b > 0.0 { vec![vec![left, right]] } else { vec![vec![left], vec![right]] };
-    let surfaces: Vec<_> = half.iter().map(|cells| extrude(cells, SLAB)).collect();
-    [surfaces.clone(), surfaces]
+impl Draw for SFace {
+    /// Polyline with its maximum H at x = −1/6 and its minimum 0 at x = 1/6; ends at H/2.
+    fn halves(&self) -> Halves {
+        let (h, b) = (self.aspect_ratio, self.base_thickness.unwrap_or(0.0));
+        let x = 1.0 / 6.0;
+        let left = cell(&[(-0.5, -b), (x, -b), (x, 0.0), (-x, h), (-0.5, h / 2.0)]);
+        let right = cell(&[(x, -b), (0.5, -b), (0.5, h / 2.0), (x, 0.0)]);
+        let half = if b > 0.0 { vec![vec![left, right]] } else { vec![vec![left], vec![right]] };
+        let surfaces: Vec<_> = half.iter().map(|cells| extrude(cells, SLAB)).collect();
+        [surfaces.clone(), surfaces]
+    }
 }
 
-/// Two ramps that cross, in two layers: z = H·(½ ± x).
-pub(super) fn x_face(spec: &FamilySpec) -> Halves {
-    let (h, b) = (spec.aspect_ratio, spec.base_thickness.unwrap_or(0.0));
-    let rising = cell(&[(-0.5, -b), (0.5, -b), (0.5, h), (-0.5, 0.0)]);
-    let falling = cell(&[(-0.5, -b), (0.5, -b), (0.5, 0.0), (-0.5, h)]);
-    let surfaces = vec![extrude(&[rising], LAYERS[0]), extrude(&[falling], LAYERS[1])];
-    [surfaces.clone(), surfaces]
+impl Draw for XFace {
+    /// Two ramps that cross, in two layers: z = H·(½ ± x).
+    fn halves(&self) -> Halves {
+        let (h, b) = (self.aspect_ratio, self.base_thickness.unwrap_or(0.0));
+        let rising = cell(&[(-0.5, -b), (0.5, -b), (0.5, h), (-0.5, 0.0)]);
+        let falling = cell(&[(-0.5, -b), (0.5, -b), (0.5, 0.0), (-0.5, h)]);
+        let surfaces = vec![extrude(&[rising], LAYERS[0]), extrude(&[falling], LAYERS[1])];
+        [surfaces.clone(), surfaces]
+    }
 }
 
 /// A convex profile, counter-clockwise, without the corners that fall together.

@@ -1,6 +1,7 @@
 //! From bytes to triangles, both dialects.
 
-use super::{MAX_BYTES, MAX_TRIANGLES, Place, Reported, Start, StlProblem};
+use super::MAX_BYTES;
+use crate::connector::mesh::{self, MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
 use glam::DVec3;
 
 /// Header and triangle count of a binary file.
@@ -10,17 +11,10 @@ const RECORD: usize = 50;
 /// Longest piece of a file that a message repeats.
 const SHOWN: usize = 24;
 
-/// A triangle in the file's coordinates.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Triangle {
-    pub(super) corners: [DVec3; 3],
-    pub(super) place: Place,
-}
-
 /// Parses the first `bytes` of a file of `size` bytes.
-pub(super) fn parse(bytes: &[u8], size: u64) -> Result<Vec<Triangle>, Vec<StlProblem>> {
+pub(super) fn parse(bytes: &[u8], size: u64) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     if bytes.is_empty() {
-        return Err(vec![StlProblem::Empty]);
+        return Err(vec![MeshProblem::Empty]);
     }
     let announced = bytes
         .get(HEADER - 4..HEADER)
@@ -29,32 +23,22 @@ pub(super) fn parse(bytes: &[u8], size: u64) -> Result<Vec<Triangle>, Vec<StlPro
     let expected = announced.map(|count| HEADER as u64 + RECORD as u64 * count);
     let triangles = if expected == Some(size) || !looks_like_text(bytes) {
         let (Some(triangles), Some(expected)) = (announced, expected) else {
-            return Err(vec![StlProblem::NotStl { found: size }]);
+            return Err(vec![MeshProblem::NotStl { found: size }]);
         };
         if expected != size {
-            return Err(vec![StlProblem::Length { triangles, expected, found: size }]);
+            return Err(vec![MeshProblem::Length { triangles, expected, found: size }]);
         }
         if triangles > MAX_TRIANGLES as u64 {
-            return Err(vec![StlProblem::TooMany { count: triangles }]);
+            return Err(vec![MeshProblem::TooMany { count: triangles }]);
         }
         binary(&bytes[HEADER..])
     } else {
         if size > MAX_BYTES {
-            return Err(vec![StlProblem::TooLong { bytes: size }]);
+            return Err(vec![MeshProblem::TooLong { bytes: size }]);
         }
         ascii(bytes).map_err(|problem| vec![problem])?
     };
-    let mut reported = Reported::default();
-    if triangles.is_empty() {
-        reported.extend([StlProblem::NoTriangles]);
-    }
-    reported.extend(
-        triangles
-            .iter()
-            .filter(|t| !t.corners.iter().all(|c| c.is_finite()))
-            .map(|t| StlProblem::NotFinite { place: t.place }),
-    );
-    reported.done()?;
+    mesh::sound_numbers(&triangles)?;
     Ok(triangles)
 }
 
@@ -104,9 +88,9 @@ impl<'a> Lines<'a> {
     }
 
     /// The next line, which must begin with the words of `expected`; returns what follows them.
-    fn expect(&mut self, expected: &'static str) -> Result<(usize, Vec<&'a [u8]>), StlProblem> {
+    fn expect(&mut self, expected: &'static str) -> Result<(usize, Vec<&'a [u8]>), MeshProblem> {
         let Some((line, words)) = self.next() else {
-            return Err(StlProblem::Syntax {
+            return Err(MeshProblem::Syntax {
                 line: self.last,
                 expected,
                 found: "the end of the file".into(),
@@ -116,7 +100,7 @@ impl<'a> Lines<'a> {
         if begins(&words, expected) {
             Ok((line, words[keywords..].to_vec()))
         } else {
-            Err(StlProblem::Syntax { line, expected, found: shown(&words) })
+            Err(MeshProblem::Syntax { line, expected, found: shown(&words) })
         }
     }
 }
@@ -131,7 +115,7 @@ fn shown(words: &[&[u8]]) -> String {
     format!("`{}`", text.escape_debug())
 }
 
-fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, StlProblem> {
+fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, MeshProblem> {
     let is_newline: fn(&u8) -> bool = |b| *b == b'\n';
     let mut lines = Lines { lines: bytes.split(is_newline).enumerate(), last: 1 };
     let mut triangles = Vec::new();
@@ -141,14 +125,14 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, StlProblem> {
         let Some((line, words)) = lines.next() else {
             if inside {
                 let found = "the end of the file: it was cut off".into();
-                return Err(StlProblem::Syntax { line: lines.last, expected: "facet or endsolid", found });
+                return Err(MeshProblem::Syntax { line: lines.last, expected: "facet or endsolid", found });
             }
             return Ok(triangles);
         };
         if inside && begins(&words, "facet") {
             let triangle = triangles.len();
             if triangle == MAX_TRIANGLES {
-                return Err(StlProblem::TooMany { count: count_facets(bytes) });
+                return Err(MeshProblem::TooMany { count: count_facets(bytes) });
             }
             lines.expect("outer loop")?;
             let mut corners = [DVec3::ZERO; 3];
@@ -164,13 +148,13 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, StlProblem> {
             inside = true;
         } else {
             let expected = if inside { "facet or endsolid" } else { "solid or the end of the file" };
-            return Err(StlProblem::Syntax { line, expected, found: shown(&words) });
+            return Err(MeshProblem::Syntax { line, expected, found: shown(&words) });
         }
     }
 }
 
-fn vertex((line, words): (usize, Vec<&[u8]>)) -> Result<DVec3, StlProblem> {
-    let wrong = || StlProblem::Syntax { line, expected: "three numbers after vertex", found: shown(&words) };
+fn vertex((line, words): (usize, Vec<&[u8]>)) -> Result<DVec3, MeshProblem> {
+    let wrong = || MeshProblem::Syntax { line, expected: "three numbers after vertex", found: shown(&words) };
     let [x, y, z] = words[..] else { return Err(wrong()) };
     let number = |w: &[u8]| std::str::from_utf8(w).ok().and_then(|t| t.parse::<f64>().ok()).ok_or_else(wrong);
     Ok(DVec3::new(number(x)?, number(y)?, number(z)?))

@@ -1,8 +1,10 @@
 //! Every way a file can be broken, and the families through both dialects.
 
 use super::*;
+use crate::connector::mesh::{MAX_REPORTED, MAX_TRIANGLES, Place, Start};
 use crate::connector::{Half, family};
 use crate::design::{Family, FamilySpec};
+use glam::DVec3;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -12,7 +14,7 @@ fn bytes(half: &Half, format: Format) -> Vec<u8> {
     out
 }
 
-fn parse(bytes: &[u8]) -> Result<Surface, Vec<StlProblem>> {
+fn parse(bytes: &[u8]) -> Result<Surface, Vec<MeshProblem>> {
     from_bytes(bytes, bytes.len() as u64, 1.0)
 }
 
@@ -42,7 +44,7 @@ fn text(triangles: &[[[f64; 3]; 3]]) -> String {
     out + "endsolid cube\n"
 }
 
-fn complaints(triangles: &[[[f64; 3]; 3]]) -> Vec<StlProblem> {
+fn complaints(triangles: &[[[f64; 3]; 3]]) -> Vec<MeshProblem> {
     parse(text(triangles).as_bytes()).unwrap_err()
 }
 
@@ -76,9 +78,9 @@ fn scale_turns_file_units_into_d() {
 
 #[test]
 fn an_empty_file_says_so() {
-    assert_eq!(parse(b"").unwrap_err(), [StlProblem::Empty]);
-    assert_eq!(parse(b"solid\nendsolid\n").unwrap_err(), [StlProblem::NoTriangles]);
-    assert_eq!(parse(b"hello").unwrap_err(), [StlProblem::NotStl { found: 5 }]);
+    assert_eq!(parse(b"").unwrap_err(), [MeshProblem::Empty]);
+    assert_eq!(parse(b"solid\nendsolid\n").unwrap_err(), [MeshProblem::NoTriangles]);
+    assert_eq!(parse(b"hello").unwrap_err(), [MeshProblem::NotStl { found: 5 }]);
 }
 
 #[test]
@@ -87,7 +89,7 @@ fn a_truncated_binary_file_says_where() {
     let expected = file.len() as u64;
     file.truncate(400);
     let triangles = (expected - 84) / 50;
-    assert_eq!(parse(&file).unwrap_err(), [StlProblem::Length { triangles, expected, found: 400 }]);
+    assert_eq!(parse(&file).unwrap_err(), [MeshProblem::Length { triangles, expected, found: 400 }]);
 }
 
 #[test]
@@ -103,7 +105,7 @@ fn a_truncated_text_says_in_which_line() {
     let cut: String = whole.lines().take(11).collect::<Vec<_>>().join("\n");
     let problems = parse(cut.as_bytes()).unwrap_err();
     assert!(
-        matches!(problems[..], [StlProblem::Syntax { line: 11, expected: "vertex", .. }]),
+        matches!(problems[..], [MeshProblem::Syntax { line: 11, expected: "vertex", .. }]),
         "{problems:?}"
     );
 }
@@ -121,11 +123,11 @@ fn more_triangles_than_the_limit_are_refused_before_they_are_read() {
     let mut header = vec![0u8; 80];
     header.extend(count.to_le_bytes());
     let problems = from_bytes(&header, 84 + 50 * u64::from(count), 1.0).unwrap_err();
-    assert_eq!(problems, [StlProblem::TooMany { count: 3_000_000 }]);
+    assert_eq!(problems, [MeshProblem::TooMany { count: 3_000_000 }]);
     let many = vec![cube()[0]; MAX_TRIANGLES + 5];
-    assert_eq!(complaints(&many), [StlProblem::TooMany { count: MAX_TRIANGLES as u64 + 5 }]);
+    assert_eq!(complaints(&many), [MeshProblem::TooMany { count: MAX_TRIANGLES as u64 + 5 }]);
     let problems = from_bytes(b"solid x", 1 << 40, 1.0).unwrap_err();
-    assert_eq!(problems, [StlProblem::TooLong { bytes: 1 << 40 }]);
+    assert_eq!(problems, [MeshProblem::TooLong { bytes: 1 << 40 }]);
 }
 
 #[test]
@@ -134,7 +136,7 @@ fn a_corner_that_is_not_finite_is_located() {
         let mut triangles = cube();
         triangles[3][1][2] = bad;
         let place = Place { triangle: 3, start: Start::Line(2 + 3 * 7) };
-        assert_eq!(complaints(&triangles), [StlProblem::NotFinite { place }]);
+        assert_eq!(complaints(&triangles), [MeshProblem::NotFinite { place }]);
     }
 }
 
@@ -144,7 +146,7 @@ fn a_hole_is_reported_edge_by_edge() {
     triangles.remove(5);
     let problems = complaints(&triangles);
     assert_eq!(problems.len(), 3);
-    assert!(problems.iter().all(|p| matches!(p, StlProblem::Open { .. })), "{problems:?}");
+    assert!(problems.iter().all(|p| matches!(p, MeshProblem::Open { .. })), "{problems:?}");
 }
 
 #[test]
@@ -152,7 +154,7 @@ fn many_problems_of_a_kind_are_counted() {
     let problems = complaints(&cube().into_iter().step_by(2).collect::<Vec<_>>());
     assert_eq!(problems.len(), MAX_REPORTED + 1);
     // Six separate triangles are open along 18 sides.
-    assert_eq!(problems.last(), Some(&StlProblem::More { count: 13 }));
+    assert_eq!(problems.last(), Some(&MeshProblem::More { count: 13 }));
 }
 
 #[test]
@@ -161,14 +163,14 @@ fn a_triangle_without_area_is_located_not_dropped() {
     triangles.push([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
     let problems = complaints(&triangles);
     let place = Place { triangle: 12, start: Start::Line(2 + 12 * 7) };
-    assert!(problems.contains(&StlProblem::ZeroArea { place, at: DVec3::ZERO }), "{problems:?}");
+    assert!(problems.contains(&MeshProblem::ZeroArea { place, at: DVec3::ZERO }), "{problems:?}");
 }
 
 #[test]
 fn solids_that_touch_along_an_edge_are_non_manifold() {
     let shifted = cube().into_iter().map(|t| t.map(|[x, y, z]| [x + 1.0, y + 1.0, z]));
     let problems = complaints(&cube().into_iter().chain(shifted).collect::<Vec<_>>());
-    assert!(matches!(problems[..], [StlProblem::NonManifold { count: 4, .. }]), "{problems:?}");
+    assert!(matches!(problems[..], [MeshProblem::NonManifold { count: 4, .. }]), "{problems:?}");
 }
 
 #[test]
@@ -177,19 +179,19 @@ fn inside_out_and_mixed_windings_are_told_apart() {
     triangles[7].swap(0, 1);
     let problems = complaints(&triangles);
     assert_eq!(problems.len(), 3);
-    assert!(problems.iter().all(|p| matches!(p, StlProblem::Winding { .. })), "{problems:?}");
+    assert!(problems.iter().all(|p| matches!(p, MeshProblem::Winding { .. })), "{problems:?}");
     for t in &mut triangles {
         t.swap(0, 1);
     }
     triangles[7].swap(0, 1);
-    assert_eq!(complaints(&triangles), [StlProblem::InsideOut]);
+    assert_eq!(complaints(&triangles), [MeshProblem::InsideOut]);
 }
 
 #[test]
 fn shells_that_cross_are_located() {
     let shifted = cube().into_iter().map(|t| t.map(|[x, y, z]| [x + 0.3, y + 0.4, z + 0.5]));
     let problems = complaints(&cube().into_iter().chain(shifted).collect::<Vec<_>>());
-    assert!(problems.iter().any(|p| matches!(p, StlProblem::SelfIntersection { .. })), "{problems:?}");
+    assert!(problems.iter().any(|p| matches!(p, MeshProblem::SelfIntersection { .. })), "{problems:?}");
 }
 
 #[test]
@@ -197,16 +199,10 @@ fn a_wrong_unit_is_suspected_from_the_size() {
     let file = text(&cube());
     for (scale, width) in [(50.0, 50.0), (0.001, 0.001)] {
         let problems = from_bytes(file.as_bytes(), file.len() as u64, scale).unwrap_err();
-        assert_eq!(problems, [StlProblem::Unit { width }]);
+        assert_eq!(problems, [MeshProblem::Unit { width }]);
     }
     let problems = from_bytes(file.as_bytes(), file.len() as u64, f64::NAN).unwrap_err();
-    assert!(matches!(problems[..], [StlProblem::Scale { .. }]));
-}
-
-#[test]
-fn a_missing_file_is_no_panic() {
-    let problems = read(Path::new("no/such/file.stl"), 1.0).unwrap_err();
-    assert!(matches!(problems[..], [StlProblem::Io { .. }]));
+    assert!(matches!(problems[..], [MeshProblem::Scale { .. }]));
 }
 
 proptest! {

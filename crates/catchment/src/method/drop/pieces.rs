@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn every_family_is_made_of_convex_pieces() {
         for family in Family::ALL {
-            let spec = FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) };
+            let spec = FamilySpec::new(family).with_chord_error(0.05);
             let alignment = Alignment::default_for(Some(family));
             let connector = ConnectorSpec::Family(spec);
             let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };

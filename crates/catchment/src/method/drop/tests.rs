@@ -9,7 +9,7 @@ use crate::pose::{Dof, DofSet};
 /// A family with its defaults and the COR of the example designs, free in `free`.
 pub(super) fn pair(family: Family, free: DofSet) -> Pair {
     let alignment = Alignment { free, center_of_rotation: 0.5, ..Alignment::default_for(Some(family)) };
-    let spec = FamilySpec { aspect_ratio: 0.5, chord_error: 0.02, ..FamilySpec::new(family) };
+    let spec = FamilySpec::new(family).with_aspect_ratio(0.5).with_chord_error(0.02);
     let design = Design {
         name: String::new(),
         connector: ConnectorSpec::Family(spec),

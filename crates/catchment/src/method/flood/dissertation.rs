@@ -140,11 +140,9 @@ impl Settings {
     }
 
     fn pair(&self) -> Result<Pair, DissertationError> {
-        let spec = FamilySpec {
-            aspect_ratio: self.aspect_ratio,
-            base_thickness: self.base_thickness(),
-            ..FamilySpec::new(self.family)
-        };
+        let spec = FamilySpec::new(self.family)
+            .with_aspect_ratio(self.aspect_ratio)
+            .with_base_thickness(self.base_thickness());
         let (free, mount) = match self.errors {
             Errors::XTheta => ([Dof::X, Dof::Pitch].into_iter().collect(), Mount::Y),
             Errors::XYPitch | Errors::XPitchRoll => (DofSet::ALL, Mount::X),

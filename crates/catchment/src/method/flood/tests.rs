@@ -194,7 +194,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, symmetry: u32) -> Pair {
     let mount = if family.is_planar() { Mount::Y } else { Mount::X };
     let free = if family.is_planar() { [Dof::X, Dof::Pitch].into_iter().collect() } else { DofSet::ALL };
     let alignment = Alignment { center_of_rotation: cor, symmetry, ..Alignment::new(free, mount) };
-    let spec = FamilySpec { aspect_ratio, ..FamilySpec::new(family) };
+    let spec = FamilySpec::new(family).with_aspect_ratio(aspect_ratio);
     let connector = ConnectorSpec::Family(spec);
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)

@@ -113,7 +113,7 @@ impl Settings {
     /// See [`Unfit`].
     pub fn of(design: &Design) -> Result<Self, Unfit> {
         let ConnectorSpec::Family(spec) = &design.connector else { return Err(Unfit::Face) };
-        let face = match spec.family {
+        let face = match spec.family() {
             Family::VFace => Face::VFace,
             Family::SFace => Face::SFace,
             Family::XFace => Face::XFace,
@@ -123,7 +123,7 @@ impl Settings {
         if alignment.free != DofSet::EMPTY.with(Dof::X).with(Dof::Pitch) {
             return Err(Unfit::Free);
         }
-        if spec.base_thickness.is_some_and(|base| base > 0.0) {
+        if spec.base_thickness().is_some_and(|base| base > 0.0) {
             return Err(Unfit::Base);
         }
         if alignment.center_of_rotation > 0.0 {
@@ -133,7 +133,7 @@ impl Settings {
             return Err(Unfit::Mount);
         }
         let rotation_point = -2.0 * alignment.center_of_rotation;
-        Ok(Self { face, aspect_ratio: spec.aspect_ratio, rotation_point })
+        Ok(Self { face, aspect_ratio: spec.aspect_ratio(), rotation_point })
     }
 
     /// Whether the start (x₀ in D, θ₀ in radians) slides home.
@@ -282,7 +282,7 @@ mod tests {
 
     fn design(family: Family, cor: f64) -> Design {
         let alignment = Alignment { center_of_rotation: cor, ..Alignment::default_for(Some(family)) };
-        let connector = ConnectorSpec::Family(FamilySpec { aspect_ratio: 0.5, ..FamilySpec::new(family) });
+        let connector = ConnectorSpec::Family(FamilySpec::new(family).with_aspect_ratio(0.5));
         Design { name: String::new(), connector, width: 1.0, unit: None, alignment }
     }
 

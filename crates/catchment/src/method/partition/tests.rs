@@ -16,7 +16,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, rotation_length: f64, free:
     if !free.is_empty() {
         alignment.free = free.iter().copied().collect::<DofSet>();
     }
-    let connector = ConnectorSpec::Family(FamilySpec { aspect_ratio, ..FamilySpec::new(family) });
+    let connector = ConnectorSpec::Family(FamilySpec::new(family).with_aspect_ratio(aspect_ratio));
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }

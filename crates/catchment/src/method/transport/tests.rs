@@ -11,7 +11,7 @@ fn pair(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: Option<&[Do
     }
     alignment.center_of_rotation = cor;
     alignment.rotation_length = rho;
-    let connector = ConnectorSpec::Family(FamilySpec { aspect_ratio, ..FamilySpec::new(family) });
+    let connector = ConnectorSpec::Family(FamilySpec::new(family).with_aspect_ratio(aspect_ratio));
     let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }

@@ -1,7 +1,7 @@
 //! What a circle would accept, bounded through the polygon that stands for it.
 
 use super::Zraa;
-use crate::design::{ConnectorSpec, Design, Family};
+use crate::design::{ConnectorSpec, Design, FamilySpec};
 
 /// Radius of a cone's face, in D.
 const RADIUS: f64 = 0.5;
@@ -16,11 +16,8 @@ const RADIUS: f64 = 0.5;
 /// The accepted set of a cone over a polygon is that polygon, so its measure bounds the circle's from below, and
 /// enlarged (squared for an area) from above.
 pub fn circle_bounds(design: &Design, zraa: &Zraa) -> Option<[f64; 2]> {
-    let ConnectorSpec::Family(spec) = &design.connector else { return None };
-    if spec.family != Family::Cone {
-        return None;
-    }
-    let enlarged = 1.0 / (1.0 - spec.chord_error / RADIUS);
+    let ConnectorSpec::Family(FamilySpec::Cone(cone)) = &design.connector else { return None };
+    let enlarged = 1.0 / (1.0 - cone.chord_error / RADIUS);
     Some(match zraa {
         Zraa::Interval { from, to, .. } => [to - from, (to - from) * enlarged],
         Zraa::Region { area, .. } => [*area, area * enlarged * enlarged],
@@ -32,7 +29,7 @@ mod tests {
     use super::*;
     use crate::connector::Connector;
     use crate::contact::Pair;
-    use crate::design::{Alignment, FamilySpec};
+    use crate::design::{Alignment, Family};
     use crate::exec::Exec;
     use crate::method::zraa::{Settings, run};
     use crate::pose::{Dof, DofSet, Mount};
@@ -43,7 +40,7 @@ mod tests {
         for chord_error in [0.02, 0.001] {
             let both = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
             for (free, circle) in [(both, FRAC_PI_4), (both.without(Dof::Y), 1.0)] {
-                let spec = FamilySpec { chord_error, ..FamilySpec::new(Family::Cone) };
+                let spec = FamilySpec::new(Family::Cone).with_chord_error(chord_error);
                 let connector = ConnectorSpec::Family(spec);
                 let alignment = Alignment::new(free, Mount::X);
                 let design = Design { name: "cone".into(), connector, width: 1.0, unit: None, alignment };

@@ -2,13 +2,14 @@
 
 use super::*;
 use crate::connector::{Connector, Half, stl};
+use crate::design::family::{PinHole, XFace3dLocking};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
 use crate::pose::{CorPose, DofSet, Mount};
 use glam::DMat3;
 use proptest::prelude::*;
 
 fn pair(spec: FamilySpec) -> Pair {
-    let planar = spec.family.is_planar();
+    let planar = spec.family().is_planar();
     pair_of(ConnectorSpec::Family(spec), planar)
 }
 
@@ -39,7 +40,9 @@ fn planar_faces_reach_nilssons_bounds() {
     for (family, bound) in [(Family::SFace, 1.0 / 3.0), (Family::VFace, 0.5), (Family::XFace, 1.0)] {
         for aspect_ratio in [0.25, 1.0] {
             for base_thickness in [None, Some(0.5)] {
-                let spec = FamilySpec { aspect_ratio, base_thickness, ..FamilySpec::new(family) };
+                let spec = FamilySpec::new(family)
+                    .with_aspect_ratio(aspect_ratio)
+                    .with_base_thickness(base_thickness);
                 let Zraa::Interval { axis, from, to } = run_family(spec) else { panic!("{family:?}") };
                 assert_eq!(axis, Dof::X);
                 assert!((from + bound).abs() < 1e-9 && (to - bound).abs() < 1e-9, "{family:?}: {from} {to}");
@@ -51,7 +54,7 @@ fn planar_faces_reach_nilssons_bounds() {
 #[test]
 fn the_saddle_accepts_the_diamond() {
     for aspect_ratio in [0.3, 0.577, 1.2] {
-        let area = area(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::XFace3d) });
+        let area = area(FamilySpec::new(Family::XFace3d).with_aspect_ratio(aspect_ratio));
         assert!((area - 2.0).abs() < 1e-9, "{area}");
     }
 }
@@ -59,7 +62,7 @@ fn the_saddle_accepts_the_diamond() {
 #[test]
 fn the_pyramid_accepts_its_socket() {
     for aspect_ratio in [0.3, 1.0] {
-        let area = area(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::Pyramid) });
+        let area = area(FamilySpec::new(Family::Pyramid).with_aspect_ratio(aspect_ratio));
         assert!((area - 1.0).abs() < 1e-9, "{area}");
     }
 }
@@ -67,7 +70,7 @@ fn the_pyramid_accepts_its_socket() {
 #[test]
 fn the_cone_accepts_its_polygon() {
     for chord_error in [0.02, 0.001] {
-        let area = area(FamilySpec { chord_error, ..FamilySpec::new(Family::Cone) });
+        let area = area(FamilySpec::new(Family::Cone).with_chord_error(chord_error));
         // The polygon lies inside the circle, within the chord error: it lacks less than its border's length times that.
         let lacking = std::f64::consts::FRAC_PI_4 - area;
         assert!(lacking > 0.0 && lacking < std::f64::consts::PI * chord_error, "{chord_error}: {area}");
@@ -77,10 +80,10 @@ fn the_cone_accepts_its_polygon() {
 /// Radius of the circle that the chamfer of the single hole accepts: the tip must land inside its mouth.
 #[test]
 fn a_peg_accepts_the_mouth_of_its_hole() {
-    let spec = FamilySpec { pins: 1, circle_radius: 0.0, ..FamilySpec::new(Family::PinHole) };
+    let spec = PinHole { pins: 1, circle_radius: 0.0, ..PinHole::DEFAULT };
     let mouth = spec.pin_radius + spec.clearance + spec.chamfer;
     let circle = std::f64::consts::PI * mouth * mouth;
-    let lacking = circle - area(spec.clone());
+    let lacking = circle - area(spec.into());
     assert!(lacking > 0.0 && lacking < 2.0 * std::f64::consts::PI * mouth * spec.chord_error, "{lacking}");
 }
 
@@ -99,7 +102,7 @@ fn height(sheets: &[sheet::Sheet], at: DVec2) -> f64 {
 #[test]
 fn sheets_have_the_brute_height() {
     for family in [Family::Pyramid, Family::Cone, Family::XFace3d, Family::XFace3dLocking, Family::PinHole] {
-        let pair = pair(FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) });
+        let pair = pair(FamilySpec::new(family).with_chord_error(0.05));
         let sheets = sheet::sheets(&pair.fixed, &pair.moving);
         for k in 0..60u32 {
             let lateral = offset(k);
@@ -146,16 +149,16 @@ fn contains(zraa: &Zraa, at: DVec2) -> bool {
 /// The region agrees with small steps downhill, but for offsets near its border.
 #[test]
 fn regions_agree_with_small_steps_downhill() {
-    let coarse = |family| FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) };
+    let coarse = |family| FamilySpec::new(family).with_chord_error(0.05);
     let specs = [
         coarse(Family::Pyramid),
         coarse(Family::XFace3d),
-        FamilySpec { draft_angle: 0.3, ..coarse(Family::XFace3dLocking) },
-        FamilySpec { clearance: 0.05, ..coarse(Family::XFace3dLocking) },
-        FamilySpec { base_thickness: Some(0.1), ..coarse(Family::Cone) },
+        XFace3dLocking { draft_angle: 0.3, ..XFace3dLocking::DEFAULT }.into(),
+        XFace3dLocking { clearance: 0.05, ..XFace3dLocking::DEFAULT }.into(),
+        coarse(Family::Cone).with_base_thickness(Some(0.1)),
     ];
     for spec in specs {
-        let pair = pair(spec.clone());
+        let pair = pair(spec);
         let zraa = run(&pair, &Settings::default(), &Exec::new()).unwrap();
         let sheets = sheet::sheets(&pair.fixed, &pair.moving);
         let mut wrong = 0;
@@ -211,7 +214,7 @@ proptest! {
 
     #[test]
     fn a_shifted_seam_changes_nothing(seam in 1e-13..1e-9f64, aspect_ratio in 0.2..1.5f64) {
-        let pair = pair(FamilySpec { aspect_ratio, ..FamilySpec::new(Family::XFace3d) });
+        let pair = pair(FamilySpec::new(Family::XFace3d).with_aspect_ratio(aspect_ratio));
         let Zraa::Region { area, .. } = run(&pair, &Settings { seam }, &Exec::new()).unwrap() else { panic!() };
         prop_assert!((area - 2.0).abs() < 1e-9);
     }
@@ -226,14 +229,14 @@ fn through_stl(pair: &Pair, format: stl::Format) -> Pair {
     };
     let face = glam::DVec3::new(0.0, 0.0, pair.alignment.center_of_rotation);
     let moving = pair.moving.mapped(|p| p - face);
-    let connector = Connector { fixed: read(&pair.fixed), moving: read(&moving) };
+    let connector = Connector::from_halves(read(&pair.fixed), read(&moving));
     Pair::new(&connector, &pair.alignment)
 }
 
 #[test]
 fn meshes_give_the_familys_region() {
     for (family, exact) in [(Family::Pyramid, 1.0), (Family::XFace3d, 2.0)] {
-        let pair = pair(FamilySpec { aspect_ratio: 0.7, ..FamilySpec::new(family) });
+        let pair = pair(FamilySpec::new(family).with_aspect_ratio(0.7));
         for (format, tolerance) in [(stl::Format::Ascii, 1e-9), (stl::Format::Binary, 1e-6)] {
             let mesh = through_stl(&pair, format);
             let Zraa::Region { area, .. } = run(&mesh, &Settings::default(), &Exec::new()).unwrap() else {
@@ -247,23 +250,23 @@ fn meshes_give_the_familys_region() {
 #[test]
 fn locking_lips_and_pins_have_closed_forms_too() {
     let c = 0.005;
-    let locking = FamilySpec { clearance: c, ..FamilySpec::new(Family::XFace3dLocking) };
+    let locking = XFace3dLocking { clearance: c, ..XFace3dLocking::DEFAULT };
     // The lip takes corners from the diamond: 2c² with play c, 8w² with faces of half width w.
     let w = locking.lip_height / 2.0 / (1.0 / 0.1f64.tan() - locking.aspect_ratio);
-    assert!((area(locking.clone()) - (2.0 - 2.0 * c * c)).abs() < 1e-9);
-    assert!((area(FamilySpec { draft_angle: 0.1, ..locking }) - (2.0 - 8.0 * w * w)).abs() < 1e-9);
-    let pins = FamilySpec { chord_error: 0.01, ..FamilySpec::new(Family::PinHole) };
+    assert!((area(locking.into()) - (2.0 - 2.0 * c * c)).abs() < 1e-9);
+    assert!((area(XFace3dLocking { draft_angle: 0.1, ..locking }.into()) - (2.0 - 8.0 * w * w)).abs() < 1e-9);
+    let pins = PinHole { chord_error: 0.01, ..PinHole::DEFAULT };
     for spec in [
-        pins.clone(),
-        FamilySpec { pins: 3, chamfer: 0.06, ..pins.clone() },
-        FamilySpec { hermaphroditic: true, chamfer: 0.05, ..pins },
+        pins,
+        PinHole { pins: 3, chamfer: 0.06, ..pins },
+        PinHole { hermaphroditic: true, chamfer: 0.05, ..pins },
     ] {
         // The polygon of n corners that stands for the mouth of a hole; neighbours' holes hold no mated pose.
         let mouth = spec.pin_radius + spec.clearance + spec.chamfer;
         let half_angle = (1.0 - spec.chord_error / mouth).acos();
         let n = 4.0 * (std::f64::consts::PI / half_angle / 4.0).ceil();
         let exact = n / 2.0 * (2.0 * std::f64::consts::PI / n).sin() * mouth * mouth;
-        let area = area(spec.clone());
+        let area = area(spec.into());
         assert!((area - exact).abs() < 1e-9, "{spec:?}: {area} {exact}");
     }
 }

@@ -128,7 +128,7 @@ pub(crate) mod testing {
         let left = prism(&[[-d, -h], [0.0, -h], [-d, h]], -0.25, 0.25);
         let right = prism(&[[d, -h], [d, h], [0.0, -h]], -0.25, 0.25);
         let tip = prism(&[[-d, h], [0.0, -h], [d, h]], -0.25, 0.25);
-        Connector { fixed: Half { surfaces: vec![left, right] }, moving: Half { surfaces: vec![tip] } }
+        Connector::from_halves(Half { surfaces: vec![left, right] }, Half { surfaces: vec![tip] })
     }
 
     /// Two crossed ramps in two layers, as the fixed half and a copy of it turned over.
@@ -138,7 +138,7 @@ pub(crate) mod testing {
         let falling = prism(&[[-0.5, -h], [0.5, -h], [-0.5, h]], 0.0, 0.25);
         let fixed = Half { surfaces: vec![rising, falling] };
         let moving = fixed.mapped(|p| crate::pose::Mount::Y.apply(p));
-        Connector { fixed, moving }
+        Connector::from_halves(fixed, moving)
     }
 
     /// A square pyramid over its socket, which is four wedges on a base.
@@ -157,7 +157,7 @@ pub(crate) mod testing {
         let mut polygons = vec![vec![0, 1, 2, 3]];
         polygons.extend((0..4u32).map(|k| vec![(k + 1) % 4, k, 4]));
         let plug = Surface::from_polygons(vertices, &polygons).unwrap();
-        Connector { fixed: Half { surfaces: vec![socket] }, moving: Half { surfaces: vec![plug] } }
+        Connector::from_halves(Half { surfaces: vec![socket] }, Half { surfaces: vec![plug] })
     }
 
     /// Checks that the picture is well formed and not blank; writes it to `$CATCHMENT_PICTURES` for eyes.

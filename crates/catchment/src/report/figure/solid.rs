@@ -319,7 +319,7 @@ mod tests {
     #[test]
     fn nothing_cannot_be_drawn() {
         let nothing =
-            Connector { fixed: crate::connector::Half::default(), moving: crate::connector::Half::default() };
+            Connector::from_halves(crate::connector::Half::default(), crate::connector::Half::default());
         let design = design(DofSet::ALL);
         let placement = Placement::mated(&design, 0.0);
         assert!(matches!(solids(&design, &nothing, &placement), Err(FigureError::Empty { .. })));

@@ -28,7 +28,7 @@ const fn case(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: &'sta
 }
 
 /// tan 30°, the dissertation's choice for the 3-D X-Face.
-const SADDLE: f64 = FamilySpec::new(Family::XFace3d).aspect_ratio;
+const SADDLE: f64 = FamilySpec::new(Family::XFace3d).aspect_ratio();
 
 /// Planar and spatial, convex and not, two to five errors, centres of rotation from far behind the face to far before
 /// it; the two with thin ravines and shallow jams (V-Face) are there because they are hard.
@@ -66,7 +66,7 @@ impl Case {
 
     /// The design.
     pub fn design(&self) -> Design {
-        let spec = FamilySpec { aspect_ratio: self.aspect_ratio, ..FamilySpec::new(self.family) };
+        let spec = FamilySpec::new(self.family).with_aspect_ratio(self.aspect_ratio);
         let alignment = Alignment {
             free: self.free.iter().copied().collect(),
             center_of_rotation: self.center_of_rotation,

@@ -228,7 +228,7 @@ pub(super) fn design(
 ) -> Design {
     /// Half-range of x and y, in D.
     const LATERAL: f64 = 2.0;
-    let spec = FamilySpec { aspect_ratio, base_thickness, ..FamilySpec::new(family) };
+    let spec = FamilySpec::new(family).with_aspect_ratio(aspect_ratio).with_base_thickness(base_thickness);
     let mut alignment = Alignment {
         free,
         center_of_rotation: cor,
@@ -299,7 +299,7 @@ fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, ReproduceError>
         10 => {
             // The cone has width 1; the one that circumscribes a square of width 1 is √2 as wide.
             let free = [Dof::X, Dof::Y].into_iter().collect();
-            let pair = pair(Family::Cone, FamilySpec::new(Family::Cone).aspect_ratio, None, 0.0, free)?;
+            let pair = pair(Family::Cone, FamilySpec::new(Family::Cone).aspect_ratio(), None, 0.0, free)?;
             match zraa::run(&pair, &zraa::Settings::default(), exec).map_err(failed)? {
                 Zraa::Region { area, .. } => Some(2.0 * area),
                 Zraa::Interval { .. } => None,
@@ -339,7 +339,7 @@ fn dropped(_: usize, exec: &Exec) -> Result<Option<[f64; 2]>, ReproduceError> {
 fn slice(row: usize, decide: Decide, exec: &Exec) -> Result<[f64; 2], ReproduceError> {
     const SECOND: [Dof; 4] = [Dof::Y, Dof::Roll, Dof::Pitch, Dof::Yaw];
     let family = Family::XFace3d;
-    let mut design = design(family, FamilySpec::new(family).aspect_ratio, None, 0.0, DofSet::ALL);
+    let mut design = design(family, FamilySpec::new(family).aspect_ratio(), None, 0.0, DofSet::ALL);
     design.alignment.half_ranges = Alignment::DEFAULT_HALF_RANGES;
     let connector =
         Connector::build(&design).map_err(|_| ReproduceError::Exact { reason: family.name().to_owned() })?;

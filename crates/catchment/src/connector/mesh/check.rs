@@ -1,7 +1,6 @@
 //! From loose triangles to a closed surface, or to every reason why they are none.
 
-use super::parse::Triangle;
-use super::{PLAUSIBLE_WIDTH, Reported, StlProblem, WELD};
+use super::{MeshProblem, PLAUSIBLE_WIDTH, Reported, Triangle, WELD};
 use crate::connector::Surface;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, HashMap};
@@ -11,7 +10,7 @@ use std::collections::{BTreeMap, HashMap};
 const NO_AREA: f64 = 1e-7;
 
 /// Welds, checks and scales.
-pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec<StlProblem>> {
+pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec<MeshProblem>> {
     let size =
         triangles.iter().flat_map(|t| t.corners).fold(0.0, |size: f64, c| size.max(c.abs().max_element()));
     let tolerance = WELD * size;
@@ -24,7 +23,7 @@ pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec
     reported.extend(wrong_windings(triangles, &sides));
     if reported.problems.is_empty() {
         if volume(&vertices, &indexed) <= 0.0 {
-            reported.extend([StlProblem::InsideOut]);
+            reported.extend([MeshProblem::InsideOut]);
         }
         reported.extend(crossings(triangles, &vertices, &indexed, tolerance));
     }
@@ -32,13 +31,13 @@ pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec
         vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
     let width = (hi - lo).truncate().max_element() * scale;
     if !PLAUSIBLE_WIDTH.contains(&width) {
-        reported.extend([StlProblem::Unit { width }]);
+        reported.extend([MeshProblem::Unit { width }]);
     }
     reported.done()?;
     let polygons: Vec<Vec<u32>> = indexed.iter().map(|t| t.to_vec()).collect();
     // Everything that the surface refuses has been looked for above; what is left can only be rounding.
     Surface::from_polygons(vertices.iter().map(|v| *v * scale).collect(), &polygons)
-        .map_err(|_| vec![StlProblem::InsideOut])
+        .map_err(|_| vec![MeshProblem::InsideOut])
 }
 
 /// Joins corners within `tolerance` of each other. The first corner met gives the coordinates.
@@ -69,7 +68,7 @@ fn corners(vertices: &[DVec3], triangle: [u32; 3]) -> [DVec3; 3] {
     triangle.map(|k| vertices[k as usize])
 }
 
-fn zero_areas(triangles: &[Triangle], vertices: &[DVec3], indexed: &[[u32; 3]]) -> Vec<StlProblem> {
+fn zero_areas(triangles: &[Triangle], vertices: &[DVec3], indexed: &[[u32; 3]]) -> Vec<MeshProblem> {
     let flat = |t: [u32; 3]| {
         let [a, b, c] = corners(vertices, t);
         let longest = [b - a, c - b, a - c].into_iter().map(DVec3::length_squared).fold(0.0, f64::max);
@@ -79,7 +78,7 @@ fn zero_areas(triangles: &[Triangle], vertices: &[DVec3], indexed: &[[u32; 3]]) 
         .iter()
         .zip(indexed)
         .filter(|&(_, &t)| flat(t))
-        .map(|(t, _)| StlProblem::ZeroArea { place: t.place, at: t.corners[0] })
+        .map(|(t, _)| MeshProblem::ZeroArea { place: t.place, at: t.corners[0] })
         .collect()
 }
 
@@ -99,11 +98,11 @@ fn sides(indexed: &[[u32; 3]]) -> Sides {
     sides
 }
 
-fn open_edges(triangles: &[Triangle], vertices: &[DVec3], sides: &Sides) -> Vec<StlProblem> {
+fn open_edges(triangles: &[Triangle], vertices: &[DVec3], sides: &Sides) -> Vec<MeshProblem> {
     sides
         .iter()
         .filter(|(_, owners)| owners.len() == 1)
-        .map(|([a, b], owners)| StlProblem::Open {
+        .map(|([a, b], owners)| MeshProblem::Open {
             place: triangles[owners[0].0].place,
             from: vertices[*a as usize],
             to: vertices[*b as usize],
@@ -111,11 +110,11 @@ fn open_edges(triangles: &[Triangle], vertices: &[DVec3], sides: &Sides) -> Vec<
         .collect()
 }
 
-fn crowded_edges(vertices: &[DVec3], sides: &Sides) -> Vec<StlProblem> {
+fn crowded_edges(vertices: &[DVec3], sides: &Sides) -> Vec<MeshProblem> {
     sides
         .iter()
         .filter(|(_, owners)| owners.len() > 2)
-        .map(|([a, b], owners)| StlProblem::NonManifold {
+        .map(|([a, b], owners)| MeshProblem::NonManifold {
             count: owners.len(),
             from: vertices[*a as usize],
             to: vertices[*b as usize],
@@ -123,12 +122,12 @@ fn crowded_edges(vertices: &[DVec3], sides: &Sides) -> Vec<StlProblem> {
         .collect()
 }
 
-fn wrong_windings(triangles: &[Triangle], sides: &Sides) -> Vec<StlProblem> {
+fn wrong_windings(triangles: &[Triangle], sides: &Sides) -> Vec<MeshProblem> {
     sides
         .values()
         .filter_map(|owners| match owners[..] {
             [(first, up), (second, also_up)] if up == also_up => {
-                Some(StlProblem::Winding { first: triangles[first].place, second: triangles[second].place })
+                Some(MeshProblem::Winding { first: triangles[first].place, second: triangles[second].place })
             }
             _ => None,
         })
@@ -153,7 +152,7 @@ fn crossings(
     vertices: &[DVec3],
     indexed: &[[u32; 3]],
     tolerance: f64,
-) -> Vec<StlProblem> {
+) -> Vec<MeshProblem> {
     let boxes: Vec<(DVec3, DVec3)> = indexed
         .iter()
         .map(|&t| {
@@ -176,7 +175,7 @@ fn crossings(
             if let Some(at) = cross(vertices, indexed[i], indexed[j], tolerance) {
                 let (first, second) = (i.min(j), i.max(j));
                 let (first, second) = (triangles[first].place, triangles[second].place);
-                found.push(StlProblem::SelfIntersection { first, second, at });
+                found.push(MeshProblem::SelfIntersection { first, second, at });
             }
         }
     }

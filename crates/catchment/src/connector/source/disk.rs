@@ -1,0 +1,16 @@
+//! Mesh files on disk: the one place of the room that touches a file system.
+
+use super::FileBytes;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The first `most` bytes of a file.
+pub(in crate::connector) fn read(path: &Path, most: u64) -> io::Result<FileBytes> {
+    let mut file = File::open(path)?;
+    let size = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    (&mut file).take(most).read_to_end(&mut bytes)?;
+    let size = size.max(bytes.len() as u64);
+    Ok(FileBytes { bytes, size })
+}

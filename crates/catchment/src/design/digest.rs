@@ -1,0 +1,181 @@
+//! A digest of everything in a design that changes an answer.
+//!
+//! ```text
+//! tag ‖ connector (family and parameters, or halves and face height) ‖ alignment  ──SHA-256──▶ 32 bytes
+//! ```
+//!
+//! Of a mesh counts what it held and its scale. Name, unit, width and paths do not count: results are in D. Numbers go in as
+//! little-endian doubles with −0 as 0, counts as 64 bits, texts with their length, so that no two designs share
+//! their bytes.
+
+use super::family::Value;
+use super::{Alignment, ConnectorSpec, Design, HalfSpec};
+use crate::pose::{Dof, DofSet, Mount};
+use sha2::{Digest, Sha256};
+
+/// Changes with every change of what follows it.
+const TAG: &str = "catchment alignment problem 1";
+
+impl Design {
+    /// SHA-256 of everything in this design that changes an answer; `None` while it is unknown what a mesh held, see
+    /// [`Design::with_contents`].
+    pub fn digest(&self) -> Option<[u8; 32]> {
+        let mut hash = Hash(Sha256::new());
+        hash.text(TAG);
+        match &self.connector {
+            ConnectorSpec::Family(spec) => {
+                hash.text("family");
+                hash.text(spec.family().name());
+                for (key, value) in spec.parameters() {
+                    hash.text(key.name);
+                    match value {
+                        None => hash.text("default"),
+                        Some(Value::Number(number)) => hash.number(number),
+                        Some(Value::Whole(count)) => hash.count(u64::from(count)),
+                        Some(Value::Flag(flag)) => hash.count(u64::from(flag)),
+                    }
+                }
+            }
+            ConnectorSpec::Own(own) => {
+                hash.text("own");
+                hash.number(own.face_height);
+                hash.half(&own.fixed)?;
+                hash.half(&own.moving)?;
+            }
+        }
+        hash.alignment(&self.alignment);
+        Some(hash.0.finalize().into())
+    }
+}
+
+struct Hash(Sha256);
+
+impl Hash {
+    fn number(&mut self, number: f64) {
+        self.0.update((number + 0.0).to_le_bytes());
+    }
+
+    fn count(&mut self, count: u64) {
+        self.0.update(count.to_le_bytes());
+    }
+
+    fn text(&mut self, text: &str) {
+        self.count(text.len() as u64);
+        self.0.update(text.as_bytes());
+    }
+
+    fn half(&mut self, half: &HalfSpec) -> Option<()> {
+        let (scale, content) = match half {
+            HalfSpec::Pieces(pieces) => {
+                self.text("pieces");
+                self.count(pieces.len() as u64);
+                for piece in pieces {
+                    self.count(piece.len() as u64);
+                    piece.iter().flatten().for_each(|number| self.number(*number));
+                }
+                return Some(());
+            }
+            HalfSpec::Mesh { scale, content, .. } => (*scale, content.as_ref()?),
+            HalfSpec::Memory { content } => (1.0, content),
+        };
+        self.text(if matches!(half, HalfSpec::Memory { .. }) { "memory" } else { "mesh" });
+        self.number(scale);
+        self.text(&content.sha256);
+        Some(())
+    }
+
+    fn dofs(&mut self, set: DofSet) {
+        for dof in Dof::ALL {
+            self.count(u64::from(set.contains(dof)));
+        }
+    }
+
+    fn alignment(&mut self, alignment: &Alignment) {
+        let Alignment { free, dont_care, center_of_rotation, rotation_length, mount, symmetry, half_ranges } =
+            alignment;
+        self.text("alignment");
+        self.dofs(*free);
+        self.dofs(*dont_care);
+        self.number(*center_of_rotation);
+        self.number(*rotation_length);
+        self.text(match mount {
+            Mount::X => "x",
+            Mount::Y => "y",
+        });
+        self.count(u64::from(*symmetry));
+        half_ranges.iter().for_each(|range| self.number(*range));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::family::Cone;
+    use crate::design::{Family, FamilySpec, LengthUnit, MeshContent, OwnSpec};
+
+    fn family(family: Family) -> Design {
+        let spec = FamilySpec::new(family);
+        let alignment = Alignment::default_for(Some(family));
+        Design { name: "a".into(), connector: ConnectorSpec::Family(spec), width: 1.0, unit: None, alignment }
+    }
+
+    #[test]
+    fn whatever_changes_an_answer_changes_the_digest() {
+        let base = family(Family::Cone);
+        let mut others: Vec<Design> = Family::ALL.into_iter().map(family).collect();
+        let mut other = |change: &dyn Fn(&mut Design)| {
+            let mut design = base.clone();
+            change(&mut design);
+            others.push(design);
+        };
+        other(&|d| d.connector = ConnectorSpec::Family(Cone { chord_error: 0.002, ..Cone::DEFAULT }.into()));
+        other(&|d| {
+            d.connector = ConnectorSpec::Family(Cone { base_thickness: Some(0.25), ..Cone::DEFAULT }.into());
+        });
+        other(&|d| d.alignment.center_of_rotation = 0.1);
+        other(&|d| d.alignment.rotation_length = 0.6);
+        other(&|d| d.alignment.half_ranges[3] = 1.0);
+        other(&|d| d.alignment.mount = Mount::Y);
+        other(&|d| d.alignment.symmetry = 2);
+        other(&|d| d.alignment.free = DofSet::ALL);
+        other(&|d| d.alignment.dont_care = DofSet::EMPTY);
+        let mut digests: Vec<_> = others.iter().map(|design| design.digest().unwrap()).collect();
+        digests.sort_unstable();
+        digests.dedup();
+        assert_eq!(digests.len(), others.len());
+    }
+
+    #[test]
+    fn names_units_and_the_sign_of_zero_do_not() {
+        let base = family(Family::Pyramid);
+        let mut same = base.clone();
+        (same.name, same.width, same.unit) = ("b".into(), 50.0, Some(LengthUnit::Mm));
+        same.alignment.center_of_rotation = -0.0;
+        assert_eq!(base.digest(), same.digest());
+    }
+
+    #[test]
+    fn of_a_mesh_counts_what_it_held() {
+        let mesh = |path: &str, scale, held: Option<&[u8]>| {
+            let content = held.map(|bytes| MeshContent::of(bytes, 4));
+            let half = HalfSpec::Mesh { path: path.into(), scale, content };
+            let own = OwnSpec { face_height: 0.0, fixed: half.clone(), moving: half };
+            Design { connector: ConnectorSpec::Own(own), ..family(Family::Pyramid) }.digest()
+        };
+        assert_eq!(mesh("a", 1.0, None), None);
+        assert!(mesh("a", 1.0, Some(b"x")).is_some());
+        assert_eq!(mesh("a", 1.0, Some(b"x")), mesh("b", 1.0, Some(b"x")));
+        assert_ne!(mesh("a", 1.0, Some(b"x")), mesh("a", 1.0, Some(b"y")));
+        assert_ne!(mesh("a", 1.0, Some(b"x")), mesh("a", 2.0, Some(b"x")));
+    }
+
+    #[test]
+    fn a_mesh_without_its_content_reads_as_before() {
+        let old = r#"{"mesh":{"path":"a.stl","scale":0.5}}"#;
+        let half: HalfSpec = serde_json::from_str(old).unwrap();
+        assert_eq!(half, HalfSpec::Mesh { path: "a.stl".into(), scale: 0.5, content: None });
+        assert_eq!(serde_json::to_string(&half).unwrap(), old);
+        // SHA-256 of nothing, FIPS 180-4.
+        assert!(MeshContent::of(b"", 0).sha256.starts_with("e3b0c44298fc1c14"));
+    }
+}

@@ -1,0 +1,316 @@
+//! The built-in families and their parameters: one small struct per family, each in a file of its own.
+//!
+//! ```text
+//! families! { Cone: "cone", "circular cone in its socket", Freedom::Round; … }   one line per family
+//!      └──▶ Family::Cone            the name
+//!      └──▶ FamilySpec::Cone(Cone)  the name with its parameters
+//! ```
+//!
+//! Lengths in D, angles in radians. A family's parameters stand in [`keys`](super::keys); the reader, the templates and the
+//! digest walk over them by key, so that nothing else has to know a family. How a family looks is drawn in
+//! [`crate::connector`], which also judges whether its parameters make a solid: here they only have their types.
+
+mod cone;
+mod pin_hole;
+mod planar;
+mod pyramid;
+mod saddle;
+
+pub use cone::Cone;
+pub use pin_hole::PinHole;
+pub use planar::{SFace, VFace, XFace};
+pub use pyramid::Pyramid;
+pub use saddle::{XFace3d, XFace3dLocking};
+
+use super::keys::{self, Key};
+use serde::{Deserialize, Serialize};
+
+/// The key `family`, for a person: every name of the table below.
+pub(super) const NAMES: &str =
+    "Built-in family: v-face, s-face, x-face, pyramid, cone, x-face-3d, x-face-3d-locking or pin-hole.";
+
+/// Which errors matter to a family unless a design says otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Freedom {
+    /// A profile in the x–z plane, extruded along y: x and pitch.
+    Planar,
+    /// All five.
+    Spatial,
+    /// All but yaw, which does not matter.
+    Round,
+}
+
+/// The value of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// A length in D, an angle in radians, or a ratio.
+    Number(f64),
+    /// A count.
+    Whole(u32),
+    /// Yes or no.
+    Flag(bool),
+}
+
+/// A parameter's place in its struct.
+enum Field<'a> {
+    Number(&'a mut f64),
+    /// `None`: what the family has where the design says nothing.
+    Optional(&'a mut Option<f64>),
+    Whole(&'a mut u32),
+    Flag(&'a mut bool),
+}
+
+impl Field<'_> {
+    const fn value(&self) -> Option<Value> {
+        match self {
+            Self::Number(number) => Some(Value::Number(**number)),
+            Self::Optional(Some(number)) => Some(Value::Number(*number)),
+            Self::Optional(None) => None,
+            Self::Whole(count) => Some(Value::Whole(**count)),
+            Self::Flag(flag) => Some(Value::Flag(**flag)),
+        }
+    }
+
+    /// Whether the value is of the field's type, and was taken.
+    const fn set(self, value: Value) -> bool {
+        match (self, value) {
+            (Self::Number(field), Value::Number(number)) => *field = number,
+            (Self::Optional(field), Value::Number(number)) => *field = Some(number),
+            (Self::Whole(field), Value::Whole(count)) => *field = count,
+            (Self::Flag(field), Value::Flag(flag)) => *field = flag,
+            _ => return false,
+        }
+        true
+    }
+}
+
+macro_rules! field_of {
+    ($($type:ty => $variant:ident),*) => {
+        $(impl<'a> From<&'a mut $type> for Field<'a> {
+            fn from(field: &'a mut $type) -> Self {
+                Self::$variant(field)
+            }
+        })*
+    };
+}
+field_of!(f64 => Number, Option<f64> => Optional, u32 => Whole, bool => Flag);
+
+/// A family's struct: `field: type = default => KEY;` for each of its parameters, in the order of the documentation.
+macro_rules! parameters {
+    ($(#[$doc:meta])* $name:ident {
+        $($(#[$field_doc:meta])* $field:ident: $type:ty = $default:expr => $key:ident;)*
+    }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: $type,)*
+        }
+
+        impl $name {
+            /// The default parameters.
+            pub const DEFAULT: Self = Self { $($field: $default,)* };
+
+            /// Every parameter with its key.
+            pub(super) fn fields(&mut self) -> Vec<(&'static $crate::design::keys::Key, super::Field<'_>)> {
+                vec![$((&$crate::design::keys::$key, super::Field::from(&mut self.$field)),)*]
+            }
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self::DEFAULT
+            }
+        }
+    };
+}
+use parameters;
+
+/// The table of families: `Struct: "name in files", "summary", freedom;`
+macro_rules! families {
+    ($($name:ident: $text:literal, $summary:literal, $freedom:expr;)*) => {
+        /// The built-in families.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum Family {
+            $(#[doc = $summary] #[serde(rename = $text)] $name,)*
+        }
+
+        impl Family {
+            /// Every family, in the order of the documentation.
+            pub const ALL: [Self; [$($text),*].len()] = [$(Self::$name),*];
+
+            /// The name used in design files.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => $text,)* }
+            }
+
+            /// What it is, in a few words.
+            pub const fn summary(self) -> &'static str {
+                match self { $(Self::$name => $summary,)* }
+            }
+
+            /// Which errors matter to it unless a design says otherwise.
+            pub const fn freedom(self) -> Freedom {
+                match self { $(Self::$name => $freedom,)* }
+            }
+        }
+
+        /// A family and its parameters; all lengths in D, angles in radians.
+        ///
+        /// As JSON one object: the family's name under `family`, then its parameters. Other keys are ignored, so that
+        /// objects with the parameters of all families still read.
+        #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+        #[serde(tag = "family")]
+        pub enum FamilySpec {
+            $(#[doc = $summary] #[serde(rename = $text)] $name($name),)*
+        }
+
+        impl FamilySpec {
+            /// The family with its default parameters.
+            pub const fn new(family: Family) -> Self {
+                match family { $(Family::$name => Self::$name($name::DEFAULT),)* }
+            }
+
+            /// Which family.
+            pub const fn family(&self) -> Family {
+                match self { $(Self::$name(_) => Family::$name,)* }
+            }
+
+            /// H/D.
+            pub const fn aspect_ratio(&self) -> f64 {
+                match self { $(Self::$name(parameters) => parameters.aspect_ratio,)* }
+            }
+
+            /// Material behind the mating surface, in D, where the family's default is not wanted.
+            pub const fn base_thickness(&self) -> Option<f64> {
+                match self { $(Self::$name(parameters) => parameters.base_thickness,)* }
+            }
+
+            /// The same with another H/D.
+            #[must_use]
+            pub const fn with_aspect_ratio(mut self, aspect_ratio: f64) -> Self {
+                match &mut self { $(Self::$name(parameters) => parameters.aspect_ratio = aspect_ratio,)* }
+                self
+            }
+
+            /// The same with other material behind the mating surface, in D; `None` for the family's default.
+            #[must_use]
+            pub const fn with_base_thickness(mut self, base_thickness: Option<f64>) -> Self {
+                match &mut self { $(Self::$name(parameters) => parameters.base_thickness = base_thickness,)* }
+                self
+            }
+
+            fn fields(&mut self) -> Vec<(&'static Key, Field<'_>)> {
+                match self { $(Self::$name(parameters) => parameters.fields(),)* }
+            }
+        }
+
+        $(impl From<$name> for FamilySpec {
+            fn from(parameters: $name) -> Self {
+                Self::$name(parameters)
+            }
+        })*
+    };
+}
+
+families! {
+    VFace: "v-face", "V notch and tip, planar", Freedom::Planar;
+    SFace: "s-face", "sawtooth of three edges, planar, both halves alike", Freedom::Planar;
+    XFace: "x-face", "two crossed ramps in two layers, planar, both halves alike", Freedom::Planar;
+    Pyramid: "pyramid", "square pyramid in its socket", Freedom::Spatial;
+    Cone: "cone", "circular cone in its socket", Freedom::Round;
+    XFace3d: "x-face-3d", "saddle of four triangles, both halves alike", Freedom::Spatial;
+    XFace3dLocking: "x-face-3d-locking", "the saddle with a lip along its centre lines, both halves alike",
+        Freedom::Spatial;
+    PinHole: "pin-hole", "pins and chamfered holes on a circle", Freedom::Spatial;
+}
+
+impl Family {
+    /// Whether the family is a profile in the x–z plane, extruded along y.
+    pub const fn is_planar(self) -> bool {
+        matches!(self.freedom(), Freedom::Planar)
+    }
+}
+
+impl FamilySpec {
+    /// Every parameter with its key and value, in the order of the documentation; `None` where the family's default
+    /// holds.
+    pub fn parameters(mut self) -> Vec<(&'static Key, Option<Value>)> {
+        self.fields().into_iter().map(|(key, field)| (key, field.value())).collect()
+    }
+
+    /// The value of a parameter; `None` where the family does not have it, or has its default.
+    pub fn get(self, key: &Key) -> Option<Value> {
+        self.parameters().into_iter().find(|(has, _)| has.name == key.name)?.1
+    }
+
+    /// Gives a parameter another value. False where the family does not have the parameter, or it is of another type.
+    pub fn set(&mut self, key: &Key, value: Value) -> bool {
+        let field = self.fields().into_iter().find(|(has, _)| has.name == key.name);
+        field.is_some_and(|(_, field)| field.set(value))
+    }
+
+    /// Largest distance between a circle and the polygon that stands for it, in D, of families with circles.
+    pub fn chord_error(&self) -> Option<f64> {
+        match self.get(&keys::CHORD_ERROR) {
+            Some(Value::Number(error)) => Some(error),
+            _ => None,
+        }
+    }
+
+    /// The same with another chord error, in D. A family without circles has none and stays as it is.
+    #[must_use]
+    pub fn with_chord_error(mut self, chord_error: f64) -> Self {
+        self.set(&keys::CHORD_ERROR, Value::Number(chord_error));
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::keys::{Applies, Table};
+
+    #[test]
+    fn the_table_of_keys_says_which_family_has_what() {
+        for family in Family::ALL {
+            let has: Vec<_> = FamilySpec::new(family).parameters().iter().map(|(key, _)| key.name).collect();
+            let said: Vec<_> = Table::Connector
+                .keys()
+                .filter(|key| matches!(key.applies, Applies::AnyFamily | Applies::Families(_)))
+                .filter(|key| key.applies.to(Some(family)))
+                .map(|key| key.name)
+                .collect();
+            assert_eq!(has, said, "{}", family.name());
+            assert!(NAMES.contains(&format!(" {}", family.name())));
+        }
+    }
+
+    #[test]
+    fn one_object_with_the_parameters_that_the_family_has() {
+        let json = |spec: FamilySpec| serde_json::to_string(&spec).unwrap();
+        let pyramid = FamilySpec::new(Family::Pyramid);
+        assert_eq!(json(pyramid), r#"{"family":"pyramid","aspect_ratio":0.5,"base_thickness":null}"#);
+        for family in Family::ALL {
+            let spec = FamilySpec::new(family).with_aspect_ratio(0.1 + 0.2).with_base_thickness(Some(0.3));
+            assert_eq!(serde_json::from_str::<FamilySpec>(&json(spec)).unwrap(), spec);
+        }
+        // As written by versions that gave every family all parameters.
+        let old = r#"{"family":"x-face-3d","aspect_ratio":0.25,"base_thickness":null,"chord_error":0.001,"lip_height":0.1,
+            "draft_angle":0.0,"pins":2,"hermaphroditic":false,"pin_radius":0.05,"clearance":0.005,"chamfer":0.1,
+            "circle_radius":0.3}"#;
+        let spec = FamilySpec::new(Family::XFace3d).with_aspect_ratio(0.25);
+        assert_eq!(serde_json::from_str::<FamilySpec>(old).unwrap(), spec);
+    }
+
+    #[test]
+    fn a_parameter_is_set_where_the_family_has_it() {
+        let coarse = FamilySpec::new(Family::Cone).with_chord_error(0.02);
+        assert_eq!(coarse.chord_error(), Some(0.02));
+        let pyramid = FamilySpec::new(Family::Pyramid);
+        assert_eq!(pyramid.with_chord_error(0.02), pyramid);
+        let mut pins = FamilySpec::new(Family::PinHole);
+        assert!(!pins.set(&keys::PINS, Value::Number(3.0)) && pins.set(&keys::PINS, Value::Whole(3)));
+        assert_eq!(pins, PinHole { pins: 3, ..PinHole::DEFAULT }.into());
+        assert_eq!(pins.get(&keys::BASE_THICKNESS), None);
+    }
+}
