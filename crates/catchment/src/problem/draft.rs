@@ -101,7 +101,7 @@ impl Draft {
     /// Everything that is wrong with the geometry; halves that do not meet in the aligned pose. That the aligned pose
     /// meets but does not hold is a doubt ([`Problem::doubts`]).
     pub fn build(self) -> Result<Problem, ProblemError> {
-        self.built(|problem| !matches!(problem, MatedProblem::NotMinimum { .. }))
+        self.built(Self::is_apart)
     }
 
     /// The same, and a mated pose that does not hold is an error too: what a check of a design asks.
@@ -112,17 +112,30 @@ impl Draft {
         self.built(|_| true)
     }
 
-    fn built(mut self, refuses: impl Fn(&MatedProblem) -> bool) -> Result<Problem, ProblemError> {
-        let connector = match Connector::build(&self.design) {
-            Ok(connector) => connector,
+    /// Whether the halves do not meet in the aligned pose.
+    pub(super) const fn is_apart(problem: &MatedProblem) -> bool {
+        !matches!(problem, MatedProblem::NotMinimum { .. })
+    }
+
+    fn built(self, refuses: impl Fn(&MatedProblem) -> bool) -> Result<Problem, ProblemError> {
+        match Connector::build(&self.design) {
+            Ok(connector) => self.with_halves(connector, refuses),
             Err(problems) => {
                 let list = places::of_geometry(&problems)
                     .into_iter()
                     .map(|(place, message, help)| self.finding(&place, message, help))
                     .collect();
-                return Err(Findings { source: self.source, list, omitted: 0 }.into());
+                Err(Findings { source: self.source, list, omitted: 0 }.into())
             }
-        };
+        }
+    }
+
+    /// The problem of halves that were built, unless `refuses` says that their mated pose is none.
+    pub(super) fn with_halves(
+        mut self,
+        connector: Connector,
+        refuses: impl Fn(&MatedProblem) -> bool,
+    ) -> Result<Problem, ProblemError> {
         self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
         let (apart, doubts): (Vec<_>, Vec<_>) = mated::problems(&pair).into_iter().partition(refuses);

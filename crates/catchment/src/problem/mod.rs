@@ -18,6 +18,7 @@
 
 mod draft;
 mod finding;
+mod memory;
 mod places;
 #[cfg(test)]
 mod tests;
@@ -75,7 +76,8 @@ impl Problem {
 
     fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {
         // What the meshes held is known by now, so that there is a digest.
-        let digest = draft.design().digest().map(|bytes| hex(&bytes)).unwrap_or_default();
+        // Known of every design whose halves were built.
+        let digest = draft.design().digest().map_or_else(String::new, |digest| hex(&digest));
         Self(Arc::new(Inner { draft, connector, pair, doubts, digest }))
     }
 

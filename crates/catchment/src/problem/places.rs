@@ -1,5 +1,6 @@
 //! Which key of a design file a complaint of a later room is about.
 
+use super::finding::{Finding, Findings};
 use crate::connector::{MeshProblem, Problem, Side};
 use crate::contact::mated::MatedProblem;
 use crate::design::Complaint;
@@ -30,6 +31,13 @@ pub(super) fn of_geometry(problems: &[Problem]) -> Vec<(String, String, Option<S
         .chunk_by(same_kind)
         .map(|kind| (key_of(&kind[0]), kind[0].to_string(), likewise(&kind[1..])))
         .collect()
+}
+
+/// Geometric problems of halves that no file describes.
+pub(super) fn findings(problems: &[Problem]) -> Findings {
+    let finding = |(_, message, help)| Finding::new(message, help);
+    let list = of_geometry(problems).into_iter().map(finding).collect();
+    Findings { source: None, list, omitted: 0 }
 }
 
 /// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.

@@ -12,7 +12,7 @@ use super::schema::Timing;
 use super::zarr::{self, ZarrError};
 use super::{Report, figure};
 use crate::acceptance::Acceptance;
-use crate::exec::Exec;
+use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Resolution, ResolutionError};
 use crate::merit::MeritError;
 use crate::merit::comparison::{Comparison, ComparisonError, Paired};
@@ -20,7 +20,6 @@ use crate::problem::Problem;
 use crate::run::{Over, Run, RunError};
 use crate::study::agreement::even_cells;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// One of the two.
 #[derive(Debug)]
@@ -96,7 +95,7 @@ pub fn compare(
     picture: bool,
     exec: &Exec,
 ) -> Result<Found, CompareError> {
-    let started = Instant::now();
+    let started = Stopwatch::start();
     // Stored results first: their grid is what a problem is decided on.
     let mut sides: [Option<(Side, Acceptance)>; 2] = [None, None];
     for (side, subject) in sides.iter_mut().zip(&subjects) {
@@ -132,7 +131,7 @@ pub fn compare(
         let names = names.each_ref().map(String::as_str);
         figure::difference(&first.report.design, &paired, &comparison, names)
     });
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
+    let timing = Timing { total_s: started.seconds(), threads: exec.threads() };
     let sides = [first.clone(), second.clone()];
     let report = ComparisonReport::new(sides, &paired, comparison, Some(timing));
     Ok(Found { report, picture })

@@ -72,7 +72,7 @@ pub(super) fn finish(
         by_products,
         merits,
         success,
-        seconds: started.elapsed().as_secs_f64(),
+        seconds: started.seconds(),
         threads: exec.threads(),
     })
 }

@@ -18,7 +18,7 @@ use crate::merit::comparison::{ComparisonError, Overlap, Paired, confusion};
 use crate::method::{Decide, Method, descent};
 use crate::problem::Problem;
 use crate::run::{Answer, Over, Run, RunError, Sample};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -148,7 +148,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Agreem
 
 /// One method, unless it does not apply or takes too long.
 fn within(run: &Run, problem: &Problem, limit: Duration, exec: &Exec) -> Result<Answer, LeftOut> {
-    let timed = exec.clone().with_deadline(Instant::now() + limit);
+    let timed = exec.clone().with_time_limit(limit);
     run.on(problem, &timed).map_err(|error| match error {
         RunError::NotApplicable(refusal) => LeftOut::NotApplicable { reason: refusal.reason },
         _ if timed.is_cancelled() && !exec.is_cancelled() => LeftOut::Time { limit },

@@ -93,7 +93,7 @@ impl Sampled {
         ensure_fits(cost.what, needed, cost.bytes_per_cell, grid.axes.len(), exec)?;
         let started = Stopwatch::start();
         let decided = method.decide(problem, &Domain::Grid(grid.clone()), exec)?;
-        let seconds = started.elapsed().as_secs_f64();
+        let seconds = started.seconds();
         Ok(Self { method: method.clone(), grid, decided, seconds })
     }
 

@@ -1,0 +1,52 @@
+//! A problem from values in memory: no file, no path.
+
+use super::{Draft, Problem, ProblemError, places};
+use crate::connector::{Connector, Half, Source};
+use crate::design::{Alignment, ConnectorSpec, Design, HalfSpec, MeshContent, OwnSpec};
+
+impl Problem {
+    /// The problem of two halves, both drawn facing +z from their face centres, in D.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the geometry or the mated pose.
+    pub fn new(fixed: Source, moving: Source, alignment: Alignment) -> Result<Self, ProblemError> {
+        const FACE_HEIGHT: f64 = 0.0;
+        let connector = Connector::from_sources(&fixed, &moving, FACE_HEIGHT, alignment.mount)
+            .map_err(|problems| places::findings(&problems))?;
+        let contents = connector.contents.clone();
+        let own = OwnSpec {
+            face_height: FACE_HEIGHT,
+            fixed: spec(fixed, contents.fixed, &connector.fixed),
+            moving: spec(moving, contents.moving, &connector.moving),
+        };
+        let name = "in memory".to_owned();
+        let design = Design { name, connector: ConnectorSpec::Own(own), width: 1.0, unit: None, alignment };
+        Draft::from(design).with_halves(connector, Draft::is_apart)
+    }
+}
+
+/// What a design says of a half that came from a source.
+fn spec(source: Source, content: Option<MeshContent>, built: &Half) -> HalfSpec {
+    match (source, content) {
+        (Source::Pieces(pieces), _) => {
+            HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(|p| p.to_array()).collect()).collect())
+        }
+        (Source::Mesh { path, scale, .. }, content) => HalfSpec::Mesh { path, scale, content },
+        (_, Some(content)) => HalfSpec::Memory { content },
+        // A half of a family, which a design of two halves of one's own cannot name.
+        (_, None) => HalfSpec::Memory { content: content_of(built) },
+    }
+}
+
+/// The triangles of a half, as a mesh would hold them.
+fn content_of(half: &Half) -> MeshContent {
+    let (mut bytes, mut count) = (Vec::new(), 0);
+    for surface in &half.surfaces {
+        for triangle in surface.triangles() {
+            let corners = triangle.iter().flat_map(|k| surface.vertices[*k as usize].to_array());
+            bytes.extend(corners.flat_map(f64::to_le_bytes));
+            count += 1;
+        }
+    }
+    MeshContent::of(&bytes, count)
+}
