@@ -2,7 +2,8 @@
 
 use crate::exec_args;
 use crate::exit::ExitStatus;
-use miette::Report;
+use catchment::poses::Refusal;
+use miette::{MietteDiagnostic, Report};
 use std::io::Write;
 
 /// Reports for stderr; `?` makes one of any error.
@@ -21,9 +22,22 @@ impl Failure {
 
     /// One message with advice.
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        let mut diagnostic = miette::MietteDiagnostic::new(message);
+        let mut diagnostic = MietteDiagnostic::new(message);
         diagnostic.help = help;
         Self { reports: vec![Report::new(diagnostic)], closing: None, broken_pipe: false }
+    }
+
+    /// Everything that is wrong with the text of an option.
+    pub(crate) fn of_option(option: &str, text: &str, refusal: Refusal) -> Self {
+        let count = refusal.list.len() + refusal.omitted;
+        let reports = refusal.list.into_iter().map(|objection| {
+            let mut diagnostic = MietteDiagnostic::new(format!("{option}: {}", objection.message));
+            diagnostic.help = objection.help;
+            Report::new(diagnostic)
+        });
+        let shown: String = text.chars().filter(|c| !c.is_control()).take(80).collect();
+        let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));
+        Self::many(reports.collect(), closing)
     }
 
     /// What went wrong, in a line.

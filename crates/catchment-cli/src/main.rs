@@ -5,13 +5,12 @@
 mod args;
 mod command;
 mod drop_args;
-mod errors;
+mod error_args;
 mod exec_args;
 mod exit;
 mod failure;
 mod geometry;
 mod output;
-mod poses;
 mod result_folder;
 mod source;
 

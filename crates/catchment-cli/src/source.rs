@@ -2,7 +2,10 @@
 
 use crate::failure::Failure;
 use catchment::design::{Design, LoadError, Sources, line_column, load, read};
+use catchment::poses::{Refusal, TextError, read_text};
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use std::fs::File;
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -89,6 +92,36 @@ impl SourceText {
         Self { path: path.to_path_buf(), shown: Arc::new(printable(&text)), text }
     }
 
+    /// Reads the text of a table from a file, or from stdin for `-`.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let stdin = path.as_os_str() == "-";
+        let shown = if stdin { Path::new("stdin") } else { path };
+        let name = printable(&shown.display().to_string());
+        let read = if stdin {
+            read_text(io::stdin().lock())
+        } else {
+            File::open(path).map_err(TextError::from).and_then(read_text)
+        };
+        read.map(|text| Self::new(shown, text)).map_err(|error| {
+            let (message, help) = match &error {
+                TextError::Read(_) => (format!("cannot read {name}: {error}"), None),
+                TextError::TooLarge => (format!("{name} is {error}"), Some("split the table")),
+                TextError::NotUtf8 { .. } => (format!("{name}, {error}"), Some("save it as UTF-8")),
+            };
+            Failure::with_help(message, help.map(ToOwned::to_owned))
+        })
+    }
+
+    /// This text, refused for what is wrong with it.
+    pub(crate) fn refused(&self, refusal: Refusal) -> InputError {
+        let findings = refusal.list.into_iter().map(|objection| Finding {
+            message: objection.message,
+            help: objection.help,
+            span: objection.span,
+        });
+        InputError::Findings { source: self.clone(), findings: findings.collect(), omitted: refusal.omitted }
+    }
+
     /// The file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
@@ -118,7 +151,7 @@ impl SourceText {
             return Report::new(diagnostic);
         }
         diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, span)]);
-        let name = self.path.display().to_string();
+        let name = printable(&self.path.display().to_string());
         Report::new(diagnostic).with_source_code(NamedSource::new(name, Arc::clone(&self.shown)))
     }
 
@@ -159,8 +192,9 @@ impl From<InputError> for Failure {
                 } else {
                     String::new()
                 };
-                let closing =
-                    (count > 1).then(|| format!("{count} problems in {}{shown}", source.path.display()));
+                let closing = (count > 1).then(|| {
+                    format!("{count} problems in {}{shown}", printable(&source.path.display().to_string()))
+                });
                 Self::many(findings.into_iter().map(|finding| source.report(finding)).collect(), closing)
             }
         }

@@ -2,12 +2,12 @@
 
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
-use crate::errors::pose;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout};
 use crate::result_folder::has_only;
 use catchment::method::drop::export::{Scene, mjcf, sdf};
+use catchment::poses::parse_pose;
 use catchment::report::write;
 use clap::Args;
 use serde_json::json;
@@ -50,7 +50,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     write::check_folder(&args.output, is_ours)?;
     let (built, pair, doubts) = args.design.build()?.into_pair()?;
     let design = &built.input.design;
-    let error = pose(&args.pose, design)?;
+    let error = parse_pose(&args.pose, design)
+        .map_err(|refusal| Failure::of_option("--pose", &args.pose, refusal))?;
     let settings = args.drop.settings()?;
     let scene = Scene::new(&design.name, &pair, &settings, &error)?;
     let world = sdf::write(&scene)?;

@@ -15,6 +15,7 @@ mod comparison;
 mod convergence;
 #[cfg(feature = "figure")]
 pub mod figure;
+mod outcomes;
 mod requirement;
 pub mod schema;
 mod sensitivity;
@@ -26,6 +27,7 @@ pub mod zarr;
 
 pub use comparison::{Agreement, AgreementReport, ComparisonReport, Decided, MethodResult, Side};
 pub use convergence::ConvergenceReport;
+pub use outcomes::OutcomesReport;
 pub use requirement::{Requirement, RequirementError};
 pub use schema::Report;
 pub use sensitivity::SensitivityReport;

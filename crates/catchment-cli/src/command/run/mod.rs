@@ -7,7 +7,6 @@
 
 mod all;
 pub(super) mod compute;
-mod errors;
 mod pictures;
 mod place;
 mod sample;
@@ -15,6 +14,7 @@ mod study;
 
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
+use crate::error_args::ErrorArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -61,7 +61,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     sample: sample::SampleArgs,
     #[command(flatten)]
-    errors: errors::ErrorArgs,
+    errors: ErrorArgs,
     #[command(flatten)]
     place: place::PlaceArgs,
     #[command(flatten)]
