@@ -118,7 +118,7 @@ fn shortened(text: &str) -> String {
 
 /// Whether a character is a control character or one that shows nothing: a byte order mark, a blank without width, a
 /// mark that turns the direction of writing.
-const fn is_hidden(c: char) -> bool {
+fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }

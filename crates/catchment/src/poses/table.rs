@@ -55,7 +55,7 @@ impl<'a> PoseTable<'a> {
                 format!("a table has at most {MOST_COLUMNS}; is it one of poses?"),
             );
             found.push(fault, || spans(text, start).into_iter().next());
-            found.refuse()?;
+            return Err(Refusal { list: found.list, omitted: 0 });
         }
         let columns = columns(&names, &spans(text, start), design, &mut found);
         let mut errors = Vec::new();
