@@ -2,8 +2,9 @@
 
 use crate::exec_args;
 use crate::exit::ExitStatus;
-use catchment::problem::{Findings, ProblemError};
-use miette::Report;
+use catchment::design::Findings;
+use catchment::problem::ProblemError;
+use miette::{MietteDiagnostic, Report};
 use std::any::Any;
 use std::io::Write;
 
@@ -23,18 +24,22 @@ impl Failure {
 
     /// One message with advice.
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        let mut diagnostic = miette::MietteDiagnostic::new(message);
+        let mut diagnostic = MietteDiagnostic::new(message);
         diagnostic.help = help;
         Self { reports: vec![Report::new(diagnostic)], closing: None, broken_pipe: false }
     }
 
-    /// What went wrong, in a line.
-    pub(crate) fn message(&self) -> String {
-        let one = |report: &Report| match report.help() {
-            Some(help) => format!("{report}; {help}"),
-            None => report.to_string(),
-        };
-        self.reports.iter().map(one).collect::<Vec<_>>().join("; ")
+    /// Everything that is wrong with the text of an option.
+    pub(crate) fn of_option(option: &str, text: &str, refusal: Findings) -> Self {
+        let count = refusal.list.len() + refusal.omitted;
+        let reports = refusal.list.into_iter().map(|objection| {
+            let mut diagnostic = MietteDiagnostic::new(format!("{option}: {}", objection.message));
+            diagnostic.help = objection.help;
+            Report::new(diagnostic)
+        });
+        let shown: String = text.chars().filter(|c| !c.is_control()).take(80).collect();
+        let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));
+        Self::many(reports.collect(), closing)
     }
 
     /// The reader of stdout went away.

@@ -5,13 +5,12 @@
 mod args;
 mod command;
 mod drop_args;
-mod errors;
+mod error_args;
 mod exec_args;
 mod exit;
 mod failure;
 mod method_args;
 mod output;
-mod poses;
 mod source;
 
 use args::Cli;

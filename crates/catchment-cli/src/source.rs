@@ -1,9 +1,34 @@
 //! Whatever is wrong with what a person gave, shown in its place.
 
 use crate::failure::Failure;
-use catchment::problem::{Finding, Findings, ProblemError, SourceText};
+use catchment::design::{Finding, Findings, SourceText};
+use catchment::poses::{TextError, read_text};
+use catchment::problem::ProblemError;
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use std::fs::File;
+use std::io;
 use std::ops::Range;
+use std::path::Path;
+
+/// Reads the text of a table from a file, or from stdin for `-`.
+pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
+    let stdin = path.as_os_str() == "-";
+    let shown = if stdin { Path::new("stdin") } else { path };
+    let name = printable(&shown.display().to_string());
+    let read = if stdin {
+        read_text(io::stdin().lock())
+    } else {
+        File::open(path).map_err(TextError::from).and_then(read_text)
+    };
+    read.map(|text| SourceText::new(shown, text)).map_err(|error| {
+        let (message, help) = match &error {
+            TextError::Read(_) => (format!("cannot read {name}: {error}"), None),
+            TextError::TooLarge => (format!("{name} is {error}"), Some("split the table")),
+            TextError::NotUtf8 { .. } => (format!("{name}, {error}"), Some("save it as UTF-8")),
+        };
+        Failure::with_help(message, help.map(ToOwned::to_owned))
+    })
+}
 
 /// The finding as a report with the lines it is about. Where those are too long to show (a mesh written
 /// on one line), it says their numbers instead.

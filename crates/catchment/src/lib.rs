@@ -68,10 +68,11 @@
 //! Data walks through them in one direction; imports run against it.
 //!
 //! ```text
-//! design ─▶ connector ─▶ contact ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ study ─▶ report
+//! design ─▶ poses ─▶ connector ─▶ contact ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ study ─▶ report
 //! ```
 //!
 //! - [`design`]: the design file, typed; all its problems at once, each with line, column and advice.
+//! - [`poses`]: pose errors as people write them, tables of them, and how they are distributed.
 //! - [`connector`]: the two halves as closed solids, from a family, convex pieces or STL files.
 //! - [`contact`]: the height of first contact, exactly, and what touches there.
 //! - [`landscape`]: the error grid over any of the five errors, and the heights over it.
@@ -104,6 +105,7 @@ pub mod method;
 pub mod polytope;
 pub mod pose;
 pub mod problem;
+pub mod poses;
 pub mod report;
 pub mod run;
 pub mod study;

@@ -7,9 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms in the order in which data walks through them.
-const ROOMS: [&str; 10] = [
+const ROOMS: [&str; 11] = [
     "polytope",
     "design",
+    "poses",
     "connector",
     "contact",
     "landscape",
@@ -204,6 +205,7 @@ fn a_violation_says_what_would_be_right() {
     let [violation] = &violations("contact/mod.rs", "\nuse crate::method::descent;")[..] else {
         panic!("one violation expected");
     };
-    let message = "contact/mod.rs:2: contact imports method, but may import only polytope, design, connector";
+    let message =
+        "contact/mod.rs:2: contact imports method, but may import only polytope, design, poses, connector";
     assert_eq!(violation.to_string(), message);
 }

@@ -2,11 +2,11 @@
 
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
-use crate::errors::pose;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout};
 use catchment::method::drop::export::{Scene, mjcf, sdf};
+use catchment::poses::parse_pose;
 use catchment::report::folder::has_only;
 use catchment::report::write;
 use clap::Args;
@@ -51,7 +51,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
     let doubts: Vec<String> = problem.doubts().iter().map(ToString::to_string).collect();
-    let error = pose(&args.pose, design)?;
+    let error = parse_pose(&args.pose, design)
+        .map_err(|refusal| Failure::of_option("--pose", &args.pose, refusal))?;
     let settings = args.drop.settings()?;
     let scene = Scene::new(&design.name, pair, &settings, &error)?;
     let world = sdf::write(&scene)?;

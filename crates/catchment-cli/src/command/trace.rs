@@ -1,13 +1,13 @@
 //! `catchment trace`: the way of one pose from first contact to its end.
 
 use crate::args::DesignArgs;
-use crate::errors::pose;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, number, to_stderr, to_stdout};
 use catchment::design::Design;
 use catchment::method::descent::{self, Settings, Trajectory, Waypoint};
 use catchment::pose::{Dof, PoseError};
+use catchment::poses::parse_pose;
 use catchment::report::figure;
 use clap::Args;
 use serde_json::json;
@@ -49,7 +49,8 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
     let doubts: Vec<String> = problem.doubts().iter().map(ToString::to_string).collect();
-    let error = pose(&args.pose, design)?;
+    let error = parse_pose(&args.pose, design)
+        .map_err(|refusal| Failure::of_option("--pose", &args.pose, refusal))?;
     let path = descent::trace(pair, &error, &Settings::default());
     match kind {
         Some("csv") => args.file.write(&csv(&path)?)?,

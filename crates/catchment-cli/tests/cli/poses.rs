@@ -206,3 +206,43 @@ fn a_drop_test_is_exported_with_all_that_it_needs() {
     fs::write(path("other/holiday.png"), "").unwrap();
     assert!(export("other").starts_with("exit 2\n"));
 }
+
+#[test]
+fn equal_rows_meet_the_same_end_in_drop_tests() {
+    // On the border of the accepted set, where the perturbation decides.
+    let table = "x_mm,yaw_deg\n".to_owned() + &"24.9,30\n".repeat(12);
+    let output = outcome(&table, &["--method", "drop"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let rows = cells(&output.stdout);
+    assert!(rows.len() == 13 && rows[2..].iter().all(|row| *row == rows[1]), "{rows:?}");
+}
+
+#[test]
+fn near_names_are_refused_and_carried_columns_named() {
+    for name in ["x mm", "dx", "X_mm", "rol", "delta_x", "x.mm", "\u{feff}\u{feff}x", "x\0"] {
+        let output = outcome(&format!("{name},yaw\n9,0\n"), &[]);
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {stderr}");
+        assert!(!stderr.contains(['\0', '\u{1b}']), "{stderr:?}");
+    }
+    let ends = ["x_mm", "x [mm]", "x (mm)"].map(|name| {
+        let output = outcome(&format!("part,{name},time\nA,90,1\n"), &[]);
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(stderr.ends_with("carried through: part, time\n"), "{stderr}");
+        cells(&output.stdout)[1][3].clone()
+    });
+    assert_eq!(ends, ["missed", "missed", "missed"]);
+}
+
+#[test]
+fn offsets_are_measured_where_it_is_said() {
+    let locked = ["--free", "x,pitch,yaw", "--cor", "0.5"];
+    // The face centre lies at cor · sin(yaw) · sin(pitch) beside the locked plane.
+    let y = 0.5 * 0.2f64.sin() * 0.3f64.sin();
+    let code = |y: f64, at: &str| {
+        let table = format!("x,y,pitch,yaw\n0,{y},0.3,0.2\n");
+        outcome(&table, &[&locked[..], &["--offsets-at", at]].concat()).status.code()
+    };
+    assert_eq!([code(y, "face"), code(y + 1e-4, "face")], [Some(0), Some(2)]);
+    assert_eq!([code(0.0, "cor"), code(y, "cor")], [Some(0), Some(2)]);
+}

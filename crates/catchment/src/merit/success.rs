@@ -11,6 +11,8 @@
 //! adds its own doubt: [`Success::bracket`] counts the border cells as failures, and as successes (undecided ones
 //! too). Errors along axes that were not sampled cannot be judged and are refused.
 
+pub use crate::poses::Distribution;
+
 use super::mask::{Mask, bits};
 use super::sum::wilson95;
 use super::{MeritError, advance, axis_number, grid_of};
@@ -19,40 +21,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::{SQRT_2, TAU};
-
-/// How pose errors are distributed. Five numbers are in the order of [`Dof::ALL`], in D and radians; 0 for errors that do
-/// not occur.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Distribution {
-    /// Independent normal errors.
-    Normal {
-        /// Mean of each error.
-        mean: PoseError,
-        /// Standard deviation of each error.
-        sigma: PoseError,
-    },
-    /// Correlated normal errors.
-    Correlated {
-        /// Mean of each error.
-        mean: PoseError,
-        /// Covariance matrix, in D², D·rad and rad².
-        covariance: [[f64; 5]; 5],
-        /// Number of random poses.
-        samples: u32,
-        /// Seed of the random numbers: the same seed gives the same answer anywhere.
-        seed: u64,
-    },
-    /// Uniform in a box.
-    Uniform {
-        /// Centre of the box.
-        mean: PoseError,
-        /// Half-width of the box along each error.
-        half_width: PoseError,
-    },
-}
 
 /// A success probability.
 #[derive(Debug, Clone, PartialEq)]

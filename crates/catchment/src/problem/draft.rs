@@ -1,11 +1,10 @@
 //! A design that was read and not built yet: it can still be changed, and knows where its file says what.
 
-use super::finding::{Finding, Findings, SourceText};
 use super::{Problem, ProblemError, places};
 use crate::connector::Connector;
 use crate::contact::Pair;
 use crate::contact::mated::{self, MatedProblem};
-use crate::design::{Complaint, Design, Sources, load, read};
+use crate::design::{Complaint, Design, Finding, Findings, SourceText, Sources, load, read};
 use std::path::Path;
 
 /// A design, its text, and the places of its keys.

@@ -17,19 +17,17 @@
 //! angles in radians.
 
 mod draft;
-mod finding;
 mod memory;
 mod places;
 #[cfg(test)]
 mod tests;
 
 pub use draft::Draft;
-pub use finding::{Finding, Findings, SourceText};
 
 use crate::connector::Connector;
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
-use crate::design::{Alignment, Design, LoadError, hex};
+use crate::design::{Alignment, Design, Findings, LoadError, SourceText, hex};
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,9 +1,8 @@
 //! Which key of a design file a complaint of a later room is about.
 
-use super::finding::{Finding, Findings};
 use crate::connector::{MeshProblem, Problem, Side};
 use crate::contact::mated::MatedProblem;
-use crate::design::Complaint;
+use crate::design::{Complaint, Finding, Findings};
 use std::mem::discriminant;
 
 /// The key that forbids a change.

@@ -19,6 +19,7 @@ mod convergence;
 pub mod folder;
 #[cfg(feature = "figure")]
 pub mod figure;
+mod outcomes;
 pub mod schema;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
@@ -32,6 +33,7 @@ pub mod zarr;
 pub use answer::UnanswerableError;
 pub use comparison::{Agreement, AgreementReport, Compared, ComparisonReport, Decided, MethodResult};
 pub use convergence::ConvergenceReport;
+pub use outcomes::OutcomesReport;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
 pub use schema::Report;

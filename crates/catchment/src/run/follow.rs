@@ -1,8 +1,9 @@
 //! Single poses, followed exactly: what becomes of one, of many, and along which way.
 
-use crate::acceptance::Domain;
+use crate::acceptance::{Acceptance, Domain};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Trajectory};
+use crate::method::{DecideError, Method};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 
@@ -19,6 +20,20 @@ impl Problem {
     pub fn follow_many(&self, poses: &[PoseError], exec: &Exec) -> Result<Vec<End>, Cancelled> {
         let domain = Domain::Poses(poses.to_vec());
         Ok(descent::run(self.pair(), domain, &descent::Settings::default(), exec)?.1)
+    }
+
+    /// Where every pose ends by a method of one's choice, and their outcomes.
+    ///
+    /// # Errors
+    /// The method decides cells from one another, gave up, or was asked to stop.
+    pub fn follow_by(
+        &self,
+        method: &Method,
+        poses: &[PoseError],
+        exec: &Exec,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        let follow = method.follows().ok_or(DecideError::NeedsGrid { method: method.name() })?;
+        follow.follow(self, Domain::Poses(poses.to_vec()), exec)
     }
 
     /// The way of one pose, from first contact to its end.

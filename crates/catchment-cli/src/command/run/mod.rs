@@ -1,12 +1,12 @@
 //! `catchment run`: the area of acceptance of a design.
 
 mod all;
-mod errors;
 mod place;
 mod sample;
 mod study;
 
 use crate::args::DesignArgs;
+use crate::error_args::ErrorArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -46,7 +46,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     sample: sample::SampleArgs,
     #[command(flatten)]
-    errors: errors::ErrorArgs,
+    errors: ErrorArgs,
     #[command(flatten)]
     place: place::PlaceArgs,
     #[command(flatten)]

@@ -8,7 +8,7 @@
 //!                undecided still moving when the time is up
 //! ```
 //!
-//! Three trials with perturbed starts decide by majority. The default is heavily damped, without friction and bounce: the
+//! Three trials with perturbed starts decide by majority; equal poses are perturbed equally, wherever they stand. The default is heavily damped, without friction and bounce: the
 //! motion of [`descent`](super::descent), reached by an independent way. There c·(|v|² + ρ²|ω|²), v at the COR, is what friction dissipates,
 //! and the default inertia mass·ρ² about the COR has the same metric, so that ρ means the same in both.
 //!
@@ -39,7 +39,7 @@ use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Resolution;
 use crate::method::descent::End;
-use crate::pose::PoseError;
+use crate::pose::{Dof, PoseError};
 use engine::Engine;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -106,7 +106,7 @@ pub fn run(
         (0..count)
             .into_par_iter()
             .map(|k| {
-                let end = decide(&engine, pair, settings, &domain.pose(k), k as u64, exec)?;
+                let end = decide(&engine, pair, settings, &domain.pose(k), exec)?;
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done.is_multiple_of(16) {
                     exec.report(done as f64 / count as f64, "drop tests");
@@ -127,12 +127,11 @@ fn decide(
     pair: &Pair,
     settings: &Settings,
     error: &PoseError,
-    number: u64,
     exec: &Exec,
 ) -> Result<End, Cancelled> {
     let mut ends: Vec<End> = Vec::with_capacity(settings.trials as usize);
     for trial in 0..settings.trials {
-        ends.push(engine.fall(&perturbed(pair, settings, error, number, trial), exec)?);
+        ends.push(engine.fall(&perturbed(pair, settings, error, trial), exec)?);
         let agree = ends.iter().filter(|e| e.outcome == ends[ends.len() - 1].outcome).count();
         if agree > settings.trials as usize / 2 {
             break;
@@ -151,12 +150,17 @@ fn verdict(ends: &[End]) -> End {
     majority.or(most).copied().unwrap_or(missing)
 }
 
-/// Where a trial starts: uniform within the perturbation around the pose, and a function of the seed, the number of the pose
-/// and of the trial alone.
-fn perturbed(pair: &Pair, settings: &Settings, error: &PoseError, number: u64, trial: u32) -> PoseError {
-    let stream = Stream::new(settings.seed).branch(number).branch(u64::from(trial));
+/// Where a trial starts: uniform within the perturbation around the pose, and a function of the seed, the free errors of the
+/// pose and the number of the trial alone. Neither the place of the pose in a list nor a locked offset, which the lock decides,
+/// changes it.
+fn perturbed(pair: &Pair, settings: &Settings, error: &PoseError, trial: u32) -> PoseError {
+    let free = pair.alignment.free;
     let mut start = error.to_array();
-    for dof in pair.alignment.free.iter() {
+    // −0 and 0 are the same error.
+    let bits = |dof: Dof| (start[dof.index()] + 0.0).to_bits();
+    let stream = free.iter().fold(Stream::new(settings.seed), |stream, dof| stream.branch(bits(dof)));
+    let stream = stream.branch(u64::from(trial));
+    for dof in free.iter() {
         let unit = if dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 };
         let by = 2.0 * stream.uniform(dof.index() as u64) - 1.0;
         start[dof.index()] += settings.perturbation * by / unit;

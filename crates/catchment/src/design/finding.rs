@@ -1,6 +1,6 @@
 //! What is wrong, where it stands, and what to do about it: data, for whoever shows it.
 
-use crate::design::line_column;
+use super::line_column;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,111 @@
+//! How pose errors are distributed.
+
+use super::terms::terms;
+use super::{Fault, Found};
+use crate::design::Findings;
+use crate::design::{Design, Quantity};
+use crate::pose::{Dof, PoseError};
+use serde::{Deserialize, Serialize};
+
+/// How pose errors are distributed. Five numbers are in the order of [`Dof::ALL`], in D and radians; 0 for errors that do
+/// not occur.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Distribution {
+    /// Independent normal errors.
+    Normal {
+        /// Mean of each error.
+        mean: PoseError,
+        /// Standard deviation of each error.
+        sigma: PoseError,
+    },
+    /// Correlated normal errors.
+    Correlated {
+        /// Mean of each error.
+        mean: PoseError,
+        /// Covariance matrix, in D², D·rad and rad².
+        covariance: [[f64; 5]; 5],
+        /// Number of random poses.
+        samples: u32,
+        /// Seed of the random numbers: the same seed gives the same answer anywhere.
+        seed: u64,
+    },
+    /// Uniform in a box.
+    Uniform {
+        /// Centre of the box.
+        mean: PoseError,
+        /// Half-width of the box along each error.
+        half_width: PoseError,
+    },
+}
+
+impl Distribution {
+    /// Independent normal errors around zero with standard deviations such as `x=1 mm,yaw=2 deg`; errors that are not named
+    /// do not occur.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text: sizes are not negative, and of errors that the design leaves free.
+    pub fn normal(sigmas: &str, design: &Design) -> Result<Self, Findings> {
+        Ok(Self::Normal { mean: PoseError::default(), sigma: sizes(sigmas, design)? })
+    }
+
+    /// Independent errors, uniform within ± half-widths such as `x=1 mm,yaw=2 deg`; errors that are not named do not occur.
+    ///
+    /// # Errors
+    /// As [`Distribution::normal`].
+    pub fn uniform(half_widths: &str, design: &Design) -> Result<Self, Findings> {
+        Ok(Self::Uniform { mean: PoseError::default(), half_width: sizes(half_widths, design)? })
+    }
+}
+
+/// A size of each error, in D and radians.
+fn sizes(text: &str, design: &Design) -> Result<PoseError, Findings> {
+    let mut found = Found::default();
+    let (written, spans) = terms(text, &mut found);
+    let mut values = [0.0; 5];
+    for dof in Dof::ALL {
+        let Some(quantity) = written[dof.index()] else { continue };
+        match size(dof, quantity, design) {
+            Ok(value) => values[dof.index()] = value,
+            Err(fault) => found.push(fault, || Some(spans[dof.index()].clone())),
+        }
+    }
+    found.refuse()?;
+    Ok(PoseError::from_array(values))
+}
+
+fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {
+    let name = dof.name();
+    if !design.alignment.free.contains(dof) {
+        let free: Vec<&str> = design.alignment.free.iter().map(Dof::name).collect();
+        let help = format!("its free errors are {}", free.join(", "));
+        return Err(Fault::new(format!("{name}: this design locks it"), help));
+    }
+    let size = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
+    let size = size.map_err(|c| Fault { message: format!("{name}: {c}"), help: c.help() })?;
+    if size < 0.0 {
+        return Err(Fault { message: format!("{name}: a size cannot be negative"), help: None });
+    }
+    Ok(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn sizes_are_read_and_mistakes_come_with_their_places() {
+        let text = "[connector]\nfamily = \"v-face\"\nwidth = 50\nunit = \"mm\"\n";
+        let design = crate::design::read(text, Path::new("")).unwrap().design;
+        let normal = Distribution::normal("x=1 mm, pitch = 2 deg", &design).unwrap();
+        let Distribution::Normal { mean, sigma } = normal else { panic!("{normal:?}") };
+        // One division and one multiplication.
+        assert!(mean == PoseError::default() && (sigma.x - 0.02).abs() < 1e-17);
+        assert_eq!(sigma.pitch, 2f64.to_radians());
+        let text = "x=-1,pitch=1 mmm,yaw=1,z=1,x=2,y";
+        let refusal = Distribution::uniform(text, &design).unwrap_err();
+        let places: Vec<&str> = refusal.list.iter().map(|o| &text[o.span.clone().unwrap()]).collect();
+        assert_eq!(places, ["x=-1", "pitch=1 mmm", "yaw=1", "z=1", "x=2", "y"]);
+    }
+}

@@ -1,0 +1,87 @@
+//! Records of a CSV text, and where their fields stand in it.
+
+use csv::StringRecord;
+use std::ops::Range;
+
+/// The records of a table, each with the byte it starts at. Blank lines are none, and blanks around fields are left out.
+pub(super) fn records(text: &str) -> impl Iterator<Item = (usize, StringRecord)> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    std::iter::from_fn(move || {
+        let mut record = StringRecord::new();
+        // Text in memory that is UTF-8 and may be ragged has nothing left to fail on.
+        reader.read_record(&mut record).ok().filter(|more| *more)?;
+        let start = record.position().map_or(0, |p| p.byte() as usize).min(text.len());
+        let blank = text[start..].bytes().take_while(|b| matches!(b, b'\r' | b'\n')).count();
+        Some((start + blank, record))
+    })
+}
+
+/// The bytes of every field of the record that starts at `start`, without the blanks around it. One pass over the record.
+pub(super) fn spans(text: &str, start: usize) -> Vec<Range<usize>> {
+    #[derive(Clone, Copy)]
+    enum State {
+        Begin,
+        Plain,
+        Quoted,
+        Closed,
+    }
+    let (mut found, mut from, mut end, mut state) = (Vec::new(), start, text.len(), State::Begin);
+    for (at, byte) in text.bytes().enumerate().skip(start) {
+        state = match (state, byte) {
+            (State::Quoted, b'"') => State::Closed,
+            (State::Quoted, _) | (State::Begin | State::Closed, b'"') => State::Quoted,
+            (_, b',') => {
+                found.push(trimmed(text, from..at));
+                from = at + 1;
+                State::Begin
+            }
+            (_, b'\r' | b'\n') => {
+                end = at;
+                break;
+            }
+            _ => State::Plain,
+        };
+    }
+    found.push(trimmed(text, from..end));
+    found
+}
+
+/// The range without the blanks at its ends; all of it where it is blank.
+fn trimmed(text: &str, range: Range<usize>) -> Range<usize> {
+    let inside = &text[range.clone()];
+    let begin = range.start + (inside.len() - inside.trim_start().len());
+    let end = range.start + inside.trim_end().len();
+    if begin < end { begin..end } else { range }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn fields_are_found_where_they_stand() {
+        let fields = |text: &str| spans(text, 0).into_iter().map(|s| text[s].to_owned()).collect::<Vec<_>>();
+        assert_eq!(fields("a,\"b,\"\"c\nd\" ,  e\r\n"), ["a", "\"b,\"\"c\nd\"", "e"]);
+        // A quote inside a field is a character like any other.
+        assert_eq!(fields("5\" pipe,x\n"), ["5\" pipe", "x"]);
+    }
+
+    proptest! {
+        #[test]
+        fn fields_are_those_that_the_reader_sees(text in "[a,\" \r\n]{0,40}") {
+            for (start, record) in records(&text) {
+                let found = spans(&text, start);
+                prop_assert_eq!(found.len(), record.len());
+                for (span, field) in found.into_iter().zip(&record) {
+                    let written = &text[span];
+                    prop_assert!(written.contains('"') || written.trim() == field, "{written:?} {field:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! What the names of a table's columns say: the one reading of a header.
+//!
+//! ```text
+//!   x   x_mm   x [mm]   x (mm)     an error, in D and radians or in the unit that is named
+//!   part   time   id               none: carried through
+//!   dx   X_mm   x mm   rol         nearly an error: refused, because carrying it through would make the error 0
+//! ```
+//!
+//! A name is *near* an error if one of its words is the error's. Words end at what is no letter, where letters and digits
+//! meet, and where capitals begin (`deltaX`). A word is the error's also as rx, ry, rz, tx or ty, and with a decoration
+//! glued to it: a d, delta, err or offset before or behind, a unit behind (`dx`, `xerr`, `xmm`). A name with a single
+//! word beside decorations and units is near as well where one slip turns that word into roll, pitch or yaw (`rol`).
+//!
+//! Names with control characters, or with characters that show nothing (a byte order mark), are refused whatever they say.
+
+use super::{Fault, is_hidden, shortened};
+use crate::design::{Design, LengthUnit, Unit, nearest};
+use crate::pose::Dof;
+
+/// Units that a column's name may give.
+const UNITS: [(&str, Unit); 8] = [
+    ("um", Unit::Length(LengthUnit::Um)),
+    ("mm", Unit::Length(LengthUnit::Mm)),
+    ("cm", Unit::Length(LengthUnit::Cm)),
+    ("m", Unit::Length(LengthUnit::M)),
+    ("in", Unit::Length(LengthUnit::In)),
+    ("D", Unit::D),
+    ("deg", Unit::Degrees),
+    ("rad", Unit::Radians),
+];
+/// What people put around the name of an error.
+const DECORATIONS: [&str; 9] = ["d", "delta", "δ", "e", "err", "error", "off", "offset", "misalignment"];
+/// Other names of the errors, in the order of [`Dof::ALL`].
+const SYNONYMS: [&str; 5] = ["tx", "ty", "rx", "ry", "rz"];
+/// Longest name of a column, in bytes: it is repeated with every row of some answers.
+const LONGEST_NAME: usize = 200;
+
+/// The error and the unit that a column holds; `None` for one that is carried through.
+pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Unit)>, Fault> {
+    if name.contains(is_hidden) {
+        let message = format!("`{}` has a character that does not show", shortened(name));
+        return Err(Fault::new(
+            message,
+            "type the name anew; line breaks and byte order marks do not belong here",
+        ));
+    }
+    if name.len() > LONGEST_NAME {
+        let message = format!("`{}…` is a name of {} bytes", shortened(name), name.len());
+        return Err(Fault::new(message, format!("the name of a column has at most {LONGEST_NAME}")));
+    }
+    if name == "outcome" || name.strip_prefix("final_").is_some_and(|rest| split(rest).is_some()) {
+        return Err(Fault::new(format!("`{name}` is a column that the answer adds"), "rename it"));
+    }
+    let Some((dof, symbol)) = split(name) else {
+        return near(name).map_or(Ok(None), |meant| {
+            let help = format!("did you mean {meant}? A column to be carried through needs another name");
+            Err(Fault::new(format!("`{}` is no pose error", shortened(name)), help))
+        });
+    };
+    let base = dof.name();
+    let Some(symbol) = symbol else { return Ok(Some((dof, Unit::Bare))) };
+    match UNITS.iter().find(|(known, _)| *known == symbol).map(|(_, unit)| *unit) {
+        Some(unit @ (Unit::Degrees | Unit::Radians)) if dof.is_rotation() => Ok(Some((dof, unit))),
+        Some(Unit::D) if !dof.is_rotation() => Ok(Some((dof, Unit::D))),
+        Some(unit @ Unit::Length(_)) if !dof.is_rotation() => {
+            if design.unit.is_some() {
+                return Ok(Some((dof, unit)));
+            }
+            let help = format!(
+                "name the column {base} and give it in D, or give the design a unit (connector.unit)"
+            );
+            Err(Fault::new(format!("{name}: the design has no unit of length"), help))
+        }
+        Some(_) if dof.is_rotation() => {
+            Err(Fault::new(format!("{name}: {base} is an angle"), format!("{base}_deg or {base}_rad")))
+        }
+        Some(_) => {
+            Err(Fault::new(format!("{name}: {base} is a length"), format!("{base} (in D), {base}_mm, …")))
+        }
+        None => {
+            let units = UNITS.map(|(symbol, _)| symbol);
+            let known = format!("units are {}", units.join(", "));
+            let help = nearest(symbol, units).map_or(known, |meant| format!("did you mean {base}_{meant}?"));
+            Err(Fault::new(format!("`{}`: unknown unit", shortened(name)), help))
+        }
+    }
+}
+
+/// The error that a name says in one of the known forms, and what stands in the place of its unit.
+fn split(name: &str) -> Option<(Dof, Option<&str>)> {
+    let named = |name: &str| Dof::ALL.into_iter().find(|dof| dof.name() == name);
+    if let Some(dof) = named(name) {
+        return Some((dof, None));
+    }
+    let bracketed = |open, close| {
+        let (base, unit) = name.strip_suffix(close)?.split_once(open)?;
+        Some((base.trim_end(), unit.trim()))
+    };
+    let (base, unit) =
+        bracketed('[', ']').or_else(|| bracketed('(', ')')).or_else(|| name.rsplit_once('_'))?;
+    Some((named(base)?, Some(unit)))
+}
+
+/// The name that was probably meant, if this one is near an error.
+fn near(name: &str) -> Option<String> {
+    let words = words(name);
+    let unit = |word: &str| UNITS.iter().find(|(symbol, _)| symbol.eq_ignore_ascii_case(word));
+    let fitting = |dof: Dof, word: &str| {
+        unit(word).filter(|(_, unit)| matches!(unit, Unit::Degrees | Unit::Radians) == dof.is_rotation())
+    };
+    let (dof, glued) = words.iter().find_map(|word| error_in(word)).or_else(|| {
+        let mut own = words.iter().filter(|w| unit(w).is_none() && !DECORATIONS.contains(&w.as_str()));
+        let (word, None) = (own.next()?, own.next()) else { return None };
+        let meant = nearest(word, ["roll", "pitch", "yaw"])?;
+        Some((Dof::ALL.into_iter().find(|dof| dof.name() == meant)?, ""))
+    })?;
+    let symbol = std::iter::once(glued).chain(words.iter().map(String::as_str)).find_map(|w| fitting(dof, w));
+    let base = dof.name();
+    Some(symbol.map_or_else(|| base.to_owned(), |(symbol, _)| format!("{base}_{symbol}")))
+}
+
+/// The words of a name in small letters.
+fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut before = ' ';
+    for c in name.chars() {
+        let meets = before.is_alphabetic() != c.is_alphabetic() || before.is_lowercase() && c.is_uppercase();
+        if meets {
+            words.push(String::new());
+        }
+        if c.is_alphanumeric()
+            && let Some(word) = words.last_mut()
+        {
+            word.extend(c.to_lowercase());
+        }
+        before = c;
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// The error that a word is the name of, and what is glued behind it.
+fn error_in(word: &str) -> Option<(Dof, &str)> {
+    if let Some(k) = SYNONYMS.iter().position(|synonym| *synonym == word) {
+        return Some((Dof::ALL[k], ""));
+    }
+    let starts = std::iter::once(word).chain(DECORATIONS.iter().filter_map(|d| word.strip_prefix(d)));
+    starts.into_iter().find_map(|rest| {
+        let (dof, tail) = Dof::ALL.into_iter().find_map(|dof| Some((dof, rest.strip_prefix(dof.name())?)))?;
+        let known = tail.is_empty()
+            || DECORATIONS.contains(&tail)
+            || UNITS.iter().any(|(symbol, _)| symbol.eq_ignore_ascii_case(tail));
+        known.then_some((dof, tail))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn read(name: &str) -> Result<Option<(Dof, Unit)>, Fault> {
+        let text = "[connector]\nfamily = \"pyramid\"\nwidth = 50\nunit = \"mm\"\n";
+        column(name, &crate::design::read(text, Path::new("")).unwrap().design)
+    }
+
+    #[test]
+    fn plain_forms_are_read() {
+        let mm = Unit::Length(LengthUnit::Mm);
+        for name in ["x_mm", "x [mm]", "x (mm)", "x[mm]", "x  ( mm )"] {
+            assert_eq!(read(name), Ok(Some((Dof::X, mm))), "{name}");
+        }
+        assert_eq!(read("pitch (deg)"), Ok(Some((Dof::Pitch, Unit::Degrees))));
+        assert_eq!(read("y [D]"), Ok(Some((Dof::Y, Unit::D))));
+        assert_eq!(read("yaw"), Ok(Some((Dof::Yaw, Unit::Bare))));
+    }
+
+    #[test]
+    fn near_names_are_refused_with_what_was_meant() {
+        for (name, meant) in [
+            ("x mm", "x_mm"),
+            ("x.mm", "x_mm"),
+            ("X_mm", "x_mm"),
+            ("xmm", "x_mm"),
+            ("x_a_mm", "x_mm"),
+            ("dx", "x"),
+            ("dx_mm", "x_mm"),
+            ("delta_x", "x"),
+            ("deltaX", "x"),
+            ("Δx [mm]", "x_mm"),
+            ("xerr", "x"),
+            ("x1", "x"),
+            ("robot y", "y"),
+            ("ty", "y"),
+            ("rz", "yaw"),
+            ("rol", "roll"),
+            ("rol_deg", "roll_deg"),
+            ("Pitch (deg)", "pitch_deg"),
+            ("PITCH", "pitch"),
+            ("yawdeg", "yaw_deg"),
+            ("d_ptich", "pitch"),
+        ] {
+            let fault = read(name).expect_err(name);
+            let help = format!("did you mean {meant}? A column to be carried through needs another name");
+            assert_eq!(fault.help.as_deref(), Some(help.as_str()), "{name}");
+        }
+        for (name, said) in [("x_ft", "unknown unit"), ("x [ft]", "unknown unit"), ("x (deg)", "is a length")]
+        {
+            assert!(read(name).unwrap_err().message.contains(said), "{name}");
+        }
+        for name in ["outcome", "final_x", "final_x [mm]", "final_yaw_deg"] {
+            assert!(read(name).unwrap_err().message.contains("the answer adds"), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_show_is_refused_and_not_repeated() {
+        for name in ["\u{feff}x", "x\0", "pa\0rt", "\x1b[2J", "note\nmore", "x\u{200b}", "\u{202e}x"] {
+            let fault = read(name).expect_err(name);
+            assert!(!fault.message.contains(is_hidden), "{name:?}");
+        }
+        assert!(read(&"part".repeat(100)).is_err());
+    }
+
+    #[test]
+    fn other_names_are_carried_through() {
+        for name in [
+            "part",
+            "time",
+            "index",
+            "max",
+            "id",
+            "result",
+            "success",
+            "min",
+            "date",
+            "robot",
+            "trial no.",
+            "comment",
+            "force [N]",
+            "operator",
+            "type",
+            "day",
+            "temp_in",
+            "",
+            "Prüfer",
+            "tray",
+            "proxy",
+            "matrix",
+            "exit",
+        ] {
+            assert_eq!(read(name), Ok(None), "{name}");
+        }
+    }
+}

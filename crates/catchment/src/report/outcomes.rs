@@ -1,0 +1,146 @@
+//! What became of listed pose errors: the table as it came with what was found out, or JSON.
+
+use crate::acceptance::{Acceptance, Outcome};
+use crate::design::Design;
+use crate::method::Method;
+use crate::method::descent::End;
+use crate::pose::PoseError;
+use crate::poses::{OffsetsAt, PoseTable};
+use crate::problem::Problem;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Version of the JSON.
+const JSON_SCHEMA: u32 = 1;
+
+/// The outcomes of a table of poses.
+#[derive(Debug)]
+pub struct OutcomesReport<'a> {
+    /// The design.
+    pub design: &'a Design,
+    /// The poses.
+    pub table: &'a PoseTable<'a>,
+    /// Settings of the method.
+    pub settings: serde_json::Value,
+    /// What the method found, for the poses of the table.
+    pub acceptance: &'a Acceptance,
+    /// Where each motion ended.
+    pub ends: &'a [End],
+    /// Doubts about the answer.
+    pub warnings: Vec<String>,
+}
+
+/// The answer for programs; lengths in D, angles in radians.
+#[derive(Serialize)]
+struct Answer<'a> {
+    schema: u32,
+    design: &'a Design,
+    method: &'static str,
+    /// Where the offsets of errors are measured, if not at the face centre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    offsets_at: Option<OffsetsAt>,
+    settings: &'a serde_json::Value,
+    counts: BTreeMap<&'static str, usize>,
+    warnings: &'a [String],
+    poses: Vec<Row>,
+}
+
+/// One pose.
+#[derive(Serialize)]
+struct Row {
+    error: PoseError,
+    outcome: Outcome,
+    #[serde(rename = "final")]
+    last: PoseError,
+    /// Columns that were carried through.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    carried: BTreeMap<String, String>,
+}
+
+impl<'a> OutcomesReport<'a> {
+    /// What a method found for the poses of a table.
+    pub fn new(
+        problem: &'a Problem,
+        table: &'a PoseTable<'a>,
+        method: &Method,
+        acceptance: &'a Acceptance,
+        ends: &'a [End],
+    ) -> Self {
+        let doubts = problem.doubts().iter().map(ToString::to_string);
+        let warnings = doubts.chain(acceptance.warnings.iter().map(ToString::to_string)).collect();
+        Self { design: problem.design(), table, settings: method.settings(), acceptance, ends, warnings }
+    }
+
+    /// The table as it came, with the outcome and the final errors in the units of their columns.
+    ///
+    /// # Errors
+    /// If a row cannot be written, which text in memory gives no reason for.
+    pub fn to_csv(&self) -> Result<String, csv::Error> {
+        let mut bytes = Vec::new();
+        let mut writer = csv::Writer::from_writer(&mut bytes);
+        let mut header = self.table.header();
+        header.push("outcome".to_owned());
+        header.extend(self.table.names().map(|name| format!("final_{name}")));
+        writer.write_record(&header)?;
+        for (mut row, end) in self.table.rows().zip(self.ends) {
+            row.push(end.outcome.name().to_owned());
+            row.extend(self.table.in_units(&end.error).map(number));
+            writer.write_record(&row)?;
+        }
+        writer.flush()?;
+        std::mem::drop(writer);
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
+    /// The answer for programs: lengths in D, angles in radians, offsets at the point where the table has them.
+    ///
+    /// # Errors
+    /// If a number cannot be told in JSON.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        let carried = self.table.carried();
+        let at = self.table.offsets_at();
+        let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
+        let poses = self.table.rows().zip(self.table.errors()).zip(self.ends);
+        let poses = poses.map(|((row, error), end)| Row {
+            error: measured(error),
+            outcome: end.outcome,
+            last: measured(&end.error),
+            carried: carried.iter().map(|(k, name)| (name.clone(), row[*k].clone())).collect(),
+        });
+        let counts = Outcome::ALL.iter().map(|outcome| outcome.name()).zip(self.acceptance.counts());
+        let answer = Answer {
+            schema: JSON_SCHEMA,
+            design: self.design,
+            method: self.acceptance.method,
+            offsets_at: (at != OffsetsAt::Face).then_some(at),
+            settings: &self.settings,
+            counts: counts.collect(),
+            warnings: &self.warnings,
+            poses: poses.collect(),
+        };
+        let mut text = serde_json::to_string_pretty(&answer)?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// How many met which outcome, and which columns were carried through: a line each.
+    pub fn summary(&self) -> Vec<String> {
+        let count = self.acceptance.outcomes.len();
+        let counts = Outcome::ALL.iter().zip(self.acceptance.counts());
+        let parts: Vec<String> = counts.map(|(o, n)| format!("{n} {}", o.name())).collect();
+        let poses = if count == 1 { "pose" } else { "poses" };
+        let mut lines = vec![format!("{count} {poses}: {}", parts.join(", "))];
+        let shown = |(_, name): (usize, String)| if name.is_empty() { "(no name)".to_owned() } else { name };
+        let carried: Vec<String> = self.table.carried().into_iter().map(shown).collect();
+        if !carried.is_empty() {
+            lines.push(format!("carried through: {}", carried.join(", ")));
+        }
+        lines
+    }
+}
+
+/// A number with all its digits, as tables for programs have it.
+fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
+}
