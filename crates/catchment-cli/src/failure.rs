@@ -1,8 +1,9 @@
 //! Why a command could not do its work, and how that is shown.
 
+use crate::advice;
 use crate::exec_args;
 use crate::exit::ExitStatus;
-use miette::Report;
+use miette::{MietteDiagnostic, Report};
 use std::io::Write;
 
 /// Reports for stderr; `?` makes one of any error.
@@ -21,7 +22,7 @@ impl Failure {
 
     /// One message with advice.
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        let mut diagnostic = miette::MietteDiagnostic::new(message);
+        let mut diagnostic = MietteDiagnostic::new(message);
         diagnostic.help = help;
         Self { reports: vec![Report::new(diagnostic)], closing: None, broken_pipe: false }
     }
@@ -63,6 +64,10 @@ impl Failure {
 
 impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
-        Self { reports: vec![Report::from_err(error)], closing: None, broken_pipe: false }
+        let report = match advice::of(&error) {
+            Some(help) => Report::new(MietteDiagnostic::new(error.to_string()).with_help(help)),
+            None => Report::from_err(error),
+        };
+        Self { reports: vec![report], closing: None, broken_pipe: false }
     }
 }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use catchment::exec::Exec;
 use catchment::report::figure::Picture;
-use catchment::report::{write, zarr};
+use catchment::report::{csv, write, zarr};
 use std::fmt::Display;
 use std::path::Path;
 
@@ -37,15 +37,6 @@ pub(crate) fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec)
         write::file(&folder.join(name), bytes)?;
     }
     Ok(())
-}
-
-/// Records as CSV.
-pub(crate) fn csv(records: &[Vec<String>]) -> Result<Vec<u8>, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for record in records {
-        writer.write_record(record)?;
-    }
-    Ok(writer.into_inner()?)
 }
 
 /// What a study writes into its folder: `report.json`, a picture and a table of one name, perhaps Zarr groups.

@@ -1,6 +1,7 @@
 //! How a computation runs: threads, cancel, progress, memory budget. Nothing here may change a bit of a
 //! result; what may change the answer is a room's `Settings`.
 
+use crate::advice::{Advice, Advised};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,7 +23,8 @@ pub struct OutOfBudget {
     /// Bytes it may use.
     pub budget: u64,
     /// What to do about it.
-    pub advice: String,
+    #[source]
+    pub advice: Advised,
 }
 
 /// A byte count that prints in the unit a person would choose.
@@ -157,13 +159,13 @@ impl Exec {
         &self,
         what: &'static str,
         needed: u64,
-        advice: impl FnOnce(u64) -> String,
+        advice: impl FnOnce(u64) -> Vec<Advice>,
     ) -> Result<(), OutOfBudget> {
         let budget = self.memory_budget();
         if needed <= budget {
             return Ok(());
         }
-        Err(OutOfBudget { what, needed, budget, advice: advice(budget) })
+        Err(OutOfBudget { what, needed, budget, advice: Advised(advice(budget)) })
     }
 }
 
@@ -184,12 +186,15 @@ mod tests {
     #[test]
     fn a_need_beyond_the_budget_is_refused_with_advice() {
         let exec = Exec::new().with_memory_budget(1000);
-        assert!(exec.reserve("a grid", 1000, |_| String::new()).is_ok());
-        let error = exec.reserve("a grid", 3 << 20, |budget| format!("use {budget} bytes")).unwrap_err();
+        assert!(exec.reserve("a grid", 1000, |_| Vec::new()).is_ok());
+        let error =
+            exec.reserve("a grid", 3 << 20, |_| vec![Advice::CoarserGrid, Advice::MoreMemory]).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "a grid needs 3.0 MiB of memory, more than the 1000 B allowed; use 1000 bytes"
+            "a grid needs 3.0 MiB of memory, more than the 1000 B allowed; use a coarser grid, or allow more memory"
         );
+        let advice = std::error::Error::source(&error).and_then(|source| source.downcast_ref::<Advised>());
+        assert_eq!(advice, Some(&Advised(vec![Advice::CoarserGrid, Advice::MoreMemory])));
     }
 
     #[test]

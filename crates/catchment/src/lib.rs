@@ -94,6 +94,7 @@
 //! [`acceptance::Warning`]s. The file `docs/limits.md` of the source tree has the whole list.
 
 pub mod acceptance;
+pub mod advice;
 pub mod connector;
 pub mod contact;
 pub mod design;

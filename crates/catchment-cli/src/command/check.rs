@@ -5,12 +5,9 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::geometry::Built;
 use crate::output::to_stdout;
-use crate::source::{Finding, Input, InputError, SourceText};
-use catchment::design::{ConnectorSpec, HalfSpec};
-use catchment::pose::{Dof, DofSet};
+use crate::source::{Finding, InputError, SourceText};
+use catchment::report::{CheckReport, Place, ProblemReport};
 use clap::Args;
-use serde_json::json;
-use std::fmt::Write;
 
 /// Check a design file: all problems at once, with their places
 #[derive(Debug, Args)]
@@ -25,15 +22,21 @@ pub(crate) struct CheckArgs {
     json: bool,
 }
 
-/// Version of the JSON that `--json` prints.
-const JSON_SCHEMA: u32 = 1;
-
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let checked = checked(&args.design);
     if args.json {
-        return print_json(checked);
+        let (report, status) = match checked {
+            Ok(built) => (good(&built), ExitStatus::Done),
+            Err(InputError::Findings { source, findings, omitted }) => {
+                let problems = findings.into_iter().map(|finding| problem(&source, finding)).collect();
+                (CheckReport::bad(source.path(), problems, omitted), ExitStatus::Failed)
+            }
+            Err(error @ InputError::Load(_)) => return Err(error.into()),
+        };
+        to_stdout(&report.to_json()?)?;
+        return Ok(status);
     }
-    to_stdout(&summary(&checked?)?)?;
+    to_stdout(&good(&checked?).table())?;
     Ok(ExitStatus::Done)
 }
 
@@ -45,106 +48,15 @@ fn checked(args: &DesignArgs) -> Result<Built, InputError> {
     if findings.is_empty() { Ok(built) } else { Err(built.input.refused(findings)) }
 }
 
-fn print_json(checked: Result<Built, InputError>) -> Result<ExitStatus, Failure> {
-    let (report, status) = match checked {
-        Ok(Built { input, connector }) => {
-            let report = json!({
-                "schema": JSON_SCHEMA,
-                "file": input.source.path(),
-                "ok": true,
-                "design": input.design,
-                "ungendered": connector.ungendered(input.design.alignment.mount),
-                "problems": [],
-                "omitted": 0,
-            });
-            (report, ExitStatus::Done)
-        }
-        Err(InputError::Findings { source, findings, omitted }) => {
-            let problems: Vec<_> = findings.iter().map(|finding| finding_json(&source, finding)).collect();
-            let report = json!({
-                "schema": JSON_SCHEMA,
-                "file": source.path(),
-                "ok": false,
-                "problems": problems,
-                "omitted": omitted,
-            });
-            (report, ExitStatus::Failed)
-        }
-        Err(error @ InputError::Load(_)) => return Err(error.into()),
-    };
-    to_stdout(&format!("{report:#}\n"))?;
-    Ok(status)
+fn good(Built { input, connector }: &Built) -> CheckReport {
+    let design = &input.design;
+    CheckReport::good(input.source.path(), design, connector.ungendered(design.alignment.mount))
 }
 
-fn finding_json(source: &SourceText, finding: &Finding) -> serde_json::Value {
-    let place = finding.span.as_ref().map(|span| {
+fn problem(source: &SourceText, Finding { message, help, span }: Finding) -> ProblemReport {
+    let place = span.map(|span| {
         let (line, column) = source.line_column(span.start);
-        json!({ "line": line, "column": column, "bytes": [span.start, span.end] })
+        Place { line, column, bytes: [span.start, span.end] }
     });
-    json!({ "message": finding.message, "help": finding.help, "place": place })
-}
-
-/// The design as understood, for a person: degrees, and lengths in the design's unit beside D.
-fn summary(built: &Built) -> Result<String, std::fmt::Error> {
-    let Input { design, source, .. } = &built.input;
-    let alignment = &design.alignment;
-    let length = |d: f64| match design.unit {
-        Some(unit) => format!("{d} D = {} {}", rounded(d * design.width), unit.symbol()),
-        None => format!("{d} D"),
-    };
-    let mut text = String::new();
-    writeln!(text, "{}: no problems", source.path().display())?;
-    writeln!(text, "  name                {}", design.name)?;
-    match &design.connector {
-        ConnectorSpec::Family(spec) => {
-            writeln!(text, "  connector           {}, H/D = {}", spec.family.name(), spec.aspect_ratio)?;
-        }
-        ConnectorSpec::Own(own) => {
-            writeln!(text, "  fixed half          {}", half(&own.fixed))?;
-            writeln!(text, "  moving half         {}", half(&own.moving))?;
-        }
-    }
-    let alike = if built.connector.ungendered(alignment.mount) { "alike (ungendered)" } else { "different" };
-    writeln!(text, "  halves              {alike}")?;
-    match design.unit {
-        Some(unit) => writeln!(text, "  width D             {} {}", design.width, unit.symbol())?,
-        None => writeln!(text, "  width D             {} (dimensionless)", design.width)?,
-    }
-    writeln!(text, "  free                {}", names(alignment.free))?;
-    if !alignment.dont_care.is_empty() {
-        writeln!(text, "  does not matter     {}", names(alignment.dont_care))?;
-    }
-    writeln!(text, "  centre of rotation  {}", length(alignment.center_of_rotation))?;
-    writeln!(text, "  rotation length     {}", length(alignment.rotation_length))?;
-    if alignment.symmetry > 1 {
-        writeln!(text, "  symmetry            {}-fold", alignment.symmetry)?;
-    }
-    for dof in alignment.free.iter() {
-        let half_range = alignment.half_range(dof);
-        let range = if dof.is_rotation() {
-            format!("{} deg", rounded(half_range.to_degrees()))
-        } else {
-            length(half_range)
-        };
-        writeln!(text, "  error in {:<10} up to {range}", dof.name())?;
-    }
-    Ok(text)
-}
-
-fn half(half: &HalfSpec) -> String {
-    match half {
-        HalfSpec::Pieces(pieces) if pieces.len() == 1 => "1 convex piece".to_owned(),
-        HalfSpec::Pieces(pieces) => format!("{} convex pieces", pieces.len()),
-        HalfSpec::Mesh { path, .. } => format!("mesh {}", path.display()),
-    }
-}
-
-fn names(set: DofSet) -> String {
-    set.iter().map(Dof::name).collect::<Vec<_>>().join(", ")
-}
-
-/// Without the last digits, which the conversion of units leaves.
-fn rounded(value: f64) -> f64 {
-    const DIGITS: f64 = 1e9;
-    (value * DIGITS).round() / DIGITS
+    ProblemReport { message, help, place }
 }

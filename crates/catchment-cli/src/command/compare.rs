@@ -111,7 +111,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
     });
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let report = ComparisonReport::new([first, second], &paired, comparison, Some(timing));
-    let json = serde_json::to_string_pretty(&report)? + "\n";
+    let json = report.to_json()?;
     let mut notes = Vec::new();
     if let (Some(folder), Some(picture)) = (&folder, picture) {
         let mut pictures = Files::new();

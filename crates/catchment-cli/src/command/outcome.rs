@@ -5,13 +5,15 @@ use crate::drop_args::DropArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{OutputArgs, number, to_stderr};
+use crate::output::{OutputArgs, to_stderr};
 use crate::poses::Poses;
 use catchment::acceptance::{Acceptance, Domain, Outcome};
 use catchment::design::Design;
 use catchment::method::descent::{self, End};
 use catchment::method::drop;
 use catchment::pose::PoseError;
+use catchment::report::schema::WarningReport;
+use catchment::report::{Body, Envelope, number};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -58,9 +60,6 @@ enum Method {
     /// Three drop tests in a rigid-body engine
     Drop,
 }
-
-/// Version of the JSON that `--json` prints.
-const JSON_SCHEMA: u32 = 1;
 
 pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     args.output.check()?;
@@ -120,13 +119,15 @@ fn csv(design: &Design, poses: &Poses, ends: &[End]) -> Result<String, Failure> 
 /// The answer for programs; lengths in D, angles in radians.
 #[derive(Serialize)]
 struct Answer<'a> {
-    schema: u32,
     design: &'a Design,
     method: &'static str,
     settings: serde_json::Value,
     counts: BTreeMap<&'static str, usize>,
-    warnings: &'a [String],
     poses: Vec<Row>,
+}
+
+impl Body for Answer<'_> {
+    const KIND: &'static str = "outcome";
 }
 
 /// One pose.
@@ -157,15 +158,12 @@ fn json(
         carried: carried.iter().map(|(k, name)| (name.clone(), record[*k].to_owned())).collect(),
     });
     let answer = Answer {
-        schema: JSON_SCHEMA,
         design,
         method: acceptance.method,
         settings,
         counts: Outcome::ALL.iter().map(|outcome| outcome.name()).zip(acceptance.counts()).collect(),
-        warnings,
         poses: rows.collect(),
     };
-    let mut text = serde_json::to_string_pretty(&answer)?;
-    text.push('\n');
-    Ok(text)
+    let doubts = warnings.iter().cloned().map(WarningReport::note).collect();
+    Ok(Envelope::of(answer, doubts, None).to_json()?)
 }

@@ -97,7 +97,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let found = compute(&pair, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     let report = SlicesReport::new(design, &found, settings, Some(timing));
-    let json = serde_json::to_string_pretty(&report)? + "\n";
+    let json = report.to_json()?;
     let mut notes: Vec<String> = doubts.into_iter().map(|doubt| format!("warning: {doubt}")).collect();
     if let Some(folder) = &folder {
         let picture = figure::slice_matrix(design, &built.connector, &found)?;

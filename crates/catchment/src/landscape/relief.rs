@@ -13,6 +13,7 @@
 
 use super::heights::{lateral_lattice, usable};
 use super::{Fold, Grid, LandscapeError, Resolution};
+use crate::advice::Advice;
 use crate::contact::{Envelope, Pair};
 use crate::exec::Exec;
 use crate::pose::{self, Dof};
@@ -97,7 +98,7 @@ impl Relief {
             let share = kept as f64 / grid.len() as f64;
             let budget = (budget as f64 / share) as u64;
             let largest = Resolution::largest_that_fits(budget, Self::BYTES_PER_CELL, grid.axes.len());
-            format!("use at most --resolution {largest}")
+            vec![Advice::AtMostResolution(largest)]
         })?;
         let mut heights = vec![0f32; kept];
         let mut carriers = vec![0u16; kept];

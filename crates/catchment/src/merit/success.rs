@@ -25,7 +25,7 @@ use std::f64::consts::{SQRT_2, TAU};
 /// How pose errors are distributed. Five numbers are in the order of [`Dof::ALL`], in D and radians; 0 for errors that do
 /// not occur.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Distribution {
     /// Independent normal errors.
     Normal {

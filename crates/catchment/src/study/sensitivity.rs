@@ -19,6 +19,7 @@
 
 use super::pose_bytes;
 use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::advice::Advice;
 use crate::connector::Connector;
 use crate::contact::Pair;
 use crate::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
@@ -174,7 +175,7 @@ pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitiv
     }
     let per_pose = pose_bytes() + 2 * size_of::<PoseError>() as u64 + settings.rotation_lengths.len() as u64;
     exec.reserve("the random poses", per_pose.saturating_mul(settings.poses as u64), |budget| {
-        format!("use at most --samples {}", budget / per_pose)
+        vec![Advice::AtMostSamples(budget / per_pose)]
     })?;
     let mut trials = Trials::new(design, settings, exec);
     let own = trials.follow(design)?;

@@ -16,6 +16,7 @@
 
 use super::pose_bytes;
 use crate::acceptance::{Acceptance, Domain, Warning};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Resolution, ResolutionError};
@@ -111,7 +112,7 @@ pub enum SlicesError {
         dof: Dof,
     },
     /// A resolution for an axis that is not there.
-    #[error("--resolution: {0}")]
+    #[error("resolution: {0}")]
     Resolution(#[from] ResolutionError),
     /// Drop tests refuse.
     #[cfg(feature = "drop")]
@@ -140,7 +141,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Slices, Slic
     let needed = largest.saturating_mul(pose_bytes()).saturating_add(kept);
     exec.reserve("the largest slice", needed, |budget| {
         let fits = Resolution::largest_that_fits(budget, pose_bytes() + planes.len() as u64, 2);
-        format!("use at most --resolution {fits}, or allow more with --memory")
+        vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
     })?;
     let total = planes.len() as f64;
     let slices = planes

@@ -5,6 +5,7 @@
 
 use super::pose_bytes;
 use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, LandscapeError, Resolution};
@@ -126,7 +127,7 @@ impl Decided {
                 let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
                 exec.reserve("the outcome of every cell", cells.saturating_mul(pose_bytes()), |budget| {
                     let fits = Resolution::largest_that_fits(budget, pose_bytes(), grid.axes.len());
-                    format!("at most {fits} cells per axis fit")
+                    vec![Advice::AtMostResolution(fits)]
                 })?;
                 descent::run(pair, Domain::Grid(grid.clone()), &descent::Settings::default(), exec)?.0
             }

@@ -66,7 +66,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let mut report = AgreementReport::new(design, grid.shape(), limit_s, unit, methods, agreement);
     report.timing =
         Some(Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() });
-    let json = serde_json::to_string_pretty(&report)? + "\n";
+    let json = report.to_json()?;
     let mut notes: Vec<String> = doubts.into_iter().map(|doubt| format!("warning: {doubt}")).collect();
     if let Some(folder) = folder {
         let picture = figure::agreement(&report);

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use catchment::acceptance::{Acceptance, Domain, Outcome, Warning};
+use catchment::advice::Advice;
 use catchment::contact::Pair;
 use catchment::design::Design;
 use catchment::exec::Exec;
@@ -121,8 +122,8 @@ pub(crate) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
     let per_cell = per_cell + if heights { Landscape::bytes(1) } else { 0 };
     exec.reserve(what, cells.saturating_mul(per_cell), |budget| {
         match Resolution::largest_that_fits(budget, per_cell, axes) {
-            fits if fits < Resolution::LEAST => "allow more with --memory".to_owned(),
-            fits => format!("use at most --resolution {fits}, or allow more with --memory"),
+            fits if fits < Resolution::LEAST => vec![Advice::MoreMemory],
+            fits => vec![Advice::AtMostResolution(fits), Advice::MoreMemory],
         }
     })?;
     let (mut arrival, mut basins, mut partition) = (None, None, None);

@@ -13,6 +13,7 @@ mod place;
 mod sample;
 mod study;
 
+use crate::advice::flags;
 use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
 use crate::exec_args::ExecArgs;
@@ -29,7 +30,7 @@ use catchment::method::Method;
 use catchment::method::correction::{self, ByNeighbours, Settings, Stop};
 use catchment::method::partition;
 use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{Report, Requirement, table};
+use catchment::report::{Report, Requirement, table_with};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use compute::{Computed, Job};
@@ -231,7 +232,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let written = place.write(&job, &built, &computed, &report, &running.exec)?;
     drop(running);
 
-    let printed = if args.json { to_stdout(&json) } else { to_stdout(&table(&report)) };
+    let printed = if args.json { to_stdout(&json) } else { to_stdout(&table_with(&report, flags)) };
     let mut notes = written;
     let unmet = unmet(&args.require, &serde_json::from_str(&json)?)?;
     let status = if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet };

@@ -7,10 +7,10 @@ use catchment::connector::Connector;
 use catchment::contact::Pair;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, GridAxis};
-use catchment::merit::onaa::Onaa;
 use catchment::merit::slice;
 use catchment::method::Method;
 use catchment::pose::{CorPose, Dof, PoseError};
+use catchment::report::Report;
 use catchment::report::figure::{self, FigureError, Picture, Placement};
 
 /// Names of all pictures there can be, without ending.
@@ -30,6 +30,7 @@ pub(super) fn draw(
     job: &Job,
     connector: &Connector,
     computed: &Computed,
+    report: &Report,
     exec: &Exec,
 ) -> Result<Drawn, Failure> {
     let mut drawn = Vec::new();
@@ -53,21 +54,20 @@ pub(super) fn draw(
         let map = own.unwrap_or(acceptance);
         let Some(grid) = map.grid() else { return Ok((drawn, left_out)) };
         let landscape = computed.landscape.as_ref().filter(|landscape| landscape.grid == *grid);
-        let onaa = Onaa::of(acceptance, exec)?;
         let height = |cell: usize| match landscape {
             Some(landscape) => f64::from(landscape.heights[cell]),
             None => height_of(job.pair, &grid.pose(cell)),
         };
         let zero = PoseError::default();
-        keep("overview", figure::overview(design, connector, acceptance, &onaa, map, &height, pair))?;
-        keep("slices", figure::slices(design, acceptance, &onaa, &finer, &[], &zero))?;
-        keep("heights", figure::heights(design, map, &height, pair, &zero))?;
+        keep("overview", figure::overview(report, connector, acceptance, map, &height, pair))?;
+        keep("slices", figure::slices(report, acceptance, &finer, &[], &zero))?;
+        keep("heights", figure::heights(report, map, &height, pair, &zero))?;
     }
     if let Some(basins) = &computed.basins {
-        keep("basins", figure::basins(design, acceptance, basins))?;
+        keep("basins", figure::basins(report, acceptance, basins))?;
     }
     if let Some(partition) = &computed.partition {
-        keep("partition", figure::partition(design, partition, acceptance))?;
+        keep("partition", figure::partition(report, partition, acceptance))?;
     }
     exec.check()?;
     let lifted = Placement::mated(design, LIFT);

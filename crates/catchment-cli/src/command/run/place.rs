@@ -89,7 +89,7 @@ impl Places<'_> {
         let mut notes = Vec::new();
         let mut pictures = Vec::new();
         if self.folder.is_some() || self.figures.is_some() {
-            let (drawn, left_out) = pictures::draw(job, &built.connector, computed, exec)?;
+            let (drawn, left_out) = pictures::draw(job, &built.connector, computed, report, exec)?;
             pictures = encode(&drawn, exec)?;
             notes = left_out;
         }

@@ -79,7 +79,6 @@ pub enum CorrectionError {
 
 /// What was seen in one stratum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Stratum {
     /// What it holds.
     pub name: String,

@@ -7,11 +7,11 @@
 use super::{Report, WarningReport};
 use crate::acceptance::Warning;
 use crate::method::correction::{Corrected, Stratum};
+use crate::report::Envelope;
 use serde::{Deserialize, Serialize};
 
 /// Random poses, followed exactly, that the Sum and its interval come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct SampleReport {
     /// Name of the method that followed them.
     pub method: String,
@@ -29,18 +29,19 @@ impl Report {
     /// Replaces the Sum by the corrected one. `settings` are those of the descents, `seed` that of their poses.
     #[must_use]
     pub fn with_sample(mut self, corrected: &Corrected, seed: u64, settings: serde_json::Value) -> Self {
-        let acceptance = &mut self.acceptance;
+        let Envelope { body, warnings, .. } = &mut self;
+        let acceptance = &mut body.acceptance;
         let Corrected { sum, ci95, fraction, descents, .. } = *corrected;
         let sum_grid = acceptance.sum_grid;
         if !(ci95[0]..=ci95[1]).contains(&sum_grid) {
-            self.warnings.push(WarningReport::from(Warning::OutsideSample { sum_grid, ci95 }));
+            warnings.push(WarningReport::from(Warning::OutsideSample { sum_grid, ci95 }));
         }
         acceptance.sum = sum;
         acceptance.sum_ci95 = Some(ci95);
         acceptance.fraction = fraction;
         acceptance.sample = Some(SampleReport {
             // Drop tests are corrected by drop tests, everything else by descents.
-            method: if self.method == "drop" { "drop" } else { "descent" }.to_owned(),
+            method: if body.method == "drop" { "drop" } else { "descent" }.to_owned(),
             settings,
             seed,
             descents,
@@ -88,7 +89,7 @@ mod tests {
             assert_eq!((report.acceptance.sum, report.acceptance.sum_grid), (sum, cells));
             assert_eq!(report.acceptance.fraction, sum / 4.0);
             assert_eq!(report.acceptance.sum_ci95, Some([sum - 0.1, sum + 0.2]));
-            let sample = report.acceptance.sample.unwrap();
+            let sample = report.body.acceptance.sample.unwrap();
             assert_eq!((sample.seed, sample.descents, sample.strata[0].aligned), (5, 9, 4));
         }
     }
