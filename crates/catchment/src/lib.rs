@@ -82,7 +82,7 @@
 //! - [`report`]: JSON, text, pictures, Zarr.
 //!
 //! [`pose`] owns frames, signs and the order of angles; [`exec`] owns threads, cancelling, progress and the
-//! memory budget, none of which changes a bit of a result. [`polytope`] is the geometry of convex sets in up to six
+//! memory budget, none of which changes a bit of a result; [`advice`] is what helps where they refuse. [`polytope`] is the geometry of convex sets in up to six
 //! dimensions.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.

@@ -57,19 +57,32 @@ fn every_json_has_one_head_and_its_fields() {
 #[test]
 fn names_do_not_steer_the_terminal() {
     let home = home();
-    let evil = "name = \"a\\u001b[2J<&\\u0000\\u202e\"\n".to_owned() + super::V_FACE;
-    std::fs::write(home.path().join("evil.toml"), evil).unwrap();
-    let small: &[&str] = &["--resolution", "8", "--samples", "50"];
-    for args in [
-        &["check", "evil.toml"][..],
-        &["zraa", "evil.toml"],
-        &["trace", "evil.toml", "--pose", "x=0.2"],
-        &[&["run", "evil.toml", "-o", "out"], small].concat(),
-        &["slices", "evil.toml", "--resolution", "8"],
-        &["compare", "out", "evil.toml", "--methods", "flood"],
-    ] {
+    let place = |name: &str| home.path().join(name);
+    let quiet = |args: &[&str]| {
         let told = super::run(home.path(), args);
         let steers = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
         assert!(told.starts_with("exit 0\n") && !told.contains(steers), "{args:?}: {told:?}");
-    }
+    };
+    std::fs::write(place("evil.toml"), "name = \"a\\u202e<&\"\n".to_owned() + super::V_FACE).unwrap();
+    std::fs::copy(place("evil.toml"), place("b\u{1b}[2J.toml")).unwrap();
+    quiet(&["check", "b\u{1b}[2J.toml"]);
+    quiet(&["zraa", "evil.toml"]);
+    quiet(&[
+        "run",
+        "evil.toml",
+        "--method",
+        "flood",
+        "--resolution",
+        "8",
+        "--samples",
+        "0",
+        "-o",
+        "out.zarr",
+    ]);
+    // A stored result comes from anywhere.
+    let root = place("out.zarr/zarr.json");
+    let text = std::fs::read_to_string(&root).unwrap();
+    assert!(text.contains("a\u{202e}<&"));
+    std::fs::write(&root, text.replace("a\u{202e}<&", "a\\u001b[2J\\u0000")).unwrap();
+    quiet(&["compare", "out.zarr", "out.zarr"]);
 }

@@ -85,11 +85,8 @@ pub fn basins(
         }
     };
     let accepted = 100.0 * acceptance.counts()[0] as f64 / total;
-    let story = format!(
-        "{} % of the cells accepted at a depth tolerance of {} {unit}{why}",
-        short(accepted),
-        shown(tolerance)
-    );
+    let story =
+        format!("{} % accepted at a depth tolerance of {} {unit}{why}", short(accepted), shown(tolerance));
     svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
     let (minima, merged) = (hierarchy.tree.minima.len(), hierarchy.basins.len());
     let story =
@@ -238,10 +235,7 @@ mod tests {
         let report = report_of(&design, &acceptance);
         let picture = basins(&report, &acceptance, &hierarchy).unwrap();
         look("basins", &picture);
-        assert!(
-            picture.svg().contains("of the cells accepted at a depth tolerance of")
-                && !picture.svg().contains("NaN")
-        );
+        assert!(picture.svg().contains("accepted at a depth tolerance of") && !picture.svg().contains("NaN"));
         assert_eq!(picture, basins(&report, &acceptance, &hierarchy).unwrap());
     }
 

@@ -93,7 +93,8 @@ mod tests {
         );
         assert!(message("\"method\": \"flood\"", "\"method\": \"guess\"").contains("`guess` is not known"));
         assert!(message("\"cells\": 7", "\"cells\": 8").contains("its outcomes are over [7, 7, 7] cells"));
-        assert!(message("\"onaa\"", "\"onna\"").contains("its report cannot be read: missing field `onaa`"));
+        let lacking = message("\"acceptance\"", "\"acceptence\"");
+        assert!(lacking.contains("its report cannot be read: missing field `acceptance`"), "{lacking}");
         let newer = message("\"schema\": 3", "\"schema\": 4");
         assert!(newer.contains("written by a newer version of catchment: its schema is 4"), "{newer}");
         assert!(message("\"catchment\": 1,", "").contains("not written by this program"));
