@@ -1,5 +1,6 @@
 //! Why a command could not do its work, and how that is shown.
 
+use crate::advice;
 use crate::exec_args;
 use crate::exit::ExitStatus;
 use catchment::design::Findings;
@@ -79,7 +80,11 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
             return Self::of_findings(findings);
         }
         let Some(error) = error else { return Self::many(Vec::new(), None) };
-        Self { reports: vec![Report::from_err(error)], closing: None, broken_pipe: false }
+        let report = match advice::of(&error) {
+            Some(help) => Report::new(MietteDiagnostic::new(error.to_string()).with_help(help)),
+            None => Report::from_err(error),
+        };
+        Self { reports: vec![report], closing: None, broken_pipe: false }
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Data goes to stdout, everything else to stderr. Exit codes: see [`exit::ExitStatus`].
 
+mod advice;
 mod args;
 mod command;
 mod drop_args;

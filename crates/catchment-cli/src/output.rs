@@ -2,6 +2,7 @@
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
+use catchment::report::printable;
 use clap::Args;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -103,14 +104,8 @@ pub(crate) fn to_stderr(lines: &[String]) {
     let mut stderr = io::stderr().lock();
     for line in lines {
         // Nobody is left to tell when stderr itself is gone.
-        let _ = writeln!(stderr, "{line}");
+        let _ = writeln!(stderr, "{}", printable(line));
     }
-}
-
-/// A number with all its digits, as tables for programs have it.
-pub(crate) fn number(value: f64) -> String {
-    let text = format!("{value:?}");
-    text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
 }
 
 /// Writes a file under a temporary name beside its place and moves it there when it is complete.

@@ -11,6 +11,7 @@
 
 mod random;
 
+use crate::advice::Advice;
 use crate::design::Alignment;
 use crate::landscape::Grid;
 use crate::pose::{Dof, PoseError};
@@ -152,6 +153,18 @@ pub enum Warning {
     },
 }
 
+impl Warning {
+    /// What helps against it, where something does.
+    pub const fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::TouchesBorder { .. } => Some(Advice::EnlargeErrors),
+            Self::FloodingBias => Some(Advice::Method("descent")),
+            Self::NoInterval => Some(Advice::Samples),
+            _ => None,
+        }
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -166,7 +179,7 @@ impl fmt::Display for Warning {
             Self::FloodingBias => write!(
                 f,
                 "flooding follows grid directions only: its Sum may be several percent off at any resolution, and \
-                 far more on a coarse grid; --method descent is exact at every pose"
+                 far more on a coarse grid; descent is exact at every pose"
             ),
             Self::CutOff => write!(
                 f,
@@ -180,8 +193,8 @@ impl fmt::Display for Warning {
             ),
             Self::NoInterval => write!(
                 f,
-                "the Sum is the measure of the accepted cells, without an interval; --samples 4000, --budget 10s or \
-                 --tolerance 1% gives an unbiased Sum with one"
+                "the Sum is the measure of the accepted cells, without an interval; random poses, followed \
+                 exactly, give an unbiased Sum with one"
             ),
             Self::Ambiguous { cells, of } => write!(
                 f,

@@ -83,7 +83,8 @@
 //! - [`report`]: JSON, text, pictures, Zarr.
 //!
 //! [`pose`] owns frames, signs and the order of angles; [`exec`] owns threads, cancelling, progress and the
-//! memory budget, none of which changes a bit of a result; [`suggest`] knows what a misspelt word meant. [`polytope`] is the geometry of convex sets in up to six
+//! memory budget, none of which changes a bit of a result; [`suggest`] knows what a misspelt word meant, [`advice`] what helps
+//! where something is refused. [`polytope`] is the geometry of convex sets in up to six
 //! dimensions.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
@@ -95,6 +96,7 @@
 //! [`acceptance::Warning`]s. The file `docs/limits.md` of the source tree has the whole list.
 
 pub mod acceptance;
+pub mod advice;
 pub mod connector;
 pub mod contact;
 pub mod design;

@@ -21,7 +21,7 @@ const ROOMS: [&str; 11] = [
     "report",
 ];
 /// What serves every room and knows none.
-const SERVANTS: [&str; 3] = ["pose", "exec", "suggest"];
+const SERVANTS: [&str; 4] = ["pose", "exec", "suggest", "advice"];
 
 /// A room that imports one it must not know.
 #[derive(Debug, PartialEq)]

@@ -63,7 +63,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
     let running = args.exec.start()?;
     let exec = &running.exec;
     let Found { report, picture } = compare(subjects, args.resolution, folder.is_some(), exec)?;
-    let json = serde_json::to_string_pretty(&report)? + "\n";
+    let json = report.to_json()?;
     let mut notes = Vec::new();
     if let (Some(folder), Some(picture)) = (&folder, picture) {
         let mut pictures = Files::new();

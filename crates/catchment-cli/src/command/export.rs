@@ -5,12 +5,12 @@ use crate::drop_args::DropArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout};
+use catchment::report::folder::has_only;
 use catchment::method::drop::export::{Scene, mjcf, sdf};
 use catchment::poses::parse_pose;
-use catchment::report::folder::has_only;
-use catchment::report::write;
+use catchment::report::schema::WarningReport;
+use catchment::report::{ExportBody, ExportReport, write};
 use clap::Args;
-use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Write a drop test for other engines: MJCF for MuJoCo, SDF for Gazebo
@@ -41,8 +41,6 @@ pub(crate) struct ExportArgs {
     drop: DropArgs,
 }
 
-/// Version of the JSON that `--json` prints.
-const JSON_SCHEMA: u32 = 1;
 const MJCF: &str = "trial.xml";
 const SDF: &str = "trial.sdf";
 
@@ -50,9 +48,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     write::check_folder(&args.output, is_ours)?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
-    let doubts: Vec<String> = problem.doubts().iter().map(ToString::to_string).collect();
     let error = parse_pose(&args.pose, design)
-        .map_err(|refusal| Failure::of_option("--pose", &args.pose, refusal))?;
+        .map_err(|findings| Failure::of_option("--pose", &args.pose, findings))?;
     let settings = args.drop.settings()?;
     let scene = Scene::new(&design.name, pair, &settings, &error)?;
     let world = sdf::write(&scene)?;
@@ -66,16 +63,18 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
         Ok(write::file(&folder.join(MJCF), mjcf::write(&scene).as_bytes())?)
     })?;
     let file = |name: &str| args.output.join(name).display().to_string();
-    if args.json {
-        let answer = json!({
-            "schema": JSON_SCHEMA, "design": design, "settings": settings, "start": error,
-            "mjcf": file(MJCF), "sdf": file(SDF), "meshes": world.meshes.len(),
-        });
-        to_stdout(&format!("{answer:#}\n"))?;
-    } else {
-        to_stdout(&format!("{}\n{}\n", file(MJCF), file(SDF)))?;
-    }
-    to_stderr(&doubts.iter().map(|doubt| format!("warning: {doubt}")).collect::<Vec<_>>());
+    let said: Vec<String> = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
+    let body = ExportBody {
+        design: design.clone(),
+        settings: serde_json::to_value(&settings)?,
+        start: error,
+        mjcf: file(MJCF),
+        sdf: file(SDF),
+        meshes: world.meshes.len(),
+    };
+    let report = ExportReport::new(body, problem.doubts().iter().map(WarningReport::note).collect());
+    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
+    to_stderr(&said);
     Ok(ExitStatus::Done)
 }
 

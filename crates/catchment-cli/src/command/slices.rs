@@ -73,7 +73,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let design = problem.design();
     let report = SlicesReport::new(design, &found, settings, Some(timing));
-    let json = serde_json::to_string_pretty(&report)? + "\n";
+    let json = report.to_json()?;
     let mut notes: Vec<String> = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
     if let Some(folder) = &folder {
         let picture = figure::slice_matrix(design, problem.connector(), &found)?;

@@ -10,7 +10,7 @@ fn two_methods_of_a_design() {
     insta::assert_snapshot!("compare_methods", run(home.path(), &args));
     let report = json(home.path(), &[&args[..], &["--json"]].concat());
     let c = &report["comparison"];
-    assert_eq!((report["study"].as_str(), c["poses"].as_u64()), (Some("comparison"), Some(400)));
+    assert_eq!((report["kind"].as_str(), c["poses"].as_u64()), (Some("comparison"), Some(400)));
     let rows = c["confusion"].as_array().unwrap();
     let count = |value: &serde_json::Value| value.as_u64().unwrap();
     assert_eq!(rows.iter().flat_map(|row| row.as_array().unwrap()).map(count).sum::<u64>(), 400);

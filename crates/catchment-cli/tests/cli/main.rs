@@ -11,6 +11,7 @@ mod plumbing;
 mod poses;
 mod studies;
 mod tables;
+mod wire;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -40,7 +40,7 @@ fn all_slices_of_five_errors_are_written_and_replaced() {
         assert!(names.iter().any(|n| n == name), "{name}");
     }
     let report: Value = serde_json::from_slice(&fs::read(out.join("report.json")).unwrap()).unwrap();
-    assert_eq!((report["study"].as_str(), report["slices"].as_array().unwrap().len()), (Some("slices"), 10));
+    assert_eq!((report["kind"].as_str(), report["slices"].as_array().unwrap().len()), (Some("slices"), 10));
     assert!(report["onaa_estimate"]["optimistic"].is_f64());
     let csv = fs::read_to_string(out.join("slices.csv")).unwrap();
     assert!(csv.starts_with("slice,cells,sum,unit,") && csv.lines().count() == 11, "{csv}");

@@ -1,5 +1,6 @@
 //! How much memory a result may take.
 
+use crate::advice::Advised;
 use std::fmt;
 
 /// A result would not fit in the memory budget.
@@ -13,7 +14,8 @@ pub struct OutOfBudget {
     /// Bytes it may use.
     pub budget: u64,
     /// What to do about it.
-    pub advice: String,
+    #[source]
+    pub advice: Advised,
 }
 
 /// A byte count that prints in the unit a person would choose.

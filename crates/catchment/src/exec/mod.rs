@@ -16,6 +16,7 @@ pub use progress::Progress;
 
 use clock::Deadline;
 use progress::Reporter;
+use crate::advice::{Advice, Advised};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -143,13 +144,13 @@ impl Exec {
         &self,
         what: &'static str,
         needed: u64,
-        advice: impl FnOnce(u64) -> String,
+        advice: impl FnOnce(u64) -> Vec<Advice>,
     ) -> Result<(), OutOfBudget> {
         let budget = self.memory_budget();
         if needed <= budget {
             return Ok(());
         }
-        Err(OutOfBudget { what, needed, budget, advice: advice(budget) })
+        Err(OutOfBudget { what, needed, budget, advice: Advised(advice(budget)) })
     }
 }
 
@@ -169,11 +170,12 @@ mod tests {
     #[test]
     fn a_need_beyond_the_budget_is_refused_with_advice() {
         let exec = Exec::new().with_memory_budget(1000);
-        assert!(exec.ensure_fits("a grid", 1000, |_| String::new()).is_ok());
-        let error = exec.ensure_fits("a grid", 3 << 20, |budget| format!("use {budget} bytes")).unwrap_err();
+        assert!(exec.ensure_fits("a grid", 1000, |_| Vec::new()).is_ok());
+        let advice = vec![Advice::CoarserGrid, Advice::MoreMemory];
+        let error = exec.ensure_fits("a grid", 3 << 20, |_| advice.clone()).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "a grid needs 3.0 MiB of memory, more than the 1000 B allowed; use 1000 bytes"
+            "a grid needs 3.0 MiB of memory, more than the 1000 B allowed; use a coarser grid, or allow more memory"
         );
     }
 

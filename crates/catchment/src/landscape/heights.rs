@@ -2,6 +2,7 @@
 
 use super::backend::{Backend, Fast, slab};
 use super::{Grid, LandscapePart, Resolution};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::pose::Dof;
@@ -39,7 +40,7 @@ pub enum LandscapeError {
     },
     /// At one rotation more pairs of features carry the moving half than can be numbered.
     #[error(
-        "more than {most} features touch at one rotation; use coarser halves, a coarser grid or --method descent"
+        "more than {most} features touch at one rotation; use coarser halves, a coarser grid, or descent, which follows single poses"
     )]
     TooManyPatches {
         /// How many can be numbered.
@@ -129,7 +130,7 @@ fn heights(
     let needed = Landscape::bytes(cells as u64).saturating_add(buffers);
     exec.ensure_fits("the height landscape", needed, |budget| {
         let largest = Resolution::largest_that_fits(budget, size_of::<f32>() as u64, grid.axes.len());
-        format!("use at most --resolution {largest}")
+        vec![Advice::AtMostResolution(largest)]
     })?;
     let mut heights = vec![0.0f32; cells];
     fill(backend, pair, grid, rotations, &mut heights, exec)?;
@@ -257,7 +258,7 @@ mod tests {
         let exec = Exec::new().with_memory_budget(1 << 20);
         let error = Landscape::compute(&pair, &grid, &exec).unwrap_err();
         // 12⁵ × 4 B = 995 328 B fit into 1 MiB.
-        assert!(error.to_string().ends_with("use at most --resolution 12"), "{error}");
+        assert!(error.to_string().ends_with("at most 12 cells per axis fit"), "{error}");
         let grid = Grid::over(&pair.alignment, |_| 1_000_000);
         assert!(matches!(Landscape::compute(&pair, &grid, &exec), Err(LandscapeError::Unusable { .. })));
     }

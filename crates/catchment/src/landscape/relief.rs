@@ -14,6 +14,7 @@
 use super::backend::{lateral, lateral_lattices};
 use super::heights::{usable, within};
 use super::{Fold, Grid, LandscapeError, ReliefPart, Resolution};
+use crate::advice::Advice;
 use crate::contact::{Envelope, Pair};
 use crate::exec::Exec;
 use crate::pose;
@@ -145,7 +146,7 @@ where
         let share = kept as f64 / grid.len() as f64;
         let budget = (budget as f64 / share) as u64;
         let largest = Resolution::largest_that_fits(budget, Relief::BYTES_PER_CELL, grid.axes.len());
-        format!("use at most --resolution {largest}")
+        vec![Advice::AtMostResolution(largest)]
     })?;
     let mut heights = vec![0f32; kept];
     let mut carriers = vec![0u16; kept];

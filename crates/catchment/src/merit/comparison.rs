@@ -128,8 +128,8 @@ pub enum ComparisonError {
     },
     /// The centres of the coarse cells are not centres of the fine ones.
     #[error(
-        "the grids differ along {}: {first} and {second} cells do not share their centres; compute both with --resolution {}={first}, \
-         or one with an odd multiple of the other",
+        "the grids differ along {}: {first} and {second} cells do not share their centres; compute both with {first} cells along {}, or \
+         one with an odd multiple of the other",
         axis.name(), axis.name()
     )]
     Cells {

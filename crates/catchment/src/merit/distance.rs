@@ -9,6 +9,7 @@
 //! units of `spacing`; single precision, 1e-7 of themselves. [`super::brute::squared_distances`] is the definition.
 
 use super::MeritError;
+use crate::advice::Advice;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 
@@ -33,7 +34,7 @@ pub(super) fn squared_distances(
 ) -> Result<Vec<f32>, MeritError> {
     let cells: usize = shape.iter().product();
     exec.ensure_fits("distances to a border", (cells * size_of::<f32>()) as u64, |_| {
-        "lower the resolution, or allow more with --memory".to_owned()
+        vec![Advice::CoarserGrid, Advice::MoreMemory]
     })?;
     exec.install(|| {
         let at = |cell| if marked(cell) { 0.0 } else { f32::INFINITY };

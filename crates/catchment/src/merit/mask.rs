@@ -11,6 +11,7 @@
 
 use super::MeritError;
 use crate::acceptance::Outcome;
+use crate::advice::Advice;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 
@@ -50,7 +51,7 @@ impl Mask {
             words *= cells;
         }
         exec.ensure_fits("the figures of merit", (words * size_of::<u64>()) as u64, |_| {
-            "lower the resolution, or allow more with --memory".to_owned()
+            vec![Advice::CoarserGrid, Advice::MoreMemory]
         })?;
         let mut words = vec![0; words];
         let rows = PIECE.div_ceil(row.max(1));

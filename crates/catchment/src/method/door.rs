@@ -15,6 +15,7 @@
 //! What decides translation alone ([`zraa`](super::zraa)) is not forced in.
 
 use super::descent::End;
+use crate::advice::Advice;
 use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
 use crate::design::{Design, nearest};
@@ -422,8 +423,8 @@ pub fn ensure_fits(
     axes: usize,
     exec: &Exec,
 ) -> Result<(), OutOfBudget> {
-    exec.ensure_fits(what, needed, |budget| match Resolution::largest_that_fits(budget, per_cell, axes) {
-        fits if fits < Resolution::LEAST => "allow more with --memory".to_owned(),
-        fits => format!("use at most --resolution {fits}, or allow more with --memory"),
+    exec.ensure_fits(what, needed, |budget| {
+        let fits = Resolution::largest_that_fits(budget, per_cell, axes);
+        vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
     })
 }

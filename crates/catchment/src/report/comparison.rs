@@ -1,7 +1,9 @@
 //! Two acceptances beside each other, and all methods of a design beside each other: as versioned JSON and as text.
 
-use super::schema::{Axis, Report, SCHEMA, Timing, axes};
-use super::table::{grouped, heading, line, percent, row, significant, wrapped};
+use super::envelope::{Body, Envelope};
+use super::schema::{Axis, Report, Timing, axes};
+use super::table::heading;
+use super::text::{grouped, line, percent, row, significant, wrapped};
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::merit::comparison::{Comparison, Overlap, Paired, Quantiles};
@@ -29,15 +31,12 @@ pub struct Compared {
     pub report: Report,
 }
 
+/// What a comparison has to say, with its head.
+pub type ComparisonReport = Envelope<ComparisonBody>;
+
 /// What a comparison has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ComparisonReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// Version of the program that wrote it.
-    pub catchment: String,
-    /// `comparison`.
-    pub study: &'static str,
+pub struct ComparisonBody {
     /// The first.
     pub first: Compared,
     /// The second.
@@ -46,8 +45,10 @@ pub struct ComparisonReport {
     pub axes: Vec<Axis>,
     /// How they compare.
     pub comparison: Comparison,
-    /// How long it took.
-    pub timing: Option<Timing>,
+}
+
+impl Body for ComparisonBody {
+    const KIND: &'static str = "comparison";
 }
 
 impl ComparisonReport {
@@ -58,16 +59,8 @@ impl ComparisonReport {
         comparison: Comparison,
         timing: Option<Timing>,
     ) -> Self {
-        Self {
-            schema: SCHEMA,
-            catchment: env!("CARGO_PKG_VERSION").to_owned(),
-            study: "comparison",
-            first,
-            second,
-            axes: axes(&paired.first),
-            comparison,
-            timing,
-        }
+        let body = ComparisonBody { first, second, axes: axes(&paired.first), comparison };
+        Envelope::of(body, Vec::new(), timing)
     }
 
     /// The report as text of 80 columns; ends with a line break.
@@ -210,15 +203,12 @@ impl From<Overlap> for Agreement {
     }
 }
 
+/// Every method of a design on one grid, with its head.
+pub type AgreementReport = Envelope<AgreementBody>;
+
 /// Every method of a design on one grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AgreementReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// Version of the program that wrote it.
-    pub catchment: String,
-    /// `methods`.
-    pub study: &'static str,
+pub struct AgreementBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
     /// Cells per axis, by axis.
@@ -227,12 +217,14 @@ pub struct AgreementReport {
     pub time_limit_s: f64,
     /// Unit of the Sums.
     pub unit: String,
-    /// Every method there is.
+    /// Every method there is. Seconds differ between equal runs, and where time stops a method so does its result.
     pub methods: Vec<Decided>,
     /// Of the methods that came to a result, in their order: how each two agree.
     pub agreement: Vec<Vec<Agreement>>,
-    /// How long it took. Seconds differ between equal runs, and where time stops a method so does its result.
-    pub timing: Option<Timing>,
+}
+
+impl Body for AgreementBody {
+    const KIND: &'static str = "methods";
 }
 
 impl AgreementReport {
@@ -259,18 +251,15 @@ impl AgreementReport {
             })
             .collect();
         let overlaps = |row: &Vec<Overlap>| row.iter().map(|overlap| Agreement::from(*overlap)).collect();
-        Self {
-            schema: SCHEMA,
-            catchment: env!("CARGO_PKG_VERSION").to_owned(),
-            study: "methods",
+        let body = AgreementBody {
             design: design.clone(),
             cells: found.cells.clone(),
             time_limit_s: time_limit.as_secs_f64(),
             unit,
             methods,
             agreement: found.overlaps.iter().map(overlaps).collect(),
-            timing,
-        }
+        };
+        Envelope::of(body, Vec::new(), timing)
     }
 
     /// The methods that came to a result, with it.

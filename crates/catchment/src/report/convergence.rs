@@ -1,40 +1,35 @@
 //! A convergence study as versioned JSON and as a table.
 
-use super::schema::{SCHEMA, Timing};
-use super::table::{grouped, heading, line, row, significant, wrapped};
+use super::envelope::{Body, Envelope};
+use super::schema::Timing;
+use super::table::heading;
+use super::text::{grouped, line, row, significant, wrapped};
 use crate::design::Design;
 use crate::study::convergence::{Convergence, StopReason};
 use serde::Serialize;
 
+/// What refinement has to say, with its head.
+pub type ConvergenceReport = Envelope<ConvergenceBody>;
+
 /// What refinement has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ConvergenceReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// Version of the program that wrote it.
-    pub catchment: String,
-    /// `convergence`.
-    pub study: &'static str,
+pub struct ConvergenceBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
     /// The sequences. Seconds differ between equal runs, and where time stops a sequence its length does.
     #[serde(flatten)]
     pub found: Convergence,
-    /// How long it took.
-    pub timing: Option<Timing>,
+}
+
+impl Body for ConvergenceBody {
+    const KIND: &'static str = "convergence";
 }
 
 impl ConvergenceReport {
     /// Of a design.
     pub fn new(design: &Design, found: Convergence, timing: Option<Timing>) -> Self {
-        Self {
-            schema: SCHEMA,
-            catchment: env!("CARGO_PKG_VERSION").to_owned(),
-            study: "convergence",
-            design: design.clone(),
-            found,
-            timing,
-        }
+        let body = ConvergenceBody { design: design.clone(), found };
+        Envelope::of(body, Vec::new(), timing)
     }
 
     /// The report as text of 80 columns; ends with a line break.

@@ -67,18 +67,6 @@ pub fn encode<N: std::fmt::Display>(
     Ok(files)
 }
 
-/// Records as CSV.
-///
-/// # Errors
-/// None at present: every record can be written into memory.
-pub fn csv(records: &[Vec<String>]) -> Result<Vec<u8>, SaveError> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for record in records {
-        writer.write_record(record)?;
-    }
-    writer.into_inner().map_err(|error| SaveError::Csv(error.into_error().into()))
-}
-
 /// Writes files into a folder.
 ///
 /// # Errors
@@ -122,7 +110,7 @@ impl StudyFolder<'_> {
         more: impl FnOnce(&Path) -> Result<(), SaveError>,
     ) -> Result<String, SaveError> {
         let drawn = if files.is_empty() { String::new() } else { format!(", {} as PNG and SVG", self.name) };
-        files.push((format!("{}.csv", self.name), csv(records)?));
+        files.push((format!("{}.csv", self.name), super::text::csv(records)?));
         write::folder(
             self.path,
             |path| self.is_ours(path),

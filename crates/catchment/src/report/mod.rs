@@ -3,22 +3,29 @@
 //! ```text
 //!                 ┌─ schema   versioned JSON: everything that changes the answer, and the answer
 //!   Acceptance ───┼─ table    the same for eyes, in 80 columns
-//!   merit         ├─ figure   PNG and SVG (feature `figure`)
-//!                 └─ zarr     the whole grid, for xarray (feature `zarr`)
+//!   merit         ├─ figure   PNG and SVG (feature `figure`), with the numbers of the report
+//!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
+//!
+//!   check · trajectory · zraa · export · slices · convergence · sensitivity · comparison
+//!                             one file per subject: its JSON, its text, its table for programs
+//!   envelope · text           the head of all JSON; what all text is made with
 //! ```
 //!
 //! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians in
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
+mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
 mod comparison;
 mod convergence;
-pub mod folder;
+mod envelope;
+mod export;
 #[cfg(feature = "figure")]
 pub mod figure;
+pub mod folder;
 mod outcomes;
 pub mod schema;
 #[cfg(all(feature = "figure", feature = "zarr"))]
@@ -26,17 +33,28 @@ mod save;
 mod sensitivity;
 mod slices;
 mod table;
+mod text;
+mod trajectory;
 pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
+mod zraa;
 
 pub use answer::UnanswerableError;
-pub use comparison::{Agreement, AgreementReport, Compared, ComparisonReport, Decided, MethodResult};
-pub use convergence::ConvergenceReport;
+pub use check::{CheckBody, CheckReport, Place, ProblemReport};
+pub use comparison::{
+    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided, MethodResult,
+};
+pub use convergence::{ConvergenceBody, ConvergenceReport};
+pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
+pub use export::{ExportBody, ExportReport};
 pub use outcomes::OutcomesReport;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
-pub use schema::Report;
-pub use sensitivity::SensitivityReport;
-pub use slices::SlicesReport;
-pub use table::table;
+pub use schema::{Report, RunBody};
+pub use sensitivity::{SensitivityBody, SensitivityReport};
+pub use slices::{SliceReport, SlicesBody, SlicesReport};
+pub use table::{table, table_with};
+pub use text::{csv, number, printable};
+pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
+pub use zraa::{ZraaBody, ZraaFound, ZraaReport};

@@ -1,5 +1,8 @@
 //! What became of listed pose errors: the table as it came with what was found out, or JSON.
 
+use super::envelope::{Body, Envelope};
+use super::schema::WarningReport;
+use super::text::number;
 use crate::acceptance::{Acceptance, Outcome};
 use crate::design::Design;
 use crate::method::Method;
@@ -9,9 +12,6 @@ use crate::poses::{OffsetsAt, PoseTable};
 use crate::problem::Problem;
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// Version of the JSON.
-const JSON_SCHEMA: u32 = 1;
 
 /// The outcomes of a table of poses.
 #[derive(Debug)]
@@ -27,13 +27,12 @@ pub struct OutcomesReport<'a> {
     /// Where each motion ended.
     pub ends: &'a [End],
     /// Doubts about the answer.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<WarningReport>,
 }
 
 /// The answer for programs; lengths in D, angles in radians.
 #[derive(Serialize)]
 struct Answer<'a> {
-    schema: u32,
     design: &'a Design,
     method: &'static str,
     /// Where the offsets of errors are measured, if not at the face centre.
@@ -41,8 +40,11 @@ struct Answer<'a> {
     offsets_at: Option<OffsetsAt>,
     settings: &'a serde_json::Value,
     counts: BTreeMap<&'static str, usize>,
-    warnings: &'a [String],
     poses: Vec<Row>,
+}
+
+impl Body for Answer<'_> {
+    const KIND: &'static str = "outcome";
 }
 
 /// One pose.
@@ -66,8 +68,8 @@ impl<'a> OutcomesReport<'a> {
         acceptance: &'a Acceptance,
         ends: &'a [End],
     ) -> Self {
-        let doubts = problem.doubts().iter().map(ToString::to_string);
-        let warnings = doubts.chain(acceptance.warnings.iter().map(ToString::to_string)).collect();
+        let doubts = problem.doubts().iter().map(WarningReport::note);
+        let warnings = doubts.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
         Self { design: problem.design(), table, settings: method.settings(), acceptance, ends, warnings }
     }
 
@@ -109,18 +111,14 @@ impl<'a> OutcomesReport<'a> {
         });
         let counts = Outcome::ALL.iter().map(|outcome| outcome.name()).zip(self.acceptance.counts());
         let answer = Answer {
-            schema: JSON_SCHEMA,
             design: self.design,
             method: self.acceptance.method,
             offsets_at: (at != OffsetsAt::Face).then_some(at),
             settings: &self.settings,
             counts: counts.collect(),
-            warnings: &self.warnings,
             poses: poses.collect(),
         };
-        let mut text = serde_json::to_string_pretty(&answer)?;
-        text.push('\n');
-        Ok(text)
+        Envelope::of(answer, self.warnings.clone(), None).to_json()
     }
 
     /// How many met which outcome, and which columns were carried through: a line each.
@@ -137,10 +135,4 @@ impl<'a> OutcomesReport<'a> {
         }
         lines
     }
-}
-
-/// A number with all its digits, as tables for programs have it.
-fn number(value: f64) -> String {
-    let text = format!("{value:?}");
-    text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
 }

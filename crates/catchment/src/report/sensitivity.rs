@@ -1,40 +1,35 @@
 //! A sensitivity as versioned JSON and as a table.
 
-use super::schema::{SCHEMA, Timing};
-use super::table::{grouped, heading, line, row, significant, wrapped};
+use super::envelope::{Body, Envelope};
+use super::schema::Timing;
+use super::table::heading;
+use super::text::{grouped, line, row, significant, wrapped};
 use crate::design::Design;
 use crate::study::sensitivity::{AtRho, Parameter, Sensitivity, Slope};
 use serde::Serialize;
 
+/// What a sensitivity has to say, with its head.
+pub type SensitivityReport = Envelope<SensitivityBody>;
+
 /// What a sensitivity has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SensitivityReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// Version of the program that wrote it.
-    pub catchment: String,
-    /// `sensitivity`.
-    pub study: &'static str,
+pub struct SensitivityBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
     /// Slopes and spread.
     #[serde(flatten)]
     pub found: Sensitivity,
-    /// How long it took.
-    pub timing: Option<Timing>,
+}
+
+impl Body for SensitivityBody {
+    const KIND: &'static str = "sensitivity";
 }
 
 impl SensitivityReport {
     /// Of a design.
     pub fn new(design: &Design, found: Sensitivity, timing: Option<Timing>) -> Self {
-        Self {
-            schema: SCHEMA,
-            catchment: env!("CARGO_PKG_VERSION").to_owned(),
-            study: "sensitivity",
-            design: design.clone(),
-            found,
-            timing,
-        }
+        let body = SensitivityBody { design: design.clone(), found };
+        Envelope::of(body, Vec::new(), timing)
     }
 
     /// The report as text of 80 columns; ends with a line break.

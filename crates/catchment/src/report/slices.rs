@@ -1,22 +1,21 @@
 //! Slices as versioned JSON and as a table.
 
-use super::schema::{AcceptanceReport, Axis, OnaaReport, SCHEMA, Timing, WarningReport, axes};
-use super::table::{grouped, heading, line, percent, row, significant, wrapped};
+use super::envelope::{Body, Envelope};
+use super::schema::{AcceptanceReport, Axis, OnaaReport, Timing, WarningReport, axes};
+use super::table::heading;
+use super::text::{grouped, line, percent, row, significant, wrapped};
 use crate::acceptance::Warning;
 use crate::design::Design;
 use crate::merit::estimate::Estimate;
 use crate::study::slices::{Settings, Slice, Slices};
 use serde::Serialize;
 
+/// What slices have to say, with its head.
+pub type SlicesReport = Envelope<SlicesBody>;
+
 /// What slices have to say; fields as in [`Report`](super::Report).
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SlicesReport {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// Version of the program that wrote it.
-    pub catchment: String,
-    /// `slices`.
-    pub study: &'static str,
+pub struct SlicesBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
     /// What else changes the answer.
@@ -25,8 +24,10 @@ pub struct SlicesReport {
     pub slices: Vec<SliceReport>,
     /// Estimated edge of the largest cube of the whole, in [0, 1]; null where slices it needs are missing.
     pub onaa_estimate: Option<Estimate>,
-    /// How long it took.
-    pub timing: Option<Timing>,
+}
+
+impl Body for SlicesBody {
+    const KIND: &'static str = "slices";
 }
 
 /// One slice.
@@ -57,16 +58,13 @@ impl SlicesReport {
             onaa: s.onaa.clone().into(),
             warnings: s.warnings.iter().cloned().map(WarningReport::from).collect(),
         };
-        Self {
-            schema: SCHEMA,
-            catchment: env!("CARGO_PKG_VERSION").to_owned(),
-            study: "slices",
+        let body = SlicesBody {
             design: design.clone(),
             settings,
             slices: found.slices.iter().map(slice).collect(),
             onaa_estimate: found.estimate,
-            timing,
-        }
+        };
+        Envelope::of(body, Vec::new(), timing)
     }
 
     /// The report as text of 80 columns; ends with a line break.

@@ -2,17 +2,18 @@
 
 mod basins;
 
-use super::schema::{OnaaReport, Report, ToleranceReport};
+use super::schema::{AcceptanceReport, OnaaReport, Report, ToleranceReport};
+use super::text::{COLUMNS, grouped, line, percent, rounded, row, significant, with_error, wrapped};
+use crate::advice::Advice;
 use crate::design::{ConnectorSpec, Design};
-use std::fmt::Write;
-
-/// Width of a line.
-const COLUMNS: usize = 80;
-/// Width of the column of names.
-const NAMES: usize = 17;
 
 /// The report for people; ends with a line break.
 pub fn table(report: &Report) -> String {
+    table_with(report, |_| None)
+}
+
+/// The same, and beside every doubt how `controls` says its advice: `--samples 4000`, where there is a command line.
+pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) -> String {
     let mut text = String::new();
     heading(&mut text, &report.design);
     let method = format!("{}, {}", report.method, tried(report));
@@ -60,19 +61,12 @@ pub fn table(report: &Report) -> String {
     if !report.warnings.is_empty() {
         text.push('\n');
         for warning in &report.warnings {
-            wrapped(&mut text, "warning: ", &warning.message);
+            let how = warning.warning.advice().and_then(&controls);
+            let how = how.map_or_else(String::new, |how| format!(" ({how})"));
+            wrapped(&mut text, "warning: ", &format!("{}{how}", warning.message));
         }
     }
     text
-}
-
-pub(super) fn line(text: &mut String, content: &str) {
-    text.push_str(content.trim_end());
-    text.push('\n');
-}
-
-pub(super) fn row(text: &mut String, name: &str, value: &str) {
-    line(text, &format!("  {name:<width$}{value}", width = NAMES - 2));
 }
 
 pub(super) fn heading(text: &mut String, design: &Design) {
@@ -80,7 +74,7 @@ pub(super) fn heading(text: &mut String, design: &Design) {
     line(text, &"─".repeat(design.name.chars().count().clamp(24, COLUMNS)));
     let kind = match &design.connector {
         ConnectorSpec::Family(f) => {
-            format!("{}, aspect ratio {}", f.family().name(), number(f.aspect_ratio()))
+            format!("{}, aspect ratio {}", f.family().name(), rounded(f.aspect_ratio()))
         }
         ConnectorSpec::Own(_) => "own halves".to_owned(),
     };
@@ -95,8 +89,8 @@ pub(super) fn heading(text: &mut String, design: &Design) {
         "motion",
         &format!(
             "COR {} D before the face, rotation length {} D",
-            number(alignment.center_of_rotation),
-            number(alignment.rotation_length)
+            rounded(alignment.center_of_rotation),
+            rounded(alignment.rotation_length)
         ),
     );
 }
@@ -109,10 +103,15 @@ fn tried(report: &Report) -> String {
     format!("{} = {} cells", cells.join(" × "), grouped(report.acceptance.cells))
 }
 
+/// The Sum with its unit, and half its interval where it has one: `12.587 ± 0.023 D²·rad³`.
+pub(super) fn sum(a: &AcceptanceReport) -> String {
+    let sum = a.sum_ci95.map_or_else(|| significant(a.sum), |ci95| with_error(a.sum, ci95));
+    format!("{sum} {}", a.unit)
+}
+
 fn acceptance(text: &mut String, report: &Report) {
     let a = &report.acceptance;
-    let sum = a.sum_ci95.map_or_else(|| significant(a.sum), |ci95| with_error(a.sum, ci95));
-    row(text, "Sum", &format!("{sum} {}   ({} of the error box)", a.unit, percent(a.fraction)));
+    row(text, "Sum", &format!("{}   ({} of the error box)", sum(a), percent(a.fraction)));
     let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
     if a.sum_ci95.is_some() {
         row(
@@ -193,78 +192,6 @@ fn both(t: &ToleranceReport, scale: f64, digits: usize) -> String {
     format!("−{minus}{} / +{plus}{}", star(t.minus_reaches_border), star(t.plus_reaches_border))
 }
 
-/// Breaks `content` between words; later lines are indented by the width of `first`.
-pub(super) fn wrapped(text: &mut String, first: &str, content: &str) {
-    let indent = first.chars().count();
-    let mut current = first.to_owned();
-    let mut used = indent;
-    for word in content.split_whitespace() {
-        let length = word.chars().count();
-        if used > indent && used + 1 + length > COLUMNS {
-            line(text, &current);
-            current = " ".repeat(indent);
-            used = indent;
-        }
-        if used > indent {
-            current.push(' ');
-            used += 1;
-        }
-        current.push_str(word);
-        used += length;
-    }
-    line(text, &current);
-}
-
-pub(super) fn percent(share: f64) -> String {
-    format!("{:.2} %", 100.0 * share)
-}
-
-/// A number as a person writes it: up to four decimals, no trailing zeros.
-fn number(value: f64) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-/// Four significant digits.
-pub(super) fn significant(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let magnitude = value.abs().log10().floor();
-    if !(-4.0..6.0).contains(&magnitude) {
-        return format!("{value:.3e}");
-    }
-    format!("{value:.*}", (3.0 - magnitude).max(0.0) as usize)
-}
-
-/// `2.391 ± 0.013`: the farther end of the interval, rounded up to two digits, and the value to as many decimals.
-fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
-    let error = (hi - value).max(value - lo);
-    if !(error > 0.0 && error.is_finite()) {
-        return significant(value);
-    }
-    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 9.0);
-    let unit = 10f64.powf(-decimals);
-    // A little less than a whole unit, so that rounding of the division does not add one.
-    let up = ((error / unit - 1e-9).ceil()) * unit;
-    let decimals = decimals as usize;
-    format!("{value:.decimals$} ± {up:.decimals$}")
-}
-
-/// Thousands kept apart by thin gaps: 24 300 000.
-pub(super) fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (position, digit) in digits.chars().enumerate() {
-        if position > 0 && (digits.len() - position).is_multiple_of(3) {
-            // Writing to a String cannot fail.
-            let _ = text.write_char(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::schema::testing::*;
@@ -299,17 +226,5 @@ mod tests {
         let text = text([Dof::X].into_iter().collect(), 100);
         let row = text.lines().find(|l| l.starts_with("  x ")).unwrap();
         assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["x", "±0.6000", "±30.000"]);
-    }
-
-    #[test]
-    fn numbers_keep_four_digits() {
-        let written = [0.0, 0.012_345, 2.345_67, 23.4567, 12_345.6, 1.5e-7].map(significant);
-        assert_eq!(written, ["0", "0.01235", "2.346", "23.46", "12346", "1.500e-7"]);
-        assert_eq!(grouped(24_300_000), "24 300 000");
-        assert_eq!(number(-0.5), "-0.5");
-        assert_eq!(with_error(2.391_34, [2.380, 2.403_44]), "2.391 ± 0.013");
-        assert_eq!(with_error(31.42, [30.0, 32.0]), "31.4 ± 1.5");
-        assert_eq!(with_error(2.0, [1.5, 2.1]), "2.00 ± 0.50");
-        assert_eq!(with_error(0.0, [0.0, 0.000_961]), "0.00000 ± 0.00097");
     }
 }

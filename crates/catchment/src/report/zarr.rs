@@ -323,7 +323,7 @@ mod tests {
         let centers: Vec<f64> = yaw.retrieve_array_subset(&yaw.subset_all()).unwrap();
         assert_eq!(centers[5], acceptance.grid().unwrap().axes[2].center(5));
         let root: Value = serde_json::from_slice(&std::fs::read(path.join("zarr.json")).unwrap()).unwrap();
-        assert_eq!(root["attributes"]["report"]["schema"], super::super::schema::SCHEMA);
+        assert_eq!(root["attributes"]["report"]["schema"], crate::report::SCHEMA);
         let names = &root["consolidated_metadata"]["metadata"]["outcome"]["dimension_names"];
         assert_eq!(*names, json!(["yaw", "y", "x"]));
     }

@@ -19,6 +19,7 @@
 
 use super::pose_bytes;
 use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::advice::Advice;
 use crate::connector::Connector;
 use crate::contact::Pair;
 use crate::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
@@ -181,7 +182,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Sensit
     }
     let per_pose = pose_bytes() + 2 * size_of::<PoseError>() as u64 + settings.rotation_lengths.len() as u64;
     exec.ensure_fits("the random poses", per_pose.saturating_mul(poses as u64), |budget| {
-        format!("use at most --samples {}", budget / per_pose)
+        vec![Advice::AtMostSamples(budget / per_pose)]
     })?;
     let mut common = CommonPoses::new(design, settings, exec);
     let own = common.follow(design)?;

@@ -15,6 +15,7 @@
 //! Not promised: anything about errors off these planes. Lengths in D, angles in radians.
 
 use super::pose_bytes;
+use crate::advice::Advice;
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Resolution, ResolutionError};
@@ -146,7 +147,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices
     let needed = largest.saturating_mul(pose_bytes()).saturating_add(kept);
     exec.ensure_fits("the largest slice", needed, |budget| {
         let fits = Resolution::largest_that_fits(budget, pose_bytes() + planes.len() as u64, 2);
-        format!("use at most --resolution {fits}, or allow more with --memory")
+        vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
     })?;
     let total = planes.len() as f64;
     let slices = planes

@@ -5,6 +5,7 @@ mod place;
 mod sample;
 mod study;
 
+use crate::advice;
 use crate::args::DesignArgs;
 use crate::error_args::ErrorArgs;
 use crate::exec_args::ExecArgs;
@@ -13,7 +14,7 @@ use crate::failure::Failure;
 use crate::method_args::{Choice, MethodArgs};
 use crate::output::{to_stderr, to_stdout};
 use catchment::landscape::Resolution;
-use catchment::report::{UnanswerableError, table};
+use catchment::report::{UnanswerableError, table_with};
 use catchment::run::{Over, Requirement, Run, RunError};
 use clap::Args;
 
@@ -105,7 +106,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let report = answer.report();
     let mut notes = targets.write(&answer, &running.exec)?;
     drop(running);
-    let printed = if args.json { to_stdout(&report.to_json()?) } else { to_stdout(&table(&report)) };
+    let printed = if args.json { to_stdout(&report.to_json()?) } else { to_stdout(&table_with(&report, advice::flags)) };
     let verdicts = answer.verdicts()?;
     let status = if verdicts.iter().all(|verdict| verdict.met) {
         printed?;

@@ -56,7 +56,7 @@ fn converge(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     let report = ConvergenceReport::new(problem.design(), found, Some(timing));
     let told = Told {
-        json: serde_json::to_string_pretty(&report)? + "\n",
+        json: report.to_json()?,
         table: report.table(),
         records: report.records(),
         picture: figure::convergence(problem.design(), &report.found),
@@ -78,7 +78,7 @@ fn sensitivity(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     let report = SensitivityReport::new(problem.design(), found, Some(timing));
     let told = Told {
-        json: serde_json::to_string_pretty(&report)? + "\n",
+        json: report.to_json()?,
         table: report.table(),
         records: report.records(),
         picture: figure::sensitivity(problem.design(), &report.found),

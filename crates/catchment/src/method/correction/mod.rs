@@ -87,7 +87,6 @@ impl From<DecideError> for CorrectionError {
 
 /// What was seen in one stratum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Stratum {
     /// What it holds.
     pub name: String,

@@ -10,6 +10,7 @@
 
 use super::CorrectionError;
 use crate::acceptance::Outcome;
+use crate::advice::Advice;
 use crate::exec::Exec;
 use rayon::prelude::*;
 
@@ -50,7 +51,7 @@ impl<'a, S: Stratify> Strata<'a, S> {
         let block = (cells.isqrt() / BLOCK_PER_ROOT).max(LEAST_BLOCK);
         let blocks = cells.div_ceil(block);
         let needed = (blocks + 1) * (strata * size_of::<u64>() + size_of::<[u32; MOST_STRATA]>());
-        exec.ensure_fits("the strata of the grid", needed as u64, |_| "allow more with --memory".to_owned())?;
+        exec.ensure_fits("the strata of the grid", needed as u64, |_| vec![Advice::MoreMemory])?;
         let counted: Vec<[u32; MOST_STRATA]> = exec.install(|| {
             (0..blocks)
                 .into_par_iter()

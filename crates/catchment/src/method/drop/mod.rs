@@ -35,6 +35,7 @@ mod turning;
 pub use settings::{Body, Push, SettingError, Settings};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Resolution;
@@ -95,10 +96,10 @@ pub fn run(
     let needed = count.map_or(u64::MAX, |count| (count as u64).saturating_mul(POSE_BYTES));
     exec.ensure_fits("the outcome of every pose", needed, |budget| {
         if axes == 0 {
-            return "try fewer poses at a time, or allow more with --memory".to_owned();
+            return vec![Advice::FewerPoses, Advice::MoreMemory];
         }
         let fits = Resolution::largest_that_fits(budget, POSE_BYTES, axes);
-        format!("use at most --resolution {fits}, or allow more with --memory")
+        vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
     })?;
     let count = count.unwrap_or_default();
     let done = AtomicUsize::new(0);

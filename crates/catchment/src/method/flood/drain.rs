@@ -16,6 +16,7 @@ use super::meyer::neighbourhood::Neighbourhood;
 use super::steepest::Metric;
 use super::sweep::{Slabs, level, level_of, number_of};
 use super::{FloodError, Rule};
+use crate::advice::Advice;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -149,7 +150,7 @@ fn settle(
     let same = |a: usize, b: usize| level(heights[a]) == level(heights[b]);
     let flat = ways.iter_mut().filter_map(|way| (*way.get_mut() == FLAT).then_some(())).count() as u64;
     exec.ensure_fits("the plateaus of a flooded grid", flat * size_of::<(u32, u32)>() as u64, |_| {
-        "use a coarser grid".to_owned()
+        vec![Advice::CoarserGrid]
     })?;
     // The rim: flat cells beside an equal one that drains.
     let mut rim: Vec<(u32, u32)> = Vec::new();

@@ -57,6 +57,7 @@ mod tree;
 mod verdict;
 
 use crate::acceptance::{Acceptance, Outcome};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
@@ -234,9 +235,7 @@ fn divide(
     let count = drained.minima.len() as u64;
     let tree = count.saturating_mul((size_of::<Minimum>() + size_of::<Link>()) as u64);
     let needed = passes::bytes(count).saturating_mul(exec.threads() as u64).saturating_add(tree);
-    exec.ensure_fits("the passes between basins", needed, |_| {
-        format!("there are {count} basins; use a coarser grid or fewer threads")
-    })?;
+    exec.ensure_fits("the passes between basins", needed, |_| vec![Advice::CoarserGrid, Advice::FewerThreads])?;
     let passes = passes::passes(shape, heights, &drained, exec)?;
     let bottom = |cell: &usize| {
         let basin = drained.labels[*cell];
@@ -263,7 +262,6 @@ pub const fn bytes(cells: u64) -> u64 {
 fn ensure_fits(cells: u64, heights: u64, axes: usize, exec: &Exec) -> Result<(), OutOfBudget> {
     let per_cell = BYTES_PER_CELL + heights;
     exec.ensure_fits("flooding", cells.saturating_mul(per_cell), |budget| {
-        let largest = Resolution::largest_that_fits(budget, per_cell, axes);
-        format!("use at most --resolution {largest}")
+        vec![Advice::AtMostResolution(Resolution::largest_that_fits(budget, per_cell, axes))]
     })
 }

@@ -10,6 +10,7 @@
 //! held at once. A value is a height in the upper half of a word and something that tells cells apart in the lower:
 //! the least value is that of the lowest cell, and among equals that of the least number.
 
+use crate::advice::Advice;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use std::ops::Range;
 
@@ -72,7 +73,7 @@ impl Slabs {
         let slabs = (HELD * self.runs(exec).len()) as u64;
         let needed = slabs.saturating_mul((self.len * size_of::<u64>()) as u64);
         exec.ensure_fits("the slabs of a flooded grid", needed, |_| {
-            "use fewer threads, or a coarser grid".to_owned()
+            vec![Advice::FewerThreads, Advice::CoarserGrid]
         })
     }
 

@@ -25,7 +25,6 @@ use serde::{Deserialize, Serialize};
 
 /// The tolerance that was used, and why.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Choice {
     /// Basins shallower than this were merged, in D.
     pub depth: f64,

@@ -34,6 +34,7 @@ pub(super) mod door;
 pub mod stepping;
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::advice::Advice;
 use crate::design::{ConnectorSpec, Design, Family};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
@@ -205,7 +206,7 @@ impl Starts<'_> {
 pub fn accept(design: &Design, grid: &Grid, exec: &Exec) -> Result<Acceptance, KinematicError> {
     let settings = Settings::of(design)?;
     let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
-    exec.ensure_fits("the outcome of every cell", cells, |_| "lower the resolution".to_owned())?;
+    exec.ensure_fits("the outcome of every cell", cells, |_| vec![Advice::CoarserGrid])?;
     let (starts, cor) = (settings.starts(), design.alignment.center_of_rotation);
     let outcome = |cell: usize| {
         exec.check()?;

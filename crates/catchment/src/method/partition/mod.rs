@@ -29,6 +29,7 @@ mod tests;
 mod watershed;
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
@@ -99,7 +100,9 @@ pub enum PartitionError {
         most: usize,
     },
     /// Strips and pieces make more pairs than can be summed.
-    #[error("there are more than {most} pairs of pieces that may meet; use fewer --strips")]
+    #[error(
+        "there are more than {most} pairs of pieces that may meet: cut the moving half into fewer strips"
+    )]
     TooManyStrips {
         /// The most there may be.
         most: usize,
@@ -195,7 +198,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
         polytopes
             .saturating_mul(POLYTOPE_BYTES * threads)
             .saturating_add(count.saturating_mul(polytopes).saturating_mul(CELL_BYTES / 4)),
-        |_| "use fewer --slices or --strips, or allow more with --memory".to_owned(),
+        |_| vec![Advice::FewerSlices, Advice::MoreMemory],
     )?;
     let compartments = Compartment::all(&slices);
     let found = spaces(&pairs, &compartments, alignment, exec)?;

@@ -35,6 +35,7 @@ mod tests;
 
 use super::descent;
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Fold, Gradient, Grid, LandscapeError, Relief, Resolution};
@@ -65,7 +66,7 @@ impl Default for Settings {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TransportError {
     /// A free error has no axis in the grid.
-    #[error("transport needs every free error as an axis of the grid, and {} is not; use --method descent for slices", dof.name())]
+    #[error("transport needs every free error as an axis of the grid, and {} is not; descent needs none, for slices", dof.name())]
     NotSampled {
         /// Which.
         dof: Dof,
@@ -134,10 +135,7 @@ impl Arrival {
     /// Outcome of every cell: aligned above ½, else the larger of the shares that jam and that lose contact.
     pub fn acceptance(&self, exec: &Exec) -> Result<Acceptance, OutOfBudget> {
         exec.ensure_fits("the outcome of every cell", self.grid.len() as u64, |budget| {
-            format!(
-                "use at most --resolution {}",
-                Resolution::largest_that_fits(budget, 1, self.grid.axes.len())
-            )
+            vec![Advice::AtMostResolution(Resolution::largest_that_fits(budget, 1, self.grid.axes.len()))]
         })?;
         let slab = self.fold.slab();
         let mut outcomes = vec![Outcome::Missed; self.grid.len()];
@@ -190,7 +188,7 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
     exec.ensure_fits("transport", needed, |budget| {
         let per_cell = (needed / (cells as u64).max(1)).max(1) + 1;
         let largest = Resolution::largest_that_fits(budget, per_cell, grid.axes.len());
-        format!("use at most --resolution {largest}")
+        vec![Advice::AtMostResolution(largest)]
     })?;
     let relief = Relief::compute(pair, grid, exec, |error: &PoseError| {
         let metric = Metric::new(pair, grid, error);

@@ -119,7 +119,7 @@ fn refusals() {
     let mut grid = Grid::over(&pair.alignment, |_| 40);
     let small = Exec::new().with_memory_budget(1 << 20);
     let error = run(&pair, &grid, &settings, &small).unwrap_err().to_string();
-    assert!(error.contains("use at most --resolution"), "{error}");
+    assert!(error.contains("cells per axis fit"), "{error}");
     let stopped = Exec::new();
     stopped.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
     assert!(run(&pair, &grid, &settings, &stopped).is_err());

@@ -49,9 +49,9 @@ impl Answer {
     /// A picture cannot be drawn, or it was asked to stop.
     pub fn draw(&self, exec: &Exec) -> Result<Drawn, SaveError> {
         let mut drawn = Drawn::default();
-        let (design, acceptance) = (self.problem.design(), &self.acceptance);
+        let (design, acceptance, report) = (self.problem.design(), &self.acceptance, self.report());
         let (connector, pair) = (self.problem.connector(), self.problem.pair());
-        if let (Some(grid), Some(onaa)) = (self.grid(), self.onaa())
+        if let Some(grid) = self.grid()
             && let Some(main) = main_pair(grid)
         {
             let finer = self.finer_slices(grid, main, exec)?;
@@ -66,18 +66,15 @@ impl Answer {
                 None => height_of(pair, &map_grid.pose(cell)),
             };
             let zero = PoseError::default();
-            drawn.keep(
-                "overview",
-                super::overview(design, connector, acceptance, onaa, map, &height, main),
-            )?;
-            drawn.keep("slices", super::slices(design, acceptance, onaa, &finer, &[], &zero))?;
-            drawn.keep("heights", super::heights(design, map, &height, main, &zero))?;
+            drawn.keep("overview", super::overview(&report, connector, acceptance, map, &height, main))?;
+            drawn.keep("slices", super::slices(&report, acceptance, &finer, &[], &zero))?;
+            drawn.keep("heights", super::heights(&report, map, &height, main, &zero))?;
         }
         if let Some(basins) = &self.by_products.basins {
-            drawn.keep("basins", super::basins(design, acceptance, basins))?;
+            drawn.keep("basins", super::basins(&report, acceptance, basins))?;
         }
         if let Some(partition) = &self.by_products.partition {
-            drawn.keep("partition", super::partition(design, partition, acceptance))?;
+            drawn.keep("partition", super::partition(&report, partition, acceptance))?;
         }
         exec.check()?;
         let lifted = Placement::mated(design, LIFT);

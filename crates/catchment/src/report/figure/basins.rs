@@ -10,10 +10,10 @@
 use super::axis::{Frame, Scale, Units, short, tick_label};
 use super::colour::{self, hex};
 use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n};
-use super::{FigureError, Picture};
+use super::{FigureError, Picture, headline};
 use crate::acceptance::{Acceptance, Outcome};
-use crate::design::Design;
 use crate::method::flood::{Hierarchy, Reason};
+use crate::report::Report;
 use std::fmt::Write;
 
 /// Depths this much shallower than the deepest are drawn at the left border.
@@ -48,12 +48,12 @@ impl Depths {
     }
 }
 
-/// Draws the depths of the minima and the accepted share over the depth tolerance.
+/// Draws the depths of the minima and the accepted share over the depth tolerance, under the numbers of the `report`.
 ///
 /// # Errors
 /// If the acceptance has no grid, or its landscape a single basin, which nothing can be merged with.
 pub fn basins(
-    design: &Design,
+    report: &Report,
     acceptance: &Acceptance,
     hierarchy: &Hierarchy,
 ) -> Result<Picture, FigureError> {
@@ -67,13 +67,15 @@ pub fn basins(
     if tolerance > 0.0 {
         (lo, hi) = (lo.min(tolerance), hi.max(tolerance));
     }
+    let design = &report.design;
     let units = Units::of(design);
     let (left, width) = (78.0, 500.0);
     let scale = Depths { left, width, lo: (lo / MARGIN).max(hi * 10f64.powf(-DECADES)), hi: hi * MARGIN };
-    let top = Rect { x: left, y: 84.0, w: width, h: 210.0 };
+    let top = Rect { x: left, y: 101.0, w: width, h: 210.0 };
     let bottom = Rect { x: left, y: top.y + top.h + 22.0, w: width + 34.0, h: 170.0 };
     let mut svg = Svg::new(bottom.x + bottom.w + 28.0, bottom.y + bottom.h + 84.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &headline(report));
     let unit = units.symbol();
     let shown = |depth: f64| significant(depth * units.lengths());
     let why = match hierarchy.tolerance.reason {
@@ -85,11 +87,11 @@ pub fn basins(
     let accepted = 100.0 * acceptance.counts()[0] as f64 / total;
     let story =
         format!("{} % accepted at a depth tolerance of {} {unit}{why}", short(accepted), shown(tolerance));
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
+    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
     let (minima, merged) = (hierarchy.tree.minima.len(), hierarchy.basins.len());
     let story =
         format!("{minima} minima, {merged} basins after merging; what lies left of the line is merged");
-    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
+    svg.text([24.0, 83.0], LABEL, Anchor::Start, SOFT, &story);
 
     if let Reason::WidestGap { between: [a, b], .. } = hierarchy.tolerance.reason {
         let (a, b) = (scale.px(a), scale.px(b));
@@ -221,7 +223,7 @@ fn legend(svg: &mut Svg, [mut x, y]: [f64; 2]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::look;
+    use super::super::testing::{look, report_of};
     use super::*;
     use crate::method::flood::Flooding;
     use crate::report::schema::basins::tests::flooded;
@@ -230,18 +232,20 @@ mod tests {
     fn depths_and_staircase_share_a_scale() {
         let (design, flooding) = flooded();
         let Flooding { acceptance, hierarchy } = flooding;
-        let picture = basins(&design, &acceptance, &hierarchy).unwrap();
+        let report = report_of(&design, &acceptance);
+        let picture = basins(&report, &acceptance, &hierarchy).unwrap();
         look("basins", &picture);
         assert!(picture.svg().contains("accepted at a depth tolerance of") && !picture.svg().contains("NaN"));
-        assert_eq!(picture, basins(&design, &acceptance, &hierarchy).unwrap());
+        assert_eq!(picture, basins(&report, &acceptance, &hierarchy).unwrap());
     }
 
     #[test]
     fn a_single_basin_has_nothing_to_show() {
         let (design, mut flooding) = flooded();
         flooding.hierarchy.tree.links.clear();
+        let report = report_of(&design, &flooding.acceptance);
         assert!(matches!(
-            basins(&design, &flooding.acceptance, &flooding.hierarchy),
+            basins(&report, &flooding.acceptance, &flooding.hierarchy),
             Err(FigureError::Empty { .. })
         ));
     }

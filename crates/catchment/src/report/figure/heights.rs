@@ -2,35 +2,38 @@
 
 use super::axis::{Frame, Units};
 use super::colour::{self, Rgb};
-use super::map::{self, JOIN, Map};
+use super::map::{self, JOIN, Map, width_of};
 use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-use super::{FigureError, Picture};
+use super::{FigureError, Picture, headline};
 use crate::acceptance::Acceptance;
-use crate::design::Design;
 use crate::pose::{Dof, PoseError};
+use crate::report::Report;
 
-/// Draws the heights over a pair of errors, the others at the values of `at`. `height` gives z of the COR at first
+/// Draws the heights over a pair of errors, the others at the values of `at`, under the numbers of the `report`;
+/// `acceptance` has the border, over the grid of the run or a finer one of the pair alone. `height` gives z of the COR at first
 /// contact, in D, for a cell of the grid; not finite where the halves pass each other by.
 ///
 /// # Errors
 /// A pair that the grid does not have, listed poses instead of a grid, no contact anywhere in the slice.
 pub fn heights(
-    design: &Design,
+    report: &Report,
     acceptance: &Acceptance,
     height: &dyn Fn(usize) -> f64,
     pair: [Dof; 2],
     at: &PoseError,
 ) -> Result<Picture, FigureError> {
+    let (design, story) = (&report.design, headline(report));
     let units = Units::of(design);
     let map = Map::of(acceptance, pair, at)?;
     let side = 400.0;
-    let (width, total) = (580.0, 560.0);
+    let (width, total) = ((width_of(&story, LABEL) + 48.0).max(580.0), 578.0);
     let mut svg = Svg::new(width, total);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     let fixed = map.fixed(&units);
     let place = if fixed.is_empty() { String::new() } else { format!(" at {fixed}") };
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &format!("height of first contact{place}"));
-    let rect = Rect { x: 70.0, y: 74.0, w: side, h: side };
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
+    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &format!("height of first contact{place}"));
+    let rect = Rect { x: 70.0, y: 92.0, w: side, h: side };
     panel(&mut svg, &map, rect, &units, height)?;
     let y = total - 22.0;
     svg.line([70.0, y - 4.0], [94.0, y - 4.0], r#"stroke="white" stroke-width="4""#);
@@ -80,7 +83,7 @@ pub(super) fn panel(
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::look;
+    use super::super::testing::{look, report_of};
     use super::*;
     use crate::report::schema::testing::{blob, design};
 
@@ -99,10 +102,11 @@ mod tests {
         let grid = acceptance.grid().unwrap();
         let height = |i: usize| bowl(grid.pose(i).x, grid.pose(i).pitch);
         let pair = [Dof::X, Dof::Pitch];
-        let picture = heights(&design, &acceptance, &height, pair, &PoseError::default()).unwrap();
+        let report = report_of(&design, &acceptance);
+        let picture = heights(&report, &acceptance, &height, pair, &PoseError::default()).unwrap();
         look("heights", &picture);
         assert!(picture.svg().contains("z [mm]"));
-        let nothing = heights(&design, &acceptance, &|_| f64::NEG_INFINITY, pair, &PoseError::default());
+        let nothing = heights(&report, &acceptance, &|_| f64::NEG_INFINITY, pair, &PoseError::default());
         assert!(matches!(nothing, Err(FigureError::Empty { .. })));
     }
 
@@ -110,8 +114,8 @@ mod tests {
     fn a_flat_height_is_drawn_too() {
         let design = design([Dof::X, Dof::Pitch].into_iter().collect());
         let acceptance = blob(&design, 10);
-        assert!(
-            heights(&design, &acceptance, &|_| 0.25, [Dof::X, Dof::Pitch], &PoseError::default()).is_ok()
-        );
+        let report = report_of(&design, &acceptance);
+        let pair = [Dof::X, Dof::Pitch];
+        assert!(heights(&report, &acceptance, &|_| 0.25, pair, &PoseError::default()).is_ok());
     }
 }

@@ -6,9 +6,9 @@ use super::svg::{Anchor, INK, LABEL, Rect, Svg, TICK, polyline};
 use super::{FigureError, raster};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::Grid;
-use crate::merit::onaa::Onaa;
 use crate::merit::slice::Slice;
 use crate::pose::{Dof, PoseError};
+use crate::report::schema::Interval;
 
 /// Two axes of a grid, where the others are fixed, and the outcomes there.
 pub(super) struct Map {
@@ -86,13 +86,13 @@ fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     found
 }
 
-/// Paints outcomes, border, zero lines, the ONAA cube if given, and the axes.
+/// Paints outcomes, border, zero lines, the ONAA cube (nothing where it has no bounds), and the axes.
 pub(super) fn outcomes(
     svg: &mut Svg,
     map: &Map,
     frame: &Frame,
     units: &Units,
-    onaa: Option<&Onaa>,
+    onaa: &[Interval],
 ) -> Result<(), FigureError> {
     inside(svg, map, frame, units, onaa)?;
     frame.draw(svg);
@@ -105,15 +105,13 @@ pub(super) fn inside(
     map: &Map,
     frame: &Frame,
     units: &Units,
-    onaa: Option<&Onaa>,
+    onaa: &[Interval],
 ) -> Result<(), FigureError> {
     let colours: Vec<Rgb> = map.outcomes.iter().map(|o| colour::outcome(*o)).collect();
     map.paint(svg, frame, &colours)?;
     zero_lines(svg, frame);
     svg.path(&map.border(frame), &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
-    if let Some(onaa) = onaa {
-        cube(svg, map, frame, units, onaa);
-    }
+    cube(svg, map, frame, units, onaa);
     Ok(())
 }
 
@@ -132,8 +130,8 @@ pub(super) fn zero_lines(svg: &mut Svg, frame: &Frame) {
 }
 
 /// The cube's shadow on the two axes; dashed where the slice does not cut it.
-fn cube(svg: &mut Svg, map: &Map, frame: &Frame, units: &Units, onaa: &Onaa) {
-    let range = |dof: Dof| onaa.bounds.iter().find(|(d, _, _)| *d == dof).map(|(_, lo, hi)| (*lo, *hi));
+fn cube(svg: &mut Svg, map: &Map, frame: &Frame, units: &Units, onaa: &[Interval]) {
+    let range = |dof: Dof| onaa.iter().find(|i| i.axis == dof).map(|i| (i.lo, i.hi));
     let [a, b] = [map.slice.axes[0].dof, map.slice.axes[1].dof];
     let (Some((x0, x1)), Some((y0, y1))) = (range(a), range(b)) else { return };
     let cuts = map.slice.at.iter().all(|(dof, v)| range(*dof).is_none_or(|(lo, hi)| (lo..=hi).contains(v)));

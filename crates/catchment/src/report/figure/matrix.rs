@@ -18,6 +18,8 @@ use crate::acceptance::Outcome;
 use crate::connector::Connector;
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
+use crate::report::schema::OnaaReport;
+use crate::report::text::{percent, significant};
 use crate::study::slices::{Slice, Slices};
 
 /// Room left of the maps, above them, below them, and between them to the right and downwards.
@@ -69,7 +71,7 @@ pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> R
         };
         let map = Map::of(&slice.acceptance, slice.axes, &PoseError::default())?;
         let frame = map.frame(rect, &units);
-        map::inside(&mut svg, &map, &frame, &units, Some(&slice.onaa))?;
+        map::inside(&mut svg, &map, &frame, &units, &OnaaReport::from(slice.onaa.clone()).bounds)?;
         frame.outline(&mut svg);
         let shares = |other: &&Slice, k: usize| other.axes[k] == slice.axes[k];
         let is_lowest = !found.slices.iter().any(|s| shares(&s, 0) && s.axes[1] > slice.axes[1]);
@@ -112,15 +114,11 @@ fn subtitle(design: &Design, found: &Slices) -> String {
 
 /// The numbers of a slice, over its map.
 fn caption(svg: &mut Svg, slice: &Slice, rect: Rect) {
-    let sum = format!(
-        "Sum {} {} ({} %)",
-        short(slice.sum.sum),
-        slice.sum.unit(),
-        short(100.0 * slice.sum.fraction)
-    );
+    let sum =
+        format!("Sum {} {} ({})", significant(slice.sum.sum), slice.sum.unit(), percent(slice.sum.fraction));
     let y = rect.y - 6.0;
     svg.text([rect.x + 1.0, y], TICK, Anchor::Start, INK, &sum);
-    let onaa = format!("ONAA {}", short(slice.onaa.edge));
+    let onaa = format!("ONAA {:.4}", slice.onaa.edge);
     svg.text([rect.x + rect.w - 1.0, y], TICK, Anchor::End, INK, &onaa);
 }
 

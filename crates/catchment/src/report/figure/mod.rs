@@ -19,6 +19,9 @@
 //!   overview    the picture of a design: halves, acceptance, heights
 //! ```
 //!
+//! Pictures of a run take its report and measure nothing again: their numbers are those of its table, rounded by the
+//! same functions.
+//!
 //! For people: lengths in the design's unit where it has one (else D), angles in degrees. The same input gives the
 //! same bytes. Maps and solids are embedded images, everything else is vector.
 
@@ -62,6 +65,9 @@ pub use slices::slices;
 pub use solid::solids;
 pub use trajectory::trajectory;
 
+use super::schema::Interval;
+use super::text::percent;
+use super::{Report, table};
 use crate::merit::MeritError;
 
 /// Why a picture cannot be drawn.
@@ -105,12 +111,30 @@ impl Picture {
     }
 }
 
+/// The numbers of a run in a line: `Sum 12.587 ± 0.023 D²·rad³  ·  16.32 % of the error box  ·  ONAA edge 0.3100  ·
+/// by transport`.
+fn headline(report: &Report) -> String {
+    let (sum, share) = (table::sum(&report.acceptance), percent(report.acceptance.fraction));
+    let onaa =
+        report.onaa.as_ref().map_or_else(String::new, |onaa| format!("  ·  ONAA edge {:.4}", onaa.edge));
+    format!("Sum {sum}  ·  {share} of the error box{onaa}  ·  by {}", report.method)
+}
+
+/// Where the largest cube of a run lies; nowhere if there is none.
+fn cube(report: &Report) -> &[Interval] {
+    report.onaa.as_ref().map_or(&[], |onaa| &onaa.bounds)
+}
+
 #[cfg(test)]
 pub(crate) mod testing {
     //! A pair of halves to draw, and a look at what was drawn.
 
     use super::Picture;
+    use crate::acceptance::Acceptance;
     use crate::connector::{Connector, Half, Surface};
+    use crate::design::Design;
+    use crate::exec::Exec;
+    use crate::report::Report;
     use glam::DVec3;
 
     /// A convex prism over a polygon in x–z (counter-clockwise seen from −y), `lo` to `hi` along y.
@@ -158,6 +182,18 @@ pub(crate) mod testing {
         polygons.extend((0..4u32).map(|k| vec![(k + 1) % 4, k, 4]));
         let plug = Surface::from_polygons(vertices, &polygons).unwrap();
         Connector::from_halves(Half { surfaces: vec![socket] }, Half { surfaces: vec![plug] })
+    }
+
+    /// The report of an acceptance over a grid.
+    pub(crate) fn report_of(design: &Design, acceptance: &Acceptance) -> Report {
+        Report::new(design, acceptance, serde_json::Value::Null, None, &Exec::new()).unwrap()
+    }
+
+    /// The same with a Sum that random poses corrected to an eighth of the error box.
+    pub(crate) fn corrected(mut report: Report, sum: f64, ci95: [f64; 2]) -> Report {
+        let acceptance = &mut report.body.acceptance;
+        (acceptance.sum, acceptance.sum_ci95, acceptance.fraction) = (sum, Some(ci95), 0.125);
+        report
     }
 
     /// Checks that the picture is well formed and not blank; writes it to `$CATCHMENT_PICTURES` for eyes.

@@ -1,50 +1,40 @@
 //! The picture of a design: its halves, its area of acceptance, its heights, side by side.
 
-use super::axis::{Units, short};
+use super::axis::Units;
 use super::map::{self, Map};
 use super::section::Placement;
 use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
-use super::{FigureError, Picture, heights, solid};
+use super::{FigureError, Picture, cube, headline, heights, solid};
 use crate::acceptance::Acceptance;
 use crate::connector::Connector;
-use crate::design::Design;
 use crate::merit::MeritError;
-use crate::merit::onaa::Onaa;
-use crate::merit::sum::Sum;
 use crate::pose::{Dof, PoseError};
+use crate::report::Report;
 
-/// Draws an overview over a pair of errors, the others zero. The numbers are those of `acceptance` and its largest
-/// cube; the maps show `slice`, which may be the same, or a finer grid over the pair alone. `height` as in [`super::heights()`], for a cell
-/// of `slice`.
+/// Draws an overview over a pair of errors, the others zero. The numbers are those of the `report`; the shares of the
+/// outcomes those of its `acceptance`. The maps show `slice`, which may be the same, or a finer grid over the pair
+/// alone. `height` as in [`super::heights()`], for a cell of `slice`.
 ///
 /// # Errors
 /// Those of its parts.
 pub fn overview(
-    design: &Design,
+    report: &Report,
     connector: &Connector,
     acceptance: &Acceptance,
-    onaa: &Onaa,
     slice: &Acceptance,
     height: &dyn Fn(usize) -> f64,
     pair: [Dof; 2],
 ) -> Result<Picture, FigureError> {
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
+    let design = &report.design;
     let units = Units::of(design);
     let map = Map::of(slice, pair, &PoseError::default())?.within(acceptance, pair)?;
-    let sum = Sum::of(acceptance, &design.alignment);
+    let cube = cube(report);
     let (side, top) = (300.0, 96.0);
     let (total_width, total_height) = (1130.0, top + side + 84.0);
     let mut svg = Svg::new(total_width, total_height);
     svg.bold([24.0, 32.0], TITLE + 2.0, Anchor::Start, &design.name);
-    let numbers = format!(
-        "Sum {} {}  ·  {} % of the error box  ·  ONAA edge {}  ·  by {}",
-        short(sum.sum),
-        sum.unit(),
-        short(100.0 * sum.fraction),
-        short(onaa.edge),
-        acceptance.method
-    );
-    svg.text([24.0, 53.0], LABEL, Anchor::Start, SOFT, &numbers);
+    svg.text([24.0, 53.0], LABEL, Anchor::Start, SOFT, &headline(report));
 
     let heading =
         |svg: &mut Svg, x: f64, words: &str| svg.text([x, top - 12.0], LABEL, Anchor::Start, INK, words);
@@ -60,8 +50,8 @@ pub fn overview(
     let sliced = if grid.axes.len() > 2 { ", slice through zero" } else { "" };
     let middle = Rect { x: 392.0, y: top, w: side, h: side };
     heading(&mut svg, middle.x, &format!("area of acceptance{sliced}"));
-    map::outcomes(&mut svg, &map, &map.frame(middle, &units), &units, Some(onaa))?;
-    map::legend(&mut svg, acceptance, !onaa.bounds.is_empty(), [middle.x, total_height - 22.0]);
+    map::outcomes(&mut svg, &map, &map.frame(middle, &units), &units, cube)?;
+    map::legend(&mut svg, acceptance, !cube.is_empty(), [middle.x, total_height - 22.0]);
 
     let right = Rect { x: 762.0, y: top, w: side, h: side };
     heading(&mut svg, right.x, "height of first contact");
@@ -71,9 +61,12 @@ pub fn overview(
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{look, pyramid};
+    use super::super::testing::{corrected, look, pyramid, report_of};
     use super::*;
+    use crate::acceptance::Outcome;
+    use crate::pose::DofSet;
     use crate::report::schema::testing::{blob, design};
+    use crate::report::table;
 
     #[test]
     fn it_shows_halves_acceptance_and_heights() {
@@ -84,14 +77,29 @@ mod tests {
             let e = grid.pose(i);
             0.5 * e.x.abs() + 0.3 * (e.pitch + 0.4 * e.x).abs()
         };
-        let onaa = Onaa::of(&acceptance, &crate::exec::Exec::new()).unwrap();
+        let report = report_of(&design, &acceptance);
         let drawn = || {
             let pair = [Dof::X, Dof::Pitch];
-            overview(&design, &pyramid(), &acceptance, &onaa, &acceptance, &height, pair).unwrap()
+            overview(&report, &pyramid(), &acceptance, &acceptance, &height, pair).unwrap()
         };
         let picture = drawn();
         look("overview", &picture);
         assert!(picture.svg().contains("Sum "));
         assert_eq!(picture, drawn());
+    }
+
+    /// A grid so coarse that none of its cells is accepted, and random poses that know better.
+    #[test]
+    fn five_errors_have_the_corrected_sum_of_their_report() {
+        let design = design(DofSet::ALL);
+        let mut coarse = blob(&design, 4);
+        coarse.outcomes.fill(Outcome::Jammed);
+        let report = corrected(report_of(&design, &coarse), 10.5, [6.6, 14.4]);
+        let pair = [Dof::X, Dof::Pitch];
+        let picture = overview(&report, &pyramid(), &coarse, &coarse, &|_| 0.2, pair).unwrap();
+        look("overview-5", &picture);
+        let told = "Sum 10.5 ± 3.9 D²·rad³  ·  12.50 % of the error box  ·  ONAA edge 0.0000  ·  by flood";
+        assert!(picture.svg().contains(told), "{}", picture.svg());
+        assert!(table(&report).contains("Sum            10.5 ± 3.9 D²·rad³   (12.50 % of the error box)"));
     }
 }

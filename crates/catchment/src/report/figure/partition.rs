@@ -1,44 +1,51 @@
 //! The partition over two errors: every part of the contact space in the colour of its fate, and the exact outline of
 //! what is accepted.
 
-use super::axis::{Frame, Scale, Units, short};
+use super::axis::{Frame, Scale, Units};
 use super::colour::{self, hex};
-use super::map::{JOIN, legend, zero_lines};
+use super::map::{JOIN, legend, width_of, zero_lines};
 use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, polyline};
-use super::{FigureError, Picture};
+use super::{FigureError, Picture, headline};
 use crate::acceptance::{Acceptance, Outcome};
-use crate::design::Design;
 use crate::method::partition::Partition;
+use crate::report::Report;
+use crate::report::text::percent;
 
-/// Draws a partition of two errors; `acceptance` is its sample over a grid, for the legend's shares.
+/// Draws a partition of two errors under the numbers of its `report`; `acceptance` is its sample over a grid, for the legend's shares.
 ///
 /// # Errors
 /// If other than two errors are free.
 pub fn partition(
-    design: &Design,
+    report: &Report,
     partition: &Partition,
     acceptance: &Acceptance,
 ) -> Result<Picture, FigureError> {
+    let design = &report.design;
     let polygons = partition.polygons();
     let dofs: Vec<_> = design.alignment.free.iter().collect();
     let [first, second] = dofs[..] else {
         return Err(FigureError::Empty { what: "a partition is drawn over two errors" });
     };
     let units = Units::of(design);
-    let rect = Rect { x: 78.0, y: 92.0, w: 520.0, h: 520.0 };
-    let mut svg = Svg::new(rect.x + rect.w + 34.0, rect.y + rect.h + 84.0);
+    let rect = Rect { x: 78.0, y: 109.0, w: 520.0, h: 520.0 };
+    let numbers = headline(report);
+    let width = (rect.x + rect.w + 34.0).max(width_of(&numbers, LABEL) + 48.0);
+    let mut svg = Svg::new(width, rect.y + rect.h + 84.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &numbers);
     let counts = partition.counts();
     let settings = partition.settings();
     let story = format!(
         "{} slices, {} strips per D: {} polytopes, {} cells, {} parts",
         settings.slices, settings.strips, counts.polytopes, counts.cells, counts.parts
     );
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
-    let whole: f64 = dofs.iter().map(|dof| 2.0 * design.alignment.half_range(*dof)).product();
-    let share = 100.0 * partition.measure(Outcome::Aligned) / whole;
-    let story = format!("{} % of the error box accepted, inside the dark outline", short(share));
     svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
+    let whole: f64 = dofs.iter().map(|dof| 2.0 * design.alignment.half_range(*dof)).product();
+    let exact =
+        report.partition.as_ref().ok_or(FigureError::Empty { what: "the report has no partition" })?;
+    let share = percent(exact.sum / whole);
+    let story = format!("{share} of the error box accepted, inside the dark outline");
+    svg.text([24.0, 83.0], LABEL, Anchor::Start, SOFT, &story);
     let scale = |dof| {
         let half = design.alignment.half_range(dof) * units.factor(dof);
         Scale::new(units.label(dof), -half, half, dof.is_rotation())

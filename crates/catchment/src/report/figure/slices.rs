@@ -1,31 +1,30 @@
 //! Outcomes over pairs of errors, all others fixed.
 
 use super::axis::Units;
-use super::map::{self, Map, pairs_or_all};
+use super::map::{self, Map, pairs_or_all, width_of};
 use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-use super::{FigureError, Picture};
+use super::{FigureError, Picture, cube, headline};
 use crate::acceptance::Acceptance;
-use crate::design::Design;
 use crate::merit::MeritError;
-use crate::merit::onaa::Onaa;
 use crate::pose::{Dof, PoseError};
+use crate::report::Report;
 
 /// Draws the outcomes over each pair of errors (all pairs if none is named), the others at the values of `at`, with the
-/// border of the accepted set and its largest axis-oriented cube, dashed where the slice misses it. A pair that one of
+/// border of the accepted set and the largest axis-oriented cube of the `report`, dashed where the slice misses it. A pair that one of
 /// `finer` has for its only axes is drawn from that one: it must have been computed with the other errors zero.
 ///
 /// # Errors
 /// Fewer than two free errors, a pair that the grid does not have, listed poses instead of a grid.
 pub fn slices(
-    design: &Design,
+    report: &Report,
     acceptance: &Acceptance,
-    onaa: &Onaa,
     finer: &[Acceptance],
     pairs: &[[Dof; 2]],
     at: &PoseError,
 ) -> Result<Picture, FigureError> {
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
     let pairs = pairs_or_all(grid, pairs)?;
+    let (design, cube, story) = (&report.design, cube(report), headline(report));
     let units = Units::of(design);
     let columns = match pairs.len() {
         1 => 1,
@@ -38,20 +37,22 @@ pub fn slices(
         2..=4 => 280.0,
         _ => 230.0,
     };
-    let (left, top, cell) = (62.0, 74.0, [side + 76.0, side + 62.0]);
-    let legend = map::legend_width(acceptance, !onaa.bounds.is_empty());
+    let (left, top, cell) = (62.0, 92.0, [side + 76.0, side + 62.0]);
+    let legend = map::legend_width(acceptance, !cube.is_empty());
     let rows = pairs.len().div_ceil(columns);
-    let width = (left + columns as f64 * cell[0] - 50.0).max(legend + 48.0);
+    let width =
+        (left + columns as f64 * cell[0] - 50.0).max(legend + 48.0).max(width_of(&story, LABEL) + 48.0);
     let height = top + rows as f64 * cell[1] + 28.0;
     let indent = left + 0.5 * (width - left - 26.0 - (columns as f64 * cell[0] - 76.0)).max(0.0);
     let mut svg = Svg::new(width, height);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    let mut subtitle = format!("area of acceptance by {}", acceptance.method);
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
+    let mut subtitle = "area of acceptance".to_owned();
     if grid.axes.len() > 2 {
         let zero = *at == PoseError::default();
         subtitle += if zero { ", slices through zero" } else { ", slices" };
     }
-    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &subtitle);
+    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &subtitle);
     for (k, pair) in pairs.iter().enumerate() {
         let (column, row) = (k % columns, k / columns);
         let rect = Rect {
@@ -66,20 +67,20 @@ pub fn slices(
             None => Map::of(acceptance, *pair, at)?,
         };
         let frame = map.frame(rect, &units);
-        map::outcomes(&mut svg, &map, &frame, &units, Some(onaa))?;
+        map::outcomes(&mut svg, &map, &frame, &units, cube)?;
         if *at != PoseError::default() {
             svg.text([rect.x + rect.w, rect.y - 6.0], LABEL - 1.5, Anchor::End, SOFT, &map.fixed(&units));
         }
     }
-    map::legend(&mut svg, acceptance, !onaa.bounds.is_empty(), [24.0, height - 20.0]);
+    map::legend(&mut svg, acceptance, !cube.is_empty(), [24.0, height - 20.0]);
     Ok(Picture { svg: svg.finish() })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::look;
+    use super::super::testing::{look, report_of};
     use super::*;
-    use crate::exec::Exec;
+    use crate::design::Design;
     use crate::pose::DofSet;
     use crate::report::schema::testing::{blob, design};
 
@@ -89,7 +90,7 @@ mod tests {
         pairs: &[[Dof; 2]],
         at: &PoseError,
     ) -> Result<Picture, FigureError> {
-        slices(design, acceptance, &Onaa::of(acceptance, &Exec::new())?, &[], pairs, at)
+        slices(&report_of(design, acceptance), acceptance, &[], pairs, at)
     }
 
     #[test]

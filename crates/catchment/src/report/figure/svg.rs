@@ -167,7 +167,7 @@ fn escaped(text: &str) -> String {
             '<' => safe.push_str("&lt;"),
             '>' => safe.push_str("&gt;"),
             // Characters that XML cannot hold, whatever a design is named.
-            c if c.is_control() => safe.push(' '),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => safe.push(' '),
             c => safe.push(c),
         }
     }
@@ -181,10 +181,10 @@ mod tests {
     #[test]
     fn any_name_stays_well_formed() {
         let mut svg = Svg::new(10.0, 10.0);
-        svg.text([1.0, 2.0], 3.0, Anchor::Start, INK, "a<b & \u{1}\"c\"");
+        svg.text([1.0, 2.0], 3.0, Anchor::Start, INK, "\u{1b}[2J<&\u{0}\u{ffff}]]>\"c\"");
         let text = svg.finish();
         let document = resvg::usvg::roxmltree::Document::parse(&text).unwrap();
-        assert!(document.descendants().any(|d| d.text() == Some("a<b &  \"c\"")));
+        assert!(document.descendants().any(|d| d.text() == Some(" [2J<&  ]]>\"c\"")));
     }
 
     #[test]

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 
 /// Basins of a flooded landscape. Depths and heights in D.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct BasinsReport {
     /// Basins shallower than `tolerance.depth` were merged, and why at that depth.
     pub tolerance: Choice,
@@ -30,7 +29,6 @@ pub const SMALLEST_STEP: f64 = 1e-3;
 
 /// A basin after merging.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct BasinReport {
     /// What becomes of its poses.
     pub outcome: Outcome,
@@ -51,7 +49,6 @@ pub struct BasinReport {
 
 /// A step of the accepted share over the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct StepReport {
     /// It holds for tolerances above this.
     pub above: f64,
@@ -145,7 +142,7 @@ pub(crate) mod tests {
         assert_eq!(report.basins, None);
         let report = report.with_basins(&acceptance, &hierarchy);
         assert_eq!(Report::from_json(&report.to_json().unwrap()).unwrap(), report);
-        let basins = report.basins.unwrap();
+        let basins = report.basins.clone().unwrap();
         assert!(matches!(basins.tolerance.reason, Reason::WidestGap { .. }));
         assert_eq!(basins.largest.iter().map(|b| b.cells).sum::<usize>(), acceptance.outcomes.len());
         assert!(basins.minima >= basins.merged);

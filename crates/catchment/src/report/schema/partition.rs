@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 /// A partition of the contact space.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PartitionReport {
     /// Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.
     pub counts: Counts,

@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 /// Random poses, followed exactly, that the Sum and its interval come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct SampleReport {
     /// Name of the method that followed them.
     pub method: String,
@@ -28,7 +27,7 @@ impl Report {
     /// Replaces the Sum by the corrected one.
     #[must_use]
     pub fn with_sample(mut self, corrected: &Corrected) -> Self {
-        let acceptance = &mut self.acceptance;
+        let acceptance = &mut self.body.acceptance;
         let Corrected { found, seed, method, settings } = corrected;
         acceptance.sum = found.sum;
         acceptance.sum_ci95 = Some(found.ci95);

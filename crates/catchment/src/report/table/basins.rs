@@ -1,8 +1,8 @@
 //! The basins as text: the largest of them, and what the depth tolerance decides.
 
-use super::{grouped, line, number, percent, significant, wrapped};
 use crate::method::flood::Reason;
 use crate::report::schema::{BasinsReport, Report};
+use crate::report::text::{grouped, line, percent, rounded, significant, wrapped};
 
 /// How many basins a person wants to see.
 const SHOWN: usize = 6;
@@ -21,8 +21,8 @@ pub(super) fn lines(text: &mut String, basins: &BasinsReport, report: &Report) {
         let place: Vec<String> = axes
             .iter()
             .map(|dof| match (pose[dof.index()], dof.is_rotation()) {
-                (angle, true) => format!("{}°", number((angle.to_degrees() * 10.0).round() / 10.0)),
-                (offset, false) => number((offset * 1e3).round() / 1e3),
+                (angle, true) => format!("{}°", rounded((angle.to_degrees() * 10.0).round() / 10.0)),
+                (offset, false) => rounded((offset * 1e3).round() / 1e3),
             })
             .collect();
         // Where nothing touches there is no lowest place.

@@ -2,6 +2,7 @@
 
 use super::{LAYOUT, ZarrError, storage};
 use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::advice::Advice;
 use crate::exec::Exec;
 use crate::landscape::{Grid, GridAxis};
 use crate::method::REGISTRY;
@@ -28,7 +29,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
         None => return Err(bad("it was not written by this program".to_owned())),
     }
     let report: Report = serde_json::from_value(attributes["report"].take())
-        .map_err(|error| bad(format!("its report is of another version of this program: {error}")))?;
+        .map_err(|error| bad(format!("its report cannot be read: {error}")))?;
     let method = REGISTRY.iter().map(|entry| entry.info.name).find(|name| *name == report.method);
     let method = method.ok_or_else(|| bad(format!("its method `{}` is not known", report.method)))?;
     let axes = report.axes.iter().map(|a| GridAxis { dof: a.axis, lo: a.lo, hi: a.hi, cells: a.cells });
@@ -44,9 +45,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     }
     let cells = grid.checked_len().ok_or_else(|| bad("it has too many cells".to_owned()))?;
     // The codes as they are stored, and the outcomes that they become.
-    exec.ensure_fits("the outcomes of a stored result", 2 * cells as u64, |_| {
-        "allow more with --memory".to_owned()
-    })?;
+    exec.ensure_fits("the outcomes of a stored result", 2 * cells as u64, |_| vec![Advice::MoreMemory])?;
     exec.check()?;
     let codes: Vec<u8> = array.retrieve_array_subset(&array.subset_all()).map_err(storage)?;
     exec.check()?;
@@ -94,7 +93,10 @@ mod tests {
         );
         assert!(message("\"method\": \"flood\"", "\"method\": \"guess\"").contains("`guess` is not known"));
         assert!(message("\"cells\": 7", "\"cells\": 8").contains("its outcomes are over [7, 7, 7] cells"));
-        assert!(message("\"onaa\"", "\"onna\"").contains("another version"));
+        let lacking = message("\"acceptance\"", "\"acceptence\"");
+        assert!(lacking.contains("its report cannot be read: missing field `acceptance`"), "{lacking}");
+        let newer = message("\"schema\": 3", "\"schema\": 4");
+        assert!(newer.contains("written by a newer version of catchment: its schema is 4"), "{newer}");
         assert!(message("\"catchment\": 1,", "").contains("not written by this program"));
         let nowhere = read(home.path(), &Exec::new()).unwrap_err().to_string();
         assert!(nowhere.starts_with("cannot read"), "{nowhere}");

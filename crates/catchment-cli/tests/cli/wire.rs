@@ -1,0 +1,88 @@
+//! The fields of every JSON that is printed: programs rely on them.
+
+use super::{home, json};
+use serde_json::Value;
+
+/// The paths of all fields, in their order, those of a list once; `settings` are the methods' own.
+fn fields(value: &Value, path: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Object(fields_here) => {
+            for (name, inner) in fields_here {
+                let path = format!("{path}.{name}");
+                if !found.contains(&path) {
+                    found.push(path.clone());
+                }
+                if name != "settings" {
+                    fields(inner, &path, found);
+                }
+            }
+        }
+        Value::Array(list) => list.iter().for_each(|inner| fields(inner, &format!("{path}[]"), found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_json_has_one_head_and_its_fields() {
+    let home = home();
+    std::fs::write(home.path().join("poses.csv"), "x,pitch\n0.1,0.2\n").unwrap();
+    let run = ["run", "v.toml", "--resolution", "8", "--samples", "50", "--json"];
+    let calls: [(&str, &[&str]); 11] = [
+        ("run", &[&run[..], &["--method", "flood", "--error-sigma", "x=0.1"]].concat()),
+        ("check", &["check", "v.toml", "--json"]),
+        ("outcome", &["outcome", "v.toml", "--poses", "poses.csv", "--json"]),
+        ("trace", &["trace", "v.toml", "--pose", "x=0.2", "--json"]),
+        ("zraa", &["zraa", "v.toml", "--json"]),
+        ("slices", &["slices", "v.toml", "--resolution", "8", "--json"]),
+        ("convergence", &["run", "v.toml", "--converge", "--time-limit", "0.001 ms", "--json"]),
+        ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "50", "--json"]),
+        ("comparison", &["compare", "v.toml", "--methods", "descent,flood", "--resolution", "8", "--json"]),
+        ("methods", &[&run[..], &["--method", "all"]].concat()),
+        ("export", &["export", "v.toml", "--pose", "x=0.1", "-o", "trial", "--json"]),
+    ];
+    let mut told = String::new();
+    for (kind, args) in calls {
+        let report = json(home.path(), args);
+        assert_eq!((&report["schema"], &report["kind"]), (&3.into(), &kind.into()));
+        let names: Vec<&str> = report.as_object().unwrap().keys().map(String::as_str).collect();
+        assert_eq!(names[..3], ["schema", "catchment", "kind"]);
+        assert_eq!(names[names.len() - 2..], ["warnings", "timing"]);
+        let mut found = Vec::new();
+        fields(&report, "", &mut found);
+        told += &format!("{kind}\n  {}\n", found.join("\n  "));
+    }
+    insta::assert_snapshot!("fields", told);
+}
+
+#[test]
+fn names_do_not_steer_the_terminal() {
+    let home = home();
+    let place = |name: &str| home.path().join(name);
+    let quiet = |args: &[&str]| {
+        let told = super::run(home.path(), args);
+        let steers = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
+        assert!(told.starts_with("exit 0\n") && !told.contains(steers), "{args:?}: {told:?}");
+    };
+    std::fs::write(place("evil.toml"), "name = \"a\\u202e<&\"\n".to_owned() + super::V_FACE).unwrap();
+    std::fs::copy(place("evil.toml"), place("b\u{1b}[2J.toml")).unwrap();
+    quiet(&["check", "b\u{1b}[2J.toml"]);
+    quiet(&["zraa", "evil.toml"]);
+    quiet(&[
+        "run",
+        "evil.toml",
+        "--method",
+        "flood",
+        "--resolution",
+        "8",
+        "--samples",
+        "0",
+        "-o",
+        "out.zarr",
+    ]);
+    // A stored result comes from anywhere.
+    let root = place("out.zarr/zarr.json");
+    let text = std::fs::read_to_string(&root).unwrap();
+    assert!(text.contains("a\u{202e}<&"));
+    std::fs::write(&root, text.replace("a\u{202e}<&", "a\\u001b[2J\\u0000")).unwrap();
+    quiet(&["compare", "out.zarr", "out.zarr"]);
+}

@@ -1,0 +1,51 @@
+//! What helps against a refusal or a doubt: data, so that whoever shows it can say it in the words of its own
+//! controls. A command line names its options, a page its fields.
+
+use std::fmt;
+
+/// Something that helps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Advice {
+    /// So many cells per axis would fit.
+    AtMostResolution(usize),
+    /// So many random poses would fit.
+    AtMostSamples(u64),
+    /// A coarser grid.
+    CoarserGrid,
+    /// An error box that reaches farther.
+    EnlargeErrors,
+    /// Fewer poses at a time.
+    FewerPoses,
+    /// Fewer slices or strips of the partition.
+    FewerSlices,
+    /// Fewer threads.
+    FewerThreads,
+    /// This method instead.
+    Method(&'static str),
+    /// A larger memory budget.
+    MoreMemory,
+    /// Random poses, followed exactly.
+    Samples,
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::AtMostResolution(cells) => write!(f, "at most {cells} cells per axis fit"),
+            Self::AtMostSamples(poses) => write!(f, "at most {poses} random poses fit"),
+            Self::CoarserGrid => f.write_str("use a coarser grid"),
+            Self::EnlargeErrors => f.write_str("enlarge the error box"),
+            Self::FewerPoses => f.write_str("try fewer poses at a time"),
+            Self::FewerSlices => f.write_str("use fewer slices or strips"),
+            Self::FewerThreads => f.write_str("use fewer threads"),
+            Self::Method(name) => write!(f, "use the method {name}"),
+            Self::MoreMemory => f.write_str("allow more memory"),
+            Self::Samples => f.write_str("follow random poses exactly"),
+        }
+    }
+}
+
+/// What helps against an error, one or the other: the `source()` of an error that has advice, however deep that lies.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join(", or "))]
+pub struct Advised(pub Vec<Advice>);

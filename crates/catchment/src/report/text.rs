@@ -1,0 +1,151 @@
+//! Text for terminals and tables for programs: what every kind of report is told with.
+
+use std::fmt::Write;
+
+/// Width of a line.
+pub(super) const COLUMNS: usize = 80;
+/// Width of the column of names.
+const NAMES: usize = 17;
+
+/// The text with a question mark for every character that could steer a terminal: controls, and the marks that
+/// change the direction of writing. Names come from files, and files from anywhere.
+pub fn printable(text: &str) -> String {
+    let steers = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    text.chars().map(|c| if steers(c) { '?' } else { c }).collect()
+}
+
+/// Ends a line of text with what may be printed of `content`.
+pub(super) fn line(text: &mut String, content: &str) {
+    text.push_str(printable(content).trim_end());
+    text.push('\n');
+}
+
+/// A line that starts with a name.
+pub(super) fn row(text: &mut String, name: &str, value: &str) {
+    line(text, &format!("  {name:<width$}{value}", width = NAMES - 2));
+}
+
+/// Breaks `content` between words; later lines are indented by the width of `first`.
+pub(super) fn wrapped(text: &mut String, first: &str, content: &str) {
+    let indent = first.chars().count();
+    let mut current = first.to_owned();
+    let mut used = indent;
+    for word in content.split_whitespace() {
+        let length = word.chars().count();
+        if used > indent && used + 1 + length > COLUMNS {
+            line(text, &current);
+            current = " ".repeat(indent);
+            used = indent;
+        }
+        if used > indent {
+            current.push(' ');
+            used += 1;
+        }
+        current.push_str(word);
+        used += length;
+    }
+    line(text, &current);
+}
+
+/// A share of 1 as `16.32 %`.
+pub(super) fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+/// A number as a person writes it: up to four decimals, no trailing zeros.
+pub(super) fn rounded(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Four significant digits.
+pub(super) fn significant(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor();
+    if !(-4.0..6.0).contains(&magnitude) {
+        return format!("{value:.3e}");
+    }
+    format!("{value:.*}", (3.0 - magnitude).max(0.0) as usize)
+}
+
+/// `2.391 ± 0.013`: the farther end of the interval, rounded up to two digits, and the value to as many decimals.
+pub(super) fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
+    let error = (hi - value).max(value - lo);
+    if !(error > 0.0 && error.is_finite()) {
+        return significant(value);
+    }
+    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 9.0);
+    let unit = 10f64.powf(-decimals);
+    // A little less than a whole unit, so that rounding of the division does not add one.
+    let up = ((error / unit - 1e-9).ceil()) * unit;
+    let decimals = decimals as usize;
+    format!("{value:.decimals$} ± {up:.decimals$}")
+}
+
+/// Thousands kept apart by thin gaps: 24 300 000.
+pub(super) fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (position, digit) in digits.chars().enumerate() {
+        if position > 0 && (digits.len() - position).is_multiple_of(3) {
+            // Writing to a String cannot fail.
+            let _ = text.write_char(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number with all its digits, as tables for programs have it: the shortest text that reads back as the number.
+pub fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), ToOwned::to_owned)
+}
+
+/// Records as CSV, the names of the columns first.
+///
+/// # Errors
+/// If the records are not of one length.
+pub fn csv(records: &[Vec<String>]) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for record in records {
+        writer.write_record(record)?;
+    }
+    writer.into_inner().map_err(|error| error.into_error().into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_four_digits() {
+        let written = [0.0, 0.012_345, 2.345_67, 23.4567, 12_345.6, 1.5e-7].map(significant);
+        assert_eq!(written, ["0", "0.01235", "2.346", "23.46", "12346", "1.500e-7"]);
+        assert_eq!(grouped(24_300_000), "24 300 000");
+        assert_eq!(rounded(-0.5), "-0.5");
+        assert_eq!(with_error(2.391_34, [2.380, 2.403_44]), "2.391 ± 0.013");
+        assert_eq!(with_error(31.42, [30.0, 32.0]), "31.4 ± 1.5");
+        assert_eq!(with_error(2.0, [1.5, 2.1]), "2.00 ± 0.50");
+        assert_eq!(with_error(0.0, [0.0, 0.000_961]), "0.00000 ± 0.00097");
+    }
+
+    #[test]
+    fn programs_get_every_digit() {
+        assert_eq!([1.0, -0.1, 1e300, 0.1 + 0.2].map(number), ["1", "-0.1", "1e300", "0.30000000000000004"]);
+        let records = [["a", "b, c"], ["1", "\"x\""]].map(|record| record.map(str::to_owned).to_vec());
+        assert_eq!(csv(&records).unwrap(), b"a,\"b, c\"\n1,\"\"\"x\"\"\"\n");
+    }
+
+    #[test]
+    fn a_name_cannot_steer_the_terminal() {
+        let mut text = String::new();
+        line(&mut text, "a\u{1b}[2J<&\u{0}\u{9b}\n\u{202e}µ ");
+        assert_eq!(text, "a?[2J<&????µ\n");
+    }
+}

@@ -1,0 +1,218 @@
+//! The way of one pose from first contact to its end: as versioned JSON, as text, as a table for programs.
+
+use super::envelope::{Body, Envelope};
+use super::schema::WarningReport;
+use super::text::{line, number};
+use crate::acceptance::Outcome;
+use crate::design::Design;
+use crate::method::descent::{Settings, Touch, Trajectory, Waypoint};
+use crate::pose::{Dof, PoseError};
+use serde::Serialize;
+
+/// Lines of the text, about.
+const LINES: usize = 24;
+/// Errors below this, in D or rad, are rounding: the axis does not move.
+const STILL: f64 = 1e-9;
+
+/// A path, with its head.
+pub type TraceReport = Envelope<TraceBody>;
+
+/// A path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TraceBody {
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// Name of the method that followed the pose.
+    pub method: &'static str,
+    /// Its settings.
+    pub settings: Settings,
+    /// The pose error that the path starts from.
+    pub start: PoseError,
+    /// How it ends.
+    pub outcome: Outcome,
+    /// The last pose error; null if the halves never meet.
+    pub end: Option<PoseError>,
+    /// From first contact on.
+    pub waypoints: Vec<WaypointReport>,
+}
+
+/// One moment of a motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaypointReport {
+    /// Path length since first contact, in the ρ-metric, in D.
+    pub travelled_d: f64,
+    /// The pose error.
+    pub error: PoseError,
+    /// z of the COR in the world frame, in D.
+    pub height_d: f64,
+    /// Where the halves touch.
+    pub touches: Vec<TouchReport>,
+}
+
+/// A point where the halves touch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TouchReport {
+    /// Where, in the world frame, in D.
+    pub point_d: [f64; 3],
+    /// Unit normal, from the fixed half to the moving one.
+    pub normal: [f64; 3],
+}
+
+impl Body for TraceBody {
+    const KIND: &'static str = "trace";
+}
+
+impl From<&Waypoint> for WaypointReport {
+    fn from(w: &Waypoint) -> Self {
+        let touch = |t: &Touch| TouchReport { point_d: t.point.to_array(), normal: t.normal.to_array() };
+        let touches = w.touches.iter().map(touch).collect();
+        Self { travelled_d: w.travelled, error: w.error, height_d: w.height, touches }
+    }
+}
+
+impl TraceReport {
+    /// Of a path that descent with `settings` followed from `start`, with the doubts about its design.
+    pub fn new(
+        design: &Design,
+        settings: Settings,
+        start: PoseError,
+        path: &Trajectory,
+        warnings: Vec<WarningReport>,
+    ) -> Self {
+        let body = TraceBody {
+            design: design.clone(),
+            method: "descent",
+            settings,
+            start,
+            outcome: path.outcome,
+            end: path.waypoints.last().map(|w| w.error),
+            waypoints: path.waypoints.iter().map(WaypointReport::from).collect(),
+        };
+        Self::of(body, warnings, None)
+    }
+
+    /// Waypoints spread over the path for a person: lengths in the design's unit, or D; degrees.
+    pub fn table(&self) -> String {
+        let design = &self.design;
+        let (width, symbol) = design.unit.map_or((1.0, "D"), |unit| (design.width, unit.symbol()));
+        let length = |value: f64| format!("{:.4}", tidy(value * width));
+        let moves = |dof: &Dof| {
+            design.alignment.free.contains(*dof)
+                || self.waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > STILL)
+        };
+        let dofs: Vec<Dof> = Dof::ALL.into_iter().filter(moves).collect();
+        let mut lines = vec![vec!["path [D]".to_owned()]];
+        lines[0].extend(
+            dofs.iter().map(|d| format!("{} [{}]", d.name(), if d.is_rotation() { "deg" } else { symbol })),
+        );
+        lines[0].extend([format!("height [{symbol}]"), "contacts".to_owned()]);
+        for w in spread(&self.waypoints) {
+            let mut cells = vec![format!("{:.4}", w.travelled_d)];
+            cells.extend(dofs.iter().map(|dof| {
+                let value = w.error.to_array()[dof.index()];
+                if dof.is_rotation() { format!("{:.3}", tidy(value.to_degrees())) } else { length(value) }
+            }));
+            cells.extend([length(w.height_d), w.touches.len().to_string()]);
+            lines.push(cells);
+        }
+        let widths: Vec<usize> = (0..lines[0].len())
+            .map(|c| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0))
+            .collect();
+        let mut text = String::new();
+        line(&mut text, &design.name);
+        if self.waypoints.is_empty() {
+            line(&mut text, "the halves never meet");
+        } else {
+            for cells in &lines {
+                let cells: Vec<String> = cells.iter().zip(&widths).map(|(c, w)| format!("{c:>w$}")).collect();
+                line(&mut text, &format!("  {}", cells.join("  ")));
+            }
+            let (shown, all) = (lines.len() - 1, self.waypoints.len());
+            let words = format!("{shown} of {all} waypoints; height is that of the centre of rotation");
+            line(&mut text, &words);
+        }
+        line(&mut text, &format!("outcome: {}", self.outcome.name()));
+        text
+    }
+
+    /// A record per contact point for programs, the names of the columns first, in D and radians; a waypoint that
+    /// touches nowhere has one record without a point.
+    pub fn records(&self) -> Vec<Vec<String>> {
+        let head =
+            "waypoint travelled x y roll pitch yaw height point_x point_y point_z normal_x normal_y normal_z";
+        let mut records = vec![head.split(' ').map(str::to_owned).collect::<Vec<_>>()];
+        for (k, w) in self.waypoints.iter().enumerate() {
+            let mut record = vec![k.to_string(), number(w.travelled_d)];
+            record.extend(w.error.to_array().map(number));
+            record.push(number(w.height_d));
+            for touch in &w.touches {
+                let contact = touch.point_d.into_iter().chain(touch.normal).map(number);
+                records.push(record.iter().cloned().chain(contact).collect());
+            }
+            if w.touches.is_empty() {
+                record.extend(std::iter::repeat_n(String::new(), 6));
+                records.push(record);
+            }
+        }
+        records
+    }
+}
+
+/// Waypoints spread evenly over the path, the first and the last among them.
+fn spread(waypoints: &[WaypointReport]) -> Vec<&WaypointReport> {
+    let total = waypoints.last().map_or(0.0, |w| w.travelled_d);
+    let mut chosen: Vec<usize> = (0..LINES)
+        .map(|k| total * k as f64 / (LINES - 1) as f64)
+        .map(|s| waypoints.partition_point(|w| w.travelled_d < s))
+        .chain(waypoints.len().checked_sub(1))
+        .collect();
+    chosen.dedup();
+    chosen.into_iter().filter_map(|k| waypoints.get(k)).collect()
+}
+
+/// Rounding does not print as −0.0000.
+fn tidy(value: f64) -> f64 {
+    if value.abs() < 5e-5 { 0.0 } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::schema::testing::design;
+    use super::*;
+    use crate::pose::DofSet;
+    use glam::DVec3;
+
+    fn report(waypoints: Vec<Waypoint>) -> TraceReport {
+        let mut design = design([Dof::X, Dof::Pitch].into_iter().collect::<DofSet>());
+        design.name = "a\u{1b}[2Jb".to_owned();
+        let path = Trajectory { waypoints, outcome: Outcome::Aligned };
+        let doubts = vec![WarningReport::note("shallow".to_owned())];
+        TraceReport::new(&design, Settings::default(), PoseError::default(), &path, doubts)
+    }
+
+    #[test]
+    fn a_path_is_told_to_people_and_programs() {
+        let touch = Touch { point: DVec3::X, normal: DVec3::Z };
+        let waypoint = |x: f64, touches: Vec<Touch>| {
+            let error = PoseError { x, ..PoseError::default() };
+            Waypoint { error, height: 0.25, travelled: 0.5 - x, touches }
+        };
+        let told = report(vec![waypoint(0.5, vec![touch, touch]), waypoint(0.0, Vec::new())]);
+        let text = told.table();
+        assert!(text.starts_with("a?[2Jb\n") && text.ends_with("outcome: aligned\n"), "{text}");
+        assert!(text.contains("  0.0000  25.0000        0.000      12.5000         2\n"), "{text}");
+        let records = told.records();
+        assert_eq!(records.len(), 1 + 2 + 1);
+        assert!(records.iter().all(|record| record.len() == 14));
+        let json: serde_json::Value = serde_json::from_str(&told.to_json().unwrap()).unwrap();
+        assert_eq!(json["waypoints"][0]["touches"][1]["normal"][2], 1.0);
+        assert_eq!(json["warnings"][0]["message"], "shallow");
+    }
+
+    #[test]
+    fn halves_that_never_meet_have_no_path() {
+        let told = report(Vec::new());
+        assert_eq!(told.table(), "a?[2Jb\nthe halves never meet\noutcome: aligned\n");
+        assert!(told.end.is_none() && told.records().len() == 1);
+    }
+}

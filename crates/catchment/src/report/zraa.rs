@@ -1,0 +1,160 @@
+//! The offsets that are corrected without any rotation: as versioned JSON, as text, as corners for programs.
+
+use super::envelope::{Body, Envelope};
+use super::text::{line, number};
+use crate::design::Design;
+use crate::method::zraa::{Zraa, circle_bounds};
+use crate::pose::Dof;
+use serde::Serialize;
+
+/// The zero-rotation area of acceptance, with its head.
+pub type ZraaReport = Envelope<ZraaBody>;
+
+/// The zero-rotation area of acceptance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ZraaBody {
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// What is accepted.
+    #[serde(flatten)]
+    pub found: ZraaFound,
+}
+
+/// Offsets that are accepted, in D. Bounds of a circle are those of the round design that a polygon stands for, null
+/// where nothing is round.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum ZraaFound {
+    /// One free translation.
+    Interval {
+        /// x or y.
+        axis: Dof,
+        /// Lower end.
+        from_d: f64,
+        /// Upper end.
+        to_d: f64,
+        /// From one to the other.
+        length_d: f64,
+        /// Bounds of the length for the circle.
+        circle_length_d: Option<[f64; 2]>,
+    },
+    /// Both translations.
+    Region {
+        /// Area, in D².
+        area_d2: f64,
+        /// Bounds of the area for the circle.
+        circle_area_d2: Option<[f64; 2]>,
+        /// Convex polygons that tile it: x and y of their corners, counter-clockwise.
+        polygons_d: Vec<Vec<[f64; 2]>>,
+    },
+}
+
+impl Body for ZraaBody {
+    const KIND: &'static str = "zraa";
+}
+
+impl ZraaReport {
+    /// Of a design.
+    pub fn new(design: &Design, zraa: &Zraa) -> Self {
+        let bounds = circle_bounds(design, zraa);
+        let found = match zraa {
+            Zraa::Interval { axis, from, to } => ZraaFound::Interval {
+                axis: *axis,
+                from_d: *from,
+                to_d: *to,
+                length_d: to - from,
+                circle_length_d: bounds,
+            },
+            Zraa::Region { polygons, area } => ZraaFound::Region {
+                area_d2: *area,
+                circle_area_d2: bounds,
+                polygons_d: polygons.iter().map(|p| p.iter().map(|v| [v.x, v.y]).collect()).collect(),
+            },
+        };
+        Self::of(ZraaBody { design: design.clone(), found }, Vec::new(), None)
+    }
+
+    /// The accepted offsets for a person.
+    pub fn table(&self) -> String {
+        let mut text = String::new();
+        let (design, text) = (&self.design, &mut text);
+        line(text, &design.name);
+        let circle = |text: &mut String, bounds: Option<[f64; 2]>, unit: &str| {
+            if let Some([lower, upper]) = bounds {
+                let stands = "a polygon stands for it, see chord_error";
+                line(text, &format!("  circle  {lower:.9} … {upper:.9} {unit}: {stands}"));
+            }
+        };
+        match &self.found {
+            ZraaFound::Interval { axis, from_d, to_d, length_d, circle_length_d } => {
+                line(text, &format!("  offsets in {} corrected without rotation", axis.name()));
+                for (name, value) in [("from", from_d), ("to", to_d), ("length", length_d)] {
+                    line(text, &format!("  {name:<6}  {value:.9} D{}", in_unit(design, *value, 1)));
+                }
+                circle(text, *circle_length_d, "D");
+            }
+            ZraaFound::Region { area_d2, circle_area_d2, polygons_d } => {
+                line(text, "  offsets in x and y corrected without rotation");
+                line(text, &format!("  area    {area_d2:.9} D²{}", in_unit(design, *area_d2, 2)));
+                circle(text, *circle_area_d2, "D²");
+                line(text, &format!("  tiled by {} convex polygons", polygons_d.len()));
+            }
+        }
+        std::mem::take(text)
+    }
+
+    /// The corners as records for programs, the names of the columns first, in D; an interval has its two ends.
+    pub fn records(&self) -> Vec<Vec<String>> {
+        match &self.found {
+            ZraaFound::Interval { axis, from_d, to_d, .. } => {
+                vec![vec![axis.name().to_owned()], vec![number(*from_d)], vec![number(*to_d)]]
+            }
+            ZraaFound::Region { polygons_d, .. } => {
+                let mut records = vec![["polygon", "x", "y"].map(str::to_owned).to_vec()];
+                for (k, polygon) in polygons_d.iter().enumerate() {
+                    records.extend(polygon.iter().map(|[x, y]| vec![k.to_string(), number(*x), number(*y)]));
+                }
+                records
+            }
+        }
+    }
+}
+
+/// ` = 25 mm`, where the design has a unit.
+fn in_unit(design: &Design, value: f64, power: i32) -> String {
+    let square = if power == 2 { "²" } else { "" };
+    design.unit.map_or_else(String::new, |unit| {
+        format!(" = {:.6} {}{square}", value * design.width.powi(power), unit.symbol())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::schema::testing::design;
+    use super::*;
+    use crate::pose::DofSet;
+    use glam::DVec2;
+
+    #[test]
+    fn an_area_and_an_interval_have_fields_of_their_own() {
+        let mut design = design(DofSet::ALL);
+        design.name = "\u{1b}[2Jx".to_owned();
+        let corners = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
+        let region = ZraaReport::new(&design, &Zraa::Region { polygons: vec![corners], area: 0.5 });
+        let json: serde_json::Value = serde_json::from_str(&region.to_json().unwrap()).unwrap();
+        assert_eq!(
+            (&json["kind"], &json["area_d2"], &json["polygons_d"][0][1][0]),
+            (&"zraa".into(), &0.5.into(), &1.0.into())
+        );
+        assert!(json["circle_area_d2"].is_null() && json.get("axis").is_none());
+        assert!(
+            region.table().starts_with("?[2Jx\n")
+                && region.table().contains("0.500000000 D² = 1250.000000 mm²")
+        );
+        assert_eq!(region.records()[1..], [["0", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]);
+        let interval = ZraaReport::new(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 });
+        let json: serde_json::Value = serde_json::from_str(&interval.to_json().unwrap()).unwrap();
+        assert_eq!((&json["axis"], &json["length_d"]), (&"x".into(), &0.75.into()));
+        assert_eq!(interval.records(), [["x"], ["-0.5"], ["0.25"]]);
+    }
+}

@@ -1,0 +1,90 @@
+//! Reports that other versions of this program wrote, or will write.
+
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
+use catchment::acceptance::Warning;
+use catchment::report::{Report, SCHEMA};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// A planar V on 8 × 8 cells, as the version before `kind` wrote it.
+fn old() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/schema-2")
+}
+
+fn old_json() -> Value {
+    serde_json::from_str(&std::fs::read_to_string(old().join("report.json")).unwrap()).unwrap()
+}
+
+/// Adds a field to every object, except inside of values that are kept as they are, and beside the one that says which
+/// connector it is.
+fn with_more_fields(value: &mut Value) {
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(with_more_fields),
+        Value::Object(fields) => {
+            fields.iter_mut().filter(|(key, _)| *key != "settings").for_each(|(_, v)| with_more_fields(v));
+            if !fields.contains_key("family") || fields.contains_key("aspect_ratio") {
+                fields.insert("from_the_future".to_owned(), json!({ "some": ["thing"] }));
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn a_report_of_the_last_layout_is_read_and_written_in_this_one() {
+    let old = old_json();
+    assert_eq!((&old["schema"], old.get("kind")), (&2.into(), None));
+    let report = Report::from_json(&old.to_string()).unwrap();
+    let mut new: Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();
+    assert_eq!((&new["schema"], &new["kind"]), (&SCHEMA.into(), &"run".into()));
+    // Nothing else is different.
+    new.as_object_mut().unwrap().shift_remove("kind");
+    new["schema"] = 2.into();
+    assert_eq!(new, old);
+}
+
+#[test]
+fn fields_that_are_not_known_are_ignored_at_every_level() {
+    let known = Report::from_json(&old_json().to_string()).unwrap();
+    let mut more = old_json();
+    with_more_fields(&mut more);
+    assert!(more["acceptance"]["sample"]["strata"][0]["from_the_future"].is_object());
+    assert_eq!(Report::from_json(&more.to_string()).unwrap(), known);
+}
+
+#[test]
+fn a_newer_layout_is_refused_with_advice_whatever_its_form() {
+    let refused = |schema: u32| {
+        let text = json!({ "schema": schema, "catchment": 7, "design": [] }).to_string();
+        Report::from_json(&text).unwrap_err().to_string()
+    };
+    let newer = refused(SCHEMA + 1);
+    assert!(
+        newer.contains("written by a newer version of catchment: its schema is 4, this one reads up to 3")
+    );
+    assert!(newer.contains("update catchment, or compute the result again"), "{newer}");
+    assert!(refused(1).contains("its schema is 1, this version of catchment reads from 2 to 3"));
+    let mut other = old_json();
+    other["kind"] = "trace\u{1b}[2J".into();
+    let other = Report::from_json(&other.to_string()).unwrap_err().to_string();
+    assert!(other.contains("it is a report of `trace?[2J`, not of `run`"), "{other}");
+}
+
+#[test]
+fn a_doubt_of_a_kind_that_is_not_known_stays_a_sentence() {
+    let mut report = old_json();
+    report["warnings"] = json!([{ "warning": { "kind": "moon-phase" }, "message": "the moon is full" }]);
+    let report = Report::from_json(&report.to_string()).unwrap();
+    assert_eq!(report.warnings[0].warning, Warning::Note { text: "the moon is full".to_owned() });
+}
+
+#[cfg(feature = "zarr")]
+#[test]
+fn a_group_of_the_last_layout_is_read() {
+    use catchment::exec::Exec;
+    use catchment::report::zarr;
+    let (report, acceptance) = zarr::read(&old().join("result.zarr"), &Exec::new()).unwrap();
+    assert_eq!(report, Report::from_json(&old_json().to_string()).unwrap());
+    assert_eq!(acceptance.counts()[0], report.acceptance.outcomes.aligned);
+}
