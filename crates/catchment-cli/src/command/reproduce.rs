@@ -5,7 +5,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{number, to_stderr, to_stdout};
-use crate::result_folder::{REPORT, encode, has_only, is_report, write_all};
+use catchment::report::folder::{REPORT, encode, has_only, is_report, write_all};
 use catchment::acceptance::Warning;
 use catchment::exec::Exec;
 use catchment::report::figure::{self, Picture};
@@ -145,7 +145,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     } else if args.form.csv {
         to_stdout(&csv(&compared)?)?;
         if let Some(figure) = &figure {
-            to_stdout(&String::from_utf8(crate::result_folder::csv(&figure.records())?)?)?;
+            to_stdout(&String::from_utf8(catchment::report::folder::csv(&figure.records())?)?)?;
         }
     } else if args.form.markdown {
         let (version, seconds) = (env!("CARGO_PKG_VERSION"), started.elapsed().as_secs_f64());
@@ -196,7 +196,7 @@ fn write_folder(
     let mut files = Vec::new();
     if let Some(found) = figure {
         drawn.push((FIGURE_FILE.to_owned(), figure::resolution(found)));
-        files.push((format!("{FIGURE_FILE}.csv"), crate::result_folder::csv(&found.records())?));
+        files.push((format!("{FIGURE_FILE}.csv"), catchment::report::folder::csv(&found.records())?));
     }
     let pictures = drawn.len();
     files.extend(encode(&drawn, exec)?);
@@ -218,7 +218,7 @@ fn accuracy(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         let timing = json!({ "total_s": total_s, "threads": threads });
         format!("{:#}\n", json!({ "schema": JSON_SCHEMA, "accuracy": table, "timing": timing }))
     } else if args.form.csv {
-        String::from_utf8(crate::result_folder::csv(&table.records())?)?
+        String::from_utf8(catchment::report::folder::csv(&table.records())?)?
     } else if args.form.markdown {
         let version = env!("CARGO_PKG_VERSION");
         table.markdown(&format!("It took {total_s:.0} s on {threads} threads, with version {version}."))?

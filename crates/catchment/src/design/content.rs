@@ -20,12 +20,16 @@ pub struct MeshContent {
 impl MeshContent {
     /// Of these bytes, which make so many triangles.
     pub fn of(bytes: &[u8], triangles: usize) -> Self {
-        let sha256 = Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
-            let _ = write!(hex, "{byte:02x}");
-            hex
-        });
-        Self { sha256, bytes: bytes.len() as u64, triangles }
+        Self { sha256: hex(&Sha256::digest(bytes)), bytes: bytes.len() as u64, triangles }
     }
+}
+
+/// Two hexadecimal digits per byte.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }
 
 /// What the meshes of both halves held; `None` for a half that came from no mesh.

@@ -26,13 +26,14 @@ mod quantity;
 mod read;
 mod reader;
 mod schema;
-mod suggest;
 mod template;
 #[cfg(test)]
 mod tests;
 
+pub use crate::suggest::nearest;
 pub use alignment::Alignment;
 pub use complaint::{Complaint, Dimension};
+pub(crate) use content::hex;
 pub use content::{Contents, MeshContent};
 pub use family::{Family, FamilySpec};
 pub use load::{LoadError, load};
@@ -42,5 +43,4 @@ pub use problem::{Problem, Problems, Sources, line_column};
 pub use quantity::{Quantity, Scale, Unit};
 pub use read::{DesignFile, LARGEST_FILE, read};
 pub use schema::json_schema;
-pub use suggest::nearest;
 pub use template::template;

@@ -2,7 +2,7 @@
 
 use super::Grid;
 use crate::design::Alignment;
-use crate::pose::Dof;
+use crate::pose::{Dof, UnknownDof};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -34,11 +34,8 @@ pub enum ResolutionError {
         cells: usize,
     },
     /// No such axis.
-    #[error("there is no axis `{name}`; the axes are x, y, roll, pitch and yaw")]
-    UnknownAxis {
-        /// What was written.
-        name: String,
-    },
+    #[error(transparent)]
+    UnknownAxis(#[from] UnknownDof),
     /// The same axis, or the bare number, was given twice.
     #[error("the resolution of {name} is given twice")]
     Twice {
@@ -72,6 +69,15 @@ impl Resolution {
     pub fn with(mut self, dof: Dof, cells: usize) -> Result<Self, ResolutionError> {
         self.named[dof.index()] = Some(in_range(cells)?);
         Ok(self)
+    }
+
+    /// The resolution of a grid, axis by axis.
+    pub fn of(grid: &Grid) -> Self {
+        let mut resolution = Self::default();
+        for axis in &grid.axes {
+            resolution.named[axis.dof.index()] = Some(axis.cells);
+        }
+        resolution
     }
 
     /// Cells on the axis of `dof` in a grid of `axes` axes (1 to 5); `defaults` are those of the method for one to
@@ -123,9 +129,7 @@ impl FromStr for Resolution {
                 None => (&mut resolution.every, "every axis", part),
                 Some((name, number)) => {
                     let name = name.trim();
-                    let Some(dof) = Dof::ALL.into_iter().find(|d| d.name() == name) else {
-                        return Err(ResolutionError::UnknownAxis { name: name.to_owned() });
-                    };
+                    let dof: Dof = name.parse()?;
                     (&mut resolution.named[dof.index()], dof.name(), number.trim())
                 }
             };

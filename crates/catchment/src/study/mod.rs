@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes
+//!   agreement    every method on one grid                        one design, how each two agree
 //!   convergence  finer and finer grids until stable               one design, every method
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
 //!   accuracy     how far each method is off the exact Sum          many designs
@@ -10,12 +11,13 @@
 //! ```
 
 pub mod accuracy;
+pub mod agreement;
 pub mod convergence;
 pub mod coverage;
 pub mod reproduce;
 pub mod sensitivity;
 pub mod slices;
-pub mod trial;
+pub mod refinement;
 
 use crate::acceptance::Outcome;
 use crate::method::descent;
@@ -28,12 +30,11 @@ const fn pose_bytes() -> u64 {
 
 #[cfg(test)]
 mod testing {
-    //! A pair to study.
+    //! A problem to study.
 
-    use crate::connector::Connector;
-    use crate::contact::Pair;
     use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
     use crate::pose::DofSet;
+    use crate::problem::Problem;
 
     /// A family with its defaults, free in `free`.
     pub(super) fn design(family: Family, free: DofSet) -> Design {
@@ -43,8 +44,7 @@ mod testing {
     }
 
     /// Its halves.
-    pub(super) fn pair(family: Family, free: DofSet) -> Pair {
-        let design = design(family, free);
-        Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+    pub(super) fn problem(family: Family, free: DofSet) -> Problem {
+        Problem::of(design(family, free)).unwrap()
     }
 }

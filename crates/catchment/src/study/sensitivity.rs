@@ -24,16 +24,17 @@ use crate::contact::Pair;
 use crate::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::merit::sum::Sum;
-use crate::method::descent;
+use crate::method::{Decide, descent};
 use crate::pose::PoseError;
+use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Random poses.
-    pub poses: usize,
+    /// Random poses; where nothing is said, three times as many as a run by descent draws: slopes need more of them.
+    pub poses: Option<usize>,
     /// Their seed.
     pub seed: u64,
     /// h as a share of ρ and of the aspect ratio.
@@ -58,7 +59,7 @@ impl Default for Settings {
         let [least, greatest] = Self::RHO;
         let rho = |k: usize| least * (greatest / least).powf(k as f64 / (Self::RHOS - 1) as f64);
         Self {
-            poses: 10_000,
+            poses: None,
             seed: 1,
             relative_step: 0.1,
             cor_step: 0.05,
@@ -168,26 +169,32 @@ pub enum SensitivityError {
 ///
 /// # Errors
 /// See [`SensitivityError`].
-pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitivity, SensitivityError> {
-    if settings.poses == 0 || settings.rotation_lengths.is_empty() {
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Sensitivity, SensitivityError> {
+    /// As a multiple of those of a run.
+    const POSES_PER_SAMPLE: usize = 3;
+    let design = problem.design();
+    let default = || POSES_PER_SAMPLE * descent::Settings::default().default_samples(problem.pair());
+    let poses = settings.poses.unwrap_or_else(default);
+    let settings = &Settings { poses: Some(poses), ..settings.clone() };
+    if poses == 0 || settings.rotation_lengths.is_empty() {
         return Err(SensitivityError::Nothing);
     }
     let per_pose = pose_bytes() + 2 * size_of::<PoseError>() as u64 + settings.rotation_lengths.len() as u64;
-    exec.reserve("the random poses", per_pose.saturating_mul(settings.poses as u64), |budget| {
+    exec.ensure_fits("the random poses", per_pose.saturating_mul(poses as u64), |budget| {
         format!("use at most --samples {}", budget / per_pose)
     })?;
-    let mut trials = Trials::new(design, settings, exec);
-    let own = trials.follow(design)?;
+    let mut common = CommonPoses::new(design, settings, exec);
+    let own = common.follow(design)?;
     let slopes = Parameter::ALL
         .into_iter()
         .filter_map(|parameter| Some((parameter, parameter.of(design)?)))
-        .map(|(parameter, value)| trials.slope(parameter, value))
+        .map(|(parameter, value)| common.slope(parameter, value))
         .collect::<Result<Vec<Slope>, _>>()?;
     let mut rhos = settings.rotation_lengths.clone();
     rhos.sort_by(f64::total_cmp);
     let runs = rhos
         .iter()
-        .map(|rho| trials.follow(&Parameter::RotationLength.set(design.clone(), *rho)?))
+        .map(|rho| common.follow(&Parameter::RotationLength.set(design.clone(), *rho)?))
         .collect::<Result<Vec<Acceptance>, SensitivityError>>()?;
     let measured = |acceptance: &Acceptance| {
         let sum = Sum::of(acceptance, &design.alignment);
@@ -204,7 +211,7 @@ pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitiv
     let by_sum = |a: &usize, b: &usize| over_rho[*a].sum.total_cmp(&over_rho[*b].sum);
     let low = (0..runs.len()).min_by(by_sum).unwrap_or(0);
     let high = (0..runs.len()).max_by(by_sum).unwrap_or(0);
-    let spread = Paired::of(&runs[low], &runs[high]);
+    let spread = Discordance::of(&runs[low], &runs[high]);
     let (sum, sum_ci95) = measured(&own);
     Ok(Sensitivity {
         settings: settings.clone(),
@@ -214,9 +221,9 @@ pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitiv
         slopes,
         least: over_rho[low],
         greatest: over_rho[high],
-        spread: spread.difference() * trials.measure,
-        spread_ci95: spread.ci95().map(|end| end * trials.measure),
-        undecided: trials.undecided,
+        spread: spread.difference() * common.measure,
+        spread_ci95: spread.ci95().map(|end| end * common.measure),
+        undecided: common.undecided,
         over_rho,
     })
 }
@@ -257,7 +264,7 @@ impl Parameter {
 }
 
 /// The same poses, followed again and again.
-struct Trials<'a> {
+struct CommonPoses<'a> {
     design: &'a Design,
     settings: &'a Settings,
     exec: &'a Exec,
@@ -268,14 +275,14 @@ struct Trials<'a> {
     undecided: usize,
 }
 
-impl<'a> Trials<'a> {
+impl<'a> CommonPoses<'a> {
     fn new(design: &'a Design, settings: &'a Settings, exec: &'a Exec) -> Self {
         let alignment = &design.alignment;
         Self {
             design,
             settings,
             exec,
-            poses: Domain::random(alignment, settings.poses, settings.seed),
+            poses: Domain::random(alignment, settings.poses.unwrap_or_default(), settings.seed),
             measure: alignment.free.iter().map(|dof| 2.0 * alignment.half_range(dof)).product(),
             done: 0,
             undecided: 0,
@@ -306,30 +313,30 @@ impl<'a> Trials<'a> {
         let between = [value - step, value + step];
         let below = self.follow(&parameter.set(self.design.clone(), between[0])?)?;
         let above = self.follow(&parameter.set(self.design.clone(), between[1])?)?;
-        let paired = Paired::of(&below, &above);
+        let discordance = Discordance::of(&below, &above);
         let scale = self.measure / (between[1] - between[0]);
         Ok(Slope {
             parameter,
             value,
             between,
-            slope: scale * paired.difference(),
-            standard_error: scale * paired.standard_error(),
-            ci95: paired.ci95().map(|end| scale * end),
-            gained: paired.gained,
-            lost: paired.lost,
+            slope: scale * discordance.difference(),
+            standard_error: scale * discordance.standard_error(),
+            ci95: discordance.ci95().map(|end| scale * end),
+            gained: discordance.gained,
+            lost: discordance.lost,
         })
     }
 }
 
-/// The same poses under two conditions.
+/// The poses that fare differently under two conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Paired {
+struct Discordance {
     poses: usize,
     gained: usize,
     lost: usize,
 }
 
-impl Paired {
+impl Discordance {
     fn of(before: &Acceptance, after: &Acceptance) -> Self {
         let pairs = || before.accepted().zip(after.accepted());
         Self {
@@ -375,23 +382,27 @@ mod tests {
     #[test]
     fn poses_that_fare_alike_cancel() {
         // Ten of a thousand poses change sides, eight to the better: (8 − 2)/1000, and the variance of that.
-        let paired = Paired { poses: 1000, gained: 8, lost: 2 };
-        assert_eq!(paired.difference(), 0.006);
+        let discordance = Discordance { poses: 1000, gained: 8, lost: 2 };
+        assert_eq!(discordance.difference(), 0.006);
         // √(11 − 36/1002)/1002, by hand.
-        assert!((paired.standard_error() - 0.003_304_6).abs() < 1e-7, "{}", paired.standard_error());
-        let [lo, hi] = paired.ci95();
+        assert!(
+            (discordance.standard_error() - 0.003_304_6).abs() < 1e-7,
+            "{}",
+            discordance.standard_error()
+        );
+        let [lo, hi] = discordance.ci95();
         assert!(lo < 0.0 && 0.006 < hi, "ten poses do not show a slope: {lo} {hi}");
         // No pose changed sides: not known to better than some three in a thousand.
-        let [lo, hi] = Paired { poses: 1000, gained: 0, lost: 0 }.ci95();
+        let [lo, hi] = Discordance { poses: 1000, gained: 0, lost: 0 }.ci95();
         assert!(lo == -hi && (0.001..0.004).contains(&hi), "{hi}");
     }
 
     #[test]
     fn the_same_for_any_number_of_threads_and_the_parameters_of_the_design() {
-        let settings = Settings { poses: 200, rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
+        let settings = Settings { poses: Some(200), rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
         let with = |threads| {
             let exec = Exec::new().with_threads(threads).unwrap();
-            run(&planar(), &settings, &exec).unwrap()
+            run(&Problem::of(planar()).unwrap(), &settings, &exec).unwrap()
         };
         let one = with(1);
         assert_eq!(one, with(3));
@@ -407,19 +418,19 @@ mod tests {
     fn without_rotation_rho_does_not_matter() {
         // Translation alone: ρ weighs nothing, the Sum is ZRAA's 1 D of the V-Face, and no pose changes sides.
         let design = design(Family::VFace, DofSet::EMPTY.with(Dof::X));
-        let found = run(&design, &Settings { poses: 300, ..Settings::default() }, &Exec::new()).unwrap();
+        let found = run(&Problem::of(design).unwrap(), &Settings { poses: Some(300), ..Settings::default() }, &Exec::new()).unwrap();
         assert_eq!((found.slopes[0].gained, found.slopes[0].lost, found.spread), (0, 0, 0.0));
         assert!(found.sum_ci95[0] < 1.0 && 1.0 < found.sum_ci95[1], "{:?}", found.sum_ci95);
     }
 
     #[test]
     fn what_cannot_be_compared_is_refused() {
-        let refused = |settings: Settings, exec: &Exec| run(&planar(), &settings, exec).unwrap_err();
-        let none = Settings { poses: 0, ..Settings::default() };
+        let refused = |settings: Settings, exec: &Exec| run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err();
+        let none = Settings { poses: Some(0), ..Settings::default() };
         assert!(matches!(refused(none, &Exec::new()), SensitivityError::Nothing));
         let small = Exec::new().with_memory_budget(1000);
         assert!(matches!(refused(Settings::default(), &small), SensitivityError::OutOfBudget(_)));
-        let beyond = Settings { rotation_lengths: vec![1e9], poses: 2, ..Settings::default() };
+        let beyond = Settings { rotation_lengths: vec![1e9], poses: Some(2), ..Settings::default() };
         assert!(matches!(refused(beyond, &Exec::new()), SensitivityError::Value(_)));
     }
 }

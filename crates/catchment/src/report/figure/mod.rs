@@ -22,6 +22,7 @@
 //! For people: lengths in the design's unit where it has one (else D), angles in degrees. The same input gives the
 //! same bytes. Maps and solids are embedded images, everything else is vector.
 
+mod answer;
 mod axis;
 mod basins;
 mod chart;
@@ -44,6 +45,7 @@ mod solid;
 mod svg;
 mod trajectory;
 
+pub use answer::{Drawn, NAMES};
 pub use basins::basins;
 pub use convergence::convergence;
 pub use difference::difference;

@@ -11,15 +11,14 @@
 
 use super::recipe::{PLANAR_BASE, design};
 use super::{RHO, ReproduceError};
-use crate::connector::Connector;
-use crate::contact::Pair;
 use crate::design::{Design, Family};
 use crate::exec::Exec;
 use crate::method::Method;
 use crate::method::correction::{self, Stop};
 use crate::method::flood::dissertation::{self, Errors};
 use crate::pose::Dof;
-use crate::study::trial::Decided;
+use crate::problem::Problem;
+use crate::study::refinement::Sampled;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -94,9 +93,7 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = preset.center_of_rotation();
     let design: Design = design(Family::VFace, ASPECT_RATIO, Some(PLANAR_BASE), cor, free);
-    let connector =
-        Connector::build(&design).map_err(|_| ReproduceError::Exact { reason: design.name.clone() })?;
-    let pair = Pair::new(&connector, &design.alignment);
+    let problem = Problem::of(design).map_err(|error| failed(&error))?;
     let mut own = Curve { name: PRESET, points: Vec::new() };
     for &resolution in &settings.resolutions {
         exec.check()?;
@@ -108,16 +105,16 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
     }
     let mut curves = vec![own];
     let mut finest = None;
-    for method in Method::ON_GRIDS {
+    for method in Method::on_grids() {
         let mut curve = Curve { name: method.name(), points: Vec::new() };
         for &resolution in &settings.resolutions {
-            if method == Method::Descent && resolution > settings.finest_descent {
+            if method.name() == "descent" && resolution > settings.finest_descent {
                 continue;
             }
-            let decided = Decided::by(method, &pair, resolution, exec).map_err(|error| failed(&error))?;
-            let trial = decided.trial(&pair, exec).map_err(|error| failed(&error))?;
+            let decided = Sampled::by(&method, &problem, resolution, exec).map_err(|error| failed(&error))?;
+            let trial = decided.refinement(&problem, exec).map_err(|error| failed(&error))?;
             curve.points.push(Point { resolution, sum: trial.sum, seconds: trial.seconds });
-            if method == Method::Transport {
+            if method.name() == "transport" {
                 finest = Some(decided);
             }
         }
@@ -127,7 +124,7 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
         return Err(ReproduceError::Exact { reason: "no resolution was asked for".to_owned() });
     };
     let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
-    let exact = finest.correct(&pair, &sample, exec).map_err(|error| failed(&error))?;
+    let exact = finest.correct(&problem, &sample, exec).map_err(|error| failed(&error))?;
     let settings = settings.clone();
     Ok(Found { settings, exact: exact.sum, exact_ci95: exact.ci95, rotation_length: RHO, curves })
 }
