@@ -103,7 +103,9 @@ impl Hash {
             Mount::Y => "y",
         });
         self.count(u64::from(*symmetry));
-        half_ranges.iter().for_each(|range| self.number(*range));
+        for range in half_ranges {
+            self.number(*range);
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 /// Of loose triangles: nine numbers each, in D, as little-endian doubles.
 pub(super) fn of_triangles(triangles: &[[DVec3; 3]]) -> MeshContent {
     // −0 and 0 are the same place: adding 0 makes them the same bytes.
-    let numbers = triangles.iter().flatten().flat_map(|corner| corner.to_array());
+    let numbers = triangles.iter().flatten().flat_map(DVec3::to_array);
     let bytes: Vec<u8> = numbers.flat_map(|number| (number + 0.0).to_le_bytes()).collect();
     MeshContent::of(&bytes, triangles.len())
 }
