@@ -9,17 +9,16 @@
 //!
 //! Samples or cells per axis N over x in ±2 D and θ in ±90°. Seconds are wall-clock time and differ between runs.
 
-use super::recipe::{PLANAR_BASE, design};
-use super::{RHO, ReproduceError};
-use crate::connector::Connector;
-use crate::contact::Pair;
-use crate::design::{Design, Family};
-use crate::exec::Exec;
-use crate::method::Method;
-use crate::method::correction::{self, Stop};
-use crate::method::flood::dissertation::{self, Errors};
-use crate::pose::Dof;
-use crate::study::trial::Decided;
+use crate::recipe::dissertation::{self, Errors};
+use crate::recipe::{PLANAR_BASE, RHO, RecipeError, design};
+use catchment::connector::Connector;
+use catchment::contact::Pair;
+use catchment::design::{Design, Family};
+use catchment::exec::Exec;
+use catchment::method::Method;
+use catchment::method::correction::{self, Stop};
+use catchment::pose::Dof;
+use catchment::study::trial::Decided;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -88,14 +87,14 @@ const PRESET: &str = "dissertation's";
 ///
 /// # Errors
 /// When it is cancelled, or does not fit into memory.
-pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
-    let failed = |error: &dyn std::error::Error| ReproduceError::Exact { reason: error.to_string() };
+pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
+    let failed = |error: &dyn std::error::Error| RecipeError::Exact { reason: error.to_string() };
     let preset = dissertation::Settings::new(Family::VFace, Errors::XTheta, ASPECT_RATIO, COR);
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = preset.center_of_rotation();
     let design: Design = design(Family::VFace, ASPECT_RATIO, Some(PLANAR_BASE), cor, free);
     let connector =
-        Connector::build(&design).map_err(|_| ReproduceError::Exact { reason: design.name.clone() })?;
+        Connector::build(&design).map_err(|_| RecipeError::Exact { reason: design.name.clone() })?;
     let pair = Pair::new(&connector, &design.alignment);
     let mut own = Curve { name: PRESET, points: Vec::new() };
     for &resolution in &settings.resolutions {
@@ -124,7 +123,7 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
         curves.push(curve);
     }
     let Some(finest) = finest else {
-        return Err(ReproduceError::Exact { reason: "no resolution was asked for".to_owned() });
+        return Err(RecipeError::Exact { reason: "no resolution was asked for".to_owned() });
     };
     let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
     let exact = finest.correct(&pair, &sample, exec).map_err(|error| failed(&error))?;

@@ -10,16 +10,15 @@
 //! out of all methods alike.
 
 mod cases;
-mod text;
 
 pub use cases::{CASES, Case};
 
-use super::trial::{Decided, TrialError};
-use crate::connector::Connector;
-use crate::contact::Pair;
-use crate::exec::Exec;
-use crate::method::Method;
-use crate::method::correction::{self, Stop};
+use catchment::connector::Connector;
+use catchment::contact::Pair;
+use catchment::exec::Exec;
+use catchment::method::Method;
+use catchment::method::correction::{self, Stop};
+use catchment::study::trial::{Decided, TrialError};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
 
