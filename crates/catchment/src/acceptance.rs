@@ -59,6 +59,38 @@ pub enum Domain {
 }
 
 impl Domain {
+    /// How many poses; `None` if the number overflows.
+    pub fn checked_len(&self) -> Option<usize> {
+        match self {
+            Self::Grid(grid) => grid.checked_len(),
+            Self::Poses(poses) => Some(poses.len()),
+        }
+    }
+
+    /// How many poses.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Grid(grid) => grid.len(),
+            Self::Poses(poses) => poses.len(),
+        }
+    }
+
+    /// Whether there is no pose.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The pose error number `k`, in the order of the outcomes.
+    ///
+    /// # Panics
+    /// When a list has no pose number `k`.
+    pub fn pose(&self, k: usize) -> PoseError {
+        match self {
+            Self::Grid(grid) => grid.pose(k),
+            Self::Poses(poses) => poses[k],
+        }
+    }
+
     /// `count` poses drawn independently and uniformly from the error box of `alignment`. Pose k depends on `seed`
     /// and k alone: a longer list starts with the shorter one.
     pub fn random(alignment: &Alignment, count: usize, seed: u64) -> Self {

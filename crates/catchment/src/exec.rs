@@ -153,7 +153,7 @@ impl Exec {
     }
 
     /// Checks a memory need *before* allocating.
-    pub fn reserve(
+    pub fn ensure_fits(
         &self,
         what: &'static str,
         needed: u64,
@@ -184,8 +184,8 @@ mod tests {
     #[test]
     fn a_need_beyond_the_budget_is_refused_with_advice() {
         let exec = Exec::new().with_memory_budget(1000);
-        assert!(exec.reserve("a grid", 1000, |_| String::new()).is_ok());
-        let error = exec.reserve("a grid", 3 << 20, |budget| format!("use {budget} bytes")).unwrap_err();
+        assert!(exec.ensure_fits("a grid", 1000, |_| String::new()).is_ok());
+        let error = exec.ensure_fits("a grid", 3 << 20, |budget| format!("use {budget} bytes")).unwrap_err();
         assert_eq!(
             error.to_string(),
             "a grid needs 3.0 MiB of memory, more than the 1000 B allowed; use 1000 bytes"

@@ -82,7 +82,7 @@
 //! - [`report`]: JSON, text, pictures, Zarr.
 //!
 //! [`pose`] owns frames, signs and the order of angles; [`exec`] owns threads, cancelling, progress and the
-//! memory budget, none of which changes a bit of a result. [`polytope`] is the geometry of convex sets in up to six
+//! memory budget, none of which changes a bit of a result; [`suggest`] knows what a misspelt word meant. [`polytope`] is the geometry of convex sets in up to six
 //! dimensions.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
@@ -103,5 +103,8 @@ pub mod merit;
 pub mod method;
 pub mod polytope;
 pub mod pose;
+pub mod problem;
 pub mod report;
+pub mod run;
 pub mod study;
+pub mod suggest;

@@ -20,7 +20,7 @@ const ROOMS: [&str; 10] = [
     "report",
 ];
 /// What serves every room and knows none.
-const SERVANTS: [&str; 2] = ["pose", "exec"];
+const SERVANTS: [&str; 3] = ["pose", "exec", "suggest"];
 
 /// A room that imports one it must not know.
 #[derive(Debug, PartialEq)]

@@ -31,7 +31,7 @@ fn read(file: &str) -> Trials {
         .as_array()
         .unwrap()
         .iter()
-        .map(|name| Dof::ALL.into_iter().find(|d| d.name() == name.as_str().unwrap()).unwrap())
+        .map(|name| name.as_str().unwrap().parse::<Dof>().unwrap())
         .collect();
     let mut alignment = Alignment::default_for(Some(family));
     alignment.free = free;

@@ -24,7 +24,7 @@ use catchment::method::drop::Settings as DropSettings;
 use catchment::method::{Method, partition};
 use catchment::report::figure::FigureError;
 use catchment::report::schema::Timing;
-use catchment::report::{ComparisonReport, Report, Side, figure, zarr};
+use catchment::report::{Compared, ComparisonReport, Report, figure, zarr};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -82,11 +82,11 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
     let running = args.exec.start()?;
     let exec = &running.exec;
     // Stored results first: their grid is what a design is decided on.
-    let mut sides: [Option<(Side, Acceptance)>; 2] = [None, None];
+    let mut sides: [Option<(Compared, Acceptance)>; 2] = [None, None];
     for (side, source) in sides.iter_mut().zip(&sources) {
         if let Source::Stored(path) = source {
             let (report, acceptance) = zarr::read(&group(path), exec)?;
-            *side = Some((Side { source: path.display().to_string(), report }, acceptance));
+            *side = Some((Compared { source: path.display().to_string(), report }, acceptance));
         }
     }
     let stored = sides.iter().flatten().find_map(|(side, _)| as_resolution(&side.report));
@@ -168,7 +168,7 @@ fn decide(
     method: Method,
     resolution: Option<Resolution>,
     exec: &Exec,
-) -> Result<(Side, Acceptance), Failure> {
+) -> Result<(Compared, Acceptance), Failure> {
     let (built, pair, _) = Built::new(Input::read(path)?)?.into_pair()?;
     let design = &built.input.design;
     method.applies_to(design)?;
@@ -193,11 +193,11 @@ fn decide(
     };
     let computed = compute(&job, exec)?;
     let report = super::run::report(&job, &computed, Vec::new(), None, None, exec)?;
-    Ok((Side { source: path.display().to_string(), report }, computed.acceptance))
+    Ok((Compared { source: path.display().to_string(), report }, computed.acceptance))
 }
 
 /// What tells the two apart: the methods of one design, else the designs, else the files.
-fn names(sides: [&Side; 2]) -> [String; 2] {
+fn names(sides: [&Compared; 2]) -> [String; 2] {
     let [a, b] = sides.map(|side| &side.report);
     if a.design == b.design && a.method != b.method {
         return [a, b].map(|report| report.method.clone());

@@ -5,17 +5,15 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout};
-use crate::result_folder::{REPORT, csv, encode, has_only, is_report, write_all};
-use catchment::exec::Exec;
-use catchment::report::write;
-use catchment_validation::report::{Effort, figure};
+use catchment::report::folder::csv;
+use catchment_validation::report::{Effort, folder};
 use catchment_validation::study::accuracy::{self, CASES};
 use catchment_validation::study::reproduce::Settings;
-use catchment_validation::study::{COVERAGE, FIGURE, Reproduction, Request};
+use catchment_validation::study::{COVERAGE, FIGURE, Request};
 use catchment_validation::tables::TABLES;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Compute published tables and set them beside the printed ones
@@ -101,13 +99,13 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help(format!("{COVERAGE} is no table of published entries"), help));
     }
     if let Some(path) = &args.output {
-        write::check_folder(path, is_ours)?;
+        folder::check(path)?;
     }
     let running = args.exec.start()?;
     let found = request.run(&running.exec)?;
     let mut notes = Vec::new();
     if let Some(path) = &args.output {
-        notes.push(write_folder(path, &found, &running.exec)?);
+        notes.push(folder::save(&found, path, VERSION, &running.exec)?);
     }
     let threads = running.exec.threads();
     drop(running);
@@ -127,30 +125,6 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     notes.extend(found.warnings().iter().map(|warning| format!("warning: {warning}")));
     to_stderr(&notes);
     Ok(ExitStatus::Done)
-}
-
-/// The table of all entries in the folder.
-const CSV: &str = "tables.csv";
-
-/// Whether a folder was written by this command, or is empty: replacing it loses nothing else.
-fn is_ours(path: &Path) -> bool {
-    has_only(path, |name| {
-        figure::is_picture(name) || name == CSV || name == REPORT && is_report(&path.join(REPORT))
-    })
-}
-
-/// Writes pictures, tables and report, and says what was written.
-fn write_folder(path: &Path, found: &Reproduction, exec: &Exec) -> Result<String, Failure> {
-    let drawn = figure::pictures(found)?;
-    let mut files = Vec::new();
-    if let Some(figure) = &found.figure {
-        files.push((format!("{}.csv", figure::figure_name()), csv(&figure.records())?));
-    }
-    files.extend(encode(&drawn, exec)?);
-    files.push((CSV.to_owned(), csv(&found.records())?));
-    files.push((REPORT.to_owned(), format!("{:#}\n", found.json(VERSION)).into_bytes()));
-    write::folder(path, is_ours, |folder| write_all(folder, &files, exec))?;
-    Ok(format!("wrote {}: {REPORT}, {CSV}, {} pictures as PNG and SVG", path.display(), drawn.len()))
 }
 
 /// How far every method is off.

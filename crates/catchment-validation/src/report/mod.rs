@@ -14,6 +14,8 @@ mod accuracy;
 mod coverage;
 #[cfg(feature = "figure")]
 pub mod figure;
+#[cfg(feature = "figure")]
+pub mod folder;
 mod markdown;
 mod summary;
 mod text;

@@ -11,14 +11,13 @@
 
 use crate::recipe::dissertation::{self, Errors};
 use crate::recipe::{PLANAR_BASE, RHO, RecipeError, design};
-use catchment::connector::Connector;
-use catchment::contact::Pair;
 use catchment::design::{Design, Family};
 use catchment::exec::Exec;
 use catchment::method::Method;
 use catchment::method::correction::{self, Stop};
 use catchment::pose::Dof;
-use catchment::study::trial::Decided;
+use catchment::problem::Problem;
+use catchment::study::refinement::Sampled;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -93,9 +92,7 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = preset.center_of_rotation();
     let design: Design = design(Family::VFace, ASPECT_RATIO, Some(PLANAR_BASE), cor, free);
-    let connector =
-        Connector::build(&design).map_err(|_| RecipeError::Exact { reason: design.name.clone() })?;
-    let pair = Pair::new(&connector, &design.alignment);
+    let problem = Problem::of(design).map_err(|error| failed(&error))?;
     let mut own = Curve { name: PRESET, points: Vec::new() };
     for &resolution in &settings.resolutions {
         exec.check()?;
@@ -107,16 +104,16 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
     }
     let mut curves = vec![own];
     let mut finest = None;
-    for method in Method::ON_GRIDS {
+    for method in Method::on_grids() {
         let mut curve = Curve { name: method.name(), points: Vec::new() };
         for &resolution in &settings.resolutions {
-            if method == Method::Descent && resolution > settings.finest_descent {
+            if method.name() == "descent" && resolution > settings.finest_descent {
                 continue;
             }
-            let decided = Decided::by(method, &pair, resolution, exec).map_err(|error| failed(&error))?;
-            let trial = decided.trial(&pair, exec).map_err(|error| failed(&error))?;
+            let decided = Sampled::by(&method, &problem, resolution, exec).map_err(|error| failed(&error))?;
+            let trial = decided.refinement(&problem, exec).map_err(|error| failed(&error))?;
             curve.points.push(Point { resolution, sum: trial.sum, seconds: trial.seconds });
-            if method == Method::Transport {
+            if method.name() == "transport" {
                 finest = Some(decided);
             }
         }
@@ -126,7 +123,7 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
         return Err(RecipeError::Exact { reason: "no resolution was asked for".to_owned() });
     };
     let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
-    let exact = finest.correct(&pair, &sample, exec).map_err(|error| failed(&error))?;
+    let exact = finest.correct(&problem, &sample, exec).map_err(|error| failed(&error))?;
     let settings = settings.clone();
     Ok(Found { settings, exact: exact.sum, exact_ci95: exact.ci95, rotation_length: RHO, curves })
 }

@@ -20,7 +20,7 @@
 use super::Pair;
 use super::element::{Element, Features, Meeting};
 use super::plan::Plan;
-use super::shape::{Shape, Side};
+use super::shape::{Ridge, Shape};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Sine of the angle by which a feature may fail to support a normal and still count, at least: rounding.
@@ -49,7 +49,7 @@ pub(super) struct Window {
     pub(super) reach: f64,
 }
 
-/// A feature of a fixed shape and one of a moving shape; indices into the corners, facets or sides of the shapes.
+/// A feature of a fixed shape and one of a moving shape; indices into the corners, facets or ridges of the shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Candidate {
     shapes: [u32; 2],
@@ -72,7 +72,7 @@ struct Scratch {
     vertices: Vec<DVec3>,
     /// Of the fixed facets, in the moving frame.
     normals: Vec<DVec3>,
-    /// Of the fixed sides, in the moving frame.
+    /// Of the fixed ridges, in the moving frame.
     along: Vec<DVec3>,
 }
 
@@ -124,7 +124,7 @@ impl Candidates {
         normals.clear();
         normals.extend(fixed.facets.iter().map(|f| back * f.normal));
         along.clear();
-        along.extend(fixed.sides.iter().map(|s| back * s.along));
+        along.extend(fixed.ridges.iter().map(|s| back * s.along));
         for (c, corner) in moving.corners.iter().enumerate() {
             fixed.plans.facets.visit(&around(&[corner.vertex]), |facet| {
                 if fixed.facets[facet as usize].normal.z > lowest
@@ -144,13 +144,13 @@ impl Candidates {
                 }
             });
         }
-        for (k, side) in moving.sides.iter().enumerate() {
-            if side.normals.iter().all(|n| up.dot(*n) >= skin - lowest) {
+        for (k, ridge) in moving.ridges.iter().enumerate() {
+            if ridge.normals.iter().all(|n| up.dot(*n) >= skin - lowest) {
                 continue;
             }
-            let edges = EdgesAt { w: *rotation * side.along, moving: side };
-            fixed.plans.sides.visit(&around(&side.ends), |f| {
-                let fixed = &fixed.sides[f as usize];
+            let edges = EdgesAt { w: *rotation * ridge.along, moving: ridge };
+            fixed.plans.ridges.visit(&around(&ridge.ends), |f| {
+                let fixed = &fixed.ridges[f as usize];
                 if fixed.normals.iter().any(|n| n.z > lowest)
                     && edges.may_touch(fixed, along[f as usize], slack, lowest, skin)
                 {
@@ -207,7 +207,7 @@ impl Candidates {
         last = None;
         for candidate in &self.edge_edge {
             let (fixed, moving) = of(candidate);
-            let (f, m) = (&fixed.sides[candidate.fixed as usize], &moving.sides[candidate.moving as usize]);
+            let (f, m) = (&fixed.ridges[candidate.fixed as usize], &moving.ridges[candidate.moving as usize]);
             if last != Some((candidate.shapes[0], candidate.fixed as usize)) {
                 last = Some((candidate.shapes[0], candidate.fixed as usize));
                 seen = back * f.along;
@@ -229,20 +229,20 @@ impl Candidates {
 struct EdgesAt<'a> {
     /// Its direction in the world.
     w: DVec3,
-    moving: &'a Side,
+    moving: &'a Ridge,
 }
 
 impl EdgesAt<'_> {
     /// (u × w)·s for the directions s into the facets of the fixed edge, then of the moving one; `seen` is u in the
     /// moving frame.
-    fn products(&self, fixed: &Side, seen: DVec3) -> ([f64; 2], [f64; 2]) {
+    fn products(&self, fixed: &Ridge, seen: DVec3) -> ([f64; 2], [f64; 2]) {
         let [left, right] = fixed.normals.map(|n| self.w.dot(n));
         let [port, starboard] = self.moving.normals.map(|n| seen.dot(n));
         ([-left, right], [port, -starboard])
     }
 
     /// Whether the edges may touch at some rotation within the chord `skin`.
-    fn may_touch(&self, fixed: &Side, seen: DVec3, slack: f64, lowest: f64, skin: f64) -> bool {
+    fn may_touch(&self, fixed: &Ridge, seen: DVec3, slack: f64, lowest: f64, skin: f64) -> bool {
         let (below, above) = self.products(fixed, seen);
         // |u × w| ≤ 1, so this rejects nothing that the exact test below accepts.
         let widest = slack * (1.0 + skin) + skin;
@@ -260,7 +260,7 @@ impl EdgesAt<'_> {
     }
 
     /// The unit common normal of the edges in the sense that both support, if either does.
-    fn normal(&self, fixed: &Side, seen: DVec3, slack: f64) -> Option<DVec3> {
+    fn normal(&self, fixed: &Ridge, seen: DVec3, slack: f64) -> Option<DVec3> {
         let (below, above) = self.products(fixed, seen);
         let up = below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack);
         let down = below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack);

@@ -27,7 +27,7 @@ pub(super) struct Corner {
 
 /// A convex edge.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Side {
+pub(super) struct Ridge {
     /// Its two ends.
     pub(super) ends: [u32; 2],
     /// Unit vector from its first end to its second.
@@ -41,7 +41,7 @@ pub(super) struct Side {
 pub(super) struct Plans {
     pub(super) facets: PlanTree,
     pub(super) corners: PlanTree,
-    pub(super) sides: PlanTree,
+    pub(super) ridges: PlanTree,
 }
 
 /// A surface with its touching features.
@@ -54,7 +54,7 @@ pub(super) struct Shape {
     pub(super) corners: Vec<Corner>,
     /// Unit vectors from the corners to their neighbours along edges.
     pub(super) spokes: Vec<DVec3>,
-    pub(super) sides: Vec<Side>,
+    pub(super) ridges: Vec<Ridge>,
     pub(super) convex: bool,
     pub(super) plans: Plans,
 }
@@ -71,12 +71,12 @@ impl Shape {
             }
         }
         let mut pointed = vec![false; surface.vertices.len()];
-        let mut sides = Vec::with_capacity(surface.edges.len());
+        let mut ridges = Vec::with_capacity(surface.edges.len());
         for edge in &surface.edges {
             let [a, b] = edge.ends;
             let along = (at(b) - at(a)).normalize_or_zero();
             let normals = edge.facets.map(|f| surface.facets[f as usize].normal);
-            sides.push(Side { ends: edge.ends, along, normals });
+            ridges.push(Ridge { ends: edge.ends, along, normals });
             pointed[a as usize] = true;
             pointed[b as usize] = true;
         }
@@ -92,7 +92,7 @@ impl Shape {
         let plans = Plans {
             facets: PlanTree::over(surface.facets.iter().map(|f| around(&f.corners))),
             corners: PlanTree::over(corners.iter().map(|c: &Corner| around(&[c.vertex]))),
-            sides: PlanTree::over(sides.iter().map(|s: &Side| around(&s.ends))),
+            ridges: PlanTree::over(ridges.iter().map(|s: &Ridge| around(&s.ends))),
         };
         Self {
             vertices: surface.vertices.clone(),
@@ -100,7 +100,7 @@ impl Shape {
             facets: surface.facets.clone(),
             corners,
             spokes,
-            sides,
+            ridges,
             convex: surface.convex,
             plans,
         }

@@ -23,11 +23,11 @@ mod quantity;
 mod read;
 mod reader;
 mod schema;
-mod suggest;
 mod template;
 #[cfg(test)]
 mod tests;
 
+pub use crate::suggest::nearest;
 pub use alignment::Alignment;
 pub use complaint::{Complaint, Dimension};
 pub use load::{LoadError, load};
@@ -37,5 +37,4 @@ pub use problem::{Problem, Problems, Sources, line_column};
 pub use quantity::{Quantity, Scale, Unit};
 pub use read::{DesignFile, LARGEST_FILE, read};
 pub use schema::json_schema;
-pub use suggest::nearest;
 pub use template::template;

@@ -17,7 +17,7 @@ pub fn parse_dofs(text: &str) -> Result<DofSet, Complaint> {
         if text.trim().is_empty() {
             return Err(Complaint::nothing_free("free".to_owned()));
         }
-        let dof = Dof::ALL.into_iter().find(|dof| dof.name() == name).ok_or_else(|| {
+        let dof: Dof = name.parse().map_err(|_| {
             unknown_name("degree of freedom", &shortened(name), Dof::ALL.into_iter().map(Dof::name))
         })?;
         if set.contains(dof) {

@@ -4,8 +4,8 @@
 //! design, which only a design with a unit has.
 
 use super::complaint::{Complaint, Dimension};
-use super::suggest::nearest;
 use super::{Design, LengthUnit};
+use crate::suggest::nearest;
 use std::fmt;
 use std::str::FromStr;
 

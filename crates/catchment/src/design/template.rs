@@ -75,7 +75,7 @@ fn default_text(key: &Key, family: Family) -> Option<String> {
         keys::MOUNT => Some(if alignment.mount == Mount::X { "\"x\"" } else { "\"y\"" }.to_owned()),
         keys::SYMMETRY => Some(alignment.symmetry.to_string()),
         _ if key.table == Table::Errors => {
-            let dof = Dof::ALL.into_iter().find(|dof| dof.name() == key.name)?;
+            let dof = key.name.parse::<Dof>().ok()?;
             let value = alignment.half_ranges[dof.index()];
             if matches!(key.kind, Kind::Angle(_)) { Some(degrees(value)) } else { number(value) }
         }

@@ -68,10 +68,14 @@ impl Landscape {
         let cells = usable(pair, grid)?;
         let slab: usize = grid.axes.iter().filter(|a| !a.dof.is_rotation()).map(|a| a.cells).product();
         let buffers = (exec.threads() * slab * size_of::<f64>()) as u64;
-        exec.reserve("the height landscape", Self::bytes(cells as u64).saturating_add(buffers), |budget| {
-            let largest = Resolution::largest_that_fits(budget, size_of::<f32>() as u64, grid.axes.len());
-            format!("use at most --resolution {largest}")
-        })?;
+        exec.ensure_fits(
+            "the height landscape",
+            Self::bytes(cells as u64).saturating_add(buffers),
+            |budget| {
+                let largest = Resolution::largest_that_fits(budget, size_of::<f32>() as u64, grid.axes.len());
+                format!("use at most --resolution {largest}")
+            },
+        )?;
         let mut heights = vec![0.0f32; cells];
         exec.install(|| fill(pair, grid, slab, &mut heights, exec))?;
         Ok(Self { grid: grid.clone(), heights })

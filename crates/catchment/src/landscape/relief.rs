@@ -93,7 +93,7 @@ impl Relief {
         let unusable = || LandscapeError::Unusable { shape: grid.shape() };
         let fold = Fold::new(grid, pair.mirrors()).ok_or_else(unusable)?;
         let kept = fold.kept_cells();
-        exec.reserve("heights and their gradients", kept as u64 * Self::BYTES_PER_CELL, |budget| {
+        exec.ensure_fits("heights and their gradients", kept as u64 * Self::BYTES_PER_CELL, |budget| {
             let share = kept as f64 / grid.len() as f64;
             let budget = (budget as f64 / share) as u64;
             let largest = Resolution::largest_that_fits(budget, Self::BYTES_PER_CELL, grid.axes.len());

@@ -2,7 +2,7 @@
 
 use super::Grid;
 use crate::design::Alignment;
-use crate::pose::Dof;
+use crate::pose::{Dof, UnknownDof};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -34,11 +34,8 @@ pub enum ResolutionError {
         cells: usize,
     },
     /// No such axis.
-    #[error("there is no axis `{name}`; the axes are x, y, roll, pitch and yaw")]
-    UnknownAxis {
-        /// What was written.
-        name: String,
-    },
+    #[error(transparent)]
+    UnknownAxis(#[from] UnknownDof),
     /// The same axis, or the bare number, was given twice.
     #[error("the resolution of {name} is given twice")]
     Twice {
@@ -123,9 +120,7 @@ impl FromStr for Resolution {
                 None => (&mut resolution.every, "every axis", part),
                 Some((name, number)) => {
                     let name = name.trim();
-                    let Some(dof) = Dof::ALL.into_iter().find(|d| d.name() == name) else {
-                        return Err(ResolutionError::UnknownAxis { name: name.to_owned() });
-                    };
+                    let dof: Dof = name.parse()?;
                     (&mut resolution.named[dof.index()], dof.name(), number.trim())
                 }
             };

@@ -32,7 +32,7 @@ pub(super) fn squared_distances(
     exec: &Exec,
 ) -> Result<Vec<f32>, MeritError> {
     let cells: usize = shape.iter().product();
-    exec.reserve("distances to a border", (cells * size_of::<f32>()) as u64, |_| {
+    exec.ensure_fits("distances to a border", (cells * size_of::<f32>()) as u64, |_| {
         "lower the resolution, or allow more with --memory".to_owned()
     })?;
     exec.install(|| {

@@ -49,7 +49,7 @@ impl Mask {
             strides.push(words);
             words *= cells;
         }
-        exec.reserve("the figures of merit", (words * size_of::<u64>()) as u64, |_| {
+        exec.ensure_fits("the figures of merit", (words * size_of::<u64>()) as u64, |_| {
             "lower the resolution, or allow more with --memory".to_owned()
         })?;
         let mut words = vec![0; words];

@@ -28,16 +28,18 @@ pub mod sum;
 pub mod tolerance;
 
 use crate::acceptance::{Acceptance, Outcome, Warning};
+use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
 use rayon::prelude::*;
+use std::mem::discriminant;
 
 /// Why a figure of merit cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeritError {
     /// The figure needs a grid, the outcomes are of listed poses.
-    #[error("this figure needs outcomes over a grid, but they were computed for listed poses; use `run`")]
+    #[error("this figure needs outcomes over a grid, but they were computed for listed poses")]
     NotAGrid,
     /// The figure needs an axis that the grid does not have.
     #[error("{} is not an axis of the grid; its axes are {axes}", dof.name())]
@@ -85,6 +87,54 @@ pub enum MeritError {
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// All figures of merit that follow from the outcomes alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Merits {
+    /// Measure of the accepted cells or poses.
+    pub sum: sum::Sum,
+    /// The same without and with the cells at the border; `None` for listed poses.
+    pub bracket: Option<[f64; 2]>,
+    /// The largest cube; `None` for listed poses.
+    pub onaa: Option<onaa::Onaa>,
+    /// The largest cube around zero; `None` for listed poses.
+    pub centered: Option<centered::CenteredBox>,
+    /// How far each error may go alone; empty for listed poses.
+    pub tolerances: Vec<tolerance::Tolerance>,
+    /// The doubts of the method, and those that the accepted set itself raises.
+    pub warnings: Vec<Warning>,
+}
+
+impl Merits {
+    /// Evaluates an acceptance.
+    ///
+    /// # Errors
+    /// When they do not fit into memory, or are cancelled.
+    pub fn of(acceptance: &Acceptance, alignment: &Alignment, exec: &Exec) -> Result<Self, MeritError> {
+        const STAGE: &str = "figures of merit";
+        let mut merits = Self {
+            sum: sum::Sum::of(acceptance, alignment),
+            bracket: None,
+            onaa: None,
+            centered: None,
+            tolerances: Vec::new(),
+            warnings: acceptance.warnings.clone(),
+        };
+        if acceptance.grid().is_some() {
+            exec.report(0.0, STAGE);
+            merits.bracket = Some(sum::bracket(acceptance, exec)?);
+            exec.report(0.3, STAGE);
+            merits.onaa = Some(onaa::Onaa::of(acceptance, exec)?);
+            exec.report(0.8, STAGE);
+            merits.centered = Some(centered::centered_cube(acceptance, exec)?);
+            merits.tolerances = tolerance::tolerances(acceptance)?;
+        }
+        let known = |w: &Warning| acceptance.warnings.iter().any(|o| discriminant(o) == discriminant(w));
+        let own = doubts(acceptance, exec)?;
+        merits.warnings.extend(own.into_iter().filter(|w| !known(w)));
+        Ok(merits)
+    }
 }
 
 /// The grid of an acceptance.

@@ -19,7 +19,7 @@ fn columns<T: Display>(width: usize, values: impl Iterator<Item = T>) -> String 
 
 /// One of the two.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Side {
+pub struct Compared {
     /// Where it comes from: the path that was given.
     pub source: String,
     /// Everything about it, over its own grid.
@@ -36,9 +36,9 @@ pub struct ComparisonReport {
     /// `comparison`.
     pub study: &'static str,
     /// The first.
-    pub first: Side,
+    pub first: Compared,
     /// The second.
-    pub second: Side,
+    pub second: Compared,
     /// The axes of the grid on which they are compared; empty for listed poses.
     pub axes: Vec<Axis>,
     /// How they compare.
@@ -50,7 +50,7 @@ pub struct ComparisonReport {
 impl ComparisonReport {
     /// Of two sides, compared over `paired`.
     pub fn new(
-        [first, second]: [Side; 2],
+        [first, second]: [Compared; 2],
         paired: &Paired,
         comparison: Comparison,
         timing: Option<Timing>,

@@ -3,7 +3,7 @@
 use super::schema::{SCHEMA, Timing};
 use super::table::{grouped, heading, line, row, significant, wrapped};
 use crate::design::Design;
-use crate::study::convergence::{Convergence, End};
+use crate::study::convergence::{Convergence, StopReason};
 use serde::Serialize;
 
 /// What refinement has to say.
@@ -58,7 +58,7 @@ impl ConvergenceReport {
             &format!("  per axis         cells  seconds {sum:>14}  {:<19}  ONAA edge", "one cell of doubt"),
         );
         for sequence in &self.found.sequences {
-            line(&mut text, sequence.method.name());
+            line(&mut text, sequence.method);
             for t in &sequence.trials {
                 undecided += t.undecided;
                 let [lo, hi] = t.bracket.map(significant);
@@ -76,16 +76,16 @@ impl ConvergenceReport {
                 );
             }
             let ended = match &sequence.end {
-                End::Stable => "stable".to_owned(),
-                End::Time { resolution, expected_s } => format!(
+                StopReason::Stable => "stable".to_owned(),
+                StopReason::Time { resolution, expected_s } => format!(
                     "stopped, not stable: {resolution} cells per axis would take about {expected_s:.0} s more, and \
                      {:.0} s are allowed for each method",
                     settings.time_limit_s
                 ),
-                End::Memory { resolution, message } => {
+                StopReason::Memory { resolution, message } => {
                     format!("stopped, not stable: at {resolution} cells per axis {message}")
                 }
-                End::Cells { resolution } => format!(
+                StopReason::Cells { resolution } => format!(
                     "stopped, not stable: {resolution} cells per axis are more than {} cells",
                     grouped(settings.most_cells as usize)
                 ),
@@ -115,7 +115,7 @@ impl ConvergenceReport {
         let mut records = vec![head.map(str::to_owned).to_vec()];
         for sequence in &self.found.sequences {
             for t in &sequence.trials {
-                let mut record = vec![sequence.method.name().to_owned()];
+                let mut record = vec![sequence.method.to_owned()];
                 record.extend([t.resolution, t.cells].map(|n| n.to_string()));
                 record.extend([t.seconds, t.sum, t.bracket[0], t.bracket[1]].map(|v| v.to_string()));
                 record.push(t.onaa_edge.to_string());

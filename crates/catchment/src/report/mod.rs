@@ -11,12 +11,15 @@
 //! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians in
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
+mod answer;
 mod comparison;
 mod convergence;
+pub mod folder;
 #[cfg(feature = "figure")]
 pub mod figure;
-mod requirement;
 pub mod schema;
+#[cfg(all(feature = "figure", feature = "zarr"))]
+mod save;
 mod sensitivity;
 mod slices;
 mod table;
@@ -24,9 +27,11 @@ pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
 
-pub use comparison::{Agreement, AgreementReport, ComparisonReport, Decided, MethodResult, Side};
+pub use answer::UnanswerableError;
+pub use comparison::{Agreement, AgreementReport, Compared, ComparisonReport, Decided, MethodResult};
 pub use convergence::ConvergenceReport;
-pub use requirement::{Requirement, RequirementError};
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub use save::{Saved, Target};
 pub use schema::Report;
 pub use sensitivity::SensitivityReport;
 pub use slices::SlicesReport;

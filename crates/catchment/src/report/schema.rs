@@ -4,19 +4,16 @@
 //! The same run writes the same bytes but for `timing`.
 
 use crate::acceptance::{Acceptance, Warning};
-use crate::design::{Alignment, Design};
+use crate::design::Design;
 use crate::exec::Exec;
-use crate::merit::MeritError;
-use crate::merit::centered::{CenteredBox, centered_cube};
-use crate::merit::doubts;
+use crate::merit::centered::CenteredBox;
 use crate::merit::onaa::Onaa;
-use crate::merit::success::{Distribution, success};
-use crate::merit::sum::{Sum, bracket};
-use crate::merit::tolerance::{Tolerance, tolerances};
-use crate::method::partition::Partition;
+use crate::merit::success::{Distribution, Success, success};
+use crate::merit::sum::Sum;
+use crate::merit::tolerance::Tolerance;
+use crate::merit::{MeritError, Merits};
 use crate::pose::Dof;
 use serde::{Deserialize, Serialize};
-use std::mem::discriminant;
 
 /// Version of the report's layout.
 pub const SCHEMA: u32 = 2;
@@ -233,38 +230,36 @@ impl Report {
         timing: Option<Timing>,
         exec: &Exec,
     ) -> Result<Self, MeritError> {
-        const STAGE: &str = "figures of merit";
-        let mut acceptance_report = AcceptanceReport::new(acceptance, &design.alignment);
-        let (mut onaa, mut centered, mut tolerable) = (None, None, Vec::new());
-        if acceptance.grid().is_some() {
-            exec.report(0.0, STAGE);
-            acceptance_report.sum_bracket = Some(bracket(acceptance, exec)?);
-            exec.report(0.3, STAGE);
-            onaa = Some(OnaaReport::from(Onaa::of(acceptance, exec)?));
-            exec.report(0.8, STAGE);
-            centered = Some(CenteredReport::from(centered_cube(acceptance, exec)?));
-            tolerable = tolerances(acceptance)?.into_iter().map(ToleranceReport::from).collect();
-        }
-        let mut warnings = acceptance.warnings.clone();
-        let known = |w: &Warning| acceptance.warnings.iter().any(|o| discriminant(o) == discriminant(w));
-        warnings.extend(doubts(acceptance, exec)?.into_iter().filter(|w| !known(w)));
-        Ok(Self {
+        let merits = Merits::of(acceptance, &design.alignment, exec)?;
+        Ok(Self::from_merits(design, acceptance, &merits, settings, timing))
+    }
+
+    /// The same of an acceptance that was evaluated.
+    pub fn from_merits(
+        design: &Design,
+        acceptance: &Acceptance,
+        merits: &Merits,
+        settings: serde_json::Value,
+        timing: Option<Timing>,
+    ) -> Self {
+        let Merits { sum, bracket, onaa, centered, tolerances, warnings } = merits.clone();
+        Self {
             schema: SCHEMA,
             catchment: env!("CARGO_PKG_VERSION").to_owned(),
             design: design.clone(),
             method: acceptance.method.to_owned(),
             settings,
             axes: axes(acceptance),
-            acceptance: acceptance_report,
-            onaa,
-            centered,
-            tolerances: tolerable,
+            acceptance: AcceptanceReport { sum_bracket: bracket, ..AcceptanceReport::from(sum) },
+            onaa: onaa.map(OnaaReport::from),
+            centered: centered.map(CenteredReport::from),
+            tolerances: tolerances.into_iter().map(ToleranceReport::from).collect(),
             success: None,
             basins: None,
             partition: None,
             warnings: warnings.into_iter().map(WarningReport::from).collect(),
             timing,
-        })
+        }
     }
 
     /// Adds the success probability for a distribution of errors.
@@ -278,21 +273,8 @@ impl Report {
         exec: &Exec,
     ) -> Result<Self, MeritError> {
         let found = success(acceptance, &distribution, exec)?;
-        self.success = Some(SuccessReport {
-            distribution,
-            probability: found.probability,
-            bracket: found.bracket,
-            ci95: found.ci95,
-            outside: found.outside,
-        });
+        self.success = Some(SuccessReport::new(distribution, &found));
         Ok(self)
-    }
-
-    /// Adds the partition behind the outcomes.
-    #[must_use]
-    pub fn with_partition(mut self, partition: &Partition) -> Self {
-        self.partition = Some(PartitionReport::new(partition));
-        self
     }
 
     /// The report as indented JSON, ending with a line break.
@@ -321,10 +303,8 @@ pub(super) fn axes(acceptance: &Acceptance) -> Vec<Axis> {
         .collect()
 }
 
-impl AcceptanceReport {
-    /// Measures an acceptance.
-    pub fn new(acceptance: &Acceptance, alignment: &Alignment) -> Self {
-        let sum = Sum::of(acceptance, alignment);
+impl From<Sum> for AcceptanceReport {
+    fn from(sum: Sum) -> Self {
         Self {
             sum: sum.sum,
             unit: sum.unit(),
@@ -335,6 +315,19 @@ impl AcceptanceReport {
             cells: sum.tried,
             outcomes: Outcomes::new(sum.counts),
             sample: None,
+        }
+    }
+}
+
+impl SuccessReport {
+    /// Of a probability that was found for a distribution.
+    pub fn new(distribution: Distribution, found: &Success) -> Self {
+        Self {
+            distribution,
+            probability: found.probability,
+            bracket: found.bracket,
+            ci95: found.ci95,
+            outside: found.outside,
         }
     }
 }

@@ -52,7 +52,7 @@ impl SlicesReport {
             method: s.acceptance.method.to_owned(),
             acceptance: AcceptanceReport {
                 sum_bracket: Some(s.bracket),
-                ..AcceptanceReport::new(&s.acceptance, &design.alignment)
+                ..AcceptanceReport::from(s.sum.clone())
             },
             onaa: s.onaa.clone().into(),
             warnings: s.warnings.iter().cloned().map(WarningReport::from).collect(),

@@ -11,12 +11,12 @@
 //! stands the one that exact descents correct it to, with its 95 % interval. Two small changes in a row may be luck. Where time stops a method, the number of
 //! its refinements differs from run to run; what is computed at each resolution does not.
 
-use super::trial::{Decided, Trial, TrialError};
-use crate::contact::Pair;
+use super::refinement::{Refinement, RefinementError, Sampled};
 use crate::exec::{Bytes, Exec, OutOfBudget};
 use crate::landscape::Resolution;
 use crate::method::Method;
 use crate::method::correction::{self, Stop};
+use crate::problem::Problem;
 use serde::Serialize;
 
 /// What changes the answer.
@@ -29,11 +29,16 @@ pub struct Settings {
     /// Cells of the finest grid that may be tried, after the coarsest.
     pub most_cells: u64,
     /// Which methods.
+    #[serde(serialize_with = "names")]
     pub methods: Vec<Method>,
     /// Random poses, followed exactly, that correct the Sum of each method's finest grid; 0 for none.
     pub descents: usize,
     /// Their seed.
     pub seed: u64,
+}
+
+fn names<S: serde::Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(methods.iter().map(|method| method.name()))
 }
 
 impl Default for Settings {
@@ -42,7 +47,7 @@ impl Default for Settings {
             tolerance: 0.01,
             time_limit_s: 60.0,
             most_cells: u64::MAX,
-            methods: Method::ON_GRIDS.to_vec(),
+            methods: Method::on_grids(),
             descents: 4000,
             seed: 1,
         }
@@ -53,11 +58,11 @@ impl Default for Settings {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sequence {
     /// Which.
-    pub method: Method,
+    pub method: &'static str,
     /// Coarse to fine.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<Refinement>,
     /// Why there are no more.
-    pub end: End,
+    pub end: StopReason,
     /// What exact descents say of the finest grid's Sum, if any were asked for.
     pub corrected: Option<CorrectedSum>,
 }
@@ -76,7 +81,7 @@ pub struct CorrectedSum {
 /// Why a sequence ended.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
-pub enum End {
+pub enum StopReason {
     /// Two refinements in a row changed little enough.
     Stable,
     /// The next refinement would take too long.
@@ -122,7 +127,7 @@ pub enum ConvergenceError {
     },
     /// Not even the coarsest grid can be computed.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    Refinement(#[from] RefinementError),
 }
 
 /// Cells per axis to begin with, for one to five axes: some thousand cells at most.
@@ -132,7 +137,7 @@ const FIRST: [usize; 5] = [51, 11, 9, 7, 5];
 ///
 /// # Errors
 /// A tolerance that is none, a coarsest grid that does not fit into memory, a cancelled run.
-pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Convergence, ConvergenceError> {
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Convergence, ConvergenceError> {
     let tolerance = settings.tolerance;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(ConvergenceError::Tolerance { tolerance });
@@ -144,7 +149,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Convergence,
         .enumerate()
         .map(|(k, method)| {
             let part = exec.part([k as f64 / total, (k + 1) as f64 / total], "convergence");
-            sequence(*method, pair, settings, &part)
+            sequence(method, problem, settings, &part)
         })
         .collect::<Result<Vec<_>, _>>()?;
     let first = sequences.iter().find_map(|s: &Sequence| s.trials.first());
@@ -153,57 +158,57 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Convergence,
 }
 
 fn sequence(
-    method: Method,
-    pair: &Pair,
+    method: &Method,
+    problem: &Problem,
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Sequence, ConvergenceError> {
-    let axes = pair.alignment.free.len().clamp(1, 5);
+    let axes = problem.alignment().free.len().clamp(1, 5);
     let cells = |resolution: usize| (resolution as f64).powf(axes as f64);
     let mut resolution = FIRST[axes - 1];
-    let mut trials: Vec<Trial> = Vec::new();
-    let mut finest: Option<Decided> = None;
+    let mut trials: Vec<Refinement> = Vec::new();
+    let mut finest: Option<Sampled> = None;
     let mut spent = 0.0;
     let end = loop {
         if let Some(last) = trials.last() {
             if stable(&trials, settings.tolerance) {
-                break End::Stable;
+                break StopReason::Stable;
             }
             let expected_s = last.seconds * cells(resolution) / cells(last.resolution);
             if spent + expected_s > settings.time_limit_s {
-                break End::Time { resolution, expected_s };
+                break StopReason::Time { resolution, expected_s };
             }
         }
         if cells(resolution) > settings.most_cells as f64 && !trials.is_empty() {
-            break End::Cells { resolution };
+            break StopReason::Cells { resolution };
         }
         // Each refinement is dearer than all before it together: half of what is left.
         let done = 1.0 - 0.5f64.powf(trials.len() as f64);
         let part = exec.part([done, 0.5 + 0.5 * done], "convergence");
-        let tried = Decided::by(method, pair, resolution, &part)
-            .and_then(|decided| Ok((decided.trial(pair, &part)?, decided)));
+        let tried = Sampled::by(method, problem, resolution, &part)
+            .and_then(|sampled| Ok((sampled.refinement(problem, &part)?, sampled)));
         match tried {
-            Ok((trial, decided)) => {
+            Ok((trial, sampled)) => {
                 spent += trial.seconds;
                 trials.push(trial);
-                finest = Some(decided);
+                finest = Some(sampled);
             }
-            Err(TrialError::OutOfBudget(refusal)) if !trials.is_empty() => {
-                break End::Memory { resolution, message: needs(&refusal) };
+            Err(RefinementError::OutOfBudget(refusal)) if !trials.is_empty() => {
+                break StopReason::Memory { resolution, message: needs(&refusal) };
             }
             Err(error) => return Err(error.into()),
         }
         resolution = finer(resolution);
     };
     let corrected = match finest {
-        Some(decided) if settings.descents > 0 => {
+        Some(sampled) if settings.descents > 0 => {
             let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
-            let found = decided.correct(pair, &sample, exec).map_err(TrialError::from)?;
+            let found = sampled.correct(problem, &sample, exec).map_err(RefinementError::from)?;
             Some(CorrectedSum { sum: found.sum, ci95: found.ci95, descents: found.descents })
         }
         _ => None,
     };
-    Ok(Sequence { method, trials, end, corrected })
+    Ok(Sequence { method: method.name(), trials, end, corrected })
 }
 
 /// The odd number nearest to √2 times as many cells.
@@ -217,8 +222,8 @@ fn needs(refusal: &OutOfBudget) -> String {
 }
 
 /// Whether the last two refinements changed little enough.
-fn stable(trials: &[Trial], tolerance: f64) -> bool {
-    let close = |a: &Trial, b: &Trial| {
+fn stable(trials: &[Refinement], tolerance: f64) -> bool {
+    let close = |a: &Refinement, b: &Refinement| {
         (b.sum - a.sum).abs() <= tolerance * b.sum.abs() && (b.onaa_edge - a.onaa_edge).abs() <= tolerance
     };
     matches!(trials, [.., a, b, c] if close(a, b) && close(b, c))
@@ -226,15 +231,15 @@ fn stable(trials: &[Trial], tolerance: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::pair;
+    use super::super::testing::problem;
     use super::*;
     use crate::design::Family;
     use crate::pose::Dof;
 
-    fn trial(sum: f64, onaa_edge: f64) -> Trial {
+    fn trial(sum: f64, onaa_edge: f64) -> Refinement {
         let bracket = [sum, sum];
         let unit = String::new();
-        Trial { resolution: 3, cells: 9, seconds: 0.0, sum, unit, bracket, onaa_edge, undecided: 0 }
+        Refinement { resolution: 3, cells: 9, seconds: 0.0, sum, unit, bracket, onaa_edge, undecided: 0 }
     }
 
     #[test]
@@ -259,14 +264,14 @@ mod tests {
 
     #[test]
     fn every_method_is_refined_until_it_is_stable_or_something_stops_it() {
-        let pair = pair(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect());
+        let problem = problem(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect());
         let settings =
             Settings { tolerance: 0.1, time_limit_s: f64::INFINITY, descents: 200, ..Settings::default() };
-        let found = run(&pair, &settings, &Exec::new()).unwrap();
-        assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), Method::ON_GRIDS);
+        let found = run(&problem, &settings, &Exec::new()).unwrap();
+        assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), ["transport", "descent", "flood", "steepest"]);
         assert_eq!(found.unit, "D·rad");
         for sequence in &found.sequences {
-            assert_eq!(sequence.end, End::Stable);
+            assert_eq!(sequence.end, StopReason::Stable);
             assert!(sequence.trials.len() >= 3 && sequence.trials[0].resolution == 11);
             let corrected = sequence.corrected.unwrap();
             assert!(corrected.ci95[0] < corrected.sum && corrected.sum < corrected.ci95[1]);
@@ -276,23 +281,26 @@ mod tests {
             }
         }
         let few = Settings { most_cells: 300, tolerance: 1e-9, descents: 0, ..settings.clone() };
-        let found = run(&pair, &few, &Exec::new()).unwrap();
+        let found = run(&problem, &few, &Exec::new()).unwrap();
         assert!(
-            found.sequences.iter().all(|s| s.end == End::Cells { resolution: 21 } && s.trials.len() == 2)
+            found
+                .sequences
+                .iter()
+                .all(|s| s.end == StopReason::Cells { resolution: 21 } && s.trials.len() == 2)
         );
         let hasty = Settings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
-        let found = run(&pair, &hasty, &Exec::new()).unwrap();
-        let once = |s: &Sequence| s.trials.len() == 1 && matches!(s.end, End::Time { resolution: 15, .. });
+        let found = run(&problem, &hasty, &Exec::new()).unwrap();
+        let once = |s: &Sequence| s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. });
         assert!(found.sequences.iter().all(once));
         let small = Exec::new().with_memory_budget(2_000_000);
         let strict = Settings { tolerance: 1e-9, ..settings.clone() };
-        let found = run(&pair, &strict, &small).unwrap();
-        assert!(found.sequences.iter().all(|s| matches!(s.end, End::Memory { .. })), "{found:?}");
+        let found = run(&problem, &strict, &small).unwrap();
+        assert!(found.sequences.iter().all(|s| matches!(s.end, StopReason::Memory { .. })), "{found:?}");
         assert!(matches!(
-            run(&pair, &settings, &Exec::new().with_memory_budget(10)),
-            Err(ConvergenceError::Trial(TrialError::OutOfBudget(_)))
+            run(&problem, &settings, &Exec::new().with_memory_budget(10)),
+            Err(ConvergenceError::Refinement(RefinementError::OutOfBudget(_)))
         ));
         let none = Settings { tolerance: 0.0, ..settings };
-        assert!(matches!(run(&pair, &none, &Exec::new()), Err(ConvergenceError::Tolerance { .. })));
+        assert!(matches!(run(&problem, &none, &Exec::new()), Err(ConvergenceError::Tolerance { .. })));
     }
 }

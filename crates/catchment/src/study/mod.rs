@@ -9,7 +9,7 @@
 pub mod convergence;
 pub mod sensitivity;
 pub mod slices;
-pub mod trial;
+pub mod refinement;
 
 use crate::acceptance::Outcome;
 use crate::method::descent;
@@ -22,12 +22,11 @@ const fn pose_bytes() -> u64 {
 
 #[cfg(test)]
 mod testing {
-    //! A pair to study.
+    //! A problem to study.
 
-    use crate::connector::Connector;
-    use crate::contact::Pair;
     use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
     use crate::pose::DofSet;
+    use crate::problem::Problem;
 
     /// A family with its defaults, free in `free`.
     pub(super) fn design(family: Family, free: DofSet) -> Design {
@@ -37,8 +36,7 @@ mod testing {
     }
 
     /// Its halves.
-    pub(super) fn pair(family: Family, free: DofSet) -> Pair {
-        let design = design(family, free);
-        Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+    pub(super) fn problem(family: Family, free: DofSet) -> Problem {
+        Problem::of(design(family, free)).unwrap()
     }
 }

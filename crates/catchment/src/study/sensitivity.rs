@@ -174,21 +174,21 @@ pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitiv
         return Err(SensitivityError::Nothing);
     }
     let per_pose = pose_bytes() + 2 * size_of::<PoseError>() as u64 + settings.rotation_lengths.len() as u64;
-    exec.reserve("the random poses", per_pose.saturating_mul(settings.poses as u64), |budget| {
+    exec.ensure_fits("the random poses", per_pose.saturating_mul(settings.poses as u64), |budget| {
         format!("use at most --samples {}", budget / per_pose)
     })?;
-    let mut trials = Trials::new(design, settings, exec);
-    let own = trials.follow(design)?;
+    let mut common = CommonPoses::new(design, settings, exec);
+    let own = common.follow(design)?;
     let slopes = Parameter::ALL
         .into_iter()
         .filter_map(|parameter| Some((parameter, parameter.of(design)?)))
-        .map(|(parameter, value)| trials.slope(parameter, value))
+        .map(|(parameter, value)| common.slope(parameter, value))
         .collect::<Result<Vec<Slope>, _>>()?;
     let mut rhos = settings.rotation_lengths.clone();
     rhos.sort_by(f64::total_cmp);
     let runs = rhos
         .iter()
-        .map(|rho| trials.follow(&Parameter::RotationLength.set(design.clone(), *rho)?))
+        .map(|rho| common.follow(&Parameter::RotationLength.set(design.clone(), *rho)?))
         .collect::<Result<Vec<Acceptance>, SensitivityError>>()?;
     let measured = |acceptance: &Acceptance| {
         let sum = Sum::of(acceptance, &design.alignment);
@@ -205,7 +205,7 @@ pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitiv
     let by_sum = |a: &usize, b: &usize| over_rho[*a].sum.total_cmp(&over_rho[*b].sum);
     let low = (0..runs.len()).min_by(by_sum).unwrap_or(0);
     let high = (0..runs.len()).max_by(by_sum).unwrap_or(0);
-    let spread = Paired::of(&runs[low], &runs[high]);
+    let spread = Discordance::of(&runs[low], &runs[high]);
     let (sum, sum_ci95) = measured(&own);
     Ok(Sensitivity {
         settings: settings.clone(),
@@ -215,9 +215,9 @@ pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitiv
         slopes,
         least: over_rho[low],
         greatest: over_rho[high],
-        spread: spread.difference() * trials.measure,
-        spread_ci95: spread.ci95().map(|end| end * trials.measure),
-        undecided: trials.undecided,
+        spread: spread.difference() * common.measure,
+        spread_ci95: spread.ci95().map(|end| end * common.measure),
+        undecided: common.undecided,
         over_rho,
     })
 }
@@ -258,7 +258,7 @@ impl Parameter {
 }
 
 /// The same poses, followed again and again.
-struct Trials<'a> {
+struct CommonPoses<'a> {
     design: &'a Design,
     settings: &'a Settings,
     exec: &'a Exec,
@@ -269,7 +269,7 @@ struct Trials<'a> {
     undecided: usize,
 }
 
-impl<'a> Trials<'a> {
+impl<'a> CommonPoses<'a> {
     fn new(design: &'a Design, settings: &'a Settings, exec: &'a Exec) -> Self {
         let alignment = &design.alignment;
         Self {
@@ -307,30 +307,30 @@ impl<'a> Trials<'a> {
         let between = [value - step, value + step];
         let below = self.follow(&parameter.set(self.design.clone(), between[0])?)?;
         let above = self.follow(&parameter.set(self.design.clone(), between[1])?)?;
-        let paired = Paired::of(&below, &above);
+        let discordance = Discordance::of(&below, &above);
         let scale = self.measure / (between[1] - between[0]);
         Ok(Slope {
             parameter,
             value,
             between,
-            slope: scale * paired.difference(),
-            standard_error: scale * paired.standard_error(),
-            ci95: paired.ci95().map(|end| scale * end),
-            gained: paired.gained,
-            lost: paired.lost,
+            slope: scale * discordance.difference(),
+            standard_error: scale * discordance.standard_error(),
+            ci95: discordance.ci95().map(|end| scale * end),
+            gained: discordance.gained,
+            lost: discordance.lost,
         })
     }
 }
 
-/// The same poses under two conditions.
+/// The poses that fare differently under two conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Paired {
+struct Discordance {
     poses: usize,
     gained: usize,
     lost: usize,
 }
 
-impl Paired {
+impl Discordance {
     fn of(before: &Acceptance, after: &Acceptance) -> Self {
         let pairs = || before.accepted().zip(after.accepted());
         Self {
@@ -373,14 +373,18 @@ mod tests {
     #[test]
     fn poses_that_fare_alike_cancel() {
         // Ten of a thousand poses change sides, eight to the better: (8 − 2)/1000, and the variance of that.
-        let paired = Paired { poses: 1000, gained: 8, lost: 2 };
-        assert_eq!(paired.difference(), 0.006);
+        let discordance = Discordance { poses: 1000, gained: 8, lost: 2 };
+        assert_eq!(discordance.difference(), 0.006);
         // √(11 − 36/1002)/1002, by hand.
-        assert!((paired.standard_error() - 0.003_304_6).abs() < 1e-7, "{}", paired.standard_error());
-        let [lo, hi] = paired.ci95();
+        assert!(
+            (discordance.standard_error() - 0.003_304_6).abs() < 1e-7,
+            "{}",
+            discordance.standard_error()
+        );
+        let [lo, hi] = discordance.ci95();
         assert!(lo < 0.0 && 0.006 < hi, "ten poses do not show a slope: {lo} {hi}");
         // No pose changed sides: not known to better than some three in a thousand.
-        let [lo, hi] = Paired { poses: 1000, gained: 0, lost: 0 }.ci95();
+        let [lo, hi] = Discordance { poses: 1000, gained: 0, lost: 0 }.ci95();
         assert!(lo == -hi && (0.001..0.004).contains(&hi), "{hi}");
     }
 

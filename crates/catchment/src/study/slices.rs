@@ -16,33 +16,38 @@
 
 use super::pose_bytes;
 use crate::acceptance::{Acceptance, Domain, Warning};
-use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Resolution, ResolutionError};
 use crate::merit::estimate::Estimate;
 use crate::merit::onaa::Onaa;
 use crate::merit::sum::{Sum, bracket};
 use crate::merit::{MeritError, doubts, slice};
-use crate::method::descent;
-#[cfg(feature = "drop")]
-use crate::method::drop;
+use crate::method::{DecideError, Follow, Method, descent};
 use crate::pose::Dof;
-use serde::{Deserialize, Serialize};
+use crate::problem::Problem;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 /// What changes the answer.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Cells per axis; [`Settings::CELLS`] on axes of which it says nothing.
     pub resolution: Resolution,
     /// The pairs of errors to vary, the first to the right in pictures; empty: all pairs of free errors.
     pub pairs: Vec<[Dof; 2]>,
-    /// How every cell is followed.
-    pub descent: descent::Settings,
-    /// Drop tests in the place of descent, if so.
-    #[cfg(feature = "drop")]
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub drop: Option<drop::Settings>,
+    /// Decides every cell by itself.
+    pub method: Method,
+}
+
+/// The settings of the method stand under its name.
+impl Serialize for Settings {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(3))?;
+        map.serialize_entry("resolution", &self.resolution)?;
+        map.serialize_entry("pairs", &self.pairs)?;
+        map.serialize_entry(self.method.name(), &self.method.settings())?;
+        map.end()
+    }
 }
 
 impl Settings {
@@ -53,13 +58,7 @@ impl Settings {
 impl Default for Settings {
     fn default() -> Self {
         let resolution = Resolution::uniform(Self::CELLS).unwrap_or_default();
-        Self {
-            resolution,
-            pairs: Vec::new(),
-            descent: descent::Settings::default(),
-            #[cfg(feature = "drop")]
-            drop: None,
-        }
+        Self { resolution, pairs: Vec::new(), method: Method::new(descent::Settings::default()) }
     }
 }
 
@@ -90,7 +89,7 @@ pub struct Slices {
 }
 
 /// Why there are no slices.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum SlicesError {
     /// Fewer than two free errors.
     #[error("a slice needs two free errors; this design frees {free}")]
@@ -113,10 +112,15 @@ pub enum SlicesError {
     /// A resolution for an axis that is not there.
     #[error("--resolution: {0}")]
     Resolution(#[from] ResolutionError),
-    /// Drop tests refuse.
-    #[cfg(feature = "drop")]
+    /// A method that decides cells from one another.
+    #[error("slices are decided cell by cell, which {method} does not do")]
+    NotByPose {
+        /// Which method.
+        method: &'static str,
+    },
+    /// The method gave up.
     #[error(transparent)]
-    Drop(#[from] drop::DropError),
+    Decide(DecideError),
     /// A figure of merit that is not to be had.
     #[error(transparent)]
     Merit(#[from] MeritError),
@@ -132,13 +136,15 @@ pub enum SlicesError {
 ///
 /// # Errors
 /// A pair that the design does not free, a grid that does not fit into memory, a cancelled run.
-pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Slices, SlicesError> {
-    let planes = planes(pair, settings)?;
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices, SlicesError> {
+    let planes = planes(problem, settings)?;
+    let method = settings.method.name();
+    let judge = settings.method.follows().ok_or(SlicesError::NotByPose { method })?;
     let cells = |grid: &Grid| grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let largest = planes.iter().map(|(_, grid)| cells(grid)).max().unwrap_or(0);
     let kept = planes.iter().map(|(_, grid)| cells(grid)).fold(0, u64::saturating_add);
     let needed = largest.saturating_mul(pose_bytes()).saturating_add(kept);
-    exec.reserve("the largest slice", needed, |budget| {
+    exec.ensure_fits("the largest slice", needed, |budget| {
         let fits = Resolution::largest_that_fits(budget, pose_bytes() + planes.len() as u64, 2);
         format!("use at most --resolution {fits}, or allow more with --memory")
     })?;
@@ -148,34 +154,45 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Slices, Slic
         .enumerate()
         .map(|(k, (axes, grid))| {
             let part = exec.part([k as f64 / total, (k + 1) as f64 / total], "slices");
-            let acceptance = decide(pair, grid, settings, &part)?;
-            let sum = Sum::of(&acceptance, &pair.alignment);
+            let acceptance = decide(problem, grid, judge, &part)?;
+            let sum = Sum::of(&acceptance, problem.alignment());
             let onaa = Onaa::of(&acceptance, &part)?;
             let bracket = bracket(&acceptance, &part)?;
             let warnings = doubts(&acceptance, &part)?;
             Ok(Slice { axes, acceptance, sum, bracket, onaa, warnings })
         })
         .collect::<Result<Vec<Slice>, SlicesError>>()?;
-    let estimate = estimate(pair, &slices);
+    let estimate = estimate(problem, &slices);
     Ok(Slices { slices, estimate })
 }
 
-/// What becomes of every cell of a plane.
-fn decide(pair: &Pair, grid: Grid, settings: &Settings, exec: &Exec) -> Result<Acceptance, SlicesError> {
-    #[cfg(feature = "drop")]
-    if let Some(settings) = &settings.drop {
-        return Ok(drop::run(pair, Domain::Grid(grid), settings, exec)?.0);
+/// Decides a plane by itself.
+fn decide(
+    problem: &Problem,
+    grid: Grid,
+    judge: &dyn Follow,
+    exec: &Exec,
+) -> Result<Acceptance, SlicesError> {
+    Ok(judge.follow(problem, Domain::Grid(grid), exec)?.0)
+}
+
+impl From<DecideError> for SlicesError {
+    fn from(error: DecideError) -> Self {
+        match error {
+            DecideError::OutOfBudget(error) => Self::OutOfBudget(error),
+            DecideError::Cancelled(error) => Self::Cancelled(error),
+            error => Self::Decide(error),
+        }
     }
-    Ok(descent::run(pair, Domain::Grid(grid), &settings.descent, exec)?.0)
 }
 
 /// The pairs to vary, each once and in the order of [`Dof::ALL`], with their grids.
-fn planes(pair: &Pair, settings: &Settings) -> Result<Vec<([Dof; 2], Grid)>, SlicesError> {
-    let free = pair.alignment.free;
+fn planes(problem: &Problem, settings: &Settings) -> Result<Vec<([Dof; 2], Grid)>, SlicesError> {
+    let free = problem.alignment().free;
     if free.len() < 2 {
         return Err(SlicesError::OneError { free: free.len() });
     }
-    let whole = settings.resolution.grid(&pair.alignment, &[Settings::CELLS; 5])?;
+    let whole = settings.resolution.grid(problem.alignment(), &[Settings::CELLS; 5])?;
     let all = slice::pairs(&whole);
     let asked = if settings.pairs.is_empty() { &all } else { &settings.pairs };
     let mut planes: Vec<([Dof; 2], Grid)> = Vec::with_capacity(asked.len());
@@ -193,17 +210,17 @@ fn planes(pair: &Pair, settings: &Settings) -> Result<Vec<([Dof; 2], Grid)>, Sli
     Ok(planes)
 }
 
-fn estimate(pair: &Pair, slices: &[Slice]) -> Option<Estimate> {
+fn estimate(problem: &Problem, slices: &[Slice]) -> Option<Estimate> {
     let edge = |other: Dof| slices.iter().find(|s| s.axes == [Dof::X, other]).map(|s| s.onaa.edge);
     let rotations: Option<Vec<f64>> =
-        pair.alignment.free.iter().filter(|dof| dof.is_rotation()).map(edge).collect();
+        problem.alignment().free.iter().filter(|dof| dof.is_rotation()).map(edge).collect();
     let rotations = rotations.filter(|edges| !edges.is_empty())?;
     Some(Estimate::of(edge(Dof::Y)?, &rotations))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::pair;
+    use super::super::testing::problem;
     use super::*;
     use crate::design::Family;
     use crate::pose::DofSet;
@@ -215,11 +232,11 @@ mod tests {
 
     #[test]
     fn a_slice_is_the_plane_of_the_whole_grid() {
-        let pair = pair(Family::Pyramid, DofSet::ALL.without(Dof::Y).without(Dof::Roll));
-        let found = run(&pair, &settings(5, &[[Dof::Yaw, Dof::X]]), &Exec::new()).unwrap();
-        let whole = Grid::over(&pair.alignment, |_| 5);
+        let problem = problem(Family::Pyramid, DofSet::ALL.without(Dof::Y).without(Dof::Roll));
+        let found = run(&problem, &settings(5, &[[Dof::Yaw, Dof::X]]), &Exec::new()).unwrap();
+        let whole = Grid::over(problem.alignment(), |_| 5);
         let all =
-            descent::run(&pair, Domain::Grid(whole.clone()), &descent::Settings::default(), &Exec::new());
+            descent::run(problem.pair(), Domain::Grid(whole.clone()), &descent::Settings::default(), &Exec::new());
         let outcomes = all.unwrap().0.outcomes;
         let plane =
             slice::Slice::of(&whole, &[Dof::X, Dof::Yaw], &crate::pose::PoseError::default()).unwrap();
@@ -230,8 +247,8 @@ mod tests {
 
     #[test]
     fn all_pairs_of_five_errors_are_ten_and_give_an_estimate() {
-        let pair = pair(Family::Pyramid, DofSet::ALL);
-        let found = run(&pair, &settings(3, &[]), &Exec::new()).unwrap();
+        let problem = problem(Family::Pyramid, DofSet::ALL);
+        let found = run(&problem, &settings(3, &[]), &Exec::new()).unwrap();
         assert_eq!(found.slices.len(), 10);
         assert!(found.slices.iter().all(|s| s.sum.tried == 9));
         assert!(found.estimate.is_some());
@@ -239,14 +256,14 @@ mod tests {
 
     #[test]
     fn what_has_no_slice_is_refused() {
-        let pair = pair(Family::Pyramid, [Dof::X, Dof::Y].into_iter().collect());
-        let error = |pairs: &[[Dof; 2]], exec: &Exec| run(&pair, &settings(9, pairs), exec).unwrap_err();
-        assert_eq!(error(&[[Dof::X, Dof::Yaw]], &Exec::new()), SlicesError::NotFree { dof: Dof::Yaw });
-        assert_eq!(error(&[[Dof::X, Dof::X]], &Exec::new()), SlicesError::Same { dof: Dof::X });
+        let problem = problem(Family::Pyramid, [Dof::X, Dof::Y].into_iter().collect());
+        let error = |pairs: &[[Dof; 2]], exec: &Exec| run(&problem, &settings(9, pairs), exec).unwrap_err();
+        assert!(matches!(error(&[[Dof::X, Dof::Yaw]], &Exec::new()), SlicesError::NotFree { dof: Dof::Yaw }));
+        assert!(matches!(error(&[[Dof::X, Dof::X]], &Exec::new()), SlicesError::Same { dof: Dof::X }));
         let small = Exec::new().with_memory_budget(100);
         assert!(matches!(error(&[], &small), SlicesError::OutOfBudget(_)));
         let stopped = Exec::new();
         stopped.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-        assert_eq!(error(&[], &stopped), SlicesError::Cancelled(Cancelled));
+        assert!(matches!(error(&[], &stopped), SlicesError::Cancelled(Cancelled)));
     }
 }

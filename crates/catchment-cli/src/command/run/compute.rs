@@ -119,7 +119,7 @@ pub(crate) fn compute(job: &Job, exec: &Exec) -> Result<Computed, Failure> {
     };
     let heights = job.heights && job.method.rule().is_none();
     let per_cell = per_cell + if heights { Landscape::bytes(1) } else { 0 };
-    exec.reserve(what, cells.saturating_mul(per_cell), |budget| {
+    exec.ensure_fits(what, cells.saturating_mul(per_cell), |budget| {
         match Resolution::largest_that_fits(budget, per_cell, axes) {
             fits if fits < Resolution::LEAST => "allow more with --memory".to_owned(),
             fits => format!("use at most --resolution {fits}, or allow more with --memory"),

@@ -13,12 +13,11 @@ mod cases;
 
 pub use cases::{CASES, Case};
 
-use catchment::connector::Connector;
-use catchment::contact::Pair;
 use catchment::exec::Exec;
 use catchment::method::Method;
 use catchment::method::correction::{self, Stop};
-use catchment::study::trial::{Decided, TrialError};
+use catchment::problem::{Problem, ProblemError};
+use catchment::study::refinement::{RefinementError, Sampled};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
 
@@ -36,7 +35,7 @@ pub struct Exact {
 }
 
 /// Where a Sum comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Way {
     /// The grid of a method alone.
     Grid(Method),
@@ -98,7 +97,7 @@ pub enum AccuracyError {
     },
     /// A method gave up.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    Refinement(#[from] RefinementError),
 }
 
 /// Seeds: of the exact values, and of the corrected Sums that are judged by them.
@@ -116,11 +115,11 @@ impl Serialize for Way {
 impl Way {
     /// All of them, in the order of the table.
     pub fn all() -> Vec<Self> {
-        Method::ON_GRIDS.into_iter().map(Self::Grid).chain([Self::Corrected]).collect()
+        Method::on_grids().into_iter().map(Self::Grid).chain([Self::Corrected]).collect()
     }
 
     /// Its name in tables.
-    pub const fn name(self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
             Self::Grid(method) => method.name(),
             Self::Corrected => "corrected",
@@ -144,30 +143,28 @@ pub fn run(cases: &[Case], exec: &Exec) -> Result<Accuracy, AccuracyError> {
 
 fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
     let design = case.design();
-    let connector = Connector::build(&design).map_err(|problems| AccuracyError::Geometry {
-        name: case.name(),
-        problem: problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
-    })?;
-    let pair = Pair::new(&connector, &design.alignment);
+    let unfit =
+        |problem: ProblemError| AccuracyError::Geometry { name: case.name(), problem: problem.to_string() };
+    let problem = Problem::of(design).map_err(unfit)?;
     let mut entries = Vec::new();
     let mut finest = None;
     for resolution in case.resolutions() {
-        for method in Method::ON_GRIDS {
-            let decided = Decided::by(method, &pair, resolution, exec)?;
-            entries.push(Entry::of(&decided, method, &pair, exec)?);
-            match method {
-                Method::Descent => finest = Some(decided),
-                Method::Transport => entries.push(Entry::corrected(&decided, &pair, exec)?),
+        for method in Method::on_grids() {
+            let sampled = Sampled::by(&method, &problem, resolution, exec)?;
+            entries.push(Entry::of(&sampled, &method, &problem, exec)?);
+            match method.name() {
+                "descent" => finest = Some(sampled),
+                "transport" => entries.push(Entry::corrected(&sampled, &method, &problem, exec)?),
                 _ => {}
             }
         }
     }
     entries.sort_by_key(|entry| (entry.resolution, Way::all().iter().position(|way| *way == entry.way)));
     let mut exact = Exact { sum: 0.0, unit: String::new(), ci95: [0.0; 2], descents: 0 };
-    if let Some(decided) = finest {
+    if let Some(sampled) = finest {
         let settings = correction::Settings { seed: SEEDS[0], stop: Stop::Samples(EXACT) };
-        let found = decided.correct(&pair, &settings, exec).map_err(TrialError::from)?;
-        let unit = decided.trial(&pair, exec)?.unit;
+        let found = sampled.correct(&problem, &settings, exec).map_err(RefinementError::from)?;
+        let unit = sampled.refinement(&problem, exec)?.unit;
         exact = Exact { sum: found.sum, unit, ci95: found.ci95, descents: found.descents };
     }
     for entry in &mut entries {
@@ -180,26 +177,36 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
 
 impl Entry {
     /// The grid's own Sum; its error is not known yet.
-    fn of(decided: &Decided, method: Method, pair: &Pair, exec: &Exec) -> Result<Self, TrialError> {
-        let trial = decided.trial(pair, exec)?;
+    fn of(
+        sampled: &Sampled,
+        method: &Method,
+        problem: &Problem,
+        exec: &Exec,
+    ) -> Result<Self, RefinementError> {
+        let found = sampled.refinement(problem, exec)?;
         Ok(Self {
-            way: Way::Grid(method),
-            resolution: trial.resolution,
-            cells: trial.cells,
-            sum: trial.sum,
+            way: Way::Grid(method.clone()),
+            resolution: found.resolution,
+            cells: found.cells,
+            sum: found.sum,
             error: f64::NAN,
             doubt: None,
-            seconds: trial.seconds,
+            seconds: found.seconds,
         })
     }
 
     /// The same grid, corrected.
-    fn corrected(decided: &Decided, pair: &Pair, exec: &Exec) -> Result<Self, TrialError> {
+    fn corrected(
+        sampled: &Sampled,
+        method: &Method,
+        problem: &Problem,
+        exec: &Exec,
+    ) -> Result<Self, RefinementError> {
         let started = Instant::now();
-        let descents = Method::Transport.default_samples(pair);
+        let descents = method.default_samples(problem.pair());
         let settings = correction::Settings { seed: SEEDS[1], stop: Stop::Samples(descents) };
-        let found = decided.correct(pair, &settings, exec)?;
-        let grid = Self::of(decided, Method::Transport, pair, exec)?;
+        let found = sampled.correct(problem, &settings, exec)?;
+        let grid = Self::of(sampled, method, problem, exec)?;
         Ok(Self {
             way: Way::Corrected,
             sum: found.sum,

@@ -35,7 +35,7 @@ use crate::acceptance::{Domain, Outcome, Stream};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
-use crate::method::descent;
+use crate::method::{DecideError, descent};
 use crate::pose::{Dof, PoseError};
 use interval::{Seen, Whole};
 use rayon::prelude::*;
@@ -53,7 +53,7 @@ pub struct Settings {
 }
 
 /// Why there is no corrected Sum.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum CorrectionError {
     /// The tolerance is no share.
     #[error("a tolerance of {share} cannot be reached; give a share of the Sum above 0, such as 0.01")]
@@ -61,10 +61,9 @@ pub enum CorrectionError {
         /// What was given.
         share: f64,
     },
-    /// Drop tests refuse, where they decide.
-    #[cfg(feature = "drop")]
+    /// What follows the poses refuses.
     #[error(transparent)]
-    Drop(#[from] super::drop::DropError),
+    Follow(Box<DecideError>),
     /// A grid without cells has no poses to draw.
     #[error("the grid has no cells")]
     NoCells,
@@ -74,6 +73,16 @@ pub enum CorrectionError {
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<DecideError> for CorrectionError {
+    fn from(error: DecideError) -> Self {
+        match error {
+            DecideError::OutOfBudget(error) => Self::OutOfBudget(error),
+            DecideError::Cancelled(error) => Self::Cancelled(error),
+            error => Self::Follow(Box::new(error)),
+        }
+    }
 }
 
 /// What was seen in one stratum.

@@ -1,10 +1,9 @@
 //! Cells that a method leaves in doubt, followed exactly.
 
-use crate::acceptance::{Domain, Outcome};
-use crate::contact::Pair;
+use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
-use crate::method::descent;
+use crate::pose::PoseError;
 use rayon::prelude::*;
 
 /// Cells looked at between two questions whether to stop.
@@ -41,26 +40,25 @@ pub fn ambiguous(
     })
 }
 
-/// Follows the centres of `cells` exactly and overwrites their outcomes; cells beyond the grid are left alone.
+/// Follows the centres of `cells` by `follow`, which gives one outcome per pose, and overwrites their outcomes; cells beyond
+/// the grid are left alone.
 ///
 /// # Errors
-/// [`Cancelled`] when asked to stop; `outcomes` is then partly overwritten.
-pub fn settle(
-    pair: &Pair,
+/// Those of `follow`; `outcomes` is then partly overwritten.
+pub fn settle<E>(
     grid: &Grid,
     cells: &[usize],
     outcomes: &mut [Outcome],
-    settings: &descent::Settings,
     exec: &Exec,
-) -> Result<(), Cancelled> {
+    mut follow: impl FnMut(Vec<PoseError>, &Exec) -> Result<Vec<Outcome>, E>,
+) -> Result<(), E> {
     let (mut done, all) = (0.0, cells.len() as f64);
-    // In blocks, so that the ends of few descents are kept at a time.
+    // In blocks, so that the ends of few poses are kept at a time.
     for block in cells.chunks(BLOCK) {
         let poses = block.iter().map(|cell| grid.pose(*cell)).collect();
         let next = done + block.len() as f64;
         let part = exec.part([done / all, next / all], "ambiguous cells");
-        let (settled, _) = descent::run(pair, Domain::Poses(poses), settings, &part)?;
-        for (cell, outcome) in block.iter().zip(settled.outcomes) {
+        for (cell, outcome) in block.iter().zip(follow(poses, &part)?) {
             if let Some(place) = outcomes.get_mut(*cell) {
                 *place = outcome;
             }

@@ -50,7 +50,7 @@ impl<'a, S: Stratify> Strata<'a, S> {
         let block = (cells.isqrt() / BLOCK_PER_ROOT).max(LEAST_BLOCK);
         let blocks = cells.div_ceil(block);
         let needed = (blocks + 1) * (strata * size_of::<u64>() + size_of::<[u32; MOST_STRATA]>());
-        exec.reserve("the strata of the grid", needed as u64, |_| "allow more with --memory".to_owned())?;
+        exec.ensure_fits("the strata of the grid", needed as u64, |_| "allow more with --memory".to_owned())?;
         let counted: Vec<[u32; MOST_STRATA]> = exec.install(|| {
             (0..blocks)
                 .into_par_iter()

@@ -10,12 +10,14 @@
 //! Not promised: friction, speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
 //! the motion could go either way, may be reported as jammed there.
 
+pub(super) mod door;
 mod motion;
 mod projection;
 #[cfg(test)]
 mod tests;
 mod trajectory;
 
+pub(in crate::method) use door::default_samples;
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
@@ -29,7 +31,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What may change the answer of [`run`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Longest step in the ρ-metric, in D; twice as long where motion is straight. Halving it must not change outcomes; it is
     /// here to be tested.
@@ -95,14 +97,7 @@ pub fn run(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
-    let count = match &domain {
-        Domain::Grid(grid) => grid.len(),
-        Domain::Poses(poses) => poses.len(),
-    };
-    let pose = |k: usize| match &domain {
-        Domain::Grid(grid) => grid.pose(k),
-        Domain::Poses(poses) => poses[k],
-    };
+    let count = domain.len();
     let done = AtomicUsize::new(0);
     let ends: Vec<End> = exec.install(|| {
         (0..count)
@@ -111,7 +106,7 @@ pub fn run(
                 || Motion::new(pair, settings),
                 |motion, k| {
                     exec.check()?;
-                    let (outcome, error) = motion.follow(&pose(k), None);
+                    let (outcome, error) = motion.follow(&domain.pose(k), None);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(256) {
                         exec.report(done as f64 / count as f64, "descents");

@@ -23,6 +23,7 @@
 //! dissertation, section 4.2.
 
 mod engine;
+pub(super) mod door;
 pub mod export;
 mod mass;
 mod pieces;
@@ -89,12 +90,10 @@ pub fn run(
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), DropError> {
     let engine = Engine::new(pair, settings)?;
-    let (count, axes) = match &domain {
-        Domain::Grid(grid) => (grid.checked_len(), grid.axes.len()),
-        Domain::Poses(poses) => (Some(poses.len()), 0),
-    };
+    let count = domain.checked_len();
+    let axes = if let Domain::Grid(grid) = &domain { grid.axes.len() } else { 0 };
     let needed = count.map_or(u64::MAX, |count| (count as u64).saturating_mul(POSE_BYTES));
-    exec.reserve("the outcome of every pose", needed, |budget| {
+    exec.ensure_fits("the outcome of every pose", needed, |budget| {
         if axes == 0 {
             return "try fewer poses at a time, or allow more with --memory".to_owned();
         }
@@ -102,16 +101,12 @@ pub fn run(
         format!("use at most --resolution {fits}, or allow more with --memory")
     })?;
     let count = count.unwrap_or_default();
-    let pose = |k: usize| match &domain {
-        Domain::Grid(grid) => grid.pose(k),
-        Domain::Poses(poses) => poses[k],
-    };
     let done = AtomicUsize::new(0);
     let ends: Vec<End> = exec.install(|| {
         (0..count)
             .into_par_iter()
             .map(|k| {
-                let end = decide(&engine, pair, settings, &pose(k), k as u64, exec)?;
+                let end = decide(&engine, pair, settings, &domain.pose(k), k as u64, exec)?;
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done.is_multiple_of(16) {
                     exec.report(done as f64 / count as f64, "drop tests");

@@ -56,7 +56,7 @@ pub(super) fn drain(
     exec: &Exec,
 ) -> Result<Basins, FloodError> {
     let slabs = Slabs::new(shape);
-    slabs.reserve(exec)?;
+    slabs.ensure_fit(exec)?;
     let mut ways: Vec<AtomicU32> = Vec::with_capacity(heights.len());
     ways.resize_with(heights.len(), AtomicU32::default);
     match rule {
@@ -148,7 +148,7 @@ fn settle(
 ) -> Result<Vec<u32>, FloodError> {
     let same = |a: usize, b: usize| level(heights[a]) == level(heights[b]);
     let flat = ways.iter_mut().filter_map(|way| (*way.get_mut() == FLAT).then_some(())).count() as u64;
-    exec.reserve("the plateaus of a flooded grid", flat * size_of::<(u32, u32)>() as u64, |_| {
+    exec.ensure_fits("the plateaus of a flooded grid", flat * size_of::<(u32, u32)>() as u64, |_| {
         "use a coarser grid".to_owned()
     })?;
     // The rim: flat cells beside an equal one that drains.

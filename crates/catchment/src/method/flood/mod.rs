@@ -42,6 +42,7 @@
 //! [`Warning::FloodingBias`]: crate::acceptance::Warning::FloodingBias
 
 pub mod brute;
+pub(super) mod door;
 mod drain;
 pub mod meyer;
 mod passes;
@@ -89,6 +90,7 @@ impl Rule {
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Basins shallower than this are merged, in D; 0 keeps every minimum. Without one it is chosen from the depths.
     pub depth_tolerance: Option<f64>,
@@ -185,7 +187,7 @@ pub struct Hierarchy {
 /// When the grid does not suit the pair, does not fit into memory, or the computation is cancelled.
 pub fn accept(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result<Acceptance, FloodError> {
     let cells = grid.checked_len().unwrap_or(usize::MAX) as u64;
-    reserve(cells, Landscape::bytes(1), grid.axes.len(), exec)?;
+    ensure_fits(cells, Landscape::bytes(1), grid.axes.len(), exec)?;
     let landscape = Landscape::compute(pair, grid, exec)?;
     Ok(flood(&landscape, &pair.alignment, settings, exec)?.acceptance)
 }
@@ -235,13 +237,13 @@ fn divide(
     if heights.len() >= LABEL_LIMIT as usize {
         return Err(FloodError::TooManyCells { cells: heights.len() });
     }
-    reserve(heights.len() as u64, 0, shape.len(), exec)?;
+    ensure_fits(heights.len() as u64, 0, shape.len(), exec)?;
     let drained = drain::drain(shape, heights, rule, metric, exec)?;
     exec.report(0.5, STAGE);
     let count = drained.minima.len() as u64;
     let tree = count.saturating_mul((size_of::<Minimum>() + size_of::<Link>()) as u64);
     let needed = passes::bytes(count).saturating_mul(exec.threads() as u64).saturating_add(tree);
-    exec.reserve("the passes between basins", needed, |_| {
+    exec.ensure_fits("the passes between basins", needed, |_| {
         format!("there are {count} basins; use a coarser grid or fewer threads")
     })?;
     let passes = passes::passes(shape, heights, &drained, exec)?;
@@ -259,7 +261,7 @@ fn divide(
 }
 
 /// Bytes per cell that flooding needs beside the heights: the number of its basin and its outcome. What it needs
-/// per basin is reserved once their number is known.
+/// per basin is checked once their number is known.
 const BYTES_PER_CELL: u64 = (size_of::<u32>() + size_of::<Outcome>()) as u64;
 
 /// Bytes that flooding `cells` cells needs, heights included.
@@ -267,9 +269,9 @@ pub const fn bytes(cells: u64) -> u64 {
     cells.saturating_mul(BYTES_PER_CELL + Landscape::bytes(1))
 }
 
-fn reserve(cells: u64, heights: u64, axes: usize, exec: &Exec) -> Result<(), OutOfBudget> {
+fn ensure_fits(cells: u64, heights: u64, axes: usize, exec: &Exec) -> Result<(), OutOfBudget> {
     let per_cell = BYTES_PER_CELL + heights;
-    exec.reserve("flooding", cells.saturating_mul(per_cell), |budget| {
+    exec.ensure_fits("flooding", cells.saturating_mul(per_cell), |budget| {
         let largest = Resolution::largest_that_fits(budget, per_cell, axes);
         format!("use at most --resolution {largest}")
     })

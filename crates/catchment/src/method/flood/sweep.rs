@@ -67,11 +67,11 @@ impl Slabs {
         (0..runs).map(|k| k * self.count / runs..(k + 1) * self.count / runs).collect()
     }
 
-    /// Reserves the slabs that all runs hold.
-    pub(super) fn reserve(&self, exec: &Exec) -> Result<(), OutOfBudget> {
+    /// Checks that the slabs of all runs fit into memory at once.
+    pub(super) fn ensure_fit(&self, exec: &Exec) -> Result<(), OutOfBudget> {
         let slabs = (HELD * self.runs(exec).len()) as u64;
         let needed = slabs.saturating_mul((self.len * size_of::<u64>()) as u64);
-        exec.reserve("the slabs of a flooded grid", needed, |_| {
+        exec.ensure_fits("the slabs of a flooded grid", needed, |_| {
             "use fewer threads, or a coarser grid".to_owned()
         })
     }

@@ -30,6 +30,7 @@
 //! Not promised: that a start within the bounds succeeds (they are the best case), or that the rotation point keeps its
 //! x in a real docking, as it does here. For free motion see [`crate::method::descent`].
 
+pub(super) mod door;
 pub mod stepping;
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
@@ -40,7 +41,7 @@ use crate::pose::{Dof, DofSet, Mount};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
-use stepping::{Faces, Fate};
+use stepping::{Faces, Halt};
 
 /// A planar face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -175,9 +176,9 @@ impl Starts<'_> {
         let Settings { face, aspect_ratio: h, rotation_point } = *self.settings;
         if let Some(faces) = &self.faces {
             return match faces.follow(x0, theta0, stepping::STEP) {
-                Fate::Success => Outcome::Aligned,
-                Fate::Missed => Outcome::Missed,
-                Fate::Beside | Fate::Away | Fate::Bound | Fate::AtRest => Outcome::Jammed,
+                Halt::Success => Outcome::Aligned,
+                Halt::Missed => Outcome::Missed,
+                Halt::Beside | Halt::Away | Halt::Bound | Halt::AtRest => Outcome::Jammed,
             };
         }
         let lever = f64::midpoint(rotation_point, h);
@@ -204,7 +205,7 @@ impl Starts<'_> {
 pub fn accept(design: &Design, grid: &Grid, exec: &Exec) -> Result<Acceptance, KinematicError> {
     let settings = Settings::of(design)?;
     let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
-    exec.reserve("the outcome of every cell", cells, |_| "lower the resolution".to_owned())?;
+    exec.ensure_fits("the outcome of every cell", cells, |_| "lower the resolution".to_owned())?;
     let (starts, cor) = (settings.starts(), design.alignment.center_of_rotation);
     let outcome = |cell: usize| {
         exec.check()?;
@@ -329,7 +330,7 @@ mod tests {
                 let pick = |prime: f64, n: f64| (spread(*k, prime) * n).floor();
                 let faces = Faces::new((0.8 * pick(2.0, 11.0) - 4.0).exp2(), pick(3.0, 11.0));
                 let (x0, theta) = ((pick(5.0, 41.0) - 20.0) / 20.0, pick(7.0, 41.0) * PI / 80.0);
-                let success = |step| faces.follow(x0, theta, step) == Fate::Success;
+                let success = |step| faces.follow(x0, theta, step) == Halt::Success;
                 success(stepping::STEP) != success(0.5 * stepping::STEP)
             })
             .count();

@@ -27,7 +27,7 @@
 //! **End.** With ψ the angle from the normal of the edge (pointing at the edge's body) to the lever from the corner's pivot to the
 //! corner, and ψ* what it is where the two halves are parallel (the text's `β_p + α_e`), `θ₂ = ψ·sign ψ*`:
 //!
-//! | fate | when |
+//! | halt | when |
 //! |---|---|
 //! | success | θ₂ reaches `β_p + α_e` on a ramp: `θ_M − θ_B` reaches or passes 0; at θ₀ = 0 if |x₀| < 1 |
 //! | beside | the same on another edge: the halves are parallel, side by side or one on the other's back |
@@ -49,9 +49,9 @@ pub const STEP: f64 = 0.02;
 /// than once.
 pub const MOST_STEPS: usize = 100_000;
 
-/// What becomes of a start.
+/// How the stepping of a start halts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fate {
+pub enum Halt {
     /// The halves are parallel on a ramp: they slide home.
     Success,
     /// They are parallel on another edge.
@@ -87,9 +87,9 @@ struct Pair {
 
 impl Pair {
     /// What it is to be parallel with this contact.
-    const fn when_parallel(self) -> Fate {
+    const fn when_parallel(self) -> Halt {
         // The ramp goes from the last corner to the first in the rising layer, from the second to the last in the other.
-        if self.edge == 2 - self.layer { Fate::Success } else { Fate::Beside }
+        if self.edge == 2 - self.layer { Halt::Success } else { Halt::Beside }
     }
 }
 
@@ -119,20 +119,20 @@ impl Faces {
     }
 
     /// What becomes of the start (x₀ in D, θ₀ in radians), stepped by `step`, in D.
-    pub fn follow(&self, x0: f64, theta0: f64, step: f64) -> Fate {
+    pub fn follow(&self, x0: f64, theta0: f64, step: f64) -> Halt {
         let mut angles = [theta0, 0.0];
         if theta0 == 0.0 && x0.abs() >= 1.0 {
             // No more than corners would touch.
-            return Fate::Missed;
+            return Halt::Missed;
         }
-        let Some(mut contact) = self.highest(x0, angles) else { return Fate::Missed };
+        let Some(mut contact) = self.highest(x0, angles) else { return Halt::Missed };
         let side = theta0.signum();
         for _ in 0..MOST_STEPS {
             if (angles[0] - angles[1]) * side <= 0.0 {
                 return contact.pair.when_parallel();
             }
             if Self::theta2(&contact, x0, angles) < 0.0 {
-                return Fate::Away;
+                return Halt::Away;
             }
             let half = self.step(&contact, x0, angles, 0.5 * step);
             // The midpoint rule, as long as the contact stays what it is.
@@ -141,16 +141,16 @@ impl Faces {
             if [half, next].iter().any(|[moving, base]| (moving - base) * side <= 0.0) {
                 return contact.pair.when_parallel();
             }
-            let Some(found) = self.highest(x0, next) else { return Fate::Missed };
+            let Some(found) = self.highest(x0, next) else { return Halt::Missed };
             if found.pair != contact.pair && self.binds(contact.pair, &found, x0, next) {
-                return Fate::Bound;
+                return Halt::Bound;
             }
             if found.height >= contact.height {
-                return Fate::AtRest;
+                return Halt::AtRest;
             }
             (contact, angles) = (found, next);
         }
-        Fate::AtRest
+        Halt::AtRest
     }
 
     /// The angles after a step of this length along the descent of a contact.
@@ -271,8 +271,8 @@ mod tests {
         for (h, r) in [(0.0625, 0.0), (1.0, 1.0), (16.0, 10.0), (0.5, 4.0)] {
             let faces = Faces::new(h, r);
             for side in [-1.0, 1.0] {
-                assert_eq!(faces.follow(side * (1.0 - 1e-9), 0.0, STEP), Fate::Success);
-                assert_eq!(faces.follow(side * (1.0 + 1e-9), 0.0, STEP), Fate::Missed);
+                assert_eq!(faces.follow(side * (1.0 - 1e-9), 0.0, STEP), Halt::Success);
+                assert_eq!(faces.follow(side * (1.0 + 1e-9), 0.0, STEP), Halt::Missed);
             }
         }
     }
@@ -323,7 +323,7 @@ mod tests {
     proptest! {
         /// The pair of halves is its own mirror image, layers exchanged.
         #[test]
-        fn mirrored_starts_have_the_same_fate(
+        fn mirrored_starts_halt_alike(
             h in 0.0625f64..16.0, r in 0.0f64..10.0, x0 in -1.0f64..1.0, theta in 0.0f64..FRAC_PI_2,
         ) {
             let faces = Faces::new(h, r);
@@ -337,11 +337,11 @@ mod tests {
         ) {
             let faces = Faces::new(h, r);
             let first = faces.highest(x0, [theta, 0.0]);
-            let fate = faces.follow(x0, theta, 0.02);
-            prop_assert_eq!(fate == Fate::Missed && first.is_none(), first.is_none());
+            let halt = faces.follow(x0, theta, 0.02);
+            prop_assert_eq!(halt == Halt::Missed && first.is_none(), first.is_none());
             if let Some(first) = first {
                 let theta2 = Faces::theta2(&first, x0, [theta, 0.0]);
-                prop_assert!(fate != Fate::Success || (0.0..=PI).contains(&theta2));
+                prop_assert!(halt != Halt::Success || (0.0..=PI).contains(&theta2));
             }
         }
     }

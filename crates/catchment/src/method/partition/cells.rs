@@ -12,7 +12,7 @@
 //! its time).
 
 use super::compose::Compartment;
-use super::space::{Affine, Patch};
+use super::space::{Affine, Tile};
 use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION};
 use crate::pose::{Dof, DofSet};
 use glam::{DMat3, DVec3};
@@ -87,17 +87,17 @@ fn rectangle(polytope: &Polytope, margin: f64) -> AABB<Point> {
 }
 
 impl Cells {
-    /// Cells of the patches of each compartment, with their gates.
+    /// Cells of the tiles of each compartment, with their gates.
     pub(super) fn new(
-        patches: &[(Compartment, Vec<Patch>)],
+        tiles: &[(Compartment, Vec<Tile>)],
         free: DofSet,
         rotation_length: f64,
         limits: Vec<(usize, [f64; 2])>,
     ) -> Self {
-        let cells: Vec<Cell> = patches
+        let cells: Vec<Cell> = tiles
             .iter()
-            .flat_map(|(_, patches)| patches)
-            .map(|patch| Cell::new(patch, free, rotation_length))
+            .flat_map(|(_, tiles)| tiles)
+            .map(|tile| Cell::new(tile, free, rotation_length))
             .collect();
         let boxed =
             |(k, cell): (usize, &Cell)| Boxed::new(Rectangle::from_aabb(rectangle(&cell.region, 0.0)), k);
@@ -238,11 +238,11 @@ enum Step {
 }
 
 impl Cell {
-    fn new(patch: &Patch, free: DofSet, rotation_length: f64) -> Self {
-        let slope = &patch.height.slope;
-        let velocity = mobility(&patch.region.centroid(), free, rotation_length, slope).map(|v| -v);
+    fn new(tile: &Tile, free: DofSet, rotation_length: f64) -> Self {
+        let slope = &tile.height.slope;
+        let velocity = mobility(&tile.region.centroid(), free, rotation_length, slope).map(|v| -v);
         let descent = -dot(&velocity, slope);
-        Self { region: patch.region.clone(), height: patch.height, velocity, descent, gates: Vec::new() }
+        Self { region: tile.region.clone(), height: tile.height, velocity, descent, gates: Vec::new() }
     }
 
     /// Whether motion leaves the cell through a facet with this outward plane.

@@ -18,6 +18,7 @@
 
 mod cells;
 mod compose;
+pub(super) mod door;
 mod fall;
 mod frame;
 mod outline;
@@ -179,9 +180,9 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
         .filter(|dof| dof.is_rotation())
         .map(|dof| (dof, compose::slices(alignment.half_range(dof), settings.slices)))
         .collect();
-    let meetings = pieces::meetings(pair, 1.0 / settings.strips as f64)?;
+    let pairs = pieces::pairs(pair, 1.0 / settings.strips as f64)?;
     let count: u64 = slices.iter().map(|(_, angles)| angles.len() as u64 - 1).product();
-    let polytopes: u64 = meetings
+    let polytopes: u64 = pairs
         .iter()
         .map(|m| {
             let corners = m.moving.vertices.len() as u64;
@@ -189,7 +190,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
         })
         .sum();
     let threads = exec.threads() as u64;
-    exec.reserve(
+    exec.ensure_fits(
         "the partition",
         polytopes
             .saturating_mul(POLYTOPE_BYTES * threads)
@@ -197,8 +198,8 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
         |_| "use fewer --slices or --strips, or allow more with --memory".to_owned(),
     )?;
     let compartments = Compartment::all(&slices);
-    let found = spaces(&meetings, &compartments, alignment, exec)?;
-    let within = found.iter().zip(0..).flat_map(|((_, patches), k)| patches.iter().map(move |_| k)).collect();
+    let found = spaces(&pairs, &compartments, alignment, exec)?;
+    let within = found.iter().zip(0..).flat_map(|((_, tiles), k)| tiles.iter().map(move |_| k)).collect();
     let limits: Vec<(usize, [f64; 2])> = free
         .iter()
         .enumerate()
@@ -236,21 +237,21 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
 
 /// The contact space of every compartment, in their order.
 fn spaces(
-    meetings: &[pieces::Meeting],
+    pairs: &[pieces::PiecePair],
     compartments: &[Compartment],
     alignment: &Alignment,
     exec: &Exec,
-) -> Result<Vec<(Compartment, Vec<space::Patch>)>, Cancelled> {
+) -> Result<Vec<(Compartment, Vec<space::Tile>)>, Cancelled> {
     let done = std::sync::atomic::AtomicUsize::new(0);
     exec.install(|| {
         compartments
             .par_iter()
             .map(|compartment| {
                 exec.check()?;
-                let patches = space::patches(meetings, compartment, alignment.free, exec)?;
+                let tiles = space::tiles(pairs, compartment, alignment.free, exec)?;
                 let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 exec.report(done as f64 / compartments.len() as f64, "contact space");
-                Ok((compartment.clone(), patches))
+                Ok((compartment.clone(), tiles))
             })
             .collect()
     })
@@ -321,10 +322,14 @@ impl Partition {
 
     /// What becomes of the centre of every cell of a grid, or of every pose.
     pub fn acceptance(&self, domain: Domain, exec: &Exec) -> Result<Acceptance, Cancelled> {
-        let outcomes: Vec<Outcome> = exec.install(|| match &domain {
-            Domain::Grid(grid) => sampled(grid.len(), |k| self.outcome(&grid.pose(k)), exec),
-            Domain::Poses(poses) => sampled(poses.len(), |k| self.outcome(&poses[k]), exec),
-        })?;
+        let outcome = |k: usize| {
+            if k.is_multiple_of(256) {
+                exec.check()?;
+            }
+            Ok(self.outcome(&domain.pose(k)))
+        };
+        let outcomes: Vec<Outcome> = exec
+            .install(|| (0..domain.len()).into_par_iter().map(outcome).collect::<Result<_, Cancelled>>())?;
         let undecided = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
         let mut warnings = Vec::new();
         if self.watersheds.cut_off {
@@ -356,20 +361,4 @@ fn is_aligned(alignment: &Alignment, rest: &Point) -> bool {
         rotation_angle(&(back * PoseError::from_array(error).rotation())) <= WITHIN
     });
     error[0].hypot(error[1]) <= WITHIN && equal
-}
-
-fn sampled(
-    count: usize,
-    outcome: impl Fn(usize) -> Outcome + Sync,
-    exec: &Exec,
-) -> Result<Vec<Outcome>, Cancelled> {
-    (0..count)
-        .into_par_iter()
-        .map(|k| {
-            if k.is_multiple_of(256) {
-                exec.check()?;
-            }
-            Ok(outcome(k))
-        })
-        .collect()
 }

@@ -27,7 +27,7 @@ pub(super) struct Piece {
 
 /// Pieces of both halves that can meet, moving ones from the COR.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Meeting {
+pub(super) struct PiecePair {
     /// A piece of the fixed half.
     pub(super) fixed: Piece,
     /// A piece of the moving half.
@@ -38,22 +38,22 @@ pub(super) struct Meeting {
 const MOST_PIECES: usize = 512;
 
 /// Most pairs of pieces that can meet.
-const MOST_MEETINGS: usize = 100_000;
+const MOST_PAIRS: usize = 100_000;
 
 /// The pairs of convex pieces that can meet, moving ones cut into strips narrower than `width`.
-pub(super) fn meetings(pair: &Pair, width: f64) -> Result<Vec<Meeting>, PartitionError> {
+pub(super) fn pairs(pair: &Pair, width: f64) -> Result<Vec<PiecePair>, PartitionError> {
     let [fixed, moving] = [&pair.fixed, &pair.moving].map(convex_pieces);
     let (fixed, moving) = (fixed?, moving?);
     let planar = DofSet::EMPTY.with(Dof::X).with(Dof::Pitch);
     let in_plane = pair.alignment.free.iter().all(|dof| planar.contains(dof));
     let profiles = |pieces: &[Polytope]| pieces.iter().map(profile).collect::<Option<Vec<_>>>();
-    let mut meetings = Vec::new();
+    let mut pairs = Vec::new();
     if let (true, Some(fixed), Some(moving)) = (in_plane, profiles(&fixed), profiles(&moving)) {
         for (profile, slab) in &moving {
             for strip in strips(profile, &[0], width) {
                 for (other, other_slab) in &fixed {
                     if slab[0].max(other_slab[0]) < slab[1].min(other_slab[1]) {
-                        meetings.push(Meeting { fixed: piece(other), moving: piece(&strip) });
+                        pairs.push(PiecePair { fixed: piece(other), moving: piece(&strip) });
                     }
                 }
             }
@@ -61,15 +61,15 @@ pub(super) fn meetings(pair: &Pair, width: f64) -> Result<Vec<Meeting>, Partitio
     } else {
         for polytope in &moving {
             for strip in strips(polytope, &[0, 1], width) {
-                let met = |other| Meeting { fixed: piece(other), moving: piece(&strip) };
-                meetings.extend(fixed.iter().map(met));
-                if meetings.len() > MOST_MEETINGS {
-                    return Err(PartitionError::TooManyStrips { most: MOST_MEETINGS });
+                let met = |other| PiecePair { fixed: piece(other), moving: piece(&strip) };
+                pairs.extend(fixed.iter().map(met));
+                if pairs.len() > MOST_PAIRS {
+                    return Err(PartitionError::TooManyStrips { most: MOST_PAIRS });
                 }
             }
         }
     }
-    Ok(meetings)
+    Ok(pairs)
 }
 
 fn piece(polytope: &Polytope) -> Piece {

@@ -16,7 +16,7 @@
 //! lies over them first, so they are left out here.
 
 use super::compose::{Compartment, compose};
-use super::pieces::Meeting;
+use super::pieces::PiecePair;
 use crate::exec::{Cancelled, Exec};
 use crate::polytope::{Halfspace, MAX_DIMENSION, Point, Polytope, RESOLUTION, minkowski_sum_of};
 use crate::pose::DofSet;
@@ -73,7 +73,7 @@ pub(super) struct Roof {
 
 /// A part of the contact space over which the height is affine.
 #[derive(Debug, Clone)]
-pub(super) struct Patch {
+pub(super) struct Tile {
     /// The pose errors (of the COR) over which it lies.
     pub(super) region: Polytope,
     /// Height of first contact.
@@ -81,24 +81,24 @@ pub(super) struct Patch {
 }
 
 /// The contact space over one compartment.
-pub(super) fn patches(
-    meetings: &[Meeting],
+pub(super) fn tiles(
+    pairs: &[PiecePair],
     compartment: &Compartment,
     free: DofSet,
     exec: &Exec,
-) -> Result<Vec<Patch>, Cancelled> {
-    envelope(&roofs(meetings, compartment, free, exec)?, exec)
+) -> Result<Vec<Tile>, Cancelled> {
+    envelope(&roofs(pairs, compartment, free, exec)?, exec)
 }
 
 /// All polytopes of the sum over one compartment, highest first.
 pub(super) fn roofs(
-    meetings: &[Meeting],
+    pairs: &[PiecePair],
     compartment: &Compartment,
     free: DofSet,
     exec: &Exec,
 ) -> Result<Vec<Roof>, Cancelled> {
     let mut roofs: Vec<Roof> = Vec::new();
-    for Meeting { fixed, moving } in meetings {
+    for PiecePair { fixed, moving } in pairs {
         let dimension = moving.dimension + compartment.spans.len();
         for composite in compose(moving, compartment) {
             exec.check()?;
@@ -178,8 +178,8 @@ impl Roof {
 }
 
 /// What of every facet is met first. `roofs` are sorted, highest first.
-pub(super) fn envelope(roofs: &[Roof], exec: &Exec) -> Result<Vec<Patch>, Cancelled> {
-    let mut patches = Vec::new();
+pub(super) fn envelope(roofs: &[Roof], exec: &Exec) -> Result<Vec<Tile>, Cancelled> {
+    let mut tiles = Vec::new();
     for (k, roof) in roofs.iter().enumerate() {
         for (facet, plane) in &roof.facets {
             exec.check()?;
@@ -200,10 +200,10 @@ pub(super) fn envelope(roofs: &[Roof], exec: &Exec) -> Result<Vec<Patch>, Cancel
                     left = left.into_iter().flat_map(|part| without(part, &cover)).collect();
                 }
             }
-            patches.extend(joined(left).into_iter().map(|region| Patch { region, height: *plane }));
+            tiles.extend(joined(left).into_iter().map(|region| Tile { region, height: *plane }));
         }
     }
-    Ok(patches)
+    Ok(tiles)
 }
 
 fn boxes_meet(shadow: &Polytope, parts: &[Polytope]) -> bool {

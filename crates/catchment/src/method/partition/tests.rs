@@ -1,6 +1,6 @@
 use super::compose::{Compartment, slices};
 use super::fall::{self, Fate};
-use super::space::{Patch, Roof, envelope, roofs};
+use super::space::{Roof, Tile, envelope, roofs};
 use super::watershed::Parts;
 use super::*;
 use crate::acceptance::Stream;
@@ -30,20 +30,20 @@ const FIVE: [(Family, f64, f64); 5] = [
     (Family::VFace, 0.5, -0.5),
 ];
 
-fn spaces_of(pair: &Pair, settings: &Settings) -> Vec<(Vec<Roof>, Vec<Patch>, Compartment)> {
+fn spaces_of(pair: &Pair, settings: &Settings) -> Vec<(Vec<Roof>, Vec<Tile>, Compartment)> {
     let free = pair.alignment.free;
     let angles: Vec<_> = free
         .iter()
         .filter(|dof| dof.is_rotation())
         .map(|dof| (dof, slices(pair.alignment.half_range(dof), settings.slices)))
         .collect();
-    let meetings = pieces::meetings(pair, 1.0 / settings.strips as f64).unwrap();
+    let pairs = pieces::pairs(pair, 1.0 / settings.strips as f64).unwrap();
     Compartment::all(&angles)
         .into_iter()
         .map(|compartment| {
-            let roofs = roofs(&meetings, &compartment, free, &Exec::new()).unwrap();
-            let patches = envelope(&roofs, &Exec::new()).unwrap();
-            (roofs, patches, compartment)
+            let roofs = roofs(&pairs, &compartment, free, &Exec::new()).unwrap();
+            let tiles = envelope(&roofs, &Exec::new()).unwrap();
+            (roofs, tiles, compartment)
         })
         .collect()
 }
@@ -67,7 +67,7 @@ fn brute_height(roofs: &[Roof], q: &Point) -> Option<f64> {
 }
 
 #[test]
-fn patches_tile_the_shadow_at_the_height_of_the_highest_roof() {
+fn tiles_cover_the_shadow_at_the_height_of_the_highest_roof() {
     let yaw = [Dof::X, Dof::Y, Dof::Yaw];
     let cases = [
         (pair(Family::VFace, 0.5, -0.5, 1.0, &[]), Settings { slices: 7, strips: 3 }),
@@ -78,18 +78,18 @@ fn patches_tile_the_shadow_at_the_height_of_the_highest_roof() {
     for (case, (pair, settings)) in cases.iter().enumerate() {
         let stream = Stream::new(case as u64);
         let translations = pair.alignment.free.len() - pair.alignment.free.rotations();
-        for (roofs, patches, compartment) in spaces_of(pair, settings) {
+        for (roofs, tiles, compartment) in spaces_of(pair, settings) {
             for k in 0..300 {
                 let q = random_point(&compartment, translations, stream, k);
-                let over: Vec<f64> = patches
+                let over: Vec<f64> = tiles
                     .iter()
-                    .filter(|patch| patch.region.contains(&q))
-                    .map(|patch| patch.height.at(&q))
+                    .filter(|tile| tile.region.contains(&q))
+                    .map(|tile| tile.height.at(&q))
                     .collect();
                 match brute_height(&roofs, &q) {
                     None => assert!(over.is_empty(), "case {case} at {q:?}: nothing is met there"),
                     Some(height) => {
-                        assert_eq!(over.len(), 1, "case {case} at {q:?}: the patches do not tile");
+                        assert_eq!(over.len(), 1, "case {case} at {q:?}: the tiles do not tile");
                         // Facets are met where they were cut, to a few times the resolution.
                         assert!(
                             (over[0] - height).abs() < 1e-7,

@@ -26,6 +26,7 @@
 //! Bremer and Pascucci 2012; D-infinity, Tarboton 1997; simplices, Freudenthal 1942. Lengths in D, angles in radians.
 
 pub mod brute;
+pub(super) mod door;
 mod links;
 mod metric;
 mod solve;
@@ -46,7 +47,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What may change the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Motion that leaves the error box is followed exactly when the grid has at most this many cells at its surface.
     pub followed_out: usize,
@@ -84,15 +85,6 @@ pub enum TransportError {
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-}
-
-/// How a cell's motion ends on the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
-    /// Nothing around it is lower.
-    Rests,
-    /// It leaves the box along the axis with this number.
-    Leaves(usize),
 }
 
 /// Arrival fractions over a grid.
@@ -142,7 +134,7 @@ impl Arrival {
 
     /// Outcome of every cell: aligned above ½, else the larger of the shares that jam and that lose contact.
     pub fn acceptance(&self, exec: &Exec) -> Result<Acceptance, OutOfBudget> {
-        exec.reserve("the outcome of every cell", self.grid.len() as u64, |budget| {
+        exec.ensure_fits("the outcome of every cell", self.grid.len() as u64, |budget| {
             format!(
                 "use at most --resolution {}",
                 Resolution::largest_that_fits(budget, 1, self.grid.axes.len())
@@ -196,7 +188,7 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
         return Err(TransportError::TooManyCells { cells });
     }
     let needed = bytes(pair, grid);
-    exec.reserve("transport", needed, |budget| {
+    exec.ensure_fits("transport", needed, |budget| {
         let per_cell = (needed / (cells as u64).max(1)).max(1) + 1;
         let largest = Resolution::largest_that_fits(budget, per_cell, grid.axes.len());
         format!("use at most --resolution {largest}")
@@ -242,9 +234,10 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    fn decide(&mut self, kept: u32, end: End) -> Shares {
+    /// What becomes of an end; `leaves` is the number of the axis along which its motion leaves the box, if it does.
+    fn decide(&mut self, kept: u32, leaves: Option<usize>) -> Shares {
         let Relief { grid, fold, .. } = self.judge.relief;
-        if let (End::Leaves(axis), false) = (end, self.judge.follow_out) {
+        if let (Some(axis), false) = (leaves, self.judge.follow_out) {
             self.judge.cut_off.store(true, Relaxed);
             let jams = grid.axes[axis].dof.is_rotation();
             return Shares::new(0.0, if jams { 1.0 } else { 0.0 });

@@ -8,8 +8,8 @@
 //! No order has to be sorted, and none matters: every cell's value is the same whoever computes it and when. Threads work
 //! on different rotations and take each other's values; that two of them compute one cell twice costs time, never a bit.
 
+use super::Judge;
 use super::links::{Link, Links, Scratch, Way};
-use super::{End, Judge};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Relief;
 use rayon::prelude::*;
@@ -137,16 +137,16 @@ impl Solver<'_> {
             return Ok(());
         }
         let links = self.found.len();
-        let end = match self.links.of(cell, &mut self.scratch, &mut self.found) {
+        let leaves = match self.links.of(cell, &mut self.scratch, &mut self.found) {
             Way::Down => {
                 self.waiting.push(Waiting { cell, links, cursor: links });
                 return Ok(());
             }
-            Way::Leaves(axis) => End::Leaves(axis),
-            Way::End => End::Rests,
+            Way::Leaves(axis) => Some(axis),
+            Way::End => None,
         };
         exec.check()?;
-        let shares = self.judge.decide(cell, end);
+        let shares = self.judge.decide(cell, leaves);
         self.shares[cell as usize].store(shares.0, Relaxed);
         Ok(())
     }

@@ -1,19 +1,19 @@
-//! The upper envelope of the patches as convex cells that tile the plane, and who lies across each border.
+//! The upper envelope of the sheets as convex cells that tile the plane, and who lies across each border.
 
-use super::patch::{Patch, area};
+use super::sheet::{Sheet, area};
 use crate::exec::{Cancelled, Exec};
 use glam::DVec2;
 
 /// Cells smaller than this square of the seam's width, in multiples of the seam, are rounding.
 const SLIVER: f64 = 10.0;
 
-/// A convex cell in which one patch is the highest.
+/// A convex cell in which one sheet is the highest.
 #[derive(Debug, Clone)]
 pub(super) struct Cell {
     /// Corners, counter-clockwise.
     pub(super) polygon: Vec<DVec2>,
-    /// Which patch.
-    pub(super) patch: usize,
+    /// Which sheet.
+    pub(super) sheet: usize,
 }
 
 /// Part of a cell's border with one neighbour, or none, across it.
@@ -33,22 +33,22 @@ impl Border {
     }
 }
 
-/// The upper envelope of the patches.
-pub(super) fn upper_envelope(patches: &[Patch], seam: f64, exec: &Exec) -> Result<Vec<Cell>, Cancelled> {
-    let boxes: Vec<(DVec2, DVec2)> = patches.iter().map(|p| bounds(&p.footprint)).collect();
+/// The upper envelope of the sheets.
+pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result<Vec<Cell>, Cancelled> {
+    let boxes: Vec<(DVec2, DVec2)> = sheets.iter().map(|p| bounds(&p.footprint)).collect();
     let mut cells = Vec::new();
-    for (i, patch) in patches.iter().enumerate() {
+    for (i, sheet) in sheets.iter().enumerate() {
         exec.check()?;
-        let mut pieces = vec![patch.footprint.clone()];
-        for (j, other) in patches.iter().enumerate() {
+        let mut pieces = vec![sheet.footprint.clone()];
+        for (j, other) in sheets.iter().enumerate() {
             if i == j || !overlap(boxes[i], boxes[j]) || pieces.is_empty() {
                 continue;
             }
-            let higher = |p: DVec2| other.height(p) - patch.height(p);
-            let steepness = (other.gradient - patch.gradient).length();
+            let higher = |p: DVec2| other.height(p) - sheet.height(p);
+            let steepness = (other.gradient - sheet.gradient).length();
             let region = if steepness <= seam {
                 // Parallel planes: the higher one wins everywhere, and the first of two equal ones.
-                let above = higher(patch.footprint[0]);
+                let above = higher(sheet.footprint[0]);
                 let wins = above > seam || (above >= -seam && j < i);
                 if !wins {
                     continue;
@@ -61,7 +61,7 @@ pub(super) fn upper_envelope(patches: &[Patch], seam: f64, exec: &Exec) -> Resul
                 pieces = pieces.into_iter().flat_map(|piece| minus(piece, &region, seam)).collect();
             }
         }
-        cells.extend(pieces.into_iter().map(|polygon| Cell { polygon, patch: i }));
+        cells.extend(pieces.into_iter().map(|polygon| Cell { polygon, sheet: i }));
     }
     Ok(cells)
 }

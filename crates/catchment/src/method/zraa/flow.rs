@@ -16,7 +16,7 @@
 //! ends; strips with the same fate are joined, which keeps them few.
 
 use super::cells::{Border, Cell};
-use super::patch::Patch;
+use super::sheet::Sheet;
 use glam::DVec2;
 
 /// Longest chain of cells and valleys: far more than a path has, and it stops a cycle that rounding made.
@@ -32,7 +32,7 @@ pub(super) struct Strip {
 
 /// What is known of the points that leave by a border.
 #[derive(Debug, Clone)]
-enum Fate {
+enum Stretch {
     Unknown,
     Sought,
     Known(Vec<Strip>),
@@ -40,13 +40,13 @@ enum Fate {
 
 /// The flow over all cells.
 pub(super) struct Flow<'a> {
-    patches: &'a [Patch],
+    sheets: &'a [Sheet],
     cells: &'a [Cell],
     borders: &'a [Vec<Border>],
     seam: f64,
     mated_height: f64,
     /// Per cell and border.
-    stretches: Vec<Vec<Fate>>,
+    stretches: Vec<Vec<Stretch>>,
     /// Whether some path was too long or came round to itself.
     pub(super) tangled: bool,
 }
@@ -71,23 +71,23 @@ enum Onward {
 
 impl<'a> Flow<'a> {
     pub(super) fn new(
-        patches: &'a [Patch],
+        sheets: &'a [Sheet],
         cells: &'a [Cell],
         borders: &'a [Vec<Border>],
         seam: f64,
         mated_height: f64,
     ) -> Self {
-        let stretches = borders.iter().map(|b| vec![Fate::Unknown; b.len()]).collect();
-        Self { patches, cells, borders, seam, mated_height, stretches, tangled: false }
+        let stretches = borders.iter().map(|b| vec![Stretch::Unknown; b.len()]).collect();
+        Self { sheets, cells, borders, seam, mated_height, stretches, tangled: false }
     }
 
-    fn patch(&self, cell: usize) -> &'a Patch {
-        &self.patches[self.cells[cell].patch]
+    fn sheet(&self, cell: usize) -> &'a Sheet {
+        &self.sheets[self.cells[cell].sheet]
     }
 
     /// Unit direction of the motion in a cell; zero where it is level.
     fn direction(&self, cell: usize) -> DVec2 {
-        let g = self.patch(cell).gradient;
+        let g = self.sheet(cell).gradient;
         if g.length() <= self.seam { DVec2::ZERO } else { -g.normalize() }
     }
 
@@ -111,7 +111,7 @@ impl<'a> Flow<'a> {
         if self.direction(cell) == DVec2::ZERO {
             // A level cell: at rest, and mated if it is the floor of the mated pose.
             let accepted = self.touches(cell, DVec2::ZERO)
-                && (self.patch(cell).height(DVec2::ZERO) - self.mated_height).abs() <= self.near();
+                && (self.sheet(cell).height(DVec2::ZERO) - self.mated_height).abs() <= self.near();
             return vec![Strip { from: f64::NEG_INFINITY, to: f64::INFINITY, accepted }];
         }
         let mut strips: Vec<Strip> = Vec::new();
@@ -142,18 +142,18 @@ impl<'a> Flow<'a> {
     /// What becomes of the points that leave `cell` by its k-th border, in the cell's own coordinate.
     fn stretch(&mut self, cell: usize, k: usize, depth: usize) -> Vec<Strip> {
         match &self.stretches[cell][k] {
-            Fate::Known(strips) => return strips.clone(),
+            Stretch::Known(strips) => return strips.clone(),
             // Heights fall along every path, but a long border may be met twice at different heights.
-            Fate::Sought => self.tangled = true,
-            Fate::Unknown => {}
+            Stretch::Sought => self.tangled = true,
+            Stretch::Unknown => {}
         }
         if self.tangled || depth > MAX_DEPTH {
             self.tangled = true;
             return Vec::new();
         }
-        self.stretches[cell][k] = Fate::Sought;
+        self.stretches[cell][k] = Stretch::Sought;
         let strips = self.sought(cell, k, depth);
-        self.stretches[cell][k] = Fate::Known(strips.clone());
+        self.stretches[cell][k] = Stretch::Known(strips.clone());
         strips
     }
 
@@ -164,7 +164,7 @@ impl<'a> Flow<'a> {
         match self.way(cell, &border) {
             Way::Rest | Way::Missed => whole(false),
             Way::Along(end) => {
-                let height = self.patch(cell).height(end);
+                let height = self.sheet(cell).height(end);
                 let on = (end - border.midpoint()).normalize_or_zero();
                 whole(self.ends_well(end, height, on, depth + 1))
             }
@@ -195,7 +195,7 @@ impl<'a> Flow<'a> {
         let middle = border.midpoint();
         let along = border.to - border.from;
         let outward = -along.perp().normalize_or_zero();
-        let step = self.patch(next).height(middle) - self.patch(cell).height(middle);
+        let step = self.sheet(next).height(middle) - self.sheet(cell).height(middle);
         let leads_on = self.direction(next).dot(outward);
         let angle = self.near() / along.length();
         if step <= self.near() && (leads_on > angle || self.direction(next) == DVec2::ZERO) {
@@ -203,7 +203,7 @@ impl<'a> Flow<'a> {
         }
         // A drop lands at the foot of the wall, whose slope counts from then on.
         let floor = if step < -self.near() { next } else { cell };
-        let slope = -self.patch(floor).gradient.dot(along.normalize_or_zero());
+        let slope = -self.sheet(floor).gradient.dot(along.normalize_or_zero());
         if slope.abs() <= self.seam {
             Way::Rest
         } else {
@@ -236,7 +236,7 @@ impl<'a> Flow<'a> {
             }
         };
         for cell in 0..self.cells.len() {
-            if !self.touches(cell, at) || (self.patch(cell).height(at) - height).abs() > self.near() {
+            if !self.touches(cell, at) || (self.sheet(cell).height(at) - height).abs() > self.near() {
                 continue;
             }
             let direction = self.direction(cell);
@@ -248,7 +248,7 @@ impl<'a> Flow<'a> {
                     along.perp_dot(at - a) > self.near() || along.perp_dot(direction) >= -1e-9
                 });
             if leads_in {
-                offer(self.patch(cell).gradient.length(), Onward::Into(cell));
+                offer(self.sheet(cell).gradient.length(), Onward::Into(cell));
             }
             for (k, border) in self.borders[cell].iter().enumerate() {
                 let (from, to) = self.span(cell, k);
@@ -260,7 +260,7 @@ impl<'a> Flow<'a> {
                 if let Way::Along(end) = self.way(cell, border)
                     && end.distance(at) > self.near()
                 {
-                    let slope = -self.patch(cell).gradient.dot((end - at).normalize_or_zero());
+                    let slope = -self.sheet(cell).gradient.dot((end - at).normalize_or_zero());
                     if slope > self.seam {
                         offer(slope, Onward::Along(cell, end));
                     }
@@ -270,7 +270,7 @@ impl<'a> Flow<'a> {
         match best {
             Some((_, Onward::Into(cell))) => self.follow(cell, at, depth + 1),
             Some((_, Onward::Along(cell, end))) => {
-                let below = self.patch(cell).height(end);
+                let below = self.sheet(cell).height(end);
                 self.ends_well(end, below, (end - at).normalize_or_zero(), depth + 1)
             }
             None => self.over_the_rim(at, height, on, depth),
@@ -281,10 +281,10 @@ impl<'a> Flow<'a> {
     fn over_the_rim(&mut self, at: DVec2, height: f64, on: DVec2, depth: usize) -> bool {
         let ahead = at + on * (4.0 * self.near());
         let landing = (0..self.cells.len())
-            .filter(|&c| self.touches(c, ahead) && self.patch(c).height(at) < height - self.near())
-            .max_by(|&a, &b| self.patch(a).height(ahead).total_cmp(&self.patch(b).height(ahead)));
+            .filter(|&c| self.touches(c, ahead) && self.sheet(c).height(at) < height - self.near())
+            .max_by(|&a, &b| self.sheet(a).height(ahead).total_cmp(&self.sheet(b).height(ahead)));
         let blocked = (0..self.cells.len())
-            .any(|c| self.touches(c, ahead) && self.patch(c).height(at) >= height - self.near());
+            .any(|c| self.touches(c, ahead) && self.sheet(c).height(at) >= height - self.near());
         match landing {
             Some(cell) if !blocked => self.follow(cell, ahead, depth + 1),
             _ => false,
@@ -311,7 +311,7 @@ impl<'a> Flow<'a> {
             for (end, across) in [(border.from, from), (border.to, to)] {
                 // Straight into a point where borders meet.
                 if (across - s).abs() <= self.near() && end.distance(at) > self.near() {
-                    return self.ends_well(end, self.patch(cell).height(end), direction, depth + 1);
+                    return self.ends_well(end, self.sheet(cell).height(end), direction, depth + 1);
                 }
             }
             if s > from + self.near() && s < to - self.near() {

@@ -1,6 +1,6 @@
 //! One free translation: the height over a line, and the stretch of it that slides home.
 
-use super::patch::Patch;
+use super::sheet::Sheet;
 use glam::DVec2;
 
 /// A stretch of the line over which one plane is a candidate for the height.
@@ -21,17 +21,17 @@ impl Segment {
 ///
 /// The height over the line is cut where two planes cross or one ends; outward from 0 every stretch must fall
 /// towards 0, and no step may block the way.
-pub(super) fn interval(patches: &[Patch], axis: DVec2, seam: f64) -> [f64; 2] {
-    let segments: Vec<Segment> = patches.iter().filter_map(|p| along(p, axis, seam)).collect();
+pub(super) fn interval(sheets: &[Sheet], axis: DVec2, seam: f64) -> [f64; 2] {
+    let segments: Vec<Segment> = sheets.iter().filter_map(|p| along(p, axis, seam)).collect();
     [-1.0, 1.0].map(|sign| sign * reach(&segments, sign, seam)).map(|s| s + 0.0)
 }
 
-/// The part of a patch over the line.
-fn along(patch: &Patch, axis: DVec2, seam: f64) -> Option<Segment> {
+/// The part of a sheet over the line.
+fn along(sheet: &Sheet, axis: DVec2, seam: f64) -> Option<Segment> {
     let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-    let n = patch.footprint.len();
+    let n = sheet.footprint.len();
     for k in 0..n {
-        let (a, b) = (patch.footprint[k], patch.footprint[(k + 1) % n]);
+        let (a, b) = (sheet.footprint[k], sheet.footprint[(k + 1) % n]);
         let side = (b - a).normalize_or_zero();
         // Inside where perp_dot(side, s·axis − a) ≥ −seam: linear in s.
         let (rate, at_zero) = (side.perp_dot(axis), -side.perp_dot(a) + seam);
@@ -48,8 +48,8 @@ fn along(patch: &Patch, axis: DVec2, seam: f64) -> Option<Segment> {
     (to - from > 4.0 * seam).then(|| Segment {
         from,
         to,
-        offset: patch.offset,
-        slope: patch.gradient.dot(axis),
+        offset: sheet.offset,
+        slope: sheet.gradient.dot(axis),
     })
 }
 

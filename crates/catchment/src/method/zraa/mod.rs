@@ -1,7 +1,7 @@
 //! Zero-rotation area of acceptance: which lateral offsets contact corrects when no rotation is possible.
 //!
 //! ```text
-//!   h(x, y)  is piecewise linear at R = 1: the upper envelope of the contact patches
+//!   h(x, y)  is piecewise linear at R = 1: the upper envelope of the contact sheets
 //!   accepted = { (x, y) : the steepest descent of h from there ends at the mated pose }
 //! ```
 //!
@@ -18,7 +18,7 @@ mod cells;
 mod circle;
 mod flow;
 mod line;
-mod patch;
+mod sheet;
 
 pub use circle::circle_bounds;
 
@@ -29,8 +29,8 @@ use flow::Flow;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// Most patches: cutting them against each other takes their square.
-const MAX_PATCHES: usize = 20_000;
+/// Most sheets: cutting them against each other takes their square.
+const MAX_SHEETS: usize = 20_000;
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -82,8 +82,8 @@ pub enum ZraaError {
     )]
     NoMatedPose,
     /// The geometry is too rich.
-    #[error("{count} ways to touch, more than {MAX_PATCHES}: give a coarser mesh or a larger chord_error")]
-    TooManyPatches {
+    #[error("{count} ways to touch, more than {MAX_SHEETS}: give a coarser mesh or a larger chord_error")]
+    TooManySheets {
         /// How many.
         count: usize,
     },
@@ -102,23 +102,23 @@ pub enum ZraaError {
 /// The zero-rotation area of acceptance of a pair, over those of x and y that are free.
 pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaError> {
     let free = pair.alignment.free;
-    let patches = patch::patches(&pair.fixed, &pair.moving);
-    if patches.len() > MAX_PATCHES {
-        return Err(ZraaError::TooManyPatches { count: patches.len() });
+    let sheets = sheet::sheets(&pair.fixed, &pair.moving);
+    if sheets.len() > MAX_SHEETS {
+        return Err(ZraaError::TooManySheets { count: sheets.len() });
     }
     exec.check()?;
     let (axis, direction) = match (free.contains(Dof::X), free.contains(Dof::Y)) {
-        (true, true) => return region(&patches, settings.seam, exec),
+        (true, true) => return region(&sheets, settings.seam, exec),
         (true, false) => (Dof::X, DVec2::X),
         (false, true) => (Dof::Y, DVec2::Y),
         (false, false) => return Err(ZraaError::NoTranslation),
     };
-    let [from, to] = line::interval(&patches, direction, settings.seam);
+    let [from, to] = line::interval(&sheets, direction, settings.seam);
     Ok(Zraa::Interval { axis, from, to })
 }
 
-fn region(patches: &[patch::Patch], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
-    let cells = cells::upper_envelope(patches, seam, exec)?;
+fn region(sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
+    let cells = cells::upper_envelope(sheets, seam, exec)?;
     let borders = cells::borders(&cells, seam, exec)?;
     let inside = |polygon: &[DVec2]| {
         (0..polygon.len())
@@ -127,10 +127,10 @@ fn region(patches: &[patch::Patch], seam: f64, exec: &Exec) -> Result<Zraa, Zraa
     let mated = cells
         .iter()
         .filter(|cell| inside(&cell.polygon))
-        .map(|cell| patches[cell.patch].height(DVec2::ZERO))
+        .map(|cell| sheets[cell.sheet].height(DVec2::ZERO))
         .max_by(f64::total_cmp)
         .ok_or(ZraaError::NoMatedPose)?;
-    let mut flow = Flow::new(patches, &cells, &borders, seam, mated);
+    let mut flow = Flow::new(sheets, &cells, &borders, seam, mated);
     let mut polygons = Vec::new();
     for (k, cell) in cells.iter().enumerate() {
         exec.check()?;
@@ -153,7 +153,7 @@ fn region(patches: &[patch::Patch], seam: f64, exec: &Exec) -> Result<Zraa, Zraa
     if flow.tangled {
         return Err(ZraaError::Tangled { cells: cells.len(), seam });
     }
-    let area = polygons.iter().map(|p| patch::area(p)).sum();
+    let area = polygons.iter().map(|p| sheet::area(p)).sum();
     Ok(Zraa::Region { polygons, area })
 }
 

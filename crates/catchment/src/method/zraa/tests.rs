@@ -84,27 +84,27 @@ fn a_peg_accepts_the_mouth_of_its_hole() {
     assert!(lacking > 0.0 && lacking < 2.0 * std::f64::consts::PI * mouth * spec.chord_error, "{lacking}");
 }
 
-/// The height as the patches have it.
-fn height(patches: &[patch::Patch], at: DVec2) -> f64 {
-    let over = |p: &&patch::Patch| {
+/// The height as the sheets have it.
+fn height(sheets: &[sheet::Sheet], at: DVec2) -> f64 {
+    let over = |p: &&sheet::Sheet| {
         let n = p.footprint.len();
         (0..n).all(|k| {
             let (a, b) = (p.footprint[k], p.footprint[(k + 1) % n]);
             (b - a).perp_dot(at - a) >= -1e-12
         })
     };
-    patches.iter().filter(over).map(|p| p.height(at)).fold(f64::NEG_INFINITY, f64::max)
+    sheets.iter().filter(over).map(|p| p.height(at)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 #[test]
-fn patches_have_the_brute_height() {
+fn sheets_have_the_brute_height() {
     for family in [Family::Pyramid, Family::Cone, Family::XFace3d, Family::XFace3dLocking, Family::PinHole] {
         let pair = pair(FamilySpec { chord_error: 0.05, ..FamilySpec::new(family) });
-        let patches = patch::patches(&pair.fixed, &pair.moving);
+        let sheets = sheet::sheets(&pair.fixed, &pair.moving);
         for k in 0..60u32 {
             let lateral = offset(k);
             let brute = pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
-            let ours = height(&patches, lateral);
+            let ours = height(&sheets, lateral);
             // A few products of numbers below 1, divided by normals not flatter than 0.1.
             assert!(
                 (brute.unwrap_or(f64::NEG_INFINITY) - ours).abs() < 1e-12 || (brute.is_none() && ours < -1e9)
@@ -120,13 +120,13 @@ fn offset(k: u32) -> DVec2 {
 }
 
 /// Steepest descent by small steps.
-fn descends(patches: &[patch::Patch], mut at: DVec2) -> bool {
+fn descends(sheets: &[sheet::Sheet], mut at: DVec2) -> bool {
     let mut step = 0.01;
-    let mut here = height(patches, at);
+    let mut here = height(sheets, at);
     while step > 1e-4 && here.is_finite() {
         let lowest = (0..32)
             .map(|k| at + step * DVec2::from_angle(f64::from(k) * std::f64::consts::PI / 16.0))
-            .map(|p| (height(patches, p), p))
+            .map(|p| (height(sheets, p), p))
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .unwrap();
         if lowest.0 < here - 1e-9 {
@@ -157,14 +157,14 @@ fn regions_agree_with_small_steps_downhill() {
     for spec in specs {
         let pair = pair(spec.clone());
         let zraa = run(&pair, &Settings::default(), &Exec::new()).unwrap();
-        let patches = patch::patches(&pair.fixed, &pair.moving);
+        let sheets = sheet::sheets(&pair.fixed, &pair.moving);
         let mut wrong = 0;
         for k in 0..200u32 {
             let at = offset(k);
             let near =
                 (0..8).map(|a| at + 0.03 * DVec2::from_angle(f64::from(a) * std::f64::consts::FRAC_PI_4));
             let inside = contains(&zraa, at);
-            if near.into_iter().all(|p| contains(&zraa, p) == inside) && descends(&patches, at) != inside {
+            if near.into_iter().all(|p| contains(&zraa, p) == inside) && descends(&sheets, at) != inside {
                 wrong += 1;
             }
         }
@@ -206,7 +206,7 @@ proptest! {
         let Zraa::Region { area, .. } =
             run(&pair_of(ConnectorSpec::Own(own), false), &Settings::default(), &Exec::new()).unwrap()
         else { panic!() };
-        prop_assert!((area - patch::area(&rim)).abs() < 1e-9, "{} {}", area, patch::area(&rim));
+        prop_assert!((area - sheet::area(&rim)).abs() < 1e-9, "{} {}", area, sheet::area(&rim));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::colour::CURVES;
 use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::design::Design;
 use crate::study::convergence::{Convergence, Sequence};
-use crate::study::trial::Trial;
+use crate::study::refinement::Refinement;
 
 /// Draws every method's sequence: above the Sums with their intervals, below the ONAA edges; left over cells per axis,
 /// right over the time that they took.
@@ -22,9 +22,9 @@ pub fn convergence(design: &Design, found: &Convergence) -> Picture {
         short(100.0 * found.settings.tolerance)
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
-    let lines = |x: fn(&Trial) -> f64, y: fn(&Trial) -> (f64, Option<[f64; 2]>)| -> Vec<Line> {
+    let lines = |x: fn(&Refinement) -> f64, y: fn(&Refinement) -> (f64, Option<[f64; 2]>)| -> Vec<Line> {
         let line = |(k, s): (usize, &Sequence)| Line {
-            name: s.method.name().to_owned(),
+            name: s.method.to_owned(),
             colour: CURVES[k % CURVES.len()],
             points: s
                 .trials
@@ -40,8 +40,8 @@ pub fn convergence(design: &Design, found: &Convergence) -> Picture {
     let sum_label = format!("Sum [{}]", found.unit);
     let places = [(left, top), (right, top), (left, below), (right, below)];
     for (k, (x, y)) in places.into_iter().enumerate() {
-        let across: fn(&Trial) -> f64 = if k % 2 == 0 { |t| t.resolution as f64 } else { |t| t.seconds };
-        let up: fn(&Trial) -> (f64, Option<[f64; 2]>) =
+        let across: fn(&Refinement) -> f64 = if k % 2 == 0 { |t| t.resolution as f64 } else { |t| t.seconds };
+        let up: fn(&Refinement) -> (f64, Option<[f64; 2]>) =
             if k < 2 { |t| (t.sum, Some(t.bracket)) } else { |t| (t.onaa_edge, None) };
         let chart = Chart {
             rect: Rect { x, y, w: size[0], h: size[1] },
@@ -64,7 +64,7 @@ mod tests {
     use crate::method::Method;
     use crate::pose::Dof;
     use crate::report::schema::testing::design;
-    use crate::study::convergence::{End, Settings};
+    use crate::study::convergence::{Settings, StopReason};
 
     #[test]
     fn every_method_has_a_line_in_every_chart() {
@@ -72,7 +72,7 @@ mod tests {
         let trial = |resolution: usize, limit: f64| {
             let off = 1.0 / resolution as f64;
             let sum = limit + off;
-            Trial {
+            Refinement {
                 resolution,
                 cells: resolution * resolution,
                 seconds: 1e-4 * (resolution * resolution) as f64,
@@ -84,19 +84,19 @@ mod tests {
             }
         };
         let sequence = |(k, method): (usize, &Method)| Sequence {
-            method: *method,
+            method: method.name(),
             trials: [11, 15, 21, 29, 41].map(|n| trial(n, 2.4 + 0.1 * k as f64)).to_vec(),
-            end: End::Stable,
+            end: StopReason::Stable,
             corrected: None,
         };
         let found = Convergence {
             settings: Settings::default(),
             unit: "D·rad".to_owned(),
-            sequences: Method::ON_GRIDS.iter().enumerate().map(sequence).collect(),
+            sequences: Method::on_grids().iter().enumerate().map(sequence).collect(),
         };
         let picture = convergence(&design, &found);
         look("convergence", &picture);
-        assert_eq!(picture.svg().matches("<circle").count(), 4 * 5 * Method::ON_GRIDS.len());
+        assert_eq!(picture.svg().matches("<circle").count(), 4 * 5 * Method::on_grids().len());
         assert!(!picture.svg().contains("NaN"));
     }
 }

@@ -23,6 +23,7 @@
 //! same bytes. Maps and solids are embedded images, everything else is vector.
 
 mod agreement;
+mod answer;
 mod axis;
 mod basins;
 mod chart;
@@ -46,6 +47,7 @@ mod svg;
 mod trajectory;
 
 pub use agreement::agreement;
+pub use answer::{Drawn, NAMES};
 pub use basins::basins;
 pub use convergence::convergence;
 pub use curves::{Curve, CurveChart, CurvePoint, curves};

@@ -5,7 +5,7 @@ use crate::method::partition::{Counts, Partition};
 use serde::{Deserialize, Serialize};
 
 /// A partition of the contact space.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartitionReport {
     /// Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.

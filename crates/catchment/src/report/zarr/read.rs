@@ -4,7 +4,7 @@ use super::{LAYOUT, ZarrError, storage};
 use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::exec::Exec;
 use crate::landscape::{Grid, GridAxis};
-use crate::method::Method;
+use crate::method::REGISTRY;
 use crate::report::Report;
 use serde_json::Value;
 use std::path::Path;
@@ -29,7 +29,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     }
     let report: Report = serde_json::from_value(attributes["report"].take())
         .map_err(|error| bad(format!("its report is of another version of this program: {error}")))?;
-    let method = Method::ALL.into_iter().find(|method| method.name() == report.method);
+    let method = REGISTRY.iter().map(|entry| entry.info.name).find(|name| *name == report.method);
     let method = method.ok_or_else(|| bad(format!("its method `{}` is not known", report.method)))?;
     let axes = report.axes.iter().map(|a| GridAxis { dof: a.axis, lo: a.lo, hi: a.hi, cells: a.cells });
     let grid = Grid { axes: axes.collect() };
@@ -44,7 +44,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     }
     let cells = grid.checked_len().ok_or_else(|| bad("it has too many cells".to_owned()))?;
     // The codes as they are stored, and the outcomes that they become.
-    exec.reserve("the outcomes of a stored result", 2 * cells as u64, |_| {
+    exec.ensure_fits("the outcomes of a stored result", 2 * cells as u64, |_| {
         "allow more with --memory".to_owned()
     })?;
     exec.check()?;
@@ -54,7 +54,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     let outcomes: Option<Vec<Outcome>> = codes.into_iter().map(outcome).collect();
     let outcomes = outcomes.ok_or_else(|| bad("some of its cells have no outcome".to_owned()))?;
     let warnings = report.warnings.iter().map(|doubt| doubt.warning.clone()).collect();
-    Ok((report, Acceptance { method: method.name(), domain: Domain::Grid(grid), outcomes, warnings }))
+    Ok((report, Acceptance { method, domain: Domain::Grid(grid), outcomes, warnings }))
 }
 
 #[cfg(test)]

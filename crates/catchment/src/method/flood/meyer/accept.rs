@@ -91,7 +91,7 @@ pub fn accept(
     {
         return Err(FloodError::Tolerance { depth });
     }
-    exec.reserve("flooding", (heights.len() as u64).saturating_mul(BYTES_PER_CELL), |budget| {
+    exec.ensure_fits("flooding", (heights.len() as u64).saturating_mul(BYTES_PER_CELL), |budget| {
         let largest = Resolution::largest_that_fits(budget, BYTES_PER_CELL, grid.axes.len());
         format!("at most {largest} cells per axis fit")
     })?;

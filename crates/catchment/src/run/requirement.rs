@@ -7,6 +7,7 @@
 //! ```
 
 use crate::design::nearest;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
 use std::str::FromStr;
@@ -101,7 +102,46 @@ impl fmt::Display for Requirement {
     }
 }
 
+impl Serialize for Requirement {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Requirement {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+/// What became of a requirement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// The requirement.
+    pub requirement: Requirement,
+    /// The number that it is about.
+    pub value: f64,
+    /// Whether it is met.
+    pub met: bool,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let met = if self.met { "met" } else { "not met" };
+        write!(f, "{met}: {} (it is {})", self.requirement, self.value)
+    }
+}
+
 impl Requirement {
+    /// Judges a report.
+    ///
+    /// # Errors
+    /// If the report has no such place, or no number there.
+    pub fn judge(&self, report: &Value) -> Result<Verdict, RequirementError> {
+        let value = self.value(report)?;
+        Ok(Verdict { requirement: self.clone(), value, met: self.is_met_by(value) })
+    }
+
     /// The number that the requirement is about.
     ///
     /// # Errors

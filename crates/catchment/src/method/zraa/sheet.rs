@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A plane over a convex polygon of the lateral plane.
 #[derive(Debug, Clone)]
-pub(super) struct Patch {
+pub(super) struct Sheet {
     /// Corners, counter-clockwise.
     pub(super) footprint: Vec<DVec2>,
     /// Height over (0, 0), in D.
@@ -24,7 +24,7 @@ pub(super) struct Patch {
     pub(super) gradient: DVec2,
 }
 
-impl Patch {
+impl Sheet {
     /// Height over `at`.
     pub(super) fn height(&self, at: DVec2) -> f64 {
         self.offset + self.gradient.dot(at)
@@ -50,21 +50,21 @@ pub(super) fn area(polygon: &[DVec2]) -> f64 {
     polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>() / 2.0
 }
 
-/// All patches of a pair of halves, the moving one given from the COR at the aligned rotation.
-pub(super) fn patches(fixed: &Half, moving: &Half) -> Vec<Patch> {
-    let mut patches = Vec::new();
+/// All sheets of a pair of halves, the moving one given from the COR at the aligned rotation.
+pub(super) fn sheets(fixed: &Half, moving: &Half) -> Vec<Sheet> {
+    let mut sheets = Vec::new();
     for f in &fixed.surfaces {
         for m in &moving.surfaces {
-            facets_and_corners(f, m, 1.0, &mut patches);
-            facets_and_corners(m, f, -1.0, &mut patches);
-            edges(f, m, &mut patches);
+            facets_and_corners(f, m, 1.0, &mut sheets);
+            facets_and_corners(m, f, -1.0, &mut sheets);
+            edges(f, m, &mut sheets);
         }
     }
-    patches
+    sheets
 }
 
 /// Facets of `a` against corners of `b`; `up` is +1 where a is the fixed half and −1 where it is the moving one.
-fn facets_and_corners(a: &Surface, b: &Surface, up: f64, out: &mut Vec<Patch>) {
+fn facets_and_corners(a: &Surface, b: &Surface, up: f64, out: &mut Vec<Sheet>) {
     let mut neighbours: Vec<Vec<DVec3>> = vec![Vec::new(); b.vertices.len()];
     for facet in &b.facets {
         for (k, &from) in facet.corners.iter().enumerate() {
@@ -83,13 +83,13 @@ fn facets_and_corners(a: &Surface, b: &Surface, up: f64, out: &mut Vec<Patch>) {
             let corners = facet.corners.iter().map(|&k| ((a.vertices[k as usize] - *v) * up).truncate());
             let foot = a.vertices[facet.corners[0] as usize];
             let (p, q) = if up > 0.0 { (foot, *v) } else { (*v, foot) };
-            out.extend(Patch::new(facet.normal * up, p, q, corners.collect()));
+            out.extend(Sheet::new(facet.normal * up, p, q, corners.collect()));
         }
     }
 }
 
 /// Convex edges against convex edges.
-fn edges(fixed: &Surface, moving: &Surface, out: &mut Vec<Patch>) {
+fn edges(fixed: &Surface, moving: &Surface, out: &mut Vec<Sheet>) {
     for e in &fixed.edges {
         let [a, b] = e.ends.map(|k| fixed.vertices[k as usize]);
         let sides = e.facets.map(|k| fixed.facets[k as usize].normal);
@@ -104,7 +104,7 @@ fn edges(fixed: &Surface, moving: &Surface, out: &mut Vec<Patch>) {
                 continue;
             }
             let [a2, b2, p2, q2] = [a, b, p, q].map(DVec3::truncate);
-            out.extend(Patch::new(n, a, p, vec![a2 - p2, b2 - p2, b2 - q2, a2 - q2]));
+            out.extend(Sheet::new(n, a, p, vec![a2 - p2, b2 - p2, b2 - q2, a2 - q2]));
         }
     }
 }

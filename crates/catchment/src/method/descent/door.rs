@@ -1,0 +1,80 @@
+//! Exact descent as a method: every pose by itself.
+
+use super::{End, Settings, run};
+use crate::acceptance::{Acceptance, Domain};
+use crate::contact::Pair;
+use crate::exec::Exec;
+use crate::landscape::Grid;
+use crate::method::door::{
+    Cost, DESCENT_SECONDS, Decide, DecideError, Decided, Entry, Follow, Info, POSE_BYTES, affordable,
+};
+use crate::problem::Problem;
+use serde_json::{Value, json};
+
+const INFO: Info =
+    Info { name: "descent", summary: "exact frictionless motion of every cell's centre", on_grids: true };
+
+/// Its line in the registry.
+pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+
+impl Decide for Settings {
+    fn info(&self) -> &'static Info {
+        &INFO
+    }
+
+    fn settings(&self) -> Value {
+        json!(self)
+    }
+
+    /// Odd, so that a cell is centred on the mated pose; fewer where halves have many facets.
+    fn default_cells(&self, pair: &Pair) -> [usize; 5] {
+        const SIMPLE: [usize; 5] = [1001, 101, 25, 11, 7];
+        let share = affordable(pair);
+        let mut axes = 0.0;
+        SIMPLE.map(|cells| {
+            axes += 1.0;
+            let cells = cells as f64 * share.powf(1.0 / axes);
+            ((cells as usize).saturating_sub(1) / 2 * 2 + 1).max(3)
+        })
+    }
+
+    fn default_samples(&self, pair: &Pair) -> usize {
+        default_samples(pair)
+    }
+
+    fn cost(&self, problem: &Problem, grid: &Grid) -> Cost {
+        let cells = grid.axes.iter().map(|axis| axis.cells as f64).product::<f64>();
+        Cost {
+            what: "the outcome of every cell",
+            bytes_per_cell: POSE_BYTES,
+            seconds: cells * DESCENT_SECONDS / affordable(problem.pair()),
+        }
+    }
+
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+        let (acceptance, _) = run(problem.pair(), domain.clone(), self, exec)?;
+        Ok(Decided::plain(acceptance, self.settings()))
+    }
+
+    fn follows(&self) -> Option<&dyn Follow> {
+        Some(self)
+    }
+}
+
+impl Follow for Settings {
+    fn follow(
+        &self,
+        problem: &Problem,
+        domain: Domain,
+        exec: &Exec,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        Ok(run(problem.pair(), domain, self, exec)?)
+    }
+}
+
+/// Random descents that make the Sum of a pair's grid known to a percent or so, in a second.
+pub(in crate::method) fn default_samples(pair: &Pair) -> usize {
+    const SIMPLE: f64 = 4000.0;
+    const LEAST: f64 = 200.0;
+    (SIMPLE * affordable(pair)).max(LEAST) as usize
+}

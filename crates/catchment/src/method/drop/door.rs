@@ -1,0 +1,80 @@
+//! Drop tests as a method: every pose by itself.
+
+use super::{DropError, Settings, run};
+use crate::acceptance::{Acceptance, Domain};
+use crate::contact::Pair;
+use crate::exec::Exec;
+use crate::landscape::Grid;
+use crate::method::descent::End;
+use crate::method::door::{Cost, Decide, DecideError, Decided, Entry, Follow, Info, POSE_BYTES};
+use crate::problem::Problem;
+use serde_json::{Value, json};
+
+const INFO: Info = Info {
+    name: "drop",
+    summary: "drop tests of every cell's centre in a rigid-body engine: friction, mass, speed, bounce",
+    on_grids: false,
+};
+
+/// Its line in the registry.
+pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+
+impl Decide for Settings {
+    fn info(&self) -> &'static Info {
+        &INFO
+    }
+
+    fn settings(&self) -> Value {
+        json!(self)
+    }
+
+    fn check(&self) -> Result<(), DecideError> {
+        Self::check(self).map_err(DecideError::method)
+    }
+
+    /// Half a minute at some 20 ms per pose.
+    fn default_cells(&self, _: &Pair) -> [usize; 5] {
+        [101, 31, 11, 7, 5]
+    }
+
+    fn cost(&self, _: &Problem, grid: &Grid) -> Cost {
+        /// Core-seconds per pose with its trials.
+        const POSE_SECONDS: f64 = 0.02;
+        let cells = grid.axes.iter().map(|axis| axis.cells as f64).product::<f64>();
+        Cost {
+            what: "the outcome of every cell",
+            bytes_per_cell: POSE_BYTES,
+            seconds: cells * POSE_SECONDS,
+        }
+    }
+
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+        let (acceptance, _) = run(problem.pair(), domain.clone(), self, exec)?;
+        Ok(Decided::plain(acceptance, Decide::settings(self)))
+    }
+
+    fn follows(&self) -> Option<&dyn Follow> {
+        Some(self)
+    }
+}
+
+impl Follow for Settings {
+    fn follow(
+        &self,
+        problem: &Problem,
+        domain: Domain,
+        exec: &Exec,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        Ok(run(problem.pair(), domain, self, exec)?)
+    }
+}
+
+impl From<DropError> for DecideError {
+    fn from(error: DropError) -> Self {
+        match error {
+            DropError::OutOfBudget(error) => Self::OutOfBudget(error),
+            DropError::Cancelled(error) => Self::Cancelled(error),
+            error => Self::method(error),
+        }
+    }
+}

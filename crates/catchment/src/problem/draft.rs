@@ -1,0 +1,137 @@
+//! A design that was read and not built yet: it can still be changed, and knows where its file says what.
+
+use super::finding::{Finding, Findings, SourceText};
+use super::{Problem, ProblemError, places};
+use crate::connector::Connector;
+use crate::contact::mated::{self, MatedProblem};
+use crate::contact::Pair;
+use crate::design::{Complaint, Design, Sources, load, read};
+use std::path::Path;
+
+/// A design, its text, and the places of its keys.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    design: Design,
+    source: Option<SourceText>,
+    places: Sources,
+}
+
+impl From<Design> for Draft {
+    /// A design without a text: what is wrong with it has no place.
+    fn from(design: Design) -> Self {
+        Self { design, source: None, places: Sources::default() }
+    }
+}
+
+impl Draft {
+    /// Reads a design file.
+    ///
+    /// # Errors
+    /// The file cannot be read, or everything that is wrong with what it says.
+    pub fn open(path: &Path) -> Result<Self, ProblemError> {
+        Self::read(SourceText::new(path, load(path)?))
+    }
+
+    /// Reads the text of a design file; meshes are looked for beside `source.path`. Touches no file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with what the text says.
+    pub fn read(source: SourceText) -> Result<Self, ProblemError> {
+        let folder = source.path.parent().unwrap_or_else(|| Path::new(""));
+        match read(&source.text, folder) {
+            Ok(file) => Ok(Self { design: file.design, places: file.sources, source: Some(source) }),
+            Err(problems) => {
+                let place = |problem: crate::design::Problem| Finding {
+                    message: problem.complaint.to_string(),
+                    help: problem.complaint.help(),
+                    span: Some(problem.span),
+                };
+                let list = problems.list.into_iter().map(place).collect();
+                Err(Findings { source: Some(source), list, omitted: problems.omitted }.into())
+            }
+        }
+    }
+
+    /// The design as it stands.
+    pub const fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// The text it was read from.
+    pub const fn source(&self) -> Option<&SourceText> {
+        self.source.as_ref()
+    }
+
+    /// The design with something changed. A refused change is reported beside the key that forbids it, with `what`, the
+    /// name under which the change was asked for, before it.
+    ///
+    /// # Errors
+    /// The change is not allowed.
+    pub fn change(
+        mut self,
+        what: &str,
+        change: impl FnOnce(Design) -> Result<Design, Complaint>,
+    ) -> Result<Self, ProblemError> {
+        match change(self.design.clone()) {
+            Ok(design) => {
+                self.design = design;
+                Ok(self)
+            }
+            Err(complaint) => {
+                let message = format!("{what}: {complaint}");
+                Err(self.refused(places::of_change(&complaint), message, complaint.help()).into())
+            }
+        }
+    }
+
+    /// This design, refused for one thing about the key at `place` (such as `connector.fixed.pieces[2]`), or about what the
+    /// file mentions around it.
+    pub fn refused(self, place: &str, message: String, help: Option<String>) -> Findings {
+        let finding = self.finding(place, message, help);
+        Findings { source: self.source, list: vec![finding], omitted: 0 }
+    }
+
+    fn finding(&self, place: &str, message: String, help: Option<String>) -> Finding {
+        Finding::new(message, help).at(self.places.span(place))
+    }
+
+    /// Loads the meshes, builds the halves and asks whether the mated pose holds.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the geometry; halves that do not meet in the aligned pose. That the aligned pose
+    /// meets but does not hold is a doubt ([`Problem::doubts`]).
+    pub fn build(self) -> Result<Problem, ProblemError> {
+        self.built(|problem| !matches!(problem, MatedProblem::NotMinimum { .. }))
+    }
+
+    /// The same, and a mated pose that does not hold is an error too: what a check of a design asks.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the geometry or the mated pose.
+    pub fn check(self) -> Result<Problem, ProblemError> {
+        self.built(|_| true)
+    }
+
+    fn built(self, refuses: impl Fn(&MatedProblem) -> bool) -> Result<Problem, ProblemError> {
+        let connector = match Connector::build(&self.design) {
+            Ok(connector) => connector,
+            Err(problems) => {
+                let list = places::of_geometry(&problems)
+                    .into_iter()
+                    .map(|(place, message, help)| self.finding(&place, message, help))
+                    .collect();
+                return Err(Findings { source: self.source, list, omitted: 0 }.into());
+            }
+        };
+        let pair = Pair::new(&connector, &self.design.alignment);
+        let (apart, doubts): (Vec<_>, Vec<_>) = mated::problems(&pair).into_iter().partition(refuses);
+        if !apart.is_empty() {
+            let list = apart
+                .iter()
+                .map(|problem| self.finding(places::of_mated(problem), problem.to_string(), None))
+                .collect();
+            return Err(Findings { source: self.source, list, omitted: 0 }.into());
+        }
+        Ok(Problem::assembled(self, connector, pair, doubts))
+    }
+}

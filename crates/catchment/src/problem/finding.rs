@@ -1,0 +1,118 @@
+//! What is wrong, where it stands, and what to do about it: data, for whoever shows it.
+
+use crate::design::line_column;
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The text of a file that a person wrote, and the name to show it under.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SourceText {
+    /// The file.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+}
+
+impl SourceText {
+    /// A text and the name to show it under.
+    pub fn new(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
+        Self { path: path.into(), text: text.into() }
+    }
+
+    /// Line and column of a byte, both from 1.
+    pub fn line_column(&self, byte: usize) -> (usize, usize) {
+        line_column(&self.text, byte)
+    }
+}
+
+/// Something wrong with what a person gave, whichever room found it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// The bytes of the text it is about, where there are any.
+    pub span: Option<Range<usize>>,
+}
+
+impl Finding {
+    /// A finding without a place.
+    pub fn new(message: impl Into<String>, help: Option<String>) -> Self {
+        Self { message: message.into(), help, span: None }
+    }
+
+    /// The same at a place.
+    #[must_use]
+    pub fn at(mut self, span: Option<Range<usize>>) -> Self {
+        self.span = span.filter(|span| !span.is_empty());
+        self
+    }
+}
+
+/// Everything that is wrong with one text, in the order of its places; never empty.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Findings {
+    /// The text, where what was given has one.
+    pub source: Option<SourceText>,
+    /// What is wrong with it.
+    pub list: Vec<Finding>,
+    /// How many more there are.
+    pub omitted: usize,
+}
+
+impl Findings {
+    /// The file, where there is one.
+    pub fn path(&self) -> Option<&Path> {
+        self.source.as_ref().map(|source| source.path.as_path())
+    }
+}
+
+/// `file:line:column: message; help`, a line each.
+impl fmt::Display for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, finding) in self.list.iter().enumerate() {
+            f.write_str(if k == 0 { "" } else { "\n" })?;
+            if let Some(source) = &self.source {
+                write!(f, "{}:", source.path.display())?;
+                if let Some(span) = &finding.span {
+                    let (line, column) = source.line_column(span.start);
+                    write!(f, "{line}:{column}:")?;
+                }
+                f.write_str(" ")?;
+            }
+            f.write_str(&finding.message)?;
+            if let Some(help) = &finding.help {
+                write!(f, "; {help}")?;
+            }
+        }
+        if self.omitted > 0 {
+            write!(f, "\nand {} more", self.omitted)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Findings {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_finding_is_told_with_its_place() {
+        let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\n"));
+        let list = vec![
+            Finding::new("wrong", Some("write 3".to_owned())).at(Some(10..11)),
+            Finding::new("all of it", None).at(Some(3..3)),
+        ];
+        let findings = Findings { source, list, omitted: 2 };
+        assert_eq!(
+            findings.to_string(),
+            "d.toml:2:5: wrong; write 3\nd.toml: all of it\nand 2 more"
+        );
+        let bare = Findings { source: None, list: vec![Finding::new("wrong", None)], omitted: 0 };
+        assert_eq!(bare.to_string(), "wrong");
+    }
+}

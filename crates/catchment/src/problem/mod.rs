@@ -1,0 +1,129 @@
+//! The alignment problem as one owned value: what every front end starts from.
+//!
+//! ```text
+//!   design file ──▶ Draft ──(meshes loaded, halves built, mated pose checked once)──▶ Problem
+//!   values in memory ─────────────────────────────────────────────────────────────────┘
+//!                                                     geometry · alignment · mirrors · doubts · digest
+//! ```
+//!
+//! A [`Problem`] holds everything that an answer depends on but the method and its settings. It is cheap to clone, can be
+//! sent to any thread, and never changes: whoever wants another centre of rotation makes another problem. Its
+//! [`digest`](Problem::digest) is a SHA-256 of all that may change an answer, the contents of meshes included and names, units and paths left out,
+//! so that two problems with equal digests have equal answers.
+//!
+//! What keeps a problem from being built is one error type with every place in the file ([`ProblemError`]).
+//!
+//! Not promised: that the mated pose holds against errors larger than the probes of [`crate::contact::mated`]. Lengths in D,
+//! angles in radians.
+
+mod draft;
+mod finding;
+mod places;
+#[cfg(test)]
+mod tests;
+
+pub use draft::Draft;
+pub use finding::{Finding, Findings, SourceText};
+
+use crate::connector::Connector;
+use crate::contact::mated::MatedProblem;
+use crate::contact::{Mirror, Pair};
+use crate::design::{Alignment, Design, LoadError};
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+/// An alignment problem, ready to be decided.
+#[derive(Clone)]
+pub struct Problem(Arc<Inner>);
+
+struct Inner {
+    draft: Draft,
+    connector: Connector,
+    pair: Pair,
+    doubts: Vec<MatedProblem>,
+    digest: String,
+}
+
+/// Why there is no problem to decide.
+#[derive(Debug, thiserror::Error)]
+pub enum ProblemError {
+    /// There is no text.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// Something is wrong with what the design says, with its geometry, or with its mated pose.
+    #[error(transparent)]
+    Findings(#[from] Findings),
+}
+
+impl Problem {
+    /// The problem of a design file.
+    ///
+    /// # Errors
+    /// The file or a mesh cannot be read, or everything that is wrong with them, each with its place.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ProblemError> {
+        Draft::open(path.as_ref())?.build()
+    }
+
+    /// The problem of a design, such as one that a study changed.
+    ///
+    /// # Errors
+    /// Everything that is wrong with its geometry or its mated pose.
+    pub fn of(design: Design) -> Result<Self, ProblemError> {
+        Draft::from(design).build()
+    }
+
+    fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {
+        let digest = serde_json::json!([draft.design().connector, draft.design().alignment]).to_string();
+        Self(Arc::new(Inner { draft, connector, pair, doubts, digest }))
+    }
+
+    /// The design, resolved.
+    pub fn design(&self) -> &Design {
+        self.0.draft.design()
+    }
+
+    /// Everything but the geometry that an answer depends on.
+    pub fn alignment(&self) -> &Alignment {
+        &self.design().alignment
+    }
+
+    /// The two halves.
+    pub fn connector(&self) -> &Connector {
+        &self.0.connector
+    }
+
+    /// The halves, ready for contact.
+    pub fn pair(&self) -> &Pair {
+        &self.0.pair
+    }
+
+    /// The reflections that map the pair onto itself.
+    pub fn mirrors(&self) -> &[Mirror] {
+        self.pair().mirrors()
+    }
+
+    /// What speaks against the mated pose without making it impossible.
+    pub fn doubts(&self) -> &[MatedProblem] {
+        &self.0.doubts
+    }
+
+    /// SHA-256, in hexadecimal digits, of everything that may change an answer.
+    pub fn digest(&self) -> &str {
+        &self.0.digest
+    }
+
+    /// This problem, refused for a reason that another room found, at the key it is about.
+    pub fn refused(&self, place: &str, message: String, help: Option<String>) -> Findings {
+        self.0.draft.clone().refused(place, message, help)
+    }
+}
+
+impl fmt::Debug for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Problem")
+            .field("name", &self.design().name)
+            .field("digest", &self.digest())
+            .finish_non_exhaustive()
+    }
+}

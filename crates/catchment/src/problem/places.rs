@@ -1,0 +1,73 @@
+//! Which key of a design file a complaint of a later room is about.
+
+use crate::connector::stl::StlProblem;
+use crate::connector::{Problem, Side};
+use crate::contact::mated::MatedProblem;
+use crate::design::Complaint;
+use std::mem::discriminant;
+
+/// The key that forbids a change.
+pub(super) const fn of_change(complaint: &Complaint) -> &'static str {
+    match complaint {
+        Complaint::OutOfPlane { .. } => "connector.family",
+        Complaint::NotAParameter { .. } => "connector",
+        Complaint::PitchBeyondPole => "errors.pitch",
+        _ => "",
+    }
+}
+
+/// The key that a mated pose which is none is about.
+pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
+    match problem {
+        MatedProblem::Collision { .. } | MatedProblem::Gap { .. } => "connector.face_height",
+        MatedProblem::Apart => "connector",
+        MatedProblem::NotMinimum { .. } => "alignment.free",
+    }
+}
+
+/// Key, message and advice of geometric problems; those that say the same of one mesh are one, with the others as advice.
+pub(super) fn of_geometry(problems: &[Problem]) -> Vec<(String, String, Option<String>)> {
+    problems
+        .chunk_by(same_kind)
+        .map(|kind| (key_of(&kind[0]), kind[0].to_string(), likewise(&kind[1..])))
+        .collect()
+}
+
+/// Whether two problems say the same of one mesh: a hole opens several edges, but it is one hole to close.
+fn same_kind(a: &Problem, b: &Problem) -> bool {
+    match (a, b) {
+        (Problem::Stl { side: a, error: first, .. }, Problem::Stl { side: b, error, .. }) => {
+            a == b && (discriminant(first) == discriminant(error) || matches!(error, StlProblem::More { .. }))
+        }
+        _ => false,
+    }
+}
+
+/// The other places of one kind of problem.
+fn likewise(rest: &[Problem]) -> Option<String> {
+    let places: Vec<String> = rest
+        .iter()
+        .map(|problem| match problem {
+            Problem::Stl { error, .. } => error.to_string(),
+            other => other.to_string(),
+        })
+        .collect();
+    (!places.is_empty()).then(|| format!("likewise: {}", places.join("; ")))
+}
+
+fn key_of(problem: &Problem) -> String {
+    match problem {
+        Problem::Parameter { parameter, .. } => format!("connector.{parameter}"),
+        Problem::Surface { side, .. } => format!("connector.{}", half(*side)),
+        Problem::PieceCount { side, .. } => format!("connector.{}.pieces", half(*side)),
+        Problem::Piece { side, piece, .. } => format!("connector.{}.pieces[{piece}]", half(*side)),
+        Problem::Stl { side, .. } => format!("connector.{}.mesh", half(*side)),
+    }
+}
+
+const fn half(side: Side) -> &'static str {
+    match side {
+        Side::Fixed => "fixed",
+        Side::Moving => "moving",
+    }
+}

@@ -1,0 +1,129 @@
+//! An answer, told: its report, whether it meets what was required, and its files.
+
+use super::Report;
+use super::schema::{PartitionReport, SuccessReport, Timing, WarningReport};
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::exec::Exec;
+use crate::landscape::{Grid, Landscape, Resolution};
+use crate::merit::Merits;
+use crate::method::correction::{self, ByNeighbours, Stop};
+use crate::method::flood;
+use crate::problem::Problem;
+use crate::run::{Answer, Corrected, Requirement, RequirementError, Run, RunError, Verdict};
+use serde_json::Value;
+
+impl Answer {
+    /// Everything that was found, as the JSON report has it.
+    pub fn report(&self) -> Report {
+        let timing = Timing { total_s: self.seconds, threads: self.threads };
+        let (design, acceptance) = (self.problem.design(), &self.acceptance);
+        let mut report =
+            Report::from_merits(design, acceptance, &self.merits, self.settings.clone(), Some(timing));
+        if let Some(corrected) = &self.corrected {
+            report = report.with_sample(corrected);
+        }
+        if let Some(basins) = &self.by_products.basins {
+            report = report.with_basins(acceptance, basins);
+        }
+        if let Some(partition) = &self.by_products.partition {
+            report.partition = Some(PartitionReport::new(partition));
+        }
+        if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
+            report.success = Some(SuccessReport::new(distribution.clone(), success));
+        }
+        report.warnings = self.warnings().into_iter().map(WarningReport::from).collect();
+        report
+    }
+
+    /// What became of every requirement of the run.
+    ///
+    /// # Errors
+    /// The report has no such number; [`Run::check_requirements`] says so before anything is computed.
+    pub fn verdicts(&self) -> Result<Vec<Verdict>, RequirementError> {
+        judged(&self.run.requirements, &self.report())
+    }
+}
+
+/// Every requirement, judged by a report.
+fn judged(requirements: &[Requirement], report: &Report) -> Result<Vec<Verdict>, RequirementError> {
+    let value = serde_json::to_value(report).unwrap_or(Value::Null);
+    requirements.iter().map(|requirement| requirement.judge(&value)).collect()
+}
+
+/// Why a requirement of a run cannot be judged.
+#[derive(Debug, thiserror::Error)]
+pub enum UnanswerableError {
+    /// The run itself cannot be made.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// No report of the run has such a number.
+    #[error("'{requirement}': {error}")]
+    Requirement {
+        /// Which requirement.
+        requirement: String,
+        /// Why not.
+        error: RequirementError,
+    },
+}
+
+impl Run {
+    /// Refuses a requirement that no report of this run on a problem can answer, before anything is computed: they are tried on a
+    /// report of the same form, over the smallest grid.
+    ///
+    /// # Errors
+    /// The first requirement without an answer.
+    pub fn check_requirements(&self, problem: &Problem) -> Result<(), UnanswerableError> {
+        if self.requirements.is_empty() {
+            return Ok(());
+        }
+        let report = serde_json::to_value(self.form_of_report(problem)?).unwrap_or(Value::Null);
+        for requirement in &self.requirements {
+            requirement.value(&report).map_err(|error| UnanswerableError::Requirement {
+                requirement: requirement.to_string(),
+                error,
+            })?;
+        }
+        Ok(())
+    }
+
+    /// A report with every place that one of this run will have, and numbers that mean nothing.
+    fn form_of_report(&self, problem: &Problem) -> Result<Report, RunError> {
+        let plan = self.plan(problem)?;
+        let exec = Exec::new();
+        let domain = match plan.domain {
+            Domain::Grid(_) => Domain::Grid(Grid::over(problem.alignment(), |_| Resolution::LEAST)),
+            Domain::Poses(poses) => Domain::Poses(poses.into_iter().take(1).collect()),
+        };
+        let outcomes = vec![Outcome::Aligned; domain.len()];
+        let method = self.method.name();
+        let acceptance = Acceptance { method, domain, outcomes, warnings: Vec::<Warning>::new() };
+        let merits = Merits::of(&acceptance, problem.alignment(), &exec)?;
+        let settings = self.method.settings_for(problem);
+        let timing = Some(Timing { total_s: 0.0, threads: 1 });
+        let mut report = Report::from_merits(problem.design(), &acceptance, &merits, settings, timing);
+        if let (Some(sample), Some(grid)) = (plan.sample, acceptance.grid()) {
+            let by = ByNeighbours::new(&acceptance.outcomes, grid.shape());
+            let one = correction::Settings { stop: Stop::Samples(1), ..sample };
+            let aligned = |poses: Vec<_>, _: &_| Ok(vec![Outcome::Aligned; poses.len()]);
+            let found = correction::estimate(grid, &by, &one, &exec, aligned)?;
+            let settings = Value::Null;
+            report = report.with_sample(&Corrected { found, seed: sample.seed, method, settings });
+        }
+        let by_products = self.method.by_products();
+        if let (true, Some(grid)) = (by_products.contains(&"basins"), acceptance.grid()) {
+            // So few cells are flooded in no time.
+            let landscape = Landscape::compute(problem.pair(), grid, &exec)?;
+            let flooding = flood::flood(&landscape, problem.alignment(), &flood::Settings::default(), &exec);
+            if let Ok(flooding) = flooding {
+                report = report.with_basins(&acceptance, &flooding.hierarchy);
+            }
+        }
+        if by_products.contains(&"partition") {
+            report.partition = Some(PartitionReport::default());
+        }
+        if let Some(distribution) = &self.errors {
+            report = report.with_success(&acceptance, distribution.clone(), &exec)?;
+        }
+        Ok(report)
+    }
+}

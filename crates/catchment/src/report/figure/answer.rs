@@ -1,0 +1,123 @@
+//! The pictures of an answer.
+
+use super::{FigureError, Picture, Placement};
+use crate::acceptance::{Acceptance, Domain};
+use crate::contact::Pair;
+use crate::exec::Exec;
+use crate::landscape::{Grid, GridAxis};
+use crate::merit::slice;
+use crate::method::{Decide, descent};
+use crate::pose::{CorPose, Dof, PoseError};
+use crate::report::folder::SaveError;
+use crate::run::Answer;
+
+/// Names of all pictures there can be, without ending.
+pub const NAMES: [&str; 7] = ["overview", "slices", "heights", "basins", "partition", "section", "solids"];
+
+/// Cells per axis of the slice in the overview, and of the many in the slices, where the method decides each cell
+/// by itself and the grid is coarser.
+const OVERVIEW_CELLS: usize = 71;
+const SLICE_CELLS: usize = 25;
+
+/// How far the halves are drawn apart, in D, so that both faces can be seen.
+const LIFT: f64 = 0.6;
+
+/// What was drawn, by name, and what was left out, with the reason.
+#[derive(Debug, Clone, Default)]
+pub struct Drawn {
+    /// Name, without ending, and picture.
+    pub pictures: Vec<(&'static str, Picture)>,
+    /// What was left out.
+    pub left_out: Vec<String>,
+}
+
+impl Drawn {
+    fn keep(&mut self, name: &'static str, picture: Result<Picture, FigureError>) -> Result<(), FigureError> {
+        match picture {
+            Ok(picture) => self.pictures.push((name, picture)),
+            Err(FigureError::Empty { what }) => self.left_out.push(format!("no picture {name}: {what}")),
+            Err(error) => return Err(error),
+        }
+        Ok(())
+    }
+}
+
+impl Answer {
+    /// Draws all that the answer has: maps need two free errors, and slices finer than the grid are followed exactly.
+    ///
+    /// # Errors
+    /// A picture cannot be drawn, or it was asked to stop.
+    pub fn draw(&self, exec: &Exec) -> Result<Drawn, SaveError> {
+        let mut drawn = Drawn::default();
+        let (design, acceptance) = (self.problem.design(), &self.acceptance);
+        let (connector, pair) = (self.problem.connector(), self.problem.pair());
+        if let (Some(grid), Some(onaa)) = (self.grid(), self.onaa())
+            && let Some(main) = main_pair(grid)
+        {
+            let finer = self.finer_slices(grid, main, exec)?;
+            let over = |slice: &&Acceptance| {
+                slice.grid().is_some_and(|grid| grid.axes.iter().map(|axis| axis.dof).eq(main))
+            };
+            let map = finer.iter().find(over).unwrap_or(acceptance);
+            let map_grid = map.grid().unwrap_or(grid);
+            let landscape = self.by_products.landscape.as_ref().filter(|l| l.grid == *map_grid);
+            let height = |cell: usize| match landscape {
+                Some(landscape) => f64::from(landscape.heights[cell]),
+                None => height_of(pair, &map_grid.pose(cell)),
+            };
+            let zero = PoseError::default();
+            drawn.keep(
+                "overview",
+                super::overview(design, connector, acceptance, onaa, map, &height, main),
+            )?;
+            drawn.keep("slices", super::slices(design, acceptance, onaa, &finer, &[], &zero))?;
+            drawn.keep("heights", super::heights(design, map, &height, main, &zero))?;
+        }
+        if let Some(basins) = &self.by_products.basins {
+            drawn.keep("basins", super::basins(design, acceptance, basins))?;
+        }
+        if let Some(partition) = &self.by_products.partition {
+            drawn.keep("partition", super::partition(design, partition, acceptance))?;
+        }
+        exec.check()?;
+        let lifted = Placement::mated(design, LIFT);
+        drawn.keep("section", super::section(design, connector, &lifted))?;
+        drawn.keep("solids", super::solids(design, connector, &lifted))?;
+        exec.check()?;
+        Ok(drawn)
+    }
+
+    /// Slices through zero, finer than the grid, each pose followed exactly: where some other error is free, and the method's own
+    /// cells are not what is asked about (flooding and drop tests show themselves).
+    fn finer_slices(&self, grid: &Grid, main: [Dof; 2], exec: &Exec) -> Result<Vec<Acceptance>, SaveError> {
+        let shows_itself = self.by_products.basins.is_some()
+            || self.run.method.follows().is_some_and(|own| own.info().name != "descent");
+        if shows_itself || grid.axes.len() < 3 {
+            return Ok(Vec::new());
+        }
+        let (pair, settings) = (self.problem.pair(), descent::Settings::default());
+        // Where descents are dear, so are their slices.
+        let affordable = settings.default_cells(pair)[1];
+        let mut slices = Vec::new();
+        for plane in slice::pairs(grid) {
+            let least = if plane == main { OVERVIEW_CELLS } else { SLICE_CELLS };
+            let finer = |axis: &GridAxis| GridAxis { cells: axis.cells.max(least.min(affordable)), ..*axis };
+            let axes = grid.axes.iter().filter(|a| plane.contains(&a.dof)).map(finer).collect();
+            slices.push(descent::run(pair, Domain::Grid(Grid { axes }), &settings, exec)?.0);
+        }
+        Ok(slices)
+    }
+}
+
+/// z of the COR at first contact, in D; −∞ without contact.
+fn height_of(pair: &Pair, error: &PoseError) -> f64 {
+    let pose = CorPose::from_error(error, pair.alignment.center_of_rotation, pair.alignment.free);
+    pair.height(&pose).unwrap_or(f64::NEG_INFINITY)
+}
+
+/// The two errors to show where only two can be: x with the rotation that goes with it.
+fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
+    let pairs = slice::pairs(grid);
+    let favourites = [[Dof::X, Dof::Pitch], [Dof::X, Dof::Yaw]];
+    favourites.into_iter().find(|pair| pairs.contains(pair)).or_else(|| pairs.first().copied())
+}

@@ -1,0 +1,141 @@
+//! Where an answer goes: complete or not at all.
+//!
+//! ```text
+//!   save           DIR/report.json, DIR/result.zarr, and every picture as .png and .svg
+//!   save_group     NAME.zarr, the Zarr group alone
+//!   save_pictures  DIR, every picture alone
+//! ```
+
+use super::figure::{self, Drawn};
+use super::folder::{REPORT, RESULT, SaveError, encode, has_only, is_group, is_report, write_all};
+use super::write::{self, WriteError};
+use super::zarr;
+use crate::exec::Exec;
+use crate::run::Answer;
+use std::path::Path;
+
+/// What was written, and which pictures could not be drawn, with the reason.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Saved {
+    /// Pictures, each as PNG and SVG.
+    pub pictures: usize,
+    /// Pictures that were left out, with the reason.
+    pub left_out: Vec<String>,
+}
+
+impl Answer {
+    /// Writes report, grid and pictures into a folder, which must not exist or hold an older result.
+    ///
+    /// # Errors
+    /// Whatever the system refuses. Nothing is left behind and an older result stays as it was.
+    pub fn save(&self, path: impl AsRef<Path>, exec: &Exec) -> Result<Saved, SaveError> {
+        let drawn = self.draw(exec)?;
+        self.save_drawn(path.as_ref(), &drawn, exec)
+    }
+
+    /// The same with pictures that were drawn before.
+    ///
+    /// # Errors
+    /// Those of [`Answer::save`].
+    pub fn save_drawn(&self, path: &Path, drawn: &Drawn, exec: &Exec) -> Result<Saved, SaveError> {
+        let pictures = encode(&drawn.pictures, exec)?;
+        let report = self.report();
+        let json = report.to_json()?;
+        write::folder(path, is_result, |folder| -> Result<(), SaveError> {
+            write_all(folder, &pictures, exec)?;
+            zarr::write(&folder.join(RESULT), &report, &self.acceptance, self.heights(), exec)?;
+            write::file(&folder.join(REPORT), json.as_bytes())?;
+            Ok(exec.check()?)
+        })?;
+        Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
+    }
+
+    /// Writes the Zarr group alone.
+    ///
+    /// # Errors
+    /// Those of [`Answer::save`].
+    pub fn save_group(&self, path: &Path, exec: &Exec) -> Result<(), SaveError> {
+        Ok(zarr::write(path, &self.report(), &self.acceptance, self.heights(), exec)?)
+    }
+
+    /// Writes pictures alone.
+    ///
+    /// # Errors
+    /// Those of [`Answer::save`].
+    pub fn save_pictures(&self, path: &Path, drawn: &Drawn, exec: &Exec) -> Result<Saved, SaveError> {
+        let pictures = encode(&drawn.pictures, exec)?;
+        write::folder(path, has_only_pictures, |folder| write_all(folder, &pictures, exec))?;
+        Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
+    }
+
+    fn heights(&self) -> Option<&[f32]> {
+        self.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..])
+    }
+}
+
+/// Where the files of an answer shall go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target<'a> {
+    /// Everything, into a folder.
+    Folder(&'a Path),
+    /// The Zarr group alone.
+    Group(&'a Path),
+    /// Pictures alone, into a folder.
+    Pictures(&'a Path),
+}
+
+impl Target<'_> {
+    /// Refuses a place that cannot be written, before anything is computed.
+    ///
+    /// # Errors
+    /// Something else is there, or its parent is no folder.
+    pub fn check(&self) -> Result<(), WriteError> {
+        match self {
+            Self::Folder(path) => write::check_folder(path, is_result),
+            Self::Group(path) => write::check_folder(path, is_group),
+            Self::Pictures(path) => write::check_folder(path, has_only_pictures),
+        }
+    }
+}
+
+/// Whether a folder holds pictures of a run, or nothing: replacing it loses nothing else.
+fn has_only_pictures(path: &Path) -> bool {
+    has_only(path, is_picture)
+}
+
+/// Whether a folder was written by [`Answer::save`], or is empty: replacing it loses nothing else.
+fn is_result(path: &Path) -> bool {
+    has_only(path, |name| {
+        is_picture(name)
+            || name == REPORT && is_report(&path.join(REPORT))
+            || name == RESULT && is_group(&path.join(RESULT))
+    })
+}
+
+fn is_picture(name: &str) -> bool {
+    figure::NAMES
+        .iter()
+        .any(|picture| name.strip_prefix(picture).is_some_and(|ending| matches!(ending, ".png" | ".svg")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_run_wrote_is_replaced() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        assert!(is_result(folder) && has_only_pictures(folder), "nothing is lost with an empty folder");
+        std::fs::write(folder.join("overview.png"), "").unwrap();
+        assert!(is_result(folder) && has_only_pictures(folder));
+        std::fs::write(folder.join(REPORT), r#"{ "schema": 1, "catchment": "0.1.0" }"#).unwrap();
+        assert!(is_result(folder) && !has_only_pictures(folder));
+        std::fs::write(folder.join(REPORT), "{}").unwrap();
+        assert!(!is_result(folder));
+        std::fs::remove_file(folder.join(REPORT)).unwrap();
+        std::fs::write(folder.join("holiday.png"), "").unwrap();
+        assert!(!is_result(folder) && !has_only_pictures(folder));
+        assert!(!is_result(&folder.join("holiday.png")) && !is_result(&folder.join("nowhere")));
+    }
+}

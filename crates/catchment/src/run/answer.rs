@@ -1,0 +1,95 @@
+//! Everything that a run found.
+
+use super::Run;
+use crate::acceptance::{Acceptance, Warning};
+use crate::landscape::Grid;
+use crate::merit::Merits;
+use crate::merit::onaa::Onaa;
+use crate::merit::success::Success;
+use crate::method::{ByProducts, correction};
+use crate::problem::Problem;
+use serde_json::Value;
+
+/// The answer of a run: outcomes, the corrected Sum, figures of merit and by-products, with the problem and the run that
+/// they belong to.
+#[derive(Debug)]
+pub struct Answer {
+    /// What was decided.
+    pub problem: Problem,
+    /// How.
+    pub run: Run,
+    /// Outcomes over the grid or the listed poses.
+    pub acceptance: Acceptance,
+    /// The settings of the method as they were used.
+    pub settings: Value,
+    /// The Sum corrected by random poses, if any were drawn.
+    pub corrected: Option<Corrected>,
+    /// What else the method knows.
+    pub by_products: ByProducts,
+    /// What the accepted cells are worth.
+    pub merits: Merits,
+    /// The success probability for the errors asked about.
+    pub success: Option<Success>,
+    /// Wall-clock time, in seconds.
+    pub seconds: f64,
+    /// Worker threads.
+    pub threads: usize,
+}
+
+/// An unbiased Sum, and what followed its random poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corrected {
+    /// The estimate with its interval and strata.
+    pub found: correction::Corrected,
+    /// Seed of the poses.
+    pub seed: u64,
+    /// Name of the method that followed them.
+    pub method: &'static str,
+    /// Its settings.
+    pub settings: Value,
+}
+
+impl Answer {
+    /// The measure of the accepted set, Dᵃ·radᵇ: the unbiased estimate where there is one.
+    pub fn sum(&self) -> f64 {
+        self.corrected.as_ref().map_or(self.merits.sum.sum, |corrected| corrected.found.sum)
+    }
+
+    /// Its 95 % interval; `None` where no random poses were drawn.
+    pub fn sum_ci95(&self) -> Option<[f64; 2]> {
+        self.corrected.as_ref().map_or(self.merits.sum.ci95, |corrected| Some(corrected.found.ci95))
+    }
+
+    /// The unit of the Sum, such as `D·rad`.
+    pub fn unit(&self) -> String {
+        self.merits.sum.unit()
+    }
+
+    /// The largest axis-oriented cube in the accepted cells; `None` for listed poses.
+    pub fn onaa(&self) -> Option<&Onaa> {
+        self.merits.onaa.as_ref()
+    }
+
+    /// The grid, if a grid was decided.
+    pub const fn grid(&self) -> Option<&Grid> {
+        self.acceptance.grid()
+    }
+
+    /// Everything that speaks against the numbers, in the order in which it was found.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = self.merits.warnings.clone();
+        let descended = self.run.method.follows().is_some() && self.run.method.name() == "descent";
+        match &self.corrected {
+            Some(corrected) => {
+                let ([lo, hi], sum_grid) = (corrected.found.ci95, self.merits.sum.sum);
+                if !(lo..=hi).contains(&sum_grid) {
+                    warnings.push(Warning::OutsideSample { sum_grid, ci95: [lo, hi] });
+                }
+            }
+            None if !descended && self.grid().is_some() => warnings.push(Warning::NoInterval),
+            None => {}
+        }
+        warnings.extend(self.problem.doubts().iter().map(|doubt| Warning::Note { text: doubt.to_string() }));
+        warnings
+    }
+}

@@ -1,0 +1,200 @@
+//! A run divided over machines: each decides a part, and the parts together give the bits of the whole.
+//!
+//! ```text
+//!   cells (or poses)   0 ──────────────────────────────── N
+//!   part 0 of 3        ├─────────┤                            Run::part ──▶ PartAnswer (JSON, any order)
+//!   part 1 of 3                  ├─────────┤                      │
+//!   part 2 of 3                            ├──────────┤           ▼
+//!                                                             Run::merge ──▶ Answer
+//! ```
+//!
+//! Divisible is what decides each pose by itself: a grid by `descent` or `drop`, and any stretch of the random stream
+//! ([`Over::Stream`](super::Over::Stream)), pose k of which depends on the seed and k alone. The correction of a grid's Sum draws
+//! its poses by what the poses before them showed, so it is made where the parts are merged.
+//!
+//! A part carries the digest of its problem and the run it belongs to: parts that do not belong together are refused.
+
+use super::{Answer, Plan, Run, RunError, stages};
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::exec::Exec;
+use crate::method::{DecideError, Decided};
+use crate::problem::Problem;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::time::Instant;
+
+/// Which part of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Part {
+    /// Its number, from 0.
+    pub number: usize,
+    /// How many parts there are.
+    pub of: usize,
+}
+
+impl Part {
+    /// The poses of this part among `count`; parts differ by one pose at most.
+    pub fn range(self, count: usize) -> Range<usize> {
+        let of = self.of.max(1);
+        let (each, more) = (count / of, count % of);
+        let start = |number: usize| number * each + number.min(more);
+        start(self.number.min(of))..start((self.number + 1).min(of))
+    }
+}
+
+/// What one machine found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartAnswer {
+    /// Digest of the problem.
+    pub problem: String,
+    /// The run that it is a part of.
+    pub run: Run,
+    /// Which part.
+    pub part: Part,
+    /// Outcomes of its poses, in their order: one letter each, the first of the outcome's name.
+    #[serde(with = "letters")]
+    pub outcomes: Vec<Outcome>,
+}
+
+/// Why a run cannot be divided, or its parts make no whole.
+#[derive(Debug, thiserror::Error)]
+pub enum PartError {
+    /// The method decides cells from one another.
+    #[error("{method} decides the cells of a grid from one another, so its grid cannot be divided; divide a stream of random poses")]
+    Indivisible {
+        /// Which method.
+        method: &'static str,
+    },
+    /// No such part.
+    #[error("there is no part {number} of {of}; parts are numbered from 0")]
+    NoSuchPart {
+        /// Its number.
+        number: usize,
+        /// How many there are.
+        of: usize,
+    },
+    /// A part of another run or problem.
+    #[error("part {number} belongs to another {what}")]
+    Foreign {
+        /// Its number.
+        number: usize,
+        /// `problem`, `run` or `division`.
+        what: &'static str,
+    },
+    /// A part is missing, there twice, or has the wrong number of outcomes.
+    #[error("part {number} {what}")]
+    Incomplete {
+        /// Its number.
+        number: usize,
+        /// What is wrong with it.
+        what: &'static str,
+    },
+    /// The run itself gives no answer.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+impl Run {
+    /// Decides one part of this run.
+    ///
+    /// # Errors
+    /// The run cannot be divided, there is no such part, or it gives no answer.
+    pub fn part(&self, problem: &Problem, part: Part, exec: &Exec) -> Result<PartAnswer, PartError> {
+        if part.number >= part.of {
+            return Err(PartError::NoSuchPart { number: part.number, of: part.of });
+        }
+        let plan = self.divisible(problem)?;
+        plan.ensure_fits(exec).map_err(RunError::from)?;
+        let poses = part.range(plan.domain.len()).map(|k| plan.domain.pose(k)).collect();
+        let judge = stages::judge(&plan.method);
+        let decided = judge.as_follow().follow(problem, Domain::Poses(poses), exec);
+        let (acceptance, _) = decided.map_err(RunError::from)?;
+        Ok(PartAnswer {
+            problem: problem.digest().to_owned(),
+            run: self.clone(),
+            part,
+            outcomes: acceptance.outcomes,
+        })
+    }
+
+    /// Puts the parts of this run together, whatever their order, and goes on as [`Run::on`] does.
+    ///
+    /// # Errors
+    /// The parts do not belong to this run and problem, or do not make a whole.
+    pub fn merge(&self, problem: &Problem, mut parts: Vec<PartAnswer>, exec: &Exec) -> Result<Answer, PartError> {
+        let started = Instant::now();
+        let plan = self.divisible(problem)?;
+        plan.ensure_fits(exec).map_err(RunError::from)?;
+        parts.sort_by_key(|part| part.part.number);
+        let of = parts.first().map_or(1, |part| part.part.of);
+        let mut outcomes = Vec::with_capacity(plan.domain.len());
+        for number in 0..of {
+            let Some(part) = parts.get(number).filter(|part| part.part.number == number) else {
+                let twice = parts.iter().any(|part| number > 0 && part.part.number == number - 1)
+                    && parts.len() >= of;
+                let (number, what) =
+                    if twice { (number - 1, "is there twice") } else { (number, "is missing") };
+                return Err(PartError::Incomplete { number, what });
+            };
+            let foreign = [
+                (part.problem != problem.digest(), "problem"),
+                (part.run != *self, "run"),
+                (part.part.of != of, "division"),
+            ];
+            if let Some((_, what)) = foreign.into_iter().find(|(differs, _)| *differs) {
+                return Err(PartError::Foreign { number, what });
+            }
+            if part.outcomes.len() != part.part.range(plan.domain.len()).len() {
+                return Err(PartError::Incomplete { number, what: "has the wrong number of outcomes" });
+            }
+            outcomes.extend_from_slice(&part.outcomes);
+        }
+        if parts.len() > of {
+            return Err(PartError::Incomplete { number: parts[of].part.number, what: "is there twice" });
+        }
+        let undecided = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
+        let warnings = if undecided > 0 { vec![Warning::Undecided { cells: undecided }] } else { Vec::new() };
+        let method = plan.method.name();
+        let acceptance = Acceptance { method, domain: plan.domain.clone(), outcomes, warnings };
+        let decided = Decided::plain(acceptance, plan.method.settings_for(problem));
+        Ok(stages::finish(self, plan, problem, decided, started, exec)?)
+    }
+
+    /// The plan, where it can be divided.
+    fn divisible(&self, problem: &Problem) -> Result<Plan, PartError> {
+        let plan = self.plan(problem)?;
+        match plan.method.follows() {
+            Some(_) => Ok(plan),
+            None => Err(PartError::Indivisible { method: plan.method.name() }),
+        }
+    }
+}
+
+impl From<DecideError> for PartError {
+    fn from(error: DecideError) -> Self {
+        Self::Run(error.into())
+    }
+}
+
+mod letters {
+    //! Outcomes as a text of one letter each.
+
+    use crate::acceptance::Outcome;
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    fn letter(outcome: Outcome) -> char {
+        outcome.name().chars().next().unwrap_or('?')
+    }
+
+    pub(super) fn serialize<S: Serializer>(outcomes: &[Outcome], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&outcomes.iter().map(|outcome| letter(*outcome)).collect::<String>())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Outcome>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let read = |c: char| Outcome::ALL.into_iter().find(|outcome| letter(*outcome) == c);
+        text.chars()
+            .map(|c| read(c).ok_or_else(|| D::Error::custom(format!("`{}` is no outcome", c.escape_default()))))
+            .collect()
+    }
+}

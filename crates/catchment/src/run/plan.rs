@@ -1,0 +1,82 @@
+//! What a run will do, known before anything is computed.
+
+use super::{Over, Run, RunError, Sample};
+use crate::acceptance::Domain;
+use crate::exec::{Exec, OutOfBudget};
+use crate::landscape::Landscape;
+use crate::method::correction::{self, Stop};
+use crate::method::{Cost, Method, ensure_fits};
+use crate::pose::PoseError;
+use crate::problem::Problem;
+
+/// A run on a problem, with everything filled in.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Decides the poses.
+    pub method: Method,
+    /// Which poses.
+    pub domain: Domain,
+    /// Random poses that correct the Sum, if any shall.
+    pub sample: Option<correction::Settings>,
+    /// Whether the heights are computed beside what the method needs.
+    pub heights: bool,
+    /// What deciding will take.
+    pub cost: Cost,
+}
+
+impl Run {
+    /// What this run will do on a problem.
+    ///
+    /// # Errors
+    /// The method does not apply to the design, its settings are out of range, or the resolution does not suit the free errors.
+    pub fn plan(&self, problem: &Problem) -> Result<Plan, RunError> {
+        let (method, pair) = (&self.method, problem.pair());
+        method.check()?;
+        method.applies_to(problem.design())?;
+        let grid = |resolution: &crate::landscape::Resolution| {
+            resolution.grid(problem.alignment(), &method.default_cells(pair))
+        };
+        let (domain, cost) = match &self.over {
+            Over::Grid(resolution) => {
+                let grid = grid(resolution)?;
+                let cost = method.cost(problem, &grid);
+                (Domain::Grid(grid), cost)
+            }
+            Over::Stream(count) => {
+                // What a cell costs, a pose costs.
+                let one = method.cost(problem, &grid(&crate::landscape::Resolution::default())?);
+                let bytes_per_cell = one.bytes_per_cell + size_of::<PoseError>() as u64;
+                let domain = Domain::random(problem.alignment(), *count, self.seed);
+                (domain, Cost { bytes_per_cell, ..one })
+            }
+        };
+        let is_grid = matches!(domain, Domain::Grid(_));
+        let stop = match self.sample {
+            _ if !is_grid => None,
+            Sample::None => None,
+            Sample::Until(stop) => Some(stop),
+            Sample::ByMethod => match method.default_samples(pair) {
+                0 => None,
+                samples => Some(Stop::Samples(samples)),
+            },
+        };
+        let sample = stop.map(|stop| correction::Settings { seed: self.seed, stop });
+        let floods = method.by_products().contains(&"basins");
+        Ok(Plan { method: method.clone(), domain, sample, heights: self.heights && is_grid && !floods, cost })
+    }
+}
+
+impl Plan {
+    /// Refuses what would not fit into memory, with what would.
+    ///
+    /// # Errors
+    /// It would not.
+    pub fn ensure_fits(&self, exec: &Exec) -> Result<(), OutOfBudget> {
+        let (cells, axes) = match &self.domain {
+            Domain::Grid(grid) => (grid.checked_len().map_or(u64::MAX, |cells| cells as u64), grid.axes.len()),
+            Domain::Poses(poses) => (poses.len() as u64, 1),
+        };
+        let per_cell = self.cost.bytes_per_cell + if self.heights { Landscape::bytes(1) } else { 0 };
+        ensure_fits(self.cost.what, cells.saturating_mul(per_cell), per_cell, axes, exec)
+    }
+}

@@ -1,0 +1,132 @@
+//! The stages of a run, each once.
+
+use super::{Answer, Corrected, Plan, Run, RunError};
+use crate::acceptance::{Acceptance, Domain, Warning};
+use crate::exec::Exec;
+use crate::landscape::{Grid, Landscape};
+use crate::merit::Merits;
+use crate::merit::success::success;
+use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError};
+use crate::method::{Decided, Doubts, Follow, Method, descent};
+use crate::problem::Problem;
+use std::time::Instant;
+
+/// What follows random poses and doubtful cells exactly: the method itself where it decides each pose by itself (descents would know
+/// nothing of the friction of a drop test), else exact descent.
+pub(super) fn judge(method: &Method) -> Judge<'_> {
+    Judge { own: method.follows(), descent: descent::Settings::default() }
+}
+
+/// Either of the two.
+pub(super) struct Judge<'a> {
+    own: Option<&'a dyn Follow>,
+    descent: descent::Settings,
+}
+
+impl Judge<'_> {
+    pub(super) fn as_follow(&self) -> &dyn Follow {
+        self.own.unwrap_or(&self.descent)
+    }
+}
+
+/// Decides every pose of the plan.
+pub(super) fn decide(plan: &Plan, problem: &Problem, exec: &Exec) -> Result<Decided, RunError> {
+    Ok(plan.method.decide(problem, &plan.domain, exec)?)
+}
+
+/// Everything after the decision.
+pub(super) fn finish(
+    run: &Run,
+    plan: Plan,
+    problem: &Problem,
+    decided: Decided,
+    started: Instant,
+    exec: &Exec,
+) -> Result<Answer, RunError> {
+    let Decided { mut acceptance, doubts, mut by_products, settings } = decided;
+    let mut corrected = None;
+    if let Domain::Grid(grid) = &plan.domain {
+        if plan.heights && by_products.landscape.is_none() {
+            by_products.landscape = Some(Landscape::compute(problem.pair(), grid, exec)?);
+        }
+        if let Some(settings) = &plan.sample {
+            let doubts = doubts.as_deref();
+            corrected = Some(correct(&plan.method, problem, grid, &acceptance, doubts, settings, exec)?);
+        }
+        if let Some(doubts) = &doubts {
+            // Which cells are settled depends on the number of random poses, not on the time they took.
+            let most = corrected.as_ref().map_or(0, |corrected| corrected.found.descents);
+            settle(&plan.method, problem, grid, &**doubts, &mut acceptance, most, exec)?;
+        }
+    }
+    let merits = Merits::of(&acceptance, problem.alignment(), exec)?;
+    let success = match &run.errors {
+        Some(distribution) => Some(success(&acceptance, distribution, exec)?),
+        None => None,
+    };
+    Ok(Answer {
+        problem: problem.clone(),
+        run: run.clone(),
+        acceptance,
+        settings,
+        corrected,
+        by_products,
+        merits,
+        success,
+        seconds: started.elapsed().as_secs_f64(),
+        threads: exec.threads(),
+    })
+}
+
+/// The Sum, made unbiased by random poses, most of them where the method is in doubt.
+pub(crate) fn correct(
+    method: &Method,
+    problem: &Problem,
+    grid: &Grid,
+    acceptance: &Acceptance,
+    doubts: Option<&dyn Doubts>,
+    settings: &correction::Settings,
+    exec: &Exec,
+) -> Result<Corrected, CorrectionError> {
+    let judge = judge(method);
+    let judge = judge.as_follow();
+    let follow = |poses: Vec<_>, exec: &Exec| {
+        let decided = judge.follow(problem, Domain::Poses(poses), exec);
+        Ok(decided.map_err(CorrectionError::from)?.0.outcomes)
+    };
+    let shape = grid.shape();
+    let found = match doubts {
+        Some(doubts) => {
+            let by = ByFraction::new(|cell| doubts.fraction(cell), shape);
+            correction::estimate(grid, &by, settings, exec, follow)
+        }
+        None => {
+            let by = ByNeighbours::new(&acceptance.outcomes, shape);
+            correction::estimate(grid, &by, settings, exec, follow)
+        }
+    }?;
+    Ok(Corrected { found, seed: settings.seed, method: judge.info().name, settings: judge.settings() })
+}
+
+/// Follows the ambiguous cells exactly if they are at most `most`, else warns.
+fn settle(
+    method: &Method,
+    problem: &Problem,
+    grid: &Grid,
+    doubts: &dyn Doubts,
+    acceptance: &mut Acceptance,
+    most: usize,
+    exec: &Exec,
+) -> Result<(), RunError> {
+    let of = acceptance.outcomes.len();
+    let (cells, listed) = correction::ambiguous(of, |cell| doubts.is_ambiguous(cell), most, exec)?;
+    if cells > most {
+        acceptance.warnings.push(Warning::Ambiguous { cells, of });
+        return Ok(());
+    }
+    let judge = judge(method);
+    let outcomes = &mut acceptance.outcomes;
+    correction::settle(grid, &listed, outcomes, exec, |poses, exec| {
+        Ok::<_, RunError>(judge.as_follow().follow(problem, Domain::Poses(poses), exec)?.0.outcomes)
+    })
+}
