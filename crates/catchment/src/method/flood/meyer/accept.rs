@@ -41,7 +41,7 @@ impl Settings {
     pub fn of(design: &Design) -> Self {
         let depth_tolerance = match &design.connector {
             ConnectorSpec::Family(spec) => Some(Self::DEPTH_PER_FACE_HEIGHT * spec.aspect_ratio),
-            _ => None,
+            ConnectorSpec::Own(_) => None,
         };
         Self { depth_tolerance, ..Self::default() }
     }
