@@ -1,10 +1,9 @@
 //! The command line as types.
 
 use crate::command::Command;
-use crate::geometry::Built;
-use crate::source::{Finding, Input, InputError};
-use catchment::design::{Complaint, Design, Quantity, parse_dofs};
+use catchment::design::{Complaint, Quantity, parse_dofs};
 use catchment::pose::DofSet;
+use catchment::problem::{Draft, Problem, ProblemError};
 use clap::{Args, Parser};
 use std::path::PathBuf;
 
@@ -65,52 +64,28 @@ pub(crate) struct DesignArgs {
 }
 
 impl DesignArgs {
-    /// Reads the file, applies the changes and builds the halves.
-    pub(crate) fn build(&self) -> Result<Built, InputError> {
-        Built::new(self.changed(Input::read(&self.path)?)?)
-    }
-
-    /// Applies the changes to what the file says.
-    fn changed(&self, mut input: Input) -> Result<Input, InputError> {
-        match self.changed_design(input.design.clone()) {
-            Ok(design) => {
-                input.design = design;
-                Ok(input)
-            }
-            Err((option, complaint)) => {
-                let finding = refusal(&input, option, &complaint);
-                Err(input.refused(vec![finding]))
-            }
-        }
-    }
-
-    fn changed_design(&self, mut design: Design) -> Result<Design, (&'static str, Complaint)> {
+    /// Reads the file and applies the changes.
+    pub(crate) fn draft(&self) -> Result<Draft, ProblemError> {
+        let mut draft = Draft::open(&self.path)?;
         if let Some(free) = self.free {
-            design = design.with_free(free).map_err(|complaint| ("--free", complaint))?;
+            draft = draft.change("--free", |design| design.with_free(free))?;
         }
         if let Some(cor) = self.cor {
-            design = design.with_center_of_rotation(cor).map_err(|complaint| ("--cor", complaint))?;
+            draft = draft.change("--cor", |design| design.with_center_of_rotation(cor))?;
         }
         if let Some(ratio) = self.aspect_ratio {
-            design = design.with_aspect_ratio(ratio).map_err(|complaint| ("--aspect-ratio", complaint))?;
+            draft = draft.change("--aspect-ratio", |design| design.with_aspect_ratio(ratio))?;
         }
         if let Some(rho) = self.rotation_length {
-            design =
-                design.with_rotation_length(rho).map_err(|complaint| ("--rotation-length", complaint))?;
+            draft = draft.change("--rotation-length", |design| design.with_rotation_length(rho))?;
         }
-        Ok(design)
+        Ok(draft)
     }
-}
 
-/// A change that the design does not allow, shown beside the key that forbids it.
-fn refusal(input: &Input, option: &str, complaint: &Complaint) -> Finding {
-    let place = match complaint {
-        Complaint::OutOfPlane { .. } => "connector.family",
-        Complaint::NotAParameter { .. } => "connector",
-        Complaint::PitchBeyondPole => "errors.pitch",
-        _ => "",
-    };
-    input.finding(place, format!("{option}: {complaint}"), complaint.help())
+    /// The problem to decide.
+    pub(crate) fn problem(&self) -> Result<Problem, ProblemError> {
+        self.draft()?.build()
+    }
 }
 
 fn dofs(text: &str) -> Result<DofSet, String> {

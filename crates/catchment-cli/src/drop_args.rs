@@ -1,8 +1,11 @@
 //! The settings of drop tests, as a person writes them.
 
 use crate::failure::Failure;
-use catchment::method::drop::{Body, Push, Settings};
+use crate::method_args::{Change, with_changes};
+use catchment::method::Method;
+use catchment::method::drop::Settings;
 use clap::Args;
+use serde_json::{Value, json};
 
 /// What may be said of drop tests.
 #[derive(Debug, Args)]
@@ -57,67 +60,40 @@ pub(crate) struct DropArgs {
 const DROP: &str = "Drop tests (--method drop); lengths in D, times in s, masses in kg";
 
 impl DropArgs {
-    /// What was asked for.
+    /// What was asked for: option, setting and value, in the order of the options.
+    pub(crate) fn changes(&self) -> Vec<Change> {
+        let mut changes = Vec::new();
+        let mut add = |option: &'static str, setting: &'static str, value: Option<Value>| {
+            changes.extend(value.map(|value| Change { option, setting, value }));
+        };
+        add("--push", "push", self.push.map(|force| json!({ "force": force })));
+        add("--gravity", "push", self.gravity.map(|gravity| json!({ "gravity": gravity })));
+        let given = |mass: Option<f64>, gyration: Option<f64>| {
+            json!({ "given": { "mass": mass.unwrap_or(1.0), "gyration": gyration } })
+        };
+        add("--mass", "body", self.mass.map(|mass| given(Some(mass), self.gyration)));
+        add("--gyration", "body", self.gyration.map(|gyration| given(self.mass, Some(gyration))));
+        add("--density", "body", self.density.map(|density| json!({ "solid": { "density": density } })));
+        add("--damping", "damping", self.damping.map(Value::from));
+        let turning = self.angular_damping.or(self.damping);
+        add("--angular-damping", "angular_damping", turning.map(Value::from));
+        add("--friction", "friction", self.friction.map(Value::from));
+        add("--restitution", "restitution", self.restitution.map(Value::from));
+        add("--drop-height", "drop_height", self.drop_height.map(Value::from));
+        add("--timestep", "timestep", self.timestep.map(Value::from));
+        add("--timeout", "timeout", self.timeout.map(Value::from));
+        add("--trials", "trials", self.trials.map(Value::from));
+        add("--perturbation", "perturbation", self.perturbation.map(Value::from));
+        add("--trial-seed", "seed", self.trial_seed.map(Value::from));
+        changes
+    }
+
+    /// Drop tests with these settings.
     ///
     /// # Errors
     /// A setting that no trial can be made with.
     pub(crate) fn settings(&self) -> Result<Settings, Failure> {
-        let default = Settings::default();
-        let damping = self.damping.unwrap_or(default.damping);
-        let settings = Settings {
-            push: match (self.push, self.gravity) {
-                (_, Some(gravity)) => Push::Gravity(gravity),
-                (Some(force), None) => Push::Force(force),
-                (None, None) => default.push,
-            },
-            body: match self.density {
-                Some(density) => Body::Solid { density },
-                None => Body::Given { mass: self.mass.unwrap_or(1.0), gyration: self.gyration },
-            },
-            damping,
-            angular_damping: self.angular_damping.unwrap_or(damping),
-            friction: self.friction.unwrap_or(default.friction),
-            restitution: self.restitution.unwrap_or(default.restitution),
-            drop_height: self.drop_height.unwrap_or(default.drop_height),
-            timestep: self.timestep.unwrap_or(default.timestep),
-            timeout: self.timeout.unwrap_or(default.timeout),
-            trials: self.trials.unwrap_or(default.trials),
-            perturbation: self.perturbation.unwrap_or(default.perturbation),
-            seed: self.trial_seed.unwrap_or(default.seed),
-            ..default
-        };
-        settings.check()?;
-        Ok(settings)
-    }
-
-    /// Refuses settings of drop tests where another method decides.
-    ///
-    /// # Errors
-    /// The first setting that was given.
-    pub(crate) fn refuse(&self, method: &str) -> Result<(), Failure> {
-        let given = [
-            ("--push", self.push.is_some()),
-            ("--gravity", self.gravity.is_some()),
-            ("--mass", self.mass.is_some()),
-            ("--gyration", self.gyration.is_some()),
-            ("--density", self.density.is_some()),
-            ("--damping", self.damping.is_some()),
-            ("--angular-damping", self.angular_damping.is_some()),
-            ("--friction", self.friction.is_some()),
-            ("--restitution", self.restitution.is_some()),
-            ("--drop-height", self.drop_height.is_some()),
-            ("--timestep", self.timestep.is_some()),
-            ("--timeout", self.timeout.is_some()),
-            ("--trials", self.trials.is_some()),
-            ("--perturbation", self.perturbation.is_some()),
-            ("--trial-seed", self.trial_seed.is_some()),
-        ];
-        match given.iter().find(|(_, given)| *given) {
-            Some((option, _)) => {
-                let message = format!("{option} is a setting of drop tests; {method} has none");
-                Err(Failure::with_help(message, Some("add --method drop, or leave it out".to_owned())))
-            }
-            None => Ok(()),
-        }
+        let method = with_changes(&Method::new(Settings::default()), &self.changes())?;
+        Ok(serde_json::from_value(method.settings())?)
     }
 }

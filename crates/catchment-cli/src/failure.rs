@@ -2,7 +2,9 @@
 
 use crate::exec_args;
 use crate::exit::ExitStatus;
+use catchment::problem::{Findings, ProblemError};
 use miette::Report;
+use std::any::Any;
 use std::io::Write;
 
 /// Reports for stderr; `?` makes one of any error.
@@ -63,6 +65,20 @@ impl Failure {
 
 impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
+        let mut error = Some(error);
+        // Errors that know their places are shown there.
+        if let Some(problem) = taken::<_, ProblemError>(&mut error) {
+            return Self::of_problem(problem);
+        }
+        if let Some(findings) = taken::<_, Findings>(&mut error) {
+            return Self::of_findings(findings);
+        }
+        let Some(error) = error else { return Self::many(Vec::new(), None) };
         Self { reports: vec![Report::from_err(error)], closing: None, broken_pipe: false }
     }
+}
+
+/// The error, if it is a `T`.
+fn taken<E: 'static, T: 'static>(error: &mut Option<E>) -> Option<T> {
+    (error as &mut dyn Any).downcast_mut::<Option<T>>().and_then(Option::take)
 }

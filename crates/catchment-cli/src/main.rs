@@ -9,10 +9,9 @@ mod errors;
 mod exec_args;
 mod exit;
 mod failure;
-mod geometry;
+mod method_args;
 mod output;
 mod poses;
-mod result_folder;
 mod source;
 
 use args::Cli;

@@ -1,5 +1,6 @@
 //! Where text goes: stdout, or a file that is there whole or not at all.
 
+use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use clap::Args;
 use std::io::{self, Write};
@@ -88,6 +89,13 @@ pub(crate) fn to_stdout(text: &str) -> Result<(), Failure> {
         Err(error) => Err(Failure::with_help(format!("cannot write to stdout: {error}"), None)),
         Ok(()) => Ok(()),
     }
+}
+
+/// Prints data, and beside it what else a person should know.
+pub(crate) fn tell(data: &str, notes: &[String]) -> Result<ExitStatus, Failure> {
+    to_stdout(data)?;
+    to_stderr(notes);
+    Ok(ExitStatus::Done)
 }
 
 /// Tells the person something beside the data, a line each.

@@ -7,7 +7,7 @@
 
 use crate::errors::{Objection, checked};
 use crate::failure::Failure;
-use crate::source::{Finding, InputError, SourceText};
+use catchment::problem::{Finding, Findings, SourceText};
 use catchment::design::{Design, LengthUnit, Quantity, Unit, nearest};
 use catchment::pose::{Dof, PoseError};
 use csv::StringRecord;
@@ -75,14 +75,14 @@ impl Poses {
         Self::parse(load(path)?, design).map_err(Failure::from)
     }
 
-    fn parse(source: SourceText, design: &Design) -> Result<Self, InputError> {
+    fn parse(source: SourceText, design: &Design) -> Result<Self, Findings> {
         let mut found = Found::default();
         let mut columns = Default::default();
         let mut errors = Vec::new();
         let mut width = None;
         let mut locked_said = [false; 5];
-        for (start, record) in records(source.text()) {
-            let span = |k: usize| field(source.text(), start, k);
+        for (start, record) in records(&source.text) {
+            let span = |k: usize| field(&source.text, start, k);
             let Some(width) = width else {
                 width = Some(record.len());
                 columns = header(&record, &span, design, &mut found);
@@ -128,13 +128,13 @@ impl Poses {
         if found.list.is_empty() {
             Ok(Self { source, columns, errors })
         } else {
-            Err(InputError::Findings { source, findings: found.list, omitted: found.omitted })
+            Err(Findings { source: Some(source), list: found.list, omitted: found.omitted })
         }
     }
 
     /// The header and the rows as they were written.
     pub(crate) fn records(&self) -> impl Iterator<Item = StringRecord> {
-        records(self.source.text()).map(|(_, record)| record)
+        records(&self.source.text).map(|(_, record)| record)
     }
 
     /// The columns that are carried through: their place and name.
@@ -367,7 +367,7 @@ mod tests {
         Poses::parse(source, &design()).map_err(|error| match error {
             InputError::Findings { findings, source, .. } => findings
                 .into_iter()
-                .map(|f| (source.text()[f.span.unwrap_or(0..0)].to_owned(), f.message))
+                .map(|f| (source.text[f.span.unwrap_or(0..0)].to_owned(), f.message))
                 .collect(),
             InputError::Load(error) => panic!("{error}"),
         })

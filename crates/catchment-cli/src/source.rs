@@ -1,139 +1,40 @@
-//! A design file with its text at hand, so that whatever is wrong with it can be shown in place.
+//! Whatever is wrong with what a person gave, shown in its place.
 
 use crate::failure::Failure;
-use catchment::design::{Design, LoadError, Sources, line_column, load, read};
+use catchment::problem::{Finding, Findings, ProblemError, SourceText};
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-/// The text of a design file.
-#[derive(Debug, Clone)]
-pub(crate) struct SourceText {
-    path: PathBuf,
-    text: String,
-    /// The text as it may be shown, shared by all reports.
-    shown: Arc<String>,
+/// The finding as a report with the lines it is about. Where those are too long to show (a mesh written
+/// on one line), it says their numbers instead.
+fn report(source: Option<&SourceText>, finding: Finding) -> Report {
+    let mut diagnostic = MietteDiagnostic::new(finding.message);
+    diagnostic.help = finding.help;
+    let (Some(source), Some(span)) = (source, finding.span) else {
+        return Report::new(diagnostic);
+    };
+    let span = first_line(&source.text, span);
+    if is_too_wide_around(source, span.start) {
+        let (line, column) = source.line_column(span.start);
+        diagnostic.message = format!("line {line}, column {column}: {}", diagnostic.message);
+        return Report::new(diagnostic);
+    }
+    diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, span)]);
+    let name = printable(&source.path.display().to_string());
+    Report::new(diagnostic).with_source_code(NamedSource::new(name, printable(&source.text)))
 }
 
-/// A design file that was read.
-#[derive(Debug)]
-pub(crate) struct Input {
-    /// What it says.
-    pub design: Design,
-    /// Where it says it.
-    pub sources: Sources,
-    /// Its text.
-    pub source: SourceText,
+/// A span that ends with the line it starts in.
+fn first_line(text: &str, span: Range<usize>) -> Range<usize> {
+    let end = text[span.start..].find(['\r', '\n']).map_or(text.len(), |at| span.start + at);
+    span.start..span.end.min(end.max(span.start))
 }
 
-/// Something wrong with a design, whichever room found it.
-#[derive(Debug)]
-pub(crate) struct Finding {
-    /// What is wrong.
-    pub message: String,
-    /// What to do about it.
-    pub help: Option<String>,
-    /// The bytes of the file it is about, where there are any.
-    pub span: Option<Range<usize>>,
-}
-
-/// Why a path does not lead to a good design.
-#[derive(Debug)]
-pub(crate) enum InputError {
-    /// There is no text.
-    Load(LoadError),
-    /// There is something wrong with what the text says.
-    Findings {
-        /// The text.
-        source: SourceText,
-        /// What is wrong with it.
-        findings: Vec<Finding>,
-        /// How many more there are.
-        omitted: usize,
-    },
-}
-
-impl Input {
-    /// Reads a design file.
-    pub(crate) fn read(path: &Path) -> Result<Self, InputError> {
-        let text = load(path).map_err(InputError::Load)?;
-        let source = SourceText::new(path, text);
-        match read(&source.text, path.parent().unwrap_or_else(|| Path::new(""))) {
-            Ok(file) => Ok(Self { design: file.design, sources: file.sources, source }),
-            Err(problems) => {
-                let findings = problems.list.into_iter().map(|problem| Finding {
-                    message: problem.complaint.to_string(),
-                    help: problem.complaint.help(),
-                    span: Some(problem.span),
-                });
-                Err(InputError::Findings { source, findings: findings.collect(), omitted: problems.omitted })
-            }
-        }
-    }
-
-    /// This design, refused for what was found.
-    pub(crate) fn refused(self, findings: Vec<Finding>) -> InputError {
-        InputError::Findings { source: self.source, findings, omitted: 0 }
-    }
-
-    /// A finding about `place` (such as `connector.fixed.pieces[2]`), or what the file mentions around it.
-    pub(crate) fn finding(&self, place: &str, message: String, help: Option<String>) -> Finding {
-        Finding { message, help, span: self.sources.span(place).filter(|span| !span.is_empty()) }
-    }
-}
-
-impl SourceText {
-    /// A text and the name to show it under.
-    pub(crate) fn new(path: &Path, text: String) -> Self {
-        Self { path: path.to_path_buf(), shown: Arc::new(printable(&text)), text }
-    }
-
-    /// The file.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The text.
-    pub(crate) fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// Line and column of a byte, from 1.
-    pub(crate) fn line_column(&self, byte: usize) -> (usize, usize) {
-        line_column(&self.text, byte)
-    }
-
-    /// The finding as a report with the lines it is about. Where those are too long to show (a mesh written
-    /// on one line), it says their numbers instead.
-    pub(crate) fn report(&self, finding: Finding) -> Report {
-        let mut diagnostic = MietteDiagnostic::new(finding.message);
-        diagnostic.help = finding.help;
-        let Some(span) = finding.span.map(|span| self.first_line(span)) else {
-            return Report::new(diagnostic);
-        };
-        if self.is_too_wide_around(span.start) {
-            let (line, column) = self.line_column(span.start);
-            diagnostic.message = format!("line {line}, column {column}: {}", diagnostic.message);
-            return Report::new(diagnostic);
-        }
-        diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, span)]);
-        let name = self.path.display().to_string();
-        Report::new(diagnostic).with_source_code(NamedSource::new(name, Arc::clone(&self.shown)))
-    }
-
-    /// A span that ends with the line it starts in.
-    fn first_line(&self, span: Range<usize>) -> Range<usize> {
-        let end = self.text[span.start..].find(['\r', '\n']).map_or(self.text.len(), |at| span.start + at);
-        span.start..span.end.min(end.max(span.start))
-    }
-
-    /// Whether the line of `byte`, or one beside it, is too long to show.
-    fn is_too_wide_around(&self, byte: usize) -> bool {
-        const WIDEST: usize = 300;
-        let (line, _) = self.line_column(byte);
-        self.text.lines().skip(line.saturating_sub(2)).take(3).any(|line| line.len() > WIDEST)
-    }
+/// Whether the line of `byte`, or one beside it, is too long to show.
+fn is_too_wide_around(source: &SourceText, byte: usize) -> bool {
+    const WIDEST: usize = 300;
+    let (line, _) = source.line_column(byte);
+    source.text.lines().skip(line.saturating_sub(2)).take(3).any(|line| line.len() > WIDEST)
 }
 
 /// The text with control characters replaced, byte for byte: a file must not steer the terminal.
@@ -148,21 +49,25 @@ fn printable(text: &str) -> String {
     })
 }
 
-impl From<InputError> for Failure {
-    fn from(error: InputError) -> Self {
+impl Failure {
+    /// Everything that is wrong with a text, each in its place.
+    pub(crate) fn of_findings(findings: Findings) -> Self {
+        let Findings { source, list, omitted } = findings;
+        let count = list.len() + omitted;
+        let shown =
+            if omitted > 0 { format!(", of which the first {} are shown", list.len()) } else { String::new() };
+        let place = source.as_ref().map(|source| printable(&source.path.display().to_string()));
+        let closing = place.filter(|_| count > 1).map(|place| format!("{count} problems in {place}{shown}"));
+        Self::many(list.into_iter().map(|finding| report(source.as_ref(), finding)).collect(), closing)
+    }
+}
+
+impl Failure {
+    /// Why there is no problem to decide.
+    pub(crate) fn of_problem(error: ProblemError) -> Self {
         match error {
-            InputError::Load(error) => Self::with_help(error.to_string(), None),
-            InputError::Findings { source, findings, omitted } => {
-                let count = findings.len() + omitted;
-                let shown = if omitted > 0 {
-                    format!(", of which the first {} are shown", findings.len())
-                } else {
-                    String::new()
-                };
-                let closing =
-                    (count > 1).then(|| format!("{count} problems in {}{shown}", source.path.display()));
-                Self::many(findings.into_iter().map(|finding| source.report(finding)).collect(), closing)
-            }
+            ProblemError::Load(error) => Self::with_help(printable(&error.to_string()), None),
+            ProblemError::Findings(findings) => Self::of_findings(findings),
         }
     }
 }
@@ -171,13 +76,9 @@ impl From<InputError> for Failure {
 mod tests {
     use super::*;
 
-    fn source(text: &str) -> SourceText {
-        SourceText::new(Path::new("d.toml"), text.to_owned())
-    }
-
     fn shown(text: &str, span: Range<usize>) -> String {
         let finding = Finding { message: "wrong".to_owned(), help: None, span: Some(span) };
-        format!("{:?}", source(text).report(finding))
+        format!("{:?}", report(Some(&SourceText::new("d.toml", text)), finding))
     }
 
     #[test]

@@ -3,11 +3,10 @@
 use crate::args::DesignArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::geometry::Built;
 use crate::output::to_stdout;
-use crate::source::{Finding, Input, InputError, SourceText};
 use catchment::design::{ConnectorSpec, HalfSpec};
 use catchment::pose::{Dof, DofSet};
+use catchment::problem::{Finding, Findings, Problem, ProblemError, SourceText};
 use clap::Args;
 use serde_json::json;
 use std::fmt::Write;
@@ -39,45 +38,44 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
 
 /// Every check of a design, each on what the one before let through: its file, the changes, the geometry of
 /// its halves, and the pose in which they mate.
-fn checked(args: &DesignArgs) -> Result<Built, InputError> {
-    let built = args.build()?;
-    let findings = built.mated_findings();
-    if findings.is_empty() { Ok(built) } else { Err(built.input.refused(findings)) }
+fn checked(args: &DesignArgs) -> Result<Problem, ProblemError> {
+    args.draft()?.check()
 }
 
-fn print_json(checked: Result<Built, InputError>) -> Result<ExitStatus, Failure> {
+fn print_json(checked: Result<Problem, ProblemError>) -> Result<ExitStatus, Failure> {
     let (report, status) = match checked {
-        Ok(Built { input, connector }) => {
+        Ok(problem) => {
+            let design = problem.design();
             let report = json!({
                 "schema": JSON_SCHEMA,
-                "file": input.source.path(),
+                "file": problem.source().map(|source| &source.path),
                 "ok": true,
-                "design": input.design,
-                "ungendered": connector.ungendered(input.design.alignment.mount),
+                "design": design,
+                "ungendered": problem.connector().ungendered(design.alignment.mount),
                 "problems": [],
                 "omitted": 0,
             });
             (report, ExitStatus::Done)
         }
-        Err(InputError::Findings { source, findings, omitted }) => {
-            let problems: Vec<_> = findings.iter().map(|finding| finding_json(&source, finding)).collect();
+        Err(ProblemError::Findings(Findings { source, list, omitted })) => {
+            let problems: Vec<_> = list.iter().map(|finding| finding_json(source.as_ref(), finding)).collect();
             let report = json!({
                 "schema": JSON_SCHEMA,
-                "file": source.path(),
+                "file": source.as_ref().map(|source| &source.path),
                 "ok": false,
                 "problems": problems,
                 "omitted": omitted,
             });
             (report, ExitStatus::Failed)
         }
-        Err(error @ InputError::Load(_)) => return Err(error.into()),
+        Err(error @ ProblemError::Load(_)) => return Err(error.into()),
     };
     to_stdout(&format!("{report:#}\n"))?;
     Ok(status)
 }
 
-fn finding_json(source: &SourceText, finding: &Finding) -> serde_json::Value {
-    let place = finding.span.as_ref().map(|span| {
+fn finding_json(source: Option<&SourceText>, finding: &Finding) -> serde_json::Value {
+    let place = finding.span.as_ref().zip(source).map(|(span, source)| {
         let (line, column) = source.line_column(span.start);
         json!({ "line": line, "column": column, "bytes": [span.start, span.end] })
     });
@@ -85,15 +83,16 @@ fn finding_json(source: &SourceText, finding: &Finding) -> serde_json::Value {
 }
 
 /// The design as understood, for a person: degrees, and lengths in the design's unit beside D.
-fn summary(built: &Built) -> Result<String, std::fmt::Error> {
-    let Input { design, source, .. } = &built.input;
+fn summary(problem: &Problem) -> Result<String, std::fmt::Error> {
+    let design = problem.design();
     let alignment = &design.alignment;
     let length = |d: f64| match design.unit {
         Some(unit) => format!("{d} D = {} {}", rounded(d * design.width), unit.symbol()),
         None => format!("{d} D"),
     };
     let mut text = String::new();
-    writeln!(text, "{}: no problems", source.path().display())?;
+    let place = problem.source().map_or_else(String::new, |source| source.path.display().to_string());
+    writeln!(text, "{place}: no problems")?;
     writeln!(text, "  name                {}", design.name)?;
     match &design.connector {
         ConnectorSpec::Family(spec) => {
@@ -104,7 +103,7 @@ fn summary(built: &Built) -> Result<String, std::fmt::Error> {
             writeln!(text, "  moving half         {}", half(&own.moving))?;
         }
     }
-    let alike = if built.connector.ungendered(alignment.mount) { "alike (ungendered)" } else { "different" };
+    let alike = if problem.connector().ungendered(alignment.mount) { "alike (ungendered)" } else { "different" };
     writeln!(text, "  halves              {alike}")?;
     match design.unit {
         Some(unit) => writeln!(text, "  width D             {} {}", design.width, unit.symbol())?,

@@ -6,7 +6,7 @@ use crate::errors::pose;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout};
-use crate::result_folder::has_only;
+use catchment::report::folder::has_only;
 use catchment::method::drop::export::{Scene, mjcf, sdf};
 use catchment::report::write;
 use clap::Args;
@@ -48,11 +48,12 @@ const SDF: &str = "trial.sdf";
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     write::check_folder(&args.output, is_ours)?;
-    let (built, pair, doubts) = args.design.build()?.into_pair()?;
-    let design = &built.input.design;
+    let problem = args.design.problem()?;
+    let (design, pair) = (problem.design(), problem.pair());
+    let doubts: Vec<String> = problem.doubts().iter().map(ToString::to_string).collect();
     let error = pose(&args.pose, design)?;
     let settings = args.drop.settings()?;
-    let scene = Scene::new(&design.name, &pair, &settings, &error)?;
+    let scene = Scene::new(&design.name, pair, &settings, &error)?;
     let world = sdf::write(&scene)?;
     write::folder(&args.output, is_ours, |folder| -> Result<(), Failure> {
         let inside = folder.join(sdf::MESHES);

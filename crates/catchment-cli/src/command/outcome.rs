@@ -64,20 +64,21 @@ const JSON_SCHEMA: u32 = 1;
 
 pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     args.output.check()?;
-    let (built, pair, doubts) = args.design.build()?.into_pair()?;
-    let design = &built.input.design;
+    let problem = args.design.problem()?;
+    let (design, pair) = (problem.design(), problem.pair());
+    let doubts: Vec<String> = problem.doubts().iter().map(ToString::to_string).collect();
     let poses = Poses::read(&args.poses, design)?;
     let dropped = match args.method {
-        Method::Descent => args.drop.refuse("descent").map(|()| None),
+        Method::Descent => Ok(None),
         Method::Drop => args.drop.settings().map(Some),
     }?;
     let running = args.exec.start()?;
     let domain = Domain::Poses(poses.errors.clone());
     let (settings, (acceptance, ends)) = if let Some(settings) = &dropped {
-        (serde_json::to_value(settings)?, drop::run(&pair, domain, settings, &running.exec)?)
+        (serde_json::to_value(settings)?, drop::run(pair, domain, settings, &running.exec)?)
     } else {
         let settings = descent::Settings::default();
-        (serde_json::to_value(&settings)?, descent::run(&pair, domain, &settings, &running.exec)?)
+        (serde_json::to_value(&settings)?, descent::run(pair, domain, &settings, &running.exec)?)
     };
     std::mem::drop(running);
     let warnings: Vec<String> =

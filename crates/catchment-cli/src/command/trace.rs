@@ -46,15 +46,16 @@ const LINES: usize = 24;
 
 pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
-    let (built, pair, doubts) = args.design.build()?.into_pair()?;
-    let design = &built.input.design;
+    let problem = args.design.problem()?;
+    let (design, pair) = (problem.design(), problem.pair());
+    let doubts: Vec<String> = problem.doubts().iter().map(ToString::to_string).collect();
     let error = pose(&args.pose, design)?;
-    let path = descent::trace(&pair, &error, &Settings::default());
+    let path = descent::trace(pair, &error, &Settings::default());
     match kind {
         Some("csv") => args.file.write(&csv(&path)?)?,
         Some("json") => args.file.write(json(design, &error, &path, &doubts).as_bytes())?,
         Some(picture) => {
-            let drawn = figure::trajectory(design, &built.connector, &path)?;
+            let drawn = figure::trajectory(design, problem.connector(), &path)?;
             if picture == "png" {
                 args.file.write(&drawn.png(PNG_SCALE)?)?;
             } else {

@@ -43,10 +43,10 @@ const PNG_SCALE: f32 = 2.0;
 pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["svg", "png", "csv"])?;
     // Rotations play no part, so whether the mated pose holds against them is of no interest here.
-    let (built, pair, _) = args.design.build()?.into_pair()?;
-    let design = &built.input.design;
+    let problem = args.design.problem()?;
+    let (design, pair) = (problem.design(), problem.pair());
     let running = args.exec.start()?;
-    let zraa = accepted_offsets(&pair, &Settings::default(), &running.exec)?;
+    let zraa = accepted_offsets(pair, &Settings::default(), &running.exec)?;
     drop(running);
     match kind {
         Some("svg") => args.file.write(figure::region(design, &zraa).svg().as_bytes())?,

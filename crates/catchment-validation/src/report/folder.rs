@@ -3,7 +3,7 @@
 use super::figure::{figure_name, is_picture, pictures};
 use crate::study::Reproduction;
 use catchment::exec::Exec;
-use catchment::report::folder::{REPORT, SaveError, csv, encode, has_only, is_report};
+use catchment::report::folder::{REPORT, SaveError, csv, encode, has_only, is_report, write_all};
 use catchment::report::write::{self, WriteError};
 use std::path::Path;
 
@@ -30,13 +30,7 @@ pub fn save(found: &Reproduction, path: &Path, version: &str, exec: &Exec) -> Re
     }
     files.push((CSV.to_owned(), csv(&found.records())?));
     files.push((REPORT.to_owned(), format!("{:#}\n", found.json(version)).into_bytes()));
-    write::folder(path, is_ours, |folder| -> Result<(), SaveError> {
-        for (name, bytes) in &files {
-            exec.check()?;
-            write::file(&folder.join(name), bytes)?;
-        }
-        Ok(())
-    })?;
+    write::folder(path, is_ours, |folder| write_all(folder, &files, exec))?;
     Ok(format!("wrote {}: {REPORT}, {CSV}, {} pictures as PNG and SVG", path.display(), drawn.len()))
 }
 

@@ -71,6 +71,15 @@ impl Resolution {
         Ok(self)
     }
 
+    /// The resolution of a grid, axis by axis.
+    pub fn of(grid: &Grid) -> Self {
+        let mut resolution = Self::default();
+        for axis in &grid.axes {
+            resolution.named[axis.dof.index()] = Some(axis.cells);
+        }
+        resolution
+    }
+
     /// Cells on the axis of `dof` in a grid of `axes` axes (1 to 5); `defaults` are those of the method for one to
     /// five axes.
     pub fn cells(&self, dof: Dof, axes: usize, defaults: &[usize; 5]) -> usize {

@@ -83,6 +83,11 @@ impl Problem {
         self.0.draft.design()
     }
 
+    /// The text it was read from, if it was read from one.
+    pub fn source(&self) -> Option<&SourceText> {
+        self.0.draft.source()
+    }
+
     /// Everything but the geometry that an answer depends on.
     pub fn alignment(&self) -> &Alignment {
         &self.design().alignment

@@ -5,8 +5,11 @@ use super::table::{grouped, heading, line, percent, row, significant, wrapped};
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::merit::comparison::{Comparison, Overlap, Paired, Quantiles};
+use crate::run::Answer;
+use crate::study;
 use serde::Serialize;
 use std::fmt::{Display, Write};
+use std::time::Duration;
 
 /// Values one after another, each to the right of its column.
 fn columns<T: Display>(width: usize, values: impl Iterator<Item = T>) -> String {
@@ -180,14 +183,14 @@ pub struct MethodResult {
 }
 
 impl MethodResult {
-    /// Of a report.
-    pub fn of(report: &Report, seconds: f64) -> Self {
+    /// Of an answer.
+    pub fn of(answer: &Answer) -> Self {
         Self {
-            sum_grid: report.acceptance.sum_grid,
-            sum: report.acceptance.sum,
-            sum_ci95: report.acceptance.sum_ci95,
-            onaa_edge: report.onaa.as_ref().map(|onaa| onaa.edge),
-            seconds,
+            sum_grid: answer.merits.sum.sum,
+            sum: answer.sum(),
+            sum_ci95: answer.sum_ci95(),
+            onaa_edge: answer.onaa().map(|onaa| onaa.edge),
+            seconds: answer.seconds,
         }
     }
 }
@@ -233,26 +236,40 @@ pub struct AgreementReport {
 }
 
 impl AgreementReport {
-    /// `schema`, `catchment` and `study` of every such report.
+    /// Of all methods of a problem, each of which had `time_limit`.
     pub fn new(
         design: &Design,
-        cells: Vec<usize>,
-        time_limit_s: f64,
-        unit: String,
-        methods: Vec<Decided>,
-        agreement: Vec<Vec<Agreement>>,
+        found: &study::agreement::Agreement,
+        time_limit: Duration,
+        timing: Option<Timing>,
     ) -> Self {
+        let mut unit = String::new();
+        let methods = found
+            .tried
+            .iter()
+            .map(|tried| {
+                let (result, left_out) = match &tried.answer {
+                    Ok(answer) => {
+                        unit = answer.unit();
+                        (Some(MethodResult::of(answer)), None)
+                    }
+                    Err(reason) => (None, Some(reason.to_string())),
+                };
+                Decided { method: tried.method, result, left_out }
+            })
+            .collect();
+        let overlaps = |row: &Vec<Overlap>| row.iter().map(|overlap| Agreement::from(*overlap)).collect();
         Self {
             schema: SCHEMA,
             catchment: env!("CARGO_PKG_VERSION").to_owned(),
             study: "methods",
             design: design.clone(),
-            cells,
-            time_limit_s,
+            cells: found.cells.clone(),
+            time_limit_s: time_limit.as_secs_f64(),
             unit,
             methods,
-            agreement,
-            timing: None,
+            agreement: found.overlaps.iter().map(overlaps).collect(),
+            timing,
         }
     }
 

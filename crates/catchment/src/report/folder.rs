@@ -80,7 +80,10 @@ pub fn csv(records: &[Vec<String>]) -> Result<Vec<u8>, SaveError> {
 }
 
 /// Writes files into a folder.
-pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Result<(), SaveError> {
+///
+/// # Errors
+/// Whatever the system refuses, or it was asked to stop.
+pub fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Result<(), SaveError> {
     for (name, bytes) in files {
         exec.check()?;
         write::file(&folder.join(name), bytes)?;

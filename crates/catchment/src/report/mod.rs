@@ -12,6 +12,8 @@
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub mod compare;
 mod comparison;
 mod convergence;
 pub mod folder;

@@ -9,9 +9,11 @@
 use super::figure::{self, Drawn};
 use super::folder::{REPORT, RESULT, SaveError, encode, has_only, is_group, is_report, write_all};
 use super::write::{self, WriteError};
-use super::zarr;
+use super::{Report, SlicesReport, zarr};
 use crate::exec::Exec;
-use crate::run::Answer;
+use crate::problem::Problem;
+use crate::run::{Answer, RunError};
+use crate::study::slices::Slices;
 use std::path::Path;
 
 /// What was written, and which pictures could not be drawn, with the reason.
@@ -70,6 +72,29 @@ impl Answer {
 
     fn heights(&self) -> Option<&[f32]> {
         self.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..])
+    }
+}
+
+impl Slices {
+    /// Writes a Zarr group such as `x-pitch.zarr` for each slice into a folder.
+    ///
+    /// # Errors
+    /// Whatever the system refuses.
+    pub fn save_groups(
+        &self,
+        folder: &Path,
+        problem: &Problem,
+        report: &SlicesReport,
+        exec: &Exec,
+    ) -> Result<(), SaveError> {
+        let settings = report.settings.method.settings();
+        for (slice, of) in self.slices.iter().zip(&report.slices) {
+            exec.check()?;
+            let whole = Report::new(problem.design(), &slice.acceptance, settings.clone(), None, exec)
+                .map_err(RunError::from)?;
+            zarr::write(&folder.join(of.name() + ".zarr"), &whole, &slice.acceptance, None, exec)?;
+        }
+        Ok(())
     }
 }
 

@@ -14,7 +14,7 @@
 use super::refinement::{Refinement, RefinementError, Sampled};
 use crate::exec::{Bytes, Exec, OutOfBudget};
 use crate::landscape::Resolution;
-use crate::method::Method;
+use crate::method::{Decide, Method, descent};
 use crate::method::correction::{self, Stop};
 use crate::problem::Problem;
 use serde::Serialize;
@@ -31,8 +31,9 @@ pub struct Settings {
     /// Which methods.
     #[serde(serialize_with = "names")]
     pub methods: Vec<Method>,
-    /// Random poses, followed exactly, that correct the Sum of each method's finest grid; 0 for none.
-    pub descents: usize,
+    /// Random poses, followed exactly, that correct the Sum of each method's finest grid; 0 for none. Where nothing is
+    /// said, as many as a run by descent draws.
+    pub descents: Option<usize>,
     /// Their seed.
     pub seed: u64,
 }
@@ -48,7 +49,7 @@ impl Default for Settings {
             time_limit_s: 60.0,
             most_cells: u64::MAX,
             methods: Method::on_grids(),
-            descents: 4000,
+            descents: None,
             seed: 1,
         }
     }
@@ -142,6 +143,8 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Conver
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(ConvergenceError::Tolerance { tolerance });
     }
+    let affordable = || descent::Settings::default().default_samples(problem.pair());
+    let settings = &Settings { descents: Some(settings.descents.unwrap_or_else(affordable)), ..settings.clone() };
     let total = settings.methods.len() as f64;
     let sequences = settings
         .methods
@@ -201,8 +204,9 @@ fn sequence(
         resolution = finer(resolution);
     };
     let corrected = match finest {
-        Some(sampled) if settings.descents > 0 => {
-            let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
+        Some(sampled) if settings.descents != Some(0) => {
+            let stop = Stop::Samples(settings.descents.unwrap_or_default());
+            let sample = correction::Settings { seed: settings.seed, stop };
             let found = sampled.correct(problem, &sample, exec).map_err(RefinementError::from)?;
             Some(CorrectedSum { sum: found.sum, ci95: found.ci95, descents: found.descents })
         }
@@ -266,7 +270,7 @@ mod tests {
     fn every_method_is_refined_until_it_is_stable_or_something_stops_it() {
         let problem = problem(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect());
         let settings =
-            Settings { tolerance: 0.1, time_limit_s: f64::INFINITY, descents: 200, ..Settings::default() };
+            Settings { tolerance: 0.1, time_limit_s: f64::INFINITY, descents: Some(200), ..Settings::default() };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
         assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), ["transport", "descent", "flood", "steepest"]);
         assert_eq!(found.unit, "D·rad");
@@ -280,7 +284,7 @@ mod tests {
                 assert!(t.bracket[0] <= t.sum && t.sum <= t.bracket[1]);
             }
         }
-        let few = Settings { most_cells: 300, tolerance: 1e-9, descents: 0, ..settings.clone() };
+        let few = Settings { most_cells: 300, tolerance: 1e-9, descents: Some(0), ..settings.clone() };
         let found = run(&problem, &few, &Exec::new()).unwrap();
         assert!(
             found

@@ -2,10 +2,12 @@
 //!
 //! ```text
 //!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes
+//!   agreement    every method on one grid                        one design, how each two agree
 //!   convergence  finer and finer grids until stable               one design, every method
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
 //! ```
 
+pub mod agreement;
 pub mod convergence;
 pub mod sensitivity;
 pub mod slices;

@@ -25,16 +25,17 @@ use crate::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::merit::sum::Sum;
 use crate::method::correction::Z95;
-use crate::method::descent;
+use crate::method::{Decide, descent};
 use crate::pose::PoseError;
+use crate::problem::Problem;
 use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Random poses.
-    pub poses: usize,
+    /// Random poses; where nothing is said, three times as many as a run by descent draws: slopes need more of them.
+    pub poses: Option<usize>,
     /// Their seed.
     pub seed: u64,
     /// h as a share of ρ and of the aspect ratio.
@@ -59,7 +60,7 @@ impl Default for Settings {
         let [least, greatest] = Self::RHO;
         let rho = |k: usize| least * (greatest / least).powf(k as f64 / (Self::RHOS - 1) as f64);
         Self {
-            poses: 10_000,
+            poses: None,
             seed: 1,
             relative_step: 0.1,
             cor_step: 0.05,
@@ -169,12 +170,18 @@ pub enum SensitivityError {
 ///
 /// # Errors
 /// See [`SensitivityError`].
-pub fn run(design: &Design, settings: &Settings, exec: &Exec) -> Result<Sensitivity, SensitivityError> {
-    if settings.poses == 0 || settings.rotation_lengths.is_empty() {
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Sensitivity, SensitivityError> {
+    /// As a multiple of those of a run.
+    const POSES_PER_SAMPLE: usize = 3;
+    let design = problem.design();
+    let default = || POSES_PER_SAMPLE * descent::Settings::default().default_samples(problem.pair());
+    let poses = settings.poses.unwrap_or_else(default);
+    let settings = &Settings { poses: Some(poses), ..settings.clone() };
+    if poses == 0 || settings.rotation_lengths.is_empty() {
         return Err(SensitivityError::Nothing);
     }
     let per_pose = pose_bytes() + 2 * size_of::<PoseError>() as u64 + settings.rotation_lengths.len() as u64;
-    exec.ensure_fits("the random poses", per_pose.saturating_mul(settings.poses as u64), |budget| {
+    exec.ensure_fits("the random poses", per_pose.saturating_mul(poses as u64), |budget| {
         format!("use at most --samples {}", budget / per_pose)
     })?;
     let mut common = CommonPoses::new(design, settings, exec);
@@ -276,7 +283,7 @@ impl<'a> CommonPoses<'a> {
             design,
             settings,
             exec,
-            poses: Domain::random(alignment, settings.poses, settings.seed),
+            poses: Domain::random(alignment, settings.poses.unwrap_or_default(), settings.seed),
             measure: alignment.free.iter().map(|dof| 2.0 * alignment.half_range(dof)).product(),
             done: 0,
             undecided: 0,
@@ -390,10 +397,10 @@ mod tests {
 
     #[test]
     fn the_same_for_any_number_of_threads_and_the_parameters_of_the_design() {
-        let settings = Settings { poses: 200, rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
+        let settings = Settings { poses: Some(200), rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
         let with = |threads| {
             let exec = Exec::new().with_threads(threads).unwrap();
-            run(&planar(), &settings, &exec).unwrap()
+            run(&Problem::of(planar()).unwrap(), &settings, &exec).unwrap()
         };
         let one = with(1);
         assert_eq!(one, with(3));
@@ -409,19 +416,19 @@ mod tests {
     fn without_rotation_rho_does_not_matter() {
         // Translation alone: ρ weighs nothing, the Sum is ZRAA's 1 D of the V-Face, and no pose changes sides.
         let design = design(Family::VFace, DofSet::EMPTY.with(Dof::X));
-        let found = run(&design, &Settings { poses: 300, ..Settings::default() }, &Exec::new()).unwrap();
+        let found = run(&Problem::of(design).unwrap(), &Settings { poses: Some(300), ..Settings::default() }, &Exec::new()).unwrap();
         assert_eq!((found.slopes[0].gained, found.slopes[0].lost, found.spread), (0, 0, 0.0));
         assert!(found.sum_ci95[0] < 1.0 && 1.0 < found.sum_ci95[1], "{:?}", found.sum_ci95);
     }
 
     #[test]
     fn what_cannot_be_compared_is_refused() {
-        let refused = |settings: Settings, exec: &Exec| run(&planar(), &settings, exec).unwrap_err();
-        let none = Settings { poses: 0, ..Settings::default() };
+        let refused = |settings: Settings, exec: &Exec| run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err();
+        let none = Settings { poses: Some(0), ..Settings::default() };
         assert!(matches!(refused(none, &Exec::new()), SensitivityError::Nothing));
         let small = Exec::new().with_memory_budget(1000);
         assert!(matches!(refused(Settings::default(), &small), SensitivityError::OutOfBudget(_)));
-        let beyond = Settings { rotation_lengths: vec![1e9], poses: 2, ..Settings::default() };
+        let beyond = Settings { rotation_lengths: vec![1e9], poses: Some(2), ..Settings::default() };
         assert!(matches!(refused(beyond, &Exec::new()), SensitivityError::Value(_)));
     }
 }

@@ -110,7 +110,7 @@ pub enum SlicesError {
         dof: Dof,
     },
     /// A resolution for an axis that is not there.
-    #[error("--resolution: {0}")]
+    #[error(transparent)]
     Resolution(#[from] ResolutionError),
     /// A method that decides cells from one another.
     #[error("slices are decided cell by cell, which {method} does not do")]

@@ -1,8 +1,7 @@
 //! How many random poses correct the Sum, as a person writes it.
 
-use catchment::contact::Pair;
-use catchment::method::Method;
-use catchment::method::correction::{Settings, Stop};
+use catchment::method::correction::Stop;
+use catchment::run::Sample;
 use clap::Args;
 use std::time::Duration;
 
@@ -27,19 +26,15 @@ pub(super) struct SampleArgs {
 const SUM: &str = "How sure the Sum is";
 
 impl SampleArgs {
-    /// What was asked for; none where the Sum shall be that of the grid.
-    pub(super) fn settings(&self, method: Method, pair: &Pair) -> Option<Settings> {
-        let stop = match (self.samples, self.budget, self.tolerance) {
-            (_, Some(budget), _) => Stop::Budget(budget),
-            (_, _, Some(share)) => Stop::Tolerance(share),
-            (samples, None, None) => {
-                match samples.map_or_else(|| method.default_samples(pair), |n| n as usize) {
-                    0 => return None,
-                    samples => Stop::Samples(samples),
-                }
-            }
-        };
-        Some(Settings { seed: self.seed, stop })
+    /// What was asked for.
+    pub(super) fn sample(&self) -> Sample {
+        match (self.samples, self.budget, self.tolerance) {
+            (_, Some(budget), _) => Sample::Until(Stop::Budget(budget)),
+            (_, _, Some(share)) => Sample::Until(Stop::Tolerance(share)),
+            (Some(0), None, None) => Sample::None,
+            (Some(samples), None, None) => Sample::Until(Stop::Samples(samples as usize)),
+            (None, None, None) => Sample::ByMethod,
+        }
     }
 }
 

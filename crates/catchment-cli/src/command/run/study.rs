@@ -5,10 +5,10 @@ use super::sample::duration;
 use crate::exec_args::Running;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{to_stderr, to_stdout};
-use crate::result_folder::Study;
-use catchment::method::Method;
+use crate::output::tell;
+use catchment::problem::Problem;
 use catchment::report::figure::Picture;
+use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
 use catchment::report::{ConvergenceReport, SensitivityReport, figure};
 use catchment::study::{convergence, sensitivity};
@@ -33,9 +33,6 @@ pub(super) struct StudyArgs {
 
 const STUDIES: &str = "Studies in the place of a single run";
 
-/// Random poses of a sensitivity, as a multiple of those of a run: slopes need more of them.
-const POSES_PER_SAMPLE: usize = 3;
-
 /// Does the study that was asked for, if one was.
 pub(super) fn run(args: &RunArgs) -> Option<Result<ExitStatus, Failure>> {
     let study = &args.study;
@@ -45,54 +42,48 @@ pub(super) fn run(args: &RunArgs) -> Option<Result<ExitStatus, Failure>> {
 fn converge(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let folder = args.place.study("convergence")?;
-    let (built, pair, doubts) = args.design.build()?.into_pair()?;
-    let design = &built.input.design;
+    let problem = args.design.problem()?;
     let default = convergence::Settings::default();
     let settings = convergence::Settings {
         tolerance: args.sample.tolerance.unwrap_or(default.tolerance),
         time_limit_s: args.study.time_limit.map_or(default.time_limit_s, |limit| limit.as_secs_f64()),
-        descents: args
-            .sample
-            .samples
-            .map_or_else(|| Method::Descent.default_samples(&pair), |descents| descents as usize),
+        descents: args.sample.samples.map(|descents| descents as usize),
         seed: args.sample.seed,
         ..default
     };
     let running = args.exec.start()?;
-    let found = convergence::run(&pair, &settings, &running.exec)?;
+    let found = convergence::run(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    let report = ConvergenceReport::new(design, found, Some(timing));
+    let report = ConvergenceReport::new(problem.design(), found, Some(timing));
     let told = Told {
         json: serde_json::to_string_pretty(&report)? + "\n",
         table: report.table(),
         records: report.records(),
-        picture: figure::convergence(design, &report.found),
+        picture: figure::convergence(problem.design(), &report.found),
     };
-    told.tell(args, folder, doubts, running)
+    told.tell(args, folder, &problem, running)
 }
 
 fn sensitivity(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let folder = args.place.study("sensitivity")?;
-    let (built, pair, doubts) = args.design.build()?.into_pair()?;
-    let design = &built.input.design;
-    let default = || POSES_PER_SAMPLE * Method::Descent.default_samples(&pair);
+    let problem = args.design.problem()?;
     let settings = sensitivity::Settings {
-        poses: args.sample.samples.map_or_else(default, |poses| poses as usize),
+        poses: args.sample.samples.map(|poses| poses as usize),
         seed: args.sample.seed,
         ..sensitivity::Settings::default()
     };
     let running = args.exec.start()?;
-    let found = sensitivity::run(design, &settings, &running.exec)?;
+    let found = sensitivity::run(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    let report = SensitivityReport::new(design, found, Some(timing));
+    let report = SensitivityReport::new(problem.design(), found, Some(timing));
     let told = Told {
         json: serde_json::to_string_pretty(&report)? + "\n",
         table: report.table(),
         records: report.records(),
-        picture: figure::sensitivity(design, &report.found),
+        picture: figure::sensitivity(problem.design(), &report.found),
     };
-    told.tell(args, folder, doubts, running)
+    told.tell(args, folder, &problem, running)
 }
 
 /// A study in every form that it is told in.
@@ -108,17 +99,17 @@ impl Told {
     fn tell(
         self,
         args: &RunArgs,
-        folder: Option<Study>,
-        doubts: Vec<String>,
+        folder: Option<StudyFolder>,
+        problem: &Problem,
         running: Running,
     ) -> Result<ExitStatus, Failure> {
-        let mut notes: Vec<String> = doubts.into_iter().map(|doubt| format!("warning: {doubt}")).collect();
+        let mut notes: Vec<String> =
+            problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
         if let Some(folder) = folder {
-            notes.push(folder.write(&self.json, &self.records, self.picture, &running.exec, |_| Ok(()))?);
+            let pictures = encode(&[(folder.name, self.picture)], &running.exec)?;
+            notes.push(folder.write(&self.json, &self.records, pictures, &running.exec, |_| Ok(()))?);
         }
         drop(running);
-        to_stdout(if args.json { &self.json } else { &self.table })?;
-        to_stderr(&notes);
-        Ok(ExitStatus::Done)
+        tell(if args.json { &self.json } else { &self.table }, &notes)
     }
 }

@@ -18,7 +18,7 @@ pub fn sensitivity(design: &Design, found: &Sensitivity) -> Picture {
         short(found.least.sum),
         short(found.greatest.sum),
         found.unit,
-        found.settings.poses
+        found.settings.poses.unwrap_or_default()
     );
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let point = |p: &crate::study::sensitivity::AtRho| Point {

@@ -1,0 +1,157 @@
+//! A method and its settings, as a person writes them.
+
+use crate::drop_args::DropArgs;
+use crate::failure::Failure;
+use catchment::method::{Entry, Method, MethodError, REGISTRY};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+use serde_json::{Map, Value};
+
+/// A setting that was given by an option.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Change {
+    /// The option.
+    pub(crate) option: &'static str,
+    /// The setting that it changes.
+    pub(crate) setting: &'static str,
+    /// To what.
+    pub(crate) value: Value,
+}
+
+/// A method that decides grids, and its settings.
+#[derive(Debug, Args)]
+pub(crate) struct MethodArgs {
+    /// How outcomes are decided
+    #[arg(long, value_name = "METHOD", default_value = REGISTRY[0].info.name, value_parser = choice_parser())]
+    pub(crate) method: Choice,
+    #[command(flatten)]
+    pub(crate) settings: SettingArgs,
+}
+
+/// Settings of methods.
+#[derive(Debug, Args)]
+pub(crate) struct SettingArgs {
+    /// Flooding: basins shallower than this are merged, in D [default: in the widest gap between the depths of the basins]
+    #[arg(long, value_name = "DEPTH", value_parser = depth)]
+    pub(crate) depth_tolerance: Option<f64>,
+    /// Partition: rotation slices across the error box of every free angle [default: 24 for one angle, 4 for two]
+    #[arg(long, value_name = "COUNT")]
+    slices: Option<usize>,
+    /// Partition: strips per D into which the moving half is cut; 1 is the dissertation's method [default: 12, or 1 for two angles]
+    #[arg(long, value_name = "COUNT")]
+    strips: Option<usize>,
+    #[command(flatten)]
+    drop: DropArgs,
+}
+
+/// A method that decides each pose by itself, and its settings.
+#[derive(Debug, Args)]
+pub(crate) struct PoseMethodArgs {
+    /// What decides
+    #[arg(long, value_name = "METHOD", default_value = "descent", value_parser = pose_method_parser())]
+    method: Method,
+    #[command(flatten)]
+    drop: DropArgs,
+}
+
+impl SettingArgs {
+    fn changes(&self) -> Vec<Change> {
+        let mut changes = Vec::new();
+        let mut add = |option: &'static str, setting: &'static str, value: Option<Value>| {
+            changes.extend(value.map(|value| Change { option, setting, value }));
+        };
+        add("--depth-tolerance", "depth_tolerance", self.depth_tolerance.map(Value::from));
+        add("--slices", "slices", self.slices.map(Value::from));
+        add("--strips", "strips", self.strips.map(Value::from));
+        changes.extend(self.drop.changes());
+        changes
+    }
+
+    /// A method with what was asked for.
+    pub(crate) fn of(&self, method: &Method) -> Result<Method, Failure> {
+        with_changes(method, &self.changes())
+    }
+
+    /// Every method, each with those settings that it has; each setting belongs to one of them.
+    pub(crate) fn of_all(&self) -> Result<Vec<Method>, Failure> {
+        let changes = self.changes();
+        Method::all()
+            .map(|method| {
+                let own: Vec<Change> = changes
+                    .iter()
+                    .filter(|change| method.settings().get(change.setting).is_some())
+                    .cloned()
+                    .collect();
+                with_changes(&method, &own)
+            })
+            .collect()
+    }
+}
+
+impl PoseMethodArgs {
+    /// The method with what was asked for.
+    pub(crate) fn of(&self) -> Result<Method, Failure> {
+        with_changes(&self.method, &self.drop.changes())
+    }
+}
+
+/// A method with some of its settings changed; a refusal names the option.
+pub(crate) fn with_changes(method: &Method, changes: &[Change]) -> Result<Method, Failure> {
+    let map: Map<String, Value> =
+        changes.iter().map(|change| (change.setting.to_owned(), change.value.clone())).collect();
+    method.with(&map).map_err(|error| match error {
+        MethodError::NoSuchSetting { method, setting, owners } => {
+            let option = changes.iter().find(|change| change.setting == setting).map_or("", |c| c.option);
+            let message = format!("{option} is a setting of {}; {method} has none", owners.join(" and "));
+            let help = format!("add --method {}, or leave it out", owners.first().copied().unwrap_or_default());
+            Failure::with_help(message, Some(help))
+        }
+        MethodError::Refused { reason, .. } => Failure::with_help(reason, None),
+        error @ MethodError::Unknown { .. } => error.into(),
+    })
+}
+
+/// One method, or all of them.
+#[derive(Debug, Clone)]
+pub(crate) enum Choice {
+    One(Method),
+    All,
+}
+
+/// What stands for all methods.
+const ALL: &str = "all";
+
+/// What a person may write for some of the methods.
+fn possible(which: impl Fn(&Entry) -> bool) -> Vec<PossibleValue> {
+    REGISTRY
+        .iter()
+        .filter(|entry| which(entry))
+        .map(|entry| PossibleValue::new(entry.info.name).help(entry.info.summary))
+        .collect()
+}
+
+/// Reads the name of one method.
+pub(crate) fn method_parser() -> ValueParser {
+    PossibleValuesParser::new(possible(|_| true)).try_map(|name| name.parse::<Method>()).into()
+}
+
+/// Reads the name of a method that decides each pose by itself.
+fn pose_method_parser() -> ValueParser {
+    let by_pose = |entry: &Entry| entry.method().follows().is_some();
+    PossibleValuesParser::new(possible(by_pose)).try_map(|name| name.parse::<Method>()).into()
+}
+
+/// Reads the name of one method, or `all`.
+fn choice_parser() -> ValueParser {
+    let all = PossibleValue::new(ALL).help("every method that applies, side by side, and how they agree");
+    PossibleValuesParser::new(possible(|_| true).into_iter().chain([all]))
+        .try_map(|name| if name == ALL { Ok(Choice::All) } else { name.parse::<Method>().map(Choice::One) })
+        .into()
+}
+
+fn depth(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(depth) if depth >= 0.0 && depth.is_finite() => Ok(depth),
+        _ => Err("a depth is a number of D, at least 0".to_owned()),
+    }
+}
