@@ -11,7 +11,7 @@ use catchment::contact::Pair;
 use catchment::design::Alignment;
 use catchment::exec::Exec;
 use catchment::landscape::{Grid, Landscape};
-use catchment::method::flood::{self, Flooding, Rule, Settings, brute};
+use catchment::method::flood::{self, Flooding, Rule, Settings, brute, meyer};
 use catchment::pose::{Dof, Mount};
 use designs::pair;
 use peak_alloc::PeakAlloc;
@@ -79,18 +79,18 @@ fn main() {
             drop((brute::tree(&shape, &landscape.heights), brute::basins(&shape, &landscape.heights)));
         }),
     );
+    let plane = pair("v-face.toml");
+    let landscape = self::landscape(&plane, 100);
+    let settings = meyer::Settings::default();
     rates.measure(
-        "table 5.7 by Meyer's queue",
-        "tables",
-        1,
+        "Meyer's queue, v-face, 100 cells per axis",
+        "floods of cells",
+        landscape.heights.len(),
         &mut || {
-            let table = catchment::study::reproduce::reproduce(
-                "5.7",
-                &catchment::study::reproduce::Settings::default(),
-                &Exec::new(),
-            )
-            .expect("a known table");
-            assert_eq!(table.summary.as_printed, 25);
+            let found =
+                meyer::accept(&landscape, &plane.alignment, &settings, &Exec::new()).expect("flooded");
+            let share = found.acceptance.counts()[0] as f64 / landscape.heights.len() as f64;
+            assert!((0.05..0.9).contains(&share), "{share} of the box accepted");
         },
         None,
     );

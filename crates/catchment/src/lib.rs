@@ -79,7 +79,7 @@
 //! - [`acceptance`]: what becomes of every pose error; the one result that all methods share.
 //! - [`method`]: ways to decide: exact descent, flooding, the planar kinematic one, translation alone.
 //! - [`merit`]: what an accepted set is worth: Sum, ONAA, tolerances, success probability.
-//! - [`study`]: published tables, computed again.
+//! - [`study`]: many computations of one design: slices, convergence, sensitivity.
 //! - [`report`]: JSON, text, pictures, Zarr.
 //!
 //! [`pose`] owns frames, signs and the order of angles; [`exec`] owns threads, cancelling, progress and the

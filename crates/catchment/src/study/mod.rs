@@ -1,20 +1,14 @@
-//! Studies: many computations of one design or of many, and what they say together.
+//! Studies: many computations of one design, and what they say together.
 //!
 //! ```text
 //!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes
 //!   agreement    every method on one grid                        one design, how each two agree
 //!   convergence  finer and finer grids until stable               one design, every method
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
-//!   accuracy     how far each method is off the exact Sum          many designs
-//!   coverage     how often stated intervals hold                  many runs
-//!   reproduce    published tables, computed again                 many designs
 //! ```
 
-pub mod accuracy;
 pub mod agreement;
 pub mod convergence;
-pub mod coverage;
-pub mod reproduce;
 pub mod sensitivity;
 pub mod slices;
 pub mod refinement;

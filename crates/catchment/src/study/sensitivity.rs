@@ -25,6 +25,7 @@ use crate::contact::Pair;
 use crate::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::merit::sum::Sum;
+use crate::method::correction::Z95;
 use crate::method::{Decide, descent};
 use crate::pose::PoseError;
 use crate::problem::Problem;
@@ -365,9 +366,6 @@ impl Discordance {
         [center - half, center + half]
     }
 }
-
-/// Two-sided 95 % quantile of the standard normal distribution.
-const Z95: f64 = 1.959_963_984_540_054;
 
 #[cfg(test)]
 mod tests {

@@ -17,7 +17,7 @@
 //! batch b is drawn, so each batch is an unbiased estimate whatever went before, and its weight `N_b` is fixed in advance.
 
 /// Two-sided 95 % quantile of the standard normal distribution.
-pub(crate) const Z95: f64 = 1.959_963_984_540_054;
+pub const Z95: f64 = 1.959_963_984_540_054;
 
 /// Wilson's 95 % interval of a probability that was seen as `share` of `trials`; [0, 1] without trials.
 ///

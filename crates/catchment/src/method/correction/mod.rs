@@ -26,8 +26,7 @@ mod strata;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use interval::Z95;
-pub use interval::wilson95;
+pub use interval::{Z95, wilson95};
 pub use schedule::{FAINT, Stop};
 pub use settle::{ambiguous, settle};
 pub use strata::{ByFraction, ByNeighbours, MOST_STRATA, Stratify};

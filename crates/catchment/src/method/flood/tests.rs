@@ -236,22 +236,34 @@ fn the_difference_from_meyers_flooding_is_what_the_documentation_says() {
         let grid = Grid::over(&pair.alignment, |_| 100);
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
         let flooding = flood(&landscape, &pair.alignment, &Settings::default(), &Exec::new()).unwrap();
-        let around = meyer::neighbourhood::Neighbourhood::new(&grid.shape());
-        let targets = target::cells(&grid, &pair.alignment);
-        let (tolerance, rules) = (flooding.hierarchy.tolerance.depth, meyer::Rules::default());
-        let mut parts =
-            meyer::divide(&landscape.heights, &around, &targets, tolerance, rules, &Exec::new()).unwrap();
-        meyer::dams::assign(&landscape.heights, &around, &mut parts.labels);
-        let basin = |cell: usize| parts.merged.into[parts.labels[cell] as usize];
-        let mated = |cell: usize| basin(cell) == basin(targets[0]);
-        let different = flooding.acceptance.accepted().enumerate().filter(|(c, a)| *a != mated(*c)).count();
+        let settings = meyer::Settings::default();
+        let meyer = meyer::accept(&landscape, &pair.alignment, &settings, &Exec::new()).unwrap();
+        assert_eq!(meyer.tolerance, flooding.hierarchy.tolerance);
+        let accepted = || flooding.acceptance.accepted().zip(meyer.acceptance.accepted());
+        let different = accepted().filter(|(a, b)| a != b).count();
         let share = 100.0 * different as f64 / grid.len() as f64;
-        let sum = (0..grid.len()).filter(|cell| mated(*cell)).count() as f64 * grid.cell_measure();
+        let sum = meyer.acceptance.counts()[0] as f64 * grid.cell_measure();
         [share, sum].map(|v| (v * 1e3).round() / 1e3)
     };
     // Share of the cells in percent, and Meyer's Sum.
     let expected = [[3.88, 3.942], [8.84, 1.474], [1.64, 2.403], [2.46, 1.206], [0.0, 3.766]];
     assert_eq!(PLANAR.map(measure), expected);
+}
+
+/// With the text's own tolerance, 0.1·H, Meyer's queue has the bias that the room's opening says, to a percent.
+#[test]
+fn meyers_flooding_has_the_bias_that_the_documentation_says() {
+    let expected = [2.3, -24.0, 0.5, -3.5, 1.6];
+    for ((family, aspect_ratio, cor, exact), expected) in PLANAR.into_iter().zip(expected) {
+        let pair = pair(family, aspect_ratio, cor, 1);
+        let grid = Grid::over(&pair.alignment, |_| 100);
+        let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
+        let tenth = meyer::Settings::with_tolerance(meyer::Settings::DEPTH_PER_FACE_HEIGHT * aspect_ratio);
+        let found = meyer::accept(&landscape, &pair.alignment, &tenth, &Exec::new()).unwrap();
+        assert_eq!(found.acceptance.method, "meyer");
+        let bias = 100.0 * (found.acceptance.counts()[0] as f64 * grid.cell_measure() / exact - 1.0);
+        assert!((bias - expected).abs() < 1.0, "{family:?} {aspect_ratio} {cor}: {bias:.2} %");
+    }
 }
 
 /// The tolerance of the widest gap accepts what a tenth of the face's height accepts.

@@ -31,14 +31,14 @@ pub(super) fn verdict(
         if into[number] as usize != number {
             continue;
         }
-        let (translation, rotation) = on_border(grid, minimum.cell);
         let outcome = if Some(number as u32) == outside {
             Outcome::Missed
         } else if Some(number as u32) == target {
             Outcome::Aligned
         } else {
-            border_cells += if translation || rotation { cells[number] } else { 0 };
-            if translation { Outcome::Missed } else { Outcome::Jammed }
+            let (outcome, on_border) = elsewhere(grid, minimum.cell);
+            border_cells += if on_border { cells[number] } else { 0 };
+            outcome
         };
         found[number] = Some(Basin {
             minimum: minimum.cell,
@@ -108,6 +108,13 @@ fn escapes(tree: &MergeTree, into: &[u32]) -> Vec<f64> {
     escapes
 }
 
+/// The outcome of a basin that is neither the mated one nor the outside, by where its minimum lies, and whether that is
+/// on a border: missed at one of a translation, jammed at one of a rotation and anywhere else.
+pub(super) fn elsewhere(grid: &Grid, minimum: usize) -> (Outcome, bool) {
+    let (translation, rotation) = on_border(grid, minimum);
+    (if translation { Outcome::Missed } else { Outcome::Jammed }, translation || rotation)
+}
+
 /// Whether a cell lies on a border of a translation, and of a rotation.
 fn on_border(grid: &Grid, index: usize) -> (bool, bool) {
     let cell = grid.cell(index);
@@ -120,7 +127,13 @@ fn on_border(grid: &Grid, index: usize) -> (bool, bool) {
     (at(false), at(true))
 }
 
-fn warnings(grid: &Grid, outcomes: &[Outcome], targets: &[usize], border_cells: usize) -> Vec<Warning> {
+/// What a reader must know; `border_cells` drain to a minimum on the border.
+pub(super) fn warnings(
+    grid: &Grid,
+    outcomes: &[Outcome],
+    targets: &[usize],
+    border_cells: usize,
+) -> Vec<Warning> {
     let mut warnings = vec![Warning::FloodingBias];
     if targets.is_empty() || targets.iter().all(|t| outcomes[*t] != Outcome::Aligned) {
         warnings.push(Warning::MatedPoseNotAccepted);

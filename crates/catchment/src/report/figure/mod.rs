@@ -6,8 +6,8 @@
 //!   convergence Sum and ONAA against resolution and time, every method
 //!   difference  where two acceptances differ, and the border of the first
 //!   agreement   how each two methods of a design agree
-//!   published   a published table beside ours, in colours
-//!   resolution  figure 5.13: Sum and time over the resolution
+//!   number_maps tables of numbers in colours, side by side
+//!   curves      any curves over a logarithmic scale, side by side
 //!   sensitivity the Sum against rho
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
@@ -25,22 +25,23 @@
 //! For people: lengths in the design's unit where it has one (else D), angles in degrees. The same input gives the
 //! same bytes. Maps and solids are embedded images, everything else is vector.
 
+mod agreement;
 mod answer;
 mod axis;
 mod basins;
 mod chart;
 mod colour;
 mod convergence;
+mod curves;
 mod difference;
-mod heat;
 mod heights;
 mod map;
 mod matrix;
+mod number_map;
 mod overview;
 mod partition;
 mod raster;
 mod region;
-mod resolution;
 mod section;
 mod sensitivity;
 mod slices;
@@ -48,17 +49,18 @@ mod solid;
 mod svg;
 mod trajectory;
 
+pub use agreement::agreement;
 pub use answer::{Drawn, NAMES};
 pub use basins::basins;
 pub use convergence::convergence;
+pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;
-pub use heat::{agreement, published};
 pub use heights::heights;
 pub use matrix::slice_matrix;
+pub use number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
 pub use overview::overview;
 pub use partition::partition;
 pub use region::region;
-pub use resolution::resolution;
 pub use section::{Placement, section};
 pub use sensitivity::sensitivity;
 pub use slices::slices;

@@ -2,13 +2,14 @@
 
 use super::neighbourhood::Neighbourhood;
 use crate::exec::{Cancelled, Exec};
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Not reached.
 const UNSEEN: u32 = 0;
 /// The basin of every cell without contact, however many pieces it has.
-const OUTSIDE: u32 = 1;
+pub(super) const OUTSIDE: u32 = 1;
 /// Reached from two basins.
 pub(super) const DAM: u32 = u32::MAX;
 /// Waiting in the queue.
@@ -19,12 +20,13 @@ const SLOPE: u32 = u32::MAX - 2;
 const LABEL_LIMIT: u32 = SLOPE;
 
 /// Whether a label names a basin.
-pub(in super::super) const fn is_basin(label: u32) -> bool {
+pub(super) const fn is_basin(label: u32) -> bool {
     label != UNSEEN && label < LABEL_LIMIT
 }
 
 /// Where flooding may be read in two ways. The default is the one of Meyer's text.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Rules {
     /// Every cell without a lower neighbour is a minimum, even on a plateau that drains elsewhere.
     pub flat_cells_are_minima: bool,
@@ -32,10 +34,17 @@ pub struct Rules {
     pub dams_pass_water_on: bool,
 }
 
-/// What the heights are stored as.
-pub(in super::super) trait Height: Copy + PartialOrd + Into<f64> + Send + Sync {}
+/// What heights are stored as: `f32` or `f64`.
+pub trait Height: Copy + PartialOrd + Into<f64> + Send + Sync + sealed::Sealed {}
 impl Height for f32 {}
 impl Height for f64 {}
+
+mod sealed {
+    /// No other type can be a height.
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
 
 /// Labels after flooding: `DAM` or a basin number per cell, `UNSEEN` for a cell walled in by dams.
 pub(super) struct Flooded {
@@ -158,7 +167,7 @@ fn join<H: Height>(labels: &mut [u32], minima: &mut [Option<usize>], heights: &[
 }
 
 /// A cell on the water line.
-struct Shore<H> {
+pub(super) struct Shore<H> {
     height: H,
     order: u32,
     cell: u32,

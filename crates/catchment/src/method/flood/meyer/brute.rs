@@ -2,6 +2,8 @@
 //! looks at every cell.
 
 use super::Rules;
+use crate::acceptance::Outcome;
+use crate::landscape::Grid;
 use crate::method::flood::brute::neighbours;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,6 +28,40 @@ pub fn divide(shape: &[usize], heights: &[f64], targets: &[usize], tolerance: f6
     let into = merge(heights, &near, &basin, &dams, bottoms, tolerance);
     drain_dams(shape, heights, &near, &mut basin);
     basin.iter().map(|b| b.map_or(0, |b| into[&b])).collect()
+}
+
+/// What becomes of every cell, given the basins of [`divide`] and the cells around the mated pose: the outside and basins
+/// whose lowest cell lies on a border of x or y are missed, that of the lowest target is aligned unless it gathers deeper
+/// below it than the tolerance, the rest is jammed.
+pub fn outcomes(
+    grid: &Grid,
+    heights: &[f64],
+    targets: &[usize],
+    basins: &[u32],
+    tolerance: f64,
+) -> Vec<Outcome> {
+    let lowest = |cells: &mut dyn Iterator<Item = usize>| {
+        cells.reduce(|best, next| if heights[next] < heights[best] { next } else { best })
+    };
+    let bottom = |basin: u32| lowest(&mut (0..basins.len()).filter(|cell| basins[*cell] == basin));
+    let mated = lowest(&mut targets.iter().copied()).filter(|cell| {
+        let below = bottom(basins[*cell]).map_or(0.0, |bottom| heights[*cell] - heights[bottom]);
+        below == 0.0 || below < tolerance
+    });
+    let of = |cell: usize| {
+        let basin = basins[cell];
+        if basin == 1 {
+            Outcome::Missed
+        } else if mated.is_some_and(|mated| basins[mated] == basin) {
+            Outcome::Aligned
+        } else {
+            let place = bottom(basin).map_or_else(Vec::new, |bottom| grid.cell(bottom));
+            let borders = grid.axes.iter().zip(place).filter(|(axis, k)| *k == 0 || k + 1 == axis.cells);
+            let slides_off = borders.into_iter().any(|(axis, _)| !axis.dof.is_rotation());
+            if slides_off { Outcome::Missed } else { Outcome::Jammed }
+        }
+    };
+    (0..basins.len()).map(of).collect()
 }
 
 fn minima(heights: &[f64], near: &[Vec<usize>], rules: Rules) -> (Vec<Option<u32>>, BTreeMap<u32, f64>) {

@@ -8,7 +8,7 @@ use super::neighbourhood::Neighbourhood;
 ///
 /// A cell of a plateau may have no descent: it joins the lowest neighbour that has a basin, in rounds from the
 /// plateau's rim inwards. Among equals the neighbour first in memory counts.
-pub(in super::super) fn assign<H: Height>(heights: &[H], around: &Neighbourhood, labels: &mut [u32]) {
+pub(super) fn assign<H: Height>(heights: &[H], around: &Neighbourhood, labels: &mut [u32]) {
     let mut open: Vec<usize> = (0..labels.len()).filter(|c| !is_basin(labels[*c])).collect();
     open.sort_by(|a, b| heights[*a].into().total_cmp(&heights[*b].into()));
     let mut found = Vec::new();

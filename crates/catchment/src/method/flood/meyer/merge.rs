@@ -52,11 +52,11 @@ pub(super) fn passes<H: Height>(heights: &[H], around: &Neighbourhood, flooded: 
 
 /// What merging makes of the basins.
 #[derive(Debug, Clone, PartialEq)]
-pub(in super::super) struct Merged {
+pub(super) struct Merged {
     /// For every basin number, the number of the basin it ended up in.
-    pub(in super::super) into: Vec<u32>,
+    pub(super) into: Vec<u32>,
     /// For every number still in use: the height of the minimum.
-    pub(in super::super) bottom: Vec<f64>,
+    pub(super) bottom: Vec<f64>,
 }
 
 /// A depth that orders like a number; depths are never NaN.

@@ -12,45 +12,111 @@
 //! 2. Flooding by a priority queue: lowest cell first, first in first out among equals. A cell beside two basins
 //!    becomes a dam and passes no water on.
 //! 3. The shallowest basin below the tolerance joins the basin across its lowest boundary point, again and again.
+//! 4. Dam cells go to the basin of the neighbour of steepest descent.
 //!
-//! It serves the published tables ([`super::dissertation`]) and measures how far [`super::flood`] departs from it.
+//! [`accept`] does all four on an error grid and says what becomes of every cell; [`divide`] does the first three on
+//! heights over any shape, for whoever has conventions of their own for the fourth.
+//!
+//! **Cost:** every cell is taken from the queue once and looks at all its 3ⁿ − 1 neighbours, two or three times: 8 in the
+//! plane, 242 over five errors. One thread, O(N·(3ⁿ + log N)), some 40 bytes per cell beside the heights, and what the passes
+//! between basins take. [`flood`](super::flood) needs a fraction of both.
+//!
+//! **Not guaranteed:** that the accepted set converges as the grid refines, see [`super`]; nor that ties (plateaus, equal
+//! cells in the queue) are broken alike when the axes change their order.
 
+mod accept;
 mod basins;
 pub mod brute;
-#[cfg(test)]
-pub(super) mod dams;
+mod dams;
 mod merge;
 pub(super) mod neighbourhood;
 #[cfg(test)]
 mod tests;
 
-use crate::exec::{Cancelled, Exec};
-pub use basins::Rules;
-pub(super) use basins::{Height, is_basin};
+use super::FloodError;
+use super::drain::LABEL_LIMIT;
+use crate::exec::Exec;
+pub use accept::{Flooding, Settings, accept, bytes};
+pub use basins::{Height, Rules};
+use basins::{OUTSIDE, is_basin};
 use merge::Merged;
 use neighbourhood::Neighbourhood;
 
-/// Every cell's basin, after merging.
-pub(super) struct Parts {
+/// A landscape divided into basins: every cell belongs to one, or is a dam.
+#[derive(Debug, Clone)]
+pub struct Division {
+    around: Neighbourhood,
     /// The basin number of every cell, before merging; dam cells have none.
-    pub(super) labels: Vec<u32>,
+    labels: Vec<u32>,
     /// Where the basins ended up.
-    pub(super) merged: Merged,
+    merged: Merged,
 }
 
-/// Minima, flooding and merging.
-pub(super) fn divide<H: Height>(
+impl Division {
+    /// The number of the merged basin that a cell belongs to; `None` for a dam.
+    ///
+    /// Numbers are those of the minima in the order of their first cells, from 2 on; 1 is the outside. A basin that others
+    /// have joined keeps its own.
+    pub fn basin(&self, cell: usize) -> Option<u32> {
+        let label = self.labels[cell];
+        is_basin(label).then(|| self.merged.into[label as usize])
+    }
+
+    /// Height of the lowest cell of a merged basin; −∞ for the outside.
+    pub fn bottom(&self, basin: u32) -> f64 {
+        self.merged.bottom[basin as usize]
+    }
+
+    /// Whether a basin is that of the cells without contact.
+    pub const fn is_outside(basin: u32) -> bool {
+        basin == OUTSIDE
+    }
+
+    /// The cells around a cell, up to 3ⁿ − 1: in ascending order of their place along the last axis, then along the one
+    /// before.
+    pub fn neighbours(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        self.around.of(cell)
+    }
+
+    /// Gives every dam cell the basin of the neighbour of steepest descent (height difference by distance in cells), the
+    /// lowest cells first; a cell of a plateau joins its lowest neighbour that has a basin. `heights` are those that were
+    /// divided.
+    pub fn give_dams<H: Height>(&mut self, heights: &[H]) {
+        dams::assign(heights, &self.around, &mut self.labels);
+    }
+}
+
+/// Minima, flooding and merging of heights over a grid.
+///
+/// `shape` has the cells per axis, the first running fastest; `heights` one value per cell, −∞ where there is no contact,
+/// never NaN. Minima that hold one of the cells `targets` are one. Basins shallower than `tolerance`, in the unit of the
+/// heights, are merged.
+///
+/// # Errors
+/// When the shape is not that of the heights, there are too many cells, or the computation is cancelled.
+pub fn divide<H: Height>(
+    shape: &[usize],
     heights: &[H],
-    around: &Neighbourhood,
     targets: &[usize],
     tolerance: f64,
     rules: Rules,
     exec: &Exec,
-) -> Result<Parts, Cancelled> {
-    let flooded = basins::flood(heights, around, targets, rules, exec)?;
+) -> Result<Division, FloodError> {
+    let fits = shape.len() <= Neighbourhood::MOST_AXES
+        && neighbourhood::cells(shape) == Some(heights.len())
+        && targets.iter().all(|cell| *cell < heights.len());
+    if !fits {
+        let most_axes = Neighbourhood::MOST_AXES;
+        return Err(FloodError::Shape { shape: shape.to_vec(), heights: heights.len(), most_axes });
+    }
+    if heights.len() >= LABEL_LIMIT as usize {
+        return Err(FloodError::TooManyCells { cells: heights.len() });
+    }
+    let around = Neighbourhood::new(shape);
+    let flooded = basins::flood(heights, &around, targets, rules, exec)?;
     let bottoms =
         flooded.minima.iter().map(|m| m.map_or(f64::INFINITY, |cell| heights[cell].into())).collect();
-    let passes = merge::passes(heights, around, &flooded);
+    let passes = merge::passes(heights, &around, &flooded);
     let merged = merge::merge(bottoms, passes, tolerance);
-    Ok(Parts { labels: flooded.labels, merged })
+    Ok(Division { around, labels: flooded.labels, merged })
 }

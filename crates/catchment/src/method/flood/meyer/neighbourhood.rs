@@ -1,6 +1,7 @@
 //! The full neighbourhood of a cell, 3ⁿ − 1 cells, in a grid of any number of axes.
 
 /// A step to one neighbour.
+#[derive(Debug, Clone)]
 struct Step {
     /// Added to the index of the cell.
     delta: isize,
@@ -10,14 +11,24 @@ struct Step {
     length: f64,
 }
 
-/// The neighbours of every cell of a grid; the first axis runs fastest.
+/// The neighbours of every cell of a grid; the first axis runs fastest. It takes 3ⁿ steps of memory, whatever the
+/// number of cells.
+#[derive(Debug, Clone)]
 pub(in super::super) struct Neighbourhood {
     shape: Vec<usize>,
     steps: Vec<Step>,
 }
 
+/// Cells of a grid; `None` if that overflows.
+pub(super) fn cells(shape: &[usize]) -> Option<usize> {
+    shape.iter().try_fold(1usize, |product, cells| product.checked_mul(*cells))
+}
+
 impl Neighbourhood {
-    /// For a grid of this shape; at most 16 axes.
+    /// Most axes of a grid: two bits each tell which borders a cell lies on.
+    pub(super) const MOST_AXES: usize = 16;
+
+    /// For a grid of this shape, which has at most [`Self::MOST_AXES`] axes.
     pub(in super::super) fn new(shape: &[usize]) -> Self {
         let mut steps = vec![Step { delta: 0, forbidden_at: 0, length: 0.0 }];
         let mut stride = 1isize;

@@ -1,6 +1,11 @@
 //! The fast path against the judge.
 
+use super::super::target;
 use super::*;
+use crate::design::Alignment;
+use crate::exec::Cancelled;
+use crate::landscape::{Grid, GridAxis, Landscape};
+use crate::pose::{Dof, DofSet, Mount};
 use proptest::prelude::*;
 
 fn rules() -> impl Strategy<Value = Rules> {
@@ -36,10 +41,9 @@ fn fast<H: Height>(
     tolerance: f64,
     rules: Rules,
 ) -> Vec<u32> {
-    let around = Neighbourhood::new(shape);
-    let mut parts = divide(heights, &around, targets, tolerance, rules, &Exec::new()).unwrap();
-    dams::assign(heights, &around, &mut parts.labels);
-    parts.labels.iter().map(|l| parts.merged.into[*l as usize]).collect()
+    let mut division = divide(shape, heights, targets, tolerance, rules, &Exec::new()).unwrap();
+    division.give_dams(heights);
+    (0..heights.len()).map(|cell| division.basin(cell).unwrap()).collect()
 }
 
 proptest! {
@@ -51,6 +55,32 @@ proptest! {
             fast(&shape, &heights, &targets, tolerance, rules),
             brute::divide(&shape, &heights, &targets, tolerance, rules)
         );
+    }
+
+    /// Outcomes on an error grid, the mated pose where the design says.
+    #[test]
+    fn outcomes_equal_the_judges(
+        (shape, heights, _, tolerance) in landscapes(),
+        rules in rules(),
+        first in 0..5usize,
+        symmetry in 1..5u32,
+    ) {
+        let dofs: Vec<Dof> = Dof::ALL.into_iter().cycle().skip(first).take(shape.len()).collect();
+        let free: DofSet = dofs.iter().copied().collect();
+        let alignment = Alignment { symmetry, ..Alignment::new(free, Mount::X) };
+        let axis = |(dof, cells): (&Dof, &usize)| {
+            let half = alignment.half_range(*dof);
+            GridAxis { dof: *dof, lo: -half, hi: half, cells: *cells }
+        };
+        let grid = Grid { axes: dofs.iter().zip(&shape).map(axis).collect() };
+        let targets = target::cells(&grid, &alignment);
+        let single: Vec<f32> = heights.iter().map(|h| *h as f32).collect();
+        let landscape = Landscape { grid: grid.clone(), heights: single };
+        let settings = Settings { depth_tolerance: Some(tolerance), rules };
+        let found = accept(&landscape, &alignment, &settings, &Exec::new()).unwrap();
+        let basins = brute::divide(&shape, &heights, &targets, tolerance, rules);
+        let judged = brute::outcomes(&grid, &heights, &targets, &basins, tolerance);
+        prop_assert_eq!(found.acceptance.outcomes, judged);
     }
 
     #[test]
@@ -74,4 +104,33 @@ proptest! {
         prop_assert!(basins(tolerance + 1.0) <= basins(tolerance));
         prop_assert!(basins(f64::INFINITY) <= 1 + usize::from(heights.contains(&f64::NEG_INFINITY)));
     }
+}
+
+#[test]
+fn what_cannot_be_divided_is_refused() {
+    let refused = |shape: &[usize], targets: &[usize]| {
+        divide(shape, &[0.0; 6], targets, 0.0, Rules::default(), &Exec::new()).unwrap_err()
+    };
+    for (shape, targets) in
+        [(&[2, 2][..], &[][..]), (&[6, usize::MAX, 2], &[]), (&[2, 3], &[6]), (&[1; 17], &[])]
+    {
+        assert!(matches!(refused(shape, targets), FloodError::Shape { heights: 6, .. }), "{shape:?}");
+    }
+    let exec = Exec::new();
+    exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    let cancelled = divide(&[6], &[0.0; 6], &[], 0.0, Rules::default(), &exec).unwrap_err();
+    assert_eq!(cancelled, FloodError::Cancelled(Cancelled));
+}
+
+#[test]
+fn what_cannot_be_flooded_is_refused() {
+    let alignment = Alignment::new([Dof::X].into_iter().collect(), Mount::X);
+    let grid = Grid::over(&alignment, |_| 3);
+    let landscape = Landscape { grid, heights: vec![1.0, 0.0, 1.0] };
+    let with = |settings, exec: &Exec| accept(&landscape, &alignment, &settings, exec);
+    let bad = with(Settings::with_tolerance(f64::NAN), &Exec::new());
+    assert!(matches!(bad, Err(FloodError::Tolerance { .. })));
+    let little = Exec::new().with_memory_budget(10);
+    assert!(matches!(with(Settings::default(), &little), Err(FloodError::OutOfBudget(_))));
+    assert_eq!(with(Settings::default(), &Exec::new()).unwrap().acceptance.counts(), [3, 0, 0, 0]);
 }

@@ -1,7 +1,7 @@
 //! The designs that methods are compared on.
 
-use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
-use crate::pose::Dof;
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use catchment::pose::Dof;
 
 /// One design, and how finely it is decided.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,9 @@
 //! All comparisons as a page of the documentation.
 
 use super::text::significant;
-use super::{Entry, HELD, TableComparison, resolution};
+use crate::study::reproduce::{Entry, TableComparison};
+use crate::study::resolution;
+use crate::tables::HELD;
 use std::fmt::{self, Write};
 
 const HEAD: &str = "\

@@ -16,13 +16,13 @@
 //! - **Dams**: in the plane a dam cell goes to the neighbouring basin whose labelled cell is lowest, but never to one
 //!   that reaches below the docking height; in space dam cells count for no basin. (The text: steepest descent.)
 
-use super::meyer::neighbourhood::Neighbourhood;
-use super::meyer::{Height, Parts, Rules, divide, is_basin};
-use crate::connector::{Connector, Problem};
-use crate::contact::{Lattice, Pair};
-use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
-use crate::exec::{Cancelled, Exec};
-use crate::pose::{Dof, DofSet, Mount};
+use catchment::connector::{Connector, Problem};
+use catchment::contact::{Lattice, Pair};
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use catchment::exec::{Cancelled, Exec};
+use catchment::method::flood::FloodError;
+use catchment::method::flood::meyer::{self, Division, Rules};
+use catchment::pose::{Dof, DofSet, Mount};
 use glam::DMat3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -92,6 +92,9 @@ pub enum DissertationError {
         /// What is wrong with it.
         problems: Vec<Problem>,
     },
+    /// The samples cannot be flooded.
+    #[error(transparent)]
+    Flood(#[from] FloodError),
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -252,38 +255,31 @@ pub fn accept(settings: &Settings, exec: &Exec) -> Result<Sampled, DissertationE
     let samples = Samples::of(settings.errors, settings.planar_samples.max(2));
     let heights = samples.heights(&pair, exec)?;
     let shape = samples.shape();
-    let around = Neighbourhood::new(&shape);
     let planar = settings.errors == Errors::XTheta;
     let rules = Rules { flat_cells_are_minima: !planar, dams_pass_water_on: true };
-    let parts = divide(&heights, &around, &[samples.mated], settings.depth_tolerance, rules, exec)?;
-    let accepted = accepted(&heights, &around, samples.mated, &parts, planar);
+    let targets = [samples.mated];
+    let division = meyer::divide(&shape, &heights, &targets, settings.depth_tolerance, rules, exec)?;
+    let accepted = accepted(&heights, samples.mated, &division, planar);
     Ok(Sampled { shape, accepted, cell_measure: samples.cell_measure })
 }
 
 /// Whether each sample belongs to the basin of the mated one; dam cells only if `dams_count`.
-fn accepted<H: Height>(
-    heights: &[H],
-    around: &Neighbourhood,
-    mated: usize,
-    parts: &Parts,
-    dams_count: bool,
-) -> Vec<bool> {
-    let Parts { labels, merged } = parts;
-    let basin = |cell: usize| is_basin(labels[cell]).then(|| merged.into[labels[cell] as usize]);
-    let Some(target) = basin(mated) else { return vec![false; labels.len()] };
-    let docking: f64 = heights[mated].into();
-    let inside = |basin: u32| merged.bottom[basin as usize] >= docking;
+fn accepted(heights: &[f64], mated: usize, division: &Division, dams_count: bool) -> Vec<bool> {
+    let Some(target) = division.basin(mated) else { return vec![false; heights.len()] };
+    let docking = heights[mated];
+    let inside = |basin: u32| division.bottom(basin) >= docking;
     let lowest_inside = |cell: usize| {
-        around
-            .of(cell)
-            .filter_map(|near| Some((basin(near)?, near)))
+        division
+            .neighbours(cell)
+            .filter_map(|near| Some((division.basin(near)?, near)))
             .filter(|(basin, _)| inside(*basin))
             .reduce(|best, next| if heights[next.1] < heights[best.1] { next } else { best })
             .map(|(basin, _)| basin)
     };
-    (0..labels.len())
+    (0..heights.len())
         .map(|cell| {
-            basin(cell).or_else(|| if dams_count { lowest_inside(cell) } else { None }) == Some(target)
+            division.basin(cell).or_else(|| if dams_count { lowest_inside(cell) } else { None })
+                == Some(target)
         })
         .collect()
 }

@@ -1,6 +1,6 @@
 //! A comparison as aligned text.
 
-use super::{Entry, TableComparison};
+use crate::study::reproduce::{Entry, TableComparison};
 use std::fmt;
 
 /// How a block shows an entry.

@@ -9,16 +9,15 @@
 //!
 //! Samples or cells per axis N over x in ±2 D and θ in ±90°. Seconds are wall-clock time and differ between runs.
 
-use super::recipe::{PLANAR_BASE, design};
-use super::{RHO, ReproduceError};
-use crate::design::{Design, Family};
-use crate::exec::Exec;
-use crate::method::Method;
-use crate::method::correction::{self, Stop};
-use crate::method::flood::dissertation::{self, Errors};
-use crate::pose::Dof;
-use crate::problem::Problem;
-use crate::study::refinement::Sampled;
+use crate::recipe::dissertation::{self, Errors};
+use crate::recipe::{PLANAR_BASE, RHO, RecipeError, design};
+use catchment::design::{Design, Family};
+use catchment::exec::Exec;
+use catchment::method::Method;
+use catchment::method::correction::{self, Stop};
+use catchment::pose::Dof;
+use catchment::problem::Problem;
+use catchment::study::refinement::Sampled;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -87,8 +86,8 @@ const PRESET: &str = "dissertation's";
 ///
 /// # Errors
 /// When it is cancelled, or does not fit into memory.
-pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
-    let failed = |error: &dyn std::error::Error| ReproduceError::Exact { reason: error.to_string() };
+pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, RecipeError> {
+    let failed = |error: &dyn std::error::Error| RecipeError::Exact { reason: error.to_string() };
     let preset = dissertation::Settings::new(Family::VFace, Errors::XTheta, ASPECT_RATIO, COR);
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
     let cor = preset.center_of_rotation();
@@ -121,7 +120,7 @@ pub fn run(settings: &Settings, exec: &Exec) -> Result<Found, ReproduceError> {
         curves.push(curve);
     }
     let Some(finest) = finest else {
-        return Err(ReproduceError::Exact { reason: "no resolution was asked for".to_owned() });
+        return Err(RecipeError::Exact { reason: "no resolution was asked for".to_owned() });
     };
     let sample = correction::Settings { seed: settings.seed, stop: Stop::Samples(settings.descents) };
     let exact = finest.correct(&problem, &sample, exec).map_err(|error| failed(&error))?;

@@ -14,19 +14,18 @@
 //! Not promised: a share of 100 repeats is itself known to ± 4 % only.
 
 use super::accuracy::Case;
-use crate::acceptance::{Domain, Outcome};
-use crate::connector::Connector;
-use crate::contact::Pair;
-use crate::design::Family;
-use crate::exec::{Cancelled, Exec, OutOfBudget};
-use crate::landscape::Grid;
-use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop, Stratify, Z95};
-use crate::method::descent;
-use crate::method::transport::{self, TransportError};
-use crate::pose::Dof;
+use catchment::acceptance::{Domain, Outcome};
+use catchment::connector::Connector;
+use catchment::contact::Pair;
+use catchment::design::Family;
+use catchment::exec::{Cancelled, Exec, OutOfBudget};
+use catchment::landscape::Grid;
+use catchment::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop, Stratify, Z95};
+use catchment::method::descent;
+use catchment::method::transport::{self, TransportError};
+use catchment::pose::Dof;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::fmt;
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -234,35 +233,6 @@ impl Trial<'_> {
             half_width: mean(&|c| (c.ci95[1] - c.ci95[0]) / 2.0 / measure) / exact,
             worth: exact * (1.0 - exact) / (variance * mean(&|c| c.descents as f64)),
         })
-    }
-}
-
-impl fmt::Display for Coverage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Settings { repeats, descents, exact } = self.settings;
-        writeln!(
-            f,
-            "Coverage: {repeats} intervals of {descents} descents each, against {exact} plain descents"
-        )?;
-        writeln!(
-            f,
-            "  design                        strata      accepted          held    bias   ± of Sum  worth"
-        )?;
-        for r in &self.rows {
-            writeln!(
-                f,
-                "  {:<28}  {:<10}  {:.4} ± {:.4}  {:>4.0} %  {:+.2} %  {:>7.2} %  {:>5.1}",
-                r.design,
-                r.strata,
-                r.exact,
-                r.exact_error,
-                100.0 * r.held,
-                100.0 * r.bias,
-                100.0 * r.half_width,
-                r.worth,
-            )?;
-        }
-        Ok(())
     }
 }
 

@@ -1,9 +1,9 @@
 //! Published numbers, with a ratchet: an entry that is listed as not matching must not match.
 
-use super::recipe::Recipe;
 use super::*;
-use crate::method::flood::dissertation::Errors;
-use crate::method::kinematic::START_MEASURE;
+use crate::recipe::Recipe;
+use crate::recipe::dissertation::Errors;
+use catchment::method::kinematic::START_MEASURE;
 
 fn comparison(table: &str) -> TableComparison {
     reproduce(table, &Settings::default(), &Exec::new()).unwrap()
@@ -80,17 +80,10 @@ fn an_unknown_table_lists_the_known_ones() {
     );
 }
 
-#[test]
-fn the_text_marks_what_does_not_match_and_says_why() {
-    let text = comparison("5.6").to_string();
-    assert!(text.contains("as printed: 24 of 25"), "{text}");
-    assert!(text.contains("1.129*") && text.contains("* (0.5, 0): the square is one cell larger"), "{text}");
-}
-
 /// The text's mean for S does not follow from its own tables, that for V does.
 #[test]
 fn the_means_over_the_kinematic_tables_are_those_of_the_printed_ones() {
-    let table = TABLES.iter().find(|t| t.name == "3.2").unwrap();
+    let table = Table::of("3.2").unwrap();
     let entry = |published: &f64| Entry {
         published: *published,
         ours: Some(2.0 * published),
@@ -101,7 +94,7 @@ fn the_means_over_the_kinematic_tables_are_those_of_the_printed_ones() {
         exact: None,
         exact_ratio: None,
     };
-    let entries: Vec<Entry> = published::read(table).unwrap().values.concat().iter().map(entry).collect();
+    let entries: Vec<Entry> = table.published().unwrap().values.concat().iter().map(entry).collect();
     for (other, mean) in [("3.3", 1.8837), ("3.4", 2.2965)] {
         let [printed, ours] = mean_ratio(&entries, other).unwrap();
         assert!((printed - mean).abs() < 5e-5 && (ours - 2.0 * printed).abs() < 1e-12);
@@ -123,17 +116,9 @@ fn tables_of_the_partition_have_both_values() {
     let table = comparison("5.2");
     assert_eq!((table.summary.computed, table.summary.as_printed), (25, 3));
     // H/D 1, COR 1: the rotation point is the apex.
-    let exact = Recipe::Partition(crate::design::Family::VFace).exact(2, 4, &Exec::new()).unwrap().unwrap();
-    let other = Recipe::Sum(crate::design::Family::VFace, Errors::XTheta);
+    let exact =
+        Recipe::Partition(catchment::design::Family::VFace).exact(2, 4, &Exec::new()).unwrap().unwrap();
+    let other = Recipe::Sum(catchment::design::Family::VFace, Errors::XTheta);
     assert_eq!(Some(exact), other.exact(2, 4, &Exec::new()).unwrap());
     assert!(exact.value > 2.0 && exact.value < 3.5, "{exact:?}");
-}
-
-#[test]
-fn the_page_has_every_table_and_what_is_left_out() {
-    let tables = [comparison("3.3"), comparison("5.2"), comparison("5.6")];
-    let page = page(&tables, None, "It took no time.").unwrap();
-    for words in ["## 3.3:", "## 5.2:", "0.3828 / 0.3355", "measured forces", "(1.13\\*)", "| 3.3 V-Face"] {
-        assert!(page.contains(words), "{words}: {page}");
-    }
 }

@@ -10,15 +10,14 @@
 //! out of all methods alike.
 
 mod cases;
-mod text;
 
 pub use cases::{CASES, Case};
 
-use super::refinement::{RefinementError, Sampled};
-use crate::exec::Exec;
-use crate::method::Method;
-use crate::method::correction::{self, Stop};
-use crate::problem::{Problem, ProblemError};
+use catchment::exec::Exec;
+use catchment::method::Method;
+use catchment::method::correction::{self, Stop};
+use catchment::problem::{Problem, ProblemError};
+use catchment::study::refinement::{RefinementError, Sampled};
 use serde::{Serialize, Serializer};
 use std::time::Instant;
 
@@ -144,7 +143,8 @@ pub fn run(cases: &[Case], exec: &Exec) -> Result<Accuracy, AccuracyError> {
 
 fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
     let design = case.design();
-    let unfit = |problem: ProblemError| AccuracyError::Geometry { name: case.name(), problem: problem.to_string() };
+    let unfit =
+        |problem: ProblemError| AccuracyError::Geometry { name: case.name(), problem: problem.to_string() };
     let problem = Problem::of(design).map_err(unfit)?;
     let mut entries = Vec::new();
     let mut finest = None;
@@ -177,7 +177,12 @@ fn row(case: &Case, exec: &Exec) -> Result<Row, AccuracyError> {
 
 impl Entry {
     /// The grid's own Sum; its error is not known yet.
-    fn of(sampled: &Sampled, method: &Method, problem: &Problem, exec: &Exec) -> Result<Self, RefinementError> {
+    fn of(
+        sampled: &Sampled,
+        method: &Method,
+        problem: &Problem,
+        exec: &Exec,
+    ) -> Result<Self, RefinementError> {
         let found = sampled.refinement(problem, exec)?;
         Ok(Self {
             way: Way::Grid(method.clone()),
@@ -191,7 +196,12 @@ impl Entry {
     }
 
     /// The same grid, corrected.
-    fn corrected(sampled: &Sampled, method: &Method, problem: &Problem, exec: &Exec) -> Result<Self, RefinementError> {
+    fn corrected(
+        sampled: &Sampled,
+        method: &Method,
+        problem: &Problem,
+        exec: &Exec,
+    ) -> Result<Self, RefinementError> {
         let started = Instant::now();
         let descents = method.default_samples(problem.pair());
         let settings = correction::Settings { seed: SEEDS[1], stop: Stop::Samples(descents) };

@@ -11,22 +11,13 @@
 //! ([`Exact`]).
 //!
 //! The kinematic bounds (3.3, 3.4) are exact reproductions. The discrete tables (5.4 to 5.9) are computed with conventions that were
-//! fitted to these very tables ([`crate::method::flood::dissertation`]): agreement shows that the conventions are
+//! fitted to these very tables ([`crate::recipe::dissertation`]): agreement shows that the conventions are
 //! understood, not that the numbers are right as physics.
 
-mod markdown;
-mod published;
-mod recipe;
-pub mod resolution;
-mod tables;
-mod text;
-
-pub use markdown::page;
-pub use recipe::{Exact, RHO};
-pub use tables::{HELD, Held, TABLES, Table};
-
-use crate::exec::{Cancelled, Exec};
-use crate::method::flood::dissertation::DissertationError;
+use crate::published::PublishedError;
+use crate::recipe::{self, Exact, RHO, RecipeError};
+use crate::tables::{TABLES, Table};
+use catchment::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -117,22 +108,11 @@ pub enum ReproduceError {
         name: String,
     },
     /// A published table does not read as a table.
-    #[error("the published table {table} cannot be read: {reason}")]
-    Published {
-        /// Which table.
-        table: &'static str,
-        /// What is wrong.
-        reason: String,
-    },
+    #[error(transparent)]
+    Published(#[from] PublishedError),
     /// An entry cannot be computed.
     #[error(transparent)]
-    Entry(#[from] DissertationError),
-    /// An exact value cannot be computed.
-    #[error("no exact value: {reason}")]
-    Exact {
-        /// Why.
-        reason: String,
-    },
+    Entry(#[from] RecipeError),
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -142,24 +122,21 @@ fn known() -> String {
     TABLES.iter().map(|t| t.name).collect::<Vec<_>>().join(", ")
 }
 
-/// An entry's value by the same method, and its exact one.
-type Found = (Option<f64>, Option<Exact>);
-
 /// Computes a published table and sets it beside the printed one.
 ///
 /// # Errors
 /// When there is no such table (the message lists those there are), or the computation is cancelled.
 pub fn reproduce(table: &str, settings: &Settings, exec: &Exec) -> Result<TableComparison, ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: table.to_owned() };
-    let table = TABLES.iter().find(|t| t.name == table).ok_or_else(unknown)?;
-    let published = published::read(table)?;
+    let table = Table::of(table).ok_or_else(unknown)?;
+    let published = table.published()?;
     let columns = published.columns.len();
-    let rows: Vec<Vec<Found>> = exec.install(|| {
+    let rows: Vec<Vec<recipe::Entry>> = exec.install(|| {
         let row = |row: usize| table.recipe.row(row, columns, settings.exact, exec);
         (0..published.rows.len()).into_par_iter().map(row).collect::<Result<_, _>>()
     })?;
-    let found: Vec<Found> = rows.into_iter().flatten().collect();
-    let entry = |(k, &(ours, exact)): (usize, &Found)| {
+    let found: Vec<recipe::Entry> = rows.into_iter().flatten().collect();
+    let entry = |(k, &(ours, exact)): (usize, &recipe::Entry)| {
         let (row, column) = (k / columns, k % columns);
         let printed = published.values[row][column];
         Entry {
@@ -220,8 +197,7 @@ fn mean_ratios(x_face: &[Entry]) -> Result<Vec<String>, ReproduceError> {
 /// Mean over all entries of the X-Face over another face: printed, ours.
 fn mean_ratio(x_face: &[Entry], other: &str) -> Result<[f64; 2], ReproduceError> {
     let unknown = || ReproduceError::Unknown { name: other.to_owned() };
-    let table = TABLES.iter().find(|t| t.name == other).ok_or_else(unknown)?;
-    let values = published::read(table)?.values.concat();
+    let values = Table::of(other).ok_or_else(unknown)?.published()?.values.concat();
     let of = |value: &dyn Fn(&Entry) -> f64| {
         x_face.iter().zip(&values).map(|(entry, other)| value(entry) / other).sum::<f64>()
             / values.len() as f64

@@ -1,9 +1,10 @@
 //! Which tables can be reproduced, how, and where they are known to differ.
 
-use super::recipe::Recipe;
-use crate::design::Family;
-use crate::method::flood::dissertation::Errors;
-use crate::method::kinematic::Face;
+use crate::published::{self, Published, PublishedError};
+use crate::recipe::Recipe;
+use crate::recipe::dissertation::Errors;
+use catchment::design::Family;
+use catchment::method::kinematic::Face;
 
 /// A table that can be reproduced.
 #[derive(Debug, Clone, Copy)]
@@ -14,14 +15,17 @@ pub struct Table {
     pub title: &'static str,
     /// Unit of its values.
     pub unit: &'static str,
-    pub(super) column_name: &'static str,
-    pub(super) csv: &'static str,
+    /// What the columns are.
+    pub column_name: &'static str,
+    csv: &'static str,
     /// Relative error within which an entry matches; 0 where integer counts must agree; `None` where nothing is promised:
     /// the two stand beside each other.
-    pub(super) tolerance: Option<f64>,
-    pub(super) recipe: Recipe,
+    pub tolerance: Option<f64>,
+    /// How its entries are computed.
+    pub recipe: Recipe,
     known: &'static [Known],
-    pub(super) notes: &'static [&'static str],
+    /// What a reader must know.
+    pub notes: &'static [&'static str],
 }
 
 /// Something published that is held but not computed.
@@ -63,8 +67,21 @@ pub const HELD: &[Held] = &[
 type Known = (usize, usize, &'static str);
 
 impl Table {
+    /// The table of a name.
+    pub fn of(name: &str) -> Option<&'static Self> {
+        TABLES.iter().find(|table| table.name == name)
+    }
+
+    /// The printed numbers.
+    ///
+    /// # Errors
+    /// When the committed file is no table.
+    pub fn published(&self) -> Result<Published, PublishedError> {
+        published::read(self.name, self.csv)
+    }
+
     /// Whether two values agree within the table's tolerance; `None` where nothing is promised.
-    pub(super) fn matches(&self, published: f64, ours: f64) -> Option<bool> {
+    pub fn matches(&self, published: f64, ours: f64) -> Option<bool> {
         self.tolerance.map(|tolerance| {
             if tolerance == 0.0 {
                 self.recipe.agree(published, ours)
@@ -75,14 +92,14 @@ impl Table {
     }
 
     /// Why an entry is known not to match.
-    pub(super) fn known_difference(&self, row: usize, column: usize) -> Option<&'static str> {
+    pub fn known_difference(&self, row: usize, column: usize) -> Option<&'static str> {
         self.known.iter().find(|k| (k.0, k.1) == (row, column)).map(|k| k.2)
     }
 }
 
 macro_rules! published {
     ($file:literal) => {
-        include_str!(concat!("../../../../../reference/dissertation/", $file, ".csv"))
+        include_str!(concat!("../../../reference/dissertation/", $file, ".csv"))
     };
 }
 

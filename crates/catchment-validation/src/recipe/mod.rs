@@ -8,23 +8,24 @@
 //!
 //! Exact means frictionless, quasi-static and overdamped with ρ = [`RHO`], which the dissertation leaves open.
 
-use super::{Found, ReproduceError};
-use crate::acceptance::{Acceptance, Domain, Outcome};
-use crate::connector::Connector;
-use crate::contact::Pair;
-use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
-use crate::exec::Exec;
-use crate::landscape::{Grid, GridAxis};
-use crate::merit::brute::largest_cube;
-use crate::merit::onaa::Onaa;
-use crate::method::correction::{self, ByFraction, Stop};
-use crate::method::descent;
-use crate::method::flood::dissertation::{self, Errors};
-use crate::method::kinematic::{self, Face};
-use crate::method::partition;
-use crate::method::transport;
-use crate::method::zraa::{self, Zraa};
-use crate::pose::{Dof, DofSet, PoseError};
+pub mod dissertation;
+
+use self::dissertation::{DissertationError, Errors};
+use catchment::acceptance::{Acceptance, Domain, Outcome};
+use catchment::connector::Connector;
+use catchment::contact::Pair;
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use catchment::exec::{Cancelled, Exec};
+use catchment::landscape::{Grid, GridAxis};
+use catchment::merit::brute::largest_cube;
+use catchment::merit::onaa::Onaa;
+use catchment::method::correction::{self, ByFraction, Stop};
+use catchment::method::descent;
+use catchment::method::kinematic::{self, Face};
+use catchment::method::partition;
+use catchment::method::transport;
+use catchment::method::zraa::{self, Zraa};
+use catchment::pose::{Dof, DofSet, PoseError};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -34,7 +35,7 @@ pub const RHO: f64 = 0.5;
 
 /// What to compute.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Recipe {
+pub enum Recipe {
     /// Starts that slide home, by the kinematic method.
     Kinematic(Face),
     /// Sum by the polyhedral partition.
@@ -47,6 +48,26 @@ pub(super) enum Recipe {
     Zraa,
     /// Slices of the 3-D X-Face by drop tests: the first column is the Sum, the second the ONAA edge.
     Slices,
+}
+
+/// An entry's value by the same method, and its exact one.
+pub type Entry = (Option<f64>, Option<Exact>);
+
+/// Why an entry cannot be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RecipeError {
+    /// The preset cannot.
+    #[error(transparent)]
+    Dissertation(#[from] DissertationError),
+    /// There is no exact value.
+    #[error("no exact value: {reason}")]
+    Exact {
+        /// Why.
+        reason: String,
+    },
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// An exact value.
@@ -75,7 +96,7 @@ const SLICE: usize = 71;
 
 impl Recipe {
     /// The method's name.
-    pub(super) const fn method(self) -> &'static str {
+    pub const fn method(self) -> &'static str {
         match self {
             Self::Kinematic(_) => "kinematic",
             Self::Partition(_) => "partition",
@@ -86,7 +107,7 @@ impl Recipe {
     }
 
     /// What the rows are.
-    pub(super) const fn row_name(self) -> &'static str {
+    pub const fn row_name(self) -> &'static str {
         match self {
             Self::Zraa => "system",
             Self::Slices => "slice",
@@ -94,14 +115,17 @@ impl Recipe {
         }
     }
 
-    /// Our values and the exact ones of a row of entries.
-    pub(super) fn row(
+    /// Our values and, if asked for, the exact ones of a row of entries.
+    ///
+    /// # Errors
+    /// See [`RecipeError`].
+    pub fn row(
         self,
         row: usize,
         columns: usize,
         exact: bool,
         exec: &Exec,
-    ) -> Result<Vec<Found>, ReproduceError> {
+    ) -> Result<Vec<Entry>, RecipeError> {
         if matches!(self, Self::Slices) {
             let ours = dropped(row, exec)?;
             let exact = if exact { Some(slice(row, followed_exactly, exec)?) } else { None };
@@ -122,7 +146,7 @@ impl Recipe {
 
     /// Our value of one entry by the method that the table was made with; `None` where that method, or the geometry, is
     /// not there.
-    fn compute(self, row: usize, column: usize, exec: &Exec) -> Result<Option<f64>, ReproduceError> {
+    fn compute(self, row: usize, column: usize, exec: &Exec) -> Result<Option<f64>, RecipeError> {
         exec.check()?;
         Ok(match self {
             Self::Kinematic(face) => {
@@ -146,12 +170,10 @@ impl Recipe {
 
     /// The exact value of one entry; `None` where there is no such thing: the rotation point of the kinematic method keeps
     /// its x, which is another problem, and zero-rotation areas are exact already.
-    pub(super) fn exact(
-        self,
-        row: usize,
-        column: usize,
-        exec: &Exec,
-    ) -> Result<Option<Exact>, ReproduceError> {
+    ///
+    /// # Errors
+    /// See [`RecipeError`].
+    pub fn exact(self, row: usize, column: usize, exec: &Exec) -> Result<Option<Exact>, RecipeError> {
         exec.check()?;
         Ok(match self {
             Self::Kinematic(_) | Self::Zraa | Self::Slices => None,
@@ -169,7 +191,7 @@ impl Recipe {
     }
 
     /// Whether two values agree as the integers they stand for, or to the three printed digits.
-    pub(super) fn agree(self, published: f64, ours: f64) -> bool {
+    pub fn agree(self, published: f64, ours: f64) -> bool {
         let count = |value: f64| match self {
             Self::Kinematic(_) => (value / kinematic::START_MEASURE).round(),
             _ => (value / PLANAR_CELL).sqrt().round(),
@@ -185,9 +207,9 @@ impl Recipe {
 
     /// The Sum of a pyramid: a grid by transport, corrected. A pyramid is its own image with x and y exchanged, which turns
     /// the dissertation's (x; pitch about x, roll about y) into (y; pitch about y, roll about x).
-    fn corrected(self, row: usize, column: usize, exec: &Exec) -> Result<Exact, ReproduceError> {
+    fn corrected(self, row: usize, column: usize, exec: &Exec) -> Result<Exact, RecipeError> {
         let Self::Sum(family, errors) = self else {
-            return Err(ReproduceError::Exact { reason: "no such table".to_owned() });
+            return Err(RecipeError::Exact { reason: "no such table".to_owned() });
         };
         let free: DofSet = match errors {
             Errors::XPitchRoll => [Dof::Y, Dof::Roll, Dof::Pitch].into_iter().collect(),
@@ -214,12 +236,12 @@ fn settings(family: Family, errors: Errors, row: usize, column: usize) -> disser
     dissertation::Settings::new(family, errors, ASPECT_RATIOS[row], CORS[column])
 }
 
-fn failed<E: std::error::Error>(error: E) -> ReproduceError {
-    ReproduceError::Exact { reason: error.to_string() }
+fn failed<E: std::error::Error>(error: E) -> RecipeError {
+    RecipeError::Exact { reason: error.to_string() }
 }
 
 /// A family with the x and y of its error box large enough for the tables.
-pub(super) fn design(
+pub(crate) fn design(
     family: Family,
     aspect_ratio: f64,
     base_thickness: Option<f64>,
@@ -248,19 +270,19 @@ fn pair(
     base_thickness: Option<f64>,
     cor: f64,
     free: DofSet,
-) -> Result<Pair, ReproduceError> {
+) -> Result<Pair, RecipeError> {
     let design = design(family, aspect_ratio, base_thickness, cor, free);
-    let reason = |problems: Vec<crate::connector::Problem>| ReproduceError::Exact {
+    let reason = |problems: Vec<catchment::connector::Problem>| RecipeError::Exact {
         reason: problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
     };
     Ok(Pair::new(&Connector::build(&design).map_err(reason)?, &design.alignment))
 }
 
 /// Thickness of the block behind both planar faces of chapter 5, in D.
-pub(super) const PLANAR_BASE: f64 = 0.5;
+pub(crate) const PLANAR_BASE: f64 = 0.5;
 
 /// Whether each of a planar table's own samples docks, followed exactly; x of the rotation point runs fastest.
-fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Vec<bool>, ReproduceError> {
+fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Vec<bool>, RecipeError> {
     let settings = settings(family, Errors::XTheta, row, column);
     let cor = settings.center_of_rotation();
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
@@ -278,7 +300,7 @@ fn followed(family: Family, row: usize, column: usize, exec: &Exec) -> Result<Ve
 }
 
 /// The Sum of a planar face by the partition with the dissertation's own settings: 12 slices, and no strips.
-fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result<f64, ReproduceError> {
+fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result<f64, RecipeError> {
     const AS_PUBLISHED: partition::Settings = partition::Settings { slices: 12, strips: 1 };
     let settings = settings(family, Errors::XTheta, row, column);
     let free = [Dof::X, Dof::Pitch].into_iter().collect();
@@ -288,7 +310,7 @@ fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result
 }
 
 /// Zero-rotation areas of the systems of table 2.1 whose geometry is known, by row; widths are 1.
-fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, ReproduceError> {
+fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, RecipeError> {
     /// A pin of radius 2 mm on a face of 50 mm finds its hole from that far.
     const POLYBOT: f64 = 2.0 / 50.0;
     /// Radius of the circle from which the four cones and funnels find each other.
@@ -310,16 +332,16 @@ fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, ReproduceError>
 }
 
 /// Outcomes of the cells of a grid.
-type Decide = fn(&Pair, Grid, &Exec) -> Result<Acceptance, ReproduceError>;
+type Decide = fn(&Pair, Grid, &Exec) -> Result<Acceptance, RecipeError>;
 
-fn followed_exactly(pair: &Pair, grid: Grid, exec: &Exec) -> Result<Acceptance, ReproduceError> {
+fn followed_exactly(pair: &Pair, grid: Grid, exec: &Exec) -> Result<Acceptance, RecipeError> {
     Ok(descent::run(pair, Domain::Grid(grid), &descent::Settings::default(), exec)?.0)
 }
 
 /// The same slice by drop tests; `None` without the engine.
 #[cfg(feature = "drop")]
-fn dropped(row: usize, exec: &Exec) -> Result<Option<[f64; 2]>, ReproduceError> {
-    use crate::method::drop;
+fn dropped(row: usize, exec: &Exec) -> Result<Option<[f64; 2]>, RecipeError> {
+    use catchment::method::drop;
     let decide: Decide = |pair, grid, exec| {
         let (acceptance, _) =
             drop::run(pair, Domain::Grid(grid), &drop::Settings::default(), exec).map_err(failed)?;
@@ -329,20 +351,20 @@ fn dropped(row: usize, exec: &Exec) -> Result<Option<[f64; 2]>, ReproduceError> 
 }
 
 #[cfg(not(feature = "drop"))]
-fn dropped(_: usize, exec: &Exec) -> Result<Option<[f64; 2]>, ReproduceError> {
+fn dropped(_: usize, exec: &Exec) -> Result<Option<[f64; 2]>, RecipeError> {
     exec.check()?;
     Ok(None)
 }
 
 /// A slice of the 3-D X-Face over ± D and ± 90°, all free: its Sum as a share of the plane, and its ONAA edge. The centre of mass of
 /// the published model is not stated: the rotation point is the face centre here.
-fn slice(row: usize, decide: Decide, exec: &Exec) -> Result<[f64; 2], ReproduceError> {
+fn slice(row: usize, decide: Decide, exec: &Exec) -> Result<[f64; 2], RecipeError> {
     const SECOND: [Dof; 4] = [Dof::Y, Dof::Roll, Dof::Pitch, Dof::Yaw];
     let family = Family::XFace3d;
     let mut design = design(family, FamilySpec::new(family).aspect_ratio(), None, 0.0, DofSet::ALL);
     design.alignment.half_ranges = Alignment::DEFAULT_HALF_RANGES;
     let connector =
-        Connector::build(&design).map_err(|_| ReproduceError::Exact { reason: family.name().to_owned() })?;
+        Connector::build(&design).map_err(|_| RecipeError::Exact { reason: family.name().to_owned() })?;
     let pair = Pair::new(&connector, &design.alignment);
     let axis = |dof: Dof| {
         let half = pair.alignment.half_range(dof);

@@ -1,6 +1,6 @@
 //! The table for people: as text, as a page of the documentation, as records.
 
-use super::{Accuracy, Entry, Row, Way};
+use crate::study::accuracy::{Accuracy, Entry, Row, Way};
 use std::fmt::{self, Write};
 
 impl Row {
@@ -134,10 +134,10 @@ fn percent(share: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CASES, Case, run};
-    use crate::design::Family;
-    use crate::exec::Exec;
-    use crate::pose::Dof;
+    use crate::study::accuracy::{CASES, Case, Way, run};
+    use catchment::design::Family;
+    use catchment::exec::Exec;
+    use catchment::pose::Dof;
 
     #[test]
     fn the_list_covers_what_it_says() {
@@ -161,7 +161,7 @@ mod tests {
             free: &[Dof::X],
         };
         let table = run(&[case], &Exec::new()).unwrap();
-        let ways = super::Way::all().len();
+        let ways = Way::all().len();
         assert_eq!(table.rows[0].entries.len(), 3 * ways);
         assert!(table.rows[0].entries.iter().all(|e| e.error.abs() < 0.05), "{table:?}");
         let (text, page) = (table.to_string(), table.markdown("In no time.").unwrap());

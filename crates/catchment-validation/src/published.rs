@@ -1,23 +1,38 @@
 //! The printed tables, as data.
 
-use super::{ReproduceError, Table};
-
 /// A printed table.
-pub(super) struct Published {
-    pub(super) rows: Vec<String>,
-    pub(super) columns: Vec<String>,
-    pub(super) values: Vec<Vec<f64>>,
+#[derive(Debug, Clone, PartialEq)]
+pub struct Published {
+    /// Names or values of the rows.
+    pub rows: Vec<String>,
+    /// Names or values of the columns.
+    pub columns: Vec<String>,
+    /// The printed values, row by row; all positive.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// A published table that does not read as a table.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the published table {table} cannot be read: {reason}")]
+pub struct PublishedError {
+    /// Which table.
+    pub table: &'static str,
+    /// What is wrong.
+    pub reason: String,
 }
 
 /// Reads a table: a header `aspect_ratio,cor_-1,…`, `aspect_ratio,rp_0,…` or of plain names, then one line per row that
 /// begins with its name. Every row has a positive value in every column.
-pub(super) fn read(table: &Table) -> Result<Published, ReproduceError> {
-    let bad = |reason: String| ReproduceError::Published { table: table.name, reason };
+///
+/// # Errors
+/// When it is no such table.
+pub fn read(table: &'static str, csv: &str) -> Result<Published, PublishedError> {
+    let bad = |reason: String| PublishedError { table, reason };
     let number = |text: &str| text.trim().parse::<f64>().map_err(|e| bad(format!("`{text}`: {e}")));
     // `1.0` and `1` are one name.
     let name =
         |text: &str| text.trim().parse::<f64>().map_or_else(|_| text.trim().to_owned(), |v| v.to_string());
-    let mut lines = table.csv.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty());
+    let mut lines = csv.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty());
     let header = lines.next().ok_or_else(|| bad("it is empty".to_owned()))?;
     let value =
         |head: &str| ["cor_", "rp_"].iter().find_map(|start| head.strip_prefix(start)).map(str::to_owned);

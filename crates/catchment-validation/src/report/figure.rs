@@ -1,0 +1,155 @@
+//! Pictures: published tables in colours, and figure 5.13 drawn again.
+
+use crate::study::reproduce::{Entry, TableComparison};
+use crate::study::resolution::{self, Found};
+use crate::study::{FIGURE, Reproduction};
+use crate::tables::Table;
+use catchment::report::figure::{
+    Colouring, Curve, CurveChart, CurvePoint, Digits, FigureError, NumberMap, NumberSheet, Picture, curves,
+    number_maps,
+};
+
+/// Every picture with the name of its file, without ending.
+///
+/// # Errors
+/// If a table has no entry.
+pub fn pictures(found: &Reproduction) -> Result<Vec<(String, Picture)>, FigureError> {
+    let mut drawn = Vec::new();
+    for table in &found.tables {
+        drawn.push((format!("table-{}", table.table), published(table)?));
+    }
+    drawn.extend(found.figure.as_ref().map(|found| (figure_name(), resolution(found))));
+    Ok(drawn)
+}
+
+/// Name of the figure's files, without ending.
+pub fn figure_name() -> String {
+    format!("figure-{FIGURE}")
+}
+
+/// Whether a file's name is that of one of these pictures, as SVG or PNG, or of the figure's CSV.
+pub fn is_picture(name: &str) -> bool {
+    let table = name.strip_prefix("table-").and_then(|rest| rest.rsplit_once('.'));
+    let is_table =
+        table.is_some_and(|(table, ending)| Table::of(table).is_some() && matches!(ending, "png" | "svg"));
+    let figure = name.strip_prefix(&figure_name());
+    is_table || figure.is_some_and(|ending| matches!(ending, ".png" | ".svg" | ".csv"))
+}
+
+/// Draws a published table, ours, and the ratio of the two: the first two in the same colours.
+///
+/// # Errors
+/// If there is no entry.
+pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
+    let values = |of: &dyn Fn(&Entry) -> Option<f64>| -> Vec<Vec<f64>> {
+        let value = |entry: &Entry| of(entry).unwrap_or(f64::NAN);
+        table.entries.iter().map(|row| row.iter().map(value).collect()).collect()
+    };
+    let (printed, ours) = (values(&|e| Some(e.published)), values(&|e| e.ours));
+    let exact = values(&|e| e.exact.map(|exact| exact.value));
+    let all = || printed.iter().chain(&ours).chain(&exact).flatten().copied().filter(|v| v.is_finite());
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    if low > high {
+        return Err(FigureError::Empty { what: "the table has no entry" });
+    }
+    let height = Colouring::Sequential([low, high]);
+    // A factor of two is full colour.
+    let beside = Colouring::Ratio { full: 2.0 };
+    let ratio = |of: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let divided = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a / b).collect();
+        of.iter().zip(&printed).map(divided).collect()
+    };
+    let (rows, columns) = (&table.rows[..], &table.columns[..]);
+    let map = |title, values, colouring| NumberMap {
+        title,
+        rows,
+        columns,
+        values,
+        digits: Digits::Short,
+        colouring,
+    };
+    let mut maps = vec![map("published", printed.clone(), height)];
+    for (name, of, name_of_ratio) in
+        [(table.method, &ours, "by the same method / published"), ("exact", &exact, "exact / published")]
+    {
+        if of.iter().flatten().any(|value| value.is_finite()) {
+            maps.push(map(name, of.clone(), height));
+            maps.push(map(name_of_ratio, ratio(of), beside));
+        }
+    }
+    let story = [
+        format!("rows: {}  ·  columns: {}", table.row_name, table.column_name),
+        format!("values in {}", table.unit),
+    ];
+    let title = format!("Table {}: {}", table.table, table.title);
+    let cell = [if columns.len() > 8 { 40.0 } else { 56.0 }, 26.0];
+    Ok(number_maps(&NumberSheet { title: &title, story: &story, cell, least_width: 640.0 }, &maps))
+}
+
+/// Draws the Sums of every method over N with the exact one and its interval, and beside them the time that each took.
+pub fn resolution(found: &Found) -> Picture {
+    let [lo, hi] = found.exact_ci95;
+    let story = format!(
+        "exact {:.4} D·rad, 95 % interval {lo:.4} … {hi:.4}  ·  the published figure is lost; its text: larger at first, slowly \
+         decreasing",
+        found.exact
+    );
+    let of = |y: fn(f64, f64) -> f64| -> Vec<Curve> {
+        let curve = |curve: &resolution::Curve| Curve {
+            name: curve.name.to_owned(),
+            points: curve
+                .points
+                .iter()
+                .map(|p| CurvePoint { x: p.resolution as f64, y: y(p.sum, p.seconds), interval: None })
+                .collect(),
+            is_reference: false,
+        };
+        found.curves.iter().map(curve).collect()
+    };
+    let mut sums = of(|sum, _| sum);
+    let ends = found.settings.resolutions.first().into_iter().chain(found.settings.resolutions.last());
+    let exact = |n: &usize| CurvePoint { x: *n as f64, y: found.exact, interval: Some(found.exact_ci95) };
+    sums.push(Curve { name: "exact".to_owned(), points: ends.map(exact).collect(), is_reference: true });
+    let seconds = of(|_, seconds| seconds.max(1e-6).log10());
+    let chart = |y_label, curves| CurveChart { x_label: "samples or cells per axis", y_label, curves };
+    curves(
+        &format!("Figure {FIGURE}: V-Face, H/D 1/4, COR −1/2"),
+        &story,
+        &[chart("Sum [D·rad]", sums), chart("log₁₀ of seconds", seconds)],
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::resolution::{Curve, Point, Settings};
+
+    #[test]
+    fn every_method_is_drawn_in_both_charts_and_the_exact_value_in_one() {
+        let settings = Settings { resolutions: vec![25, 50, 100], ..Settings::default() };
+        let curve = |name: &'static str, off: f64| Curve {
+            name,
+            points: settings
+                .resolutions
+                .iter()
+                .map(|n| Point { resolution: *n, sum: 0.5 + off / *n as f64, seconds: 1e-6 * (n * n) as f64 })
+                .collect(),
+        };
+        let curves = vec![curve("dissertation's", 3.0), curve("transport", 1.0), curve("descent", -1.0)];
+        let found = Found { exact: 0.5, exact_ci95: [0.49, 0.51], rotation_length: 0.5, curves, settings };
+        let picture = resolution(&found);
+        assert!(picture.png(1.0).unwrap().starts_with(b"\x89PNG"));
+        assert_eq!(picture.svg().matches("<circle").count(), 2 * 9 + 2);
+        assert!(!picture.svg().contains("NaN"));
+    }
+
+    #[test]
+    fn names_of_pictures_are_known_again() {
+        for name in ["table-3.3.svg", "table-slices.png", "figure-5.13.csv", "figure-5.13.png"] {
+            assert!(is_picture(name), "{name}");
+        }
+        for name in ["table-3.3.csv", "table-9.9.svg", "figure-5.13.txt", "holiday.png"] {
+            assert!(!is_picture(name), "{name}");
+        }
+    }
+}

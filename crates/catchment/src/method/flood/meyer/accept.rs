@@ -1,0 +1,162 @@
+//! The dissertation's flooding with dams on an ordinary error grid: what becomes of every cell.
+//!
+//! ```text
+//!   divide ──▶ dams to steepest descent ──▶ basin of the mated pose   aligned
+//!                                           outside                   missed
+//!                                           minimum on a border       missed (x, y) or jammed (angles)
+//!                                           any other minimum         jammed
+//! ```
+
+use super::basins::Shore;
+use super::{Division, Rules, divide};
+use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::design::{Alignment, ConnectorSpec, Design};
+use crate::exec::Exec;
+use crate::landscape::{Landscape, Resolution};
+use crate::method::flood::steepest::Metric;
+use crate::method::flood::tolerance::{self, Choice, Reason};
+use crate::method::flood::tree::explains;
+use crate::method::flood::{self, FloodError, Rule, target, verdict};
+use serde::{Deserialize, Serialize};
+
+/// What changes the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Basins shallower than this are merged, in D; 0 keeps every minimum. Without one it lies in the widest gap between the
+    /// depths, as that of [`flood`](super::super::flood) does.
+    pub depth_tolerance: Option<f64>,
+    /// Where the text may be read in two ways.
+    #[serde(default)]
+    pub rules: Rules,
+}
+
+impl Settings {
+    /// Depth tolerance of the text, as a share of the height H of the face.
+    pub const DEPTH_PER_FACE_HEIGHT: f64 = 0.1;
+
+    /// What the text says for a design: a tolerance of 0.1·H, in D, where the connector is of a family, whose H is
+    /// known. Pieces and meshes have no H: nobody can say which part of them is the face, so the widest gap decides, which on the
+    /// families accepts the same cells wherever the two were compared.
+    pub fn of(design: &Design) -> Self {
+        let depth_tolerance = match &design.connector {
+            ConnectorSpec::Family(spec) => Some(Self::DEPTH_PER_FACE_HEIGHT * spec.aspect_ratio),
+            ConnectorSpec::Own(_) => None,
+        };
+        Self { depth_tolerance, ..Self::default() }
+    }
+
+    /// Merges basins shallower than `depth`, in D.
+    pub fn with_tolerance(depth: f64) -> Self {
+        Self { depth_tolerance: Some(depth), ..Self::default() }
+    }
+}
+
+/// The result of flooding.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flooding {
+    /// Outcome of every cell.
+    pub acceptance: Acceptance,
+    /// The tolerance that was used, and why.
+    pub tolerance: Choice,
+}
+
+/// Bytes per cell beside the heights: its basin, its place on the water line (the queue doubles as it grows), its place in
+/// the list of dams, and its outcome.
+const BYTES_PER_CELL: u64 =
+    (size_of::<u32>() + 2 * size_of::<Shore<f32>>() + size_of::<usize>() + size_of::<Outcome>()) as u64;
+
+/// Bytes that flooding `cells` cells needs, heights included; what the passes between basins take comes on top.
+pub const fn bytes(cells: u64) -> u64 {
+    cells.saturating_mul(BYTES_PER_CELL + Landscape::bytes(1))
+}
+
+/// Floods a landscape by Meyer's queue.
+///
+/// The mated pose is where it is for [`flood`](super::super::flood): the minima among the cells around it are one, and where
+/// none of them is a minimum, the target is the basin of the lowest. If that basin gathers deeper below the mated pose than
+/// the tolerance explains, nothing is accepted.
+///
+/// # Errors
+/// When the tolerance is no depth, the landscape is too large, or the computation is cancelled.
+pub fn accept(
+    landscape: &Landscape,
+    alignment: &Alignment,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Flooding, FloodError> {
+    let Landscape { grid, heights } = landscape;
+    if let Some(depth) = settings.depth_tolerance
+        && !(depth >= 0.0 && depth.is_finite())
+    {
+        return Err(FloodError::Tolerance { depth });
+    }
+    exec.ensure_fits("flooding", (heights.len() as u64).saturating_mul(BYTES_PER_CELL), |budget| {
+        let largest = Resolution::largest_that_fits(budget, BYTES_PER_CELL, grid.axes.len());
+        format!("at most {largest} cells per axis fit")
+    })?;
+    let (shape, targets) = (grid.shape(), target::cells(grid, alignment));
+    let tolerance = match settings.depth_tolerance {
+        Some(depth) => Choice { depth, reason: Reason::Given },
+        None => widest_gap(landscape, alignment, &targets, exec)?,
+    };
+    let mut division = divide(&shape, heights, &targets, tolerance.depth, settings.rules, exec)?;
+    division.give_dams(heights);
+    let count = division.merged.into.len();
+    let mated = mated_basin(&division, heights, &targets, tolerance.depth);
+    // The lowest cell of every basin, the first in memory among equals, and how many cells it has.
+    let mut basins: Vec<Option<(usize, usize)>> = vec![None; count];
+    for cell in 0..heights.len() {
+        let Some(basin) = division.basin(cell) else { continue };
+        let (lowest, cells) = basins[basin as usize].get_or_insert((cell, 0));
+        *cells += 1;
+        if heights[cell] < heights[*lowest] {
+            *lowest = cell;
+        }
+    }
+    let mut border_cells = 0;
+    let mut of_basin = vec![Outcome::Undecided; count];
+    for (basin, found) in (0..).zip(&basins) {
+        let Some((lowest, cells)) = *found else { continue };
+        of_basin[basin as usize] = if Division::is_outside(basin) {
+            Outcome::Missed
+        } else if Some(basin) == mated {
+            Outcome::Aligned
+        } else {
+            let (outcome, on_border) = verdict::elsewhere(grid, lowest);
+            border_cells += if on_border { cells } else { 0 };
+            outcome
+        };
+    }
+    // Every cell has a basin once the dams are given: a landscape without NaN leaves none undecided.
+    let outcome = |cell| division.basin(cell).map_or(Outcome::Undecided, |basin| of_basin[basin as usize]);
+    let outcomes: Vec<Outcome> = (0..heights.len()).map(outcome).collect();
+    let warnings = verdict::warnings(grid, &outcomes, &targets, border_cells);
+    let acceptance = Acceptance { method: "meyer", domain: Domain::Grid(grid.clone()), outcomes, warnings };
+    Ok(Flooding { acceptance, tolerance })
+}
+
+/// The basin that gathers at the mated pose.
+fn mated_basin(division: &Division, heights: &[f32], targets: &[usize], tolerance: f64) -> Option<u32> {
+    let lower = |a: usize, b: usize| if heights[b] < heights[a] { b } else { a };
+    let cell = targets.iter().copied().reduce(lower)?;
+    let basin = division.basin(cell)?;
+    explains(tolerance, f64::from(heights[cell]) - division.bottom(basin)).then_some(basin)
+}
+
+/// The tolerance in the widest gap between the depths of the exact merge tree, whose minima are the same.
+fn widest_gap(
+    landscape: &Landscape,
+    alignment: &Alignment,
+    targets: &[usize],
+    exec: &Exec,
+) -> Result<Choice, FloodError> {
+    let Landscape { grid, heights } = landscape;
+    let shape = grid.shape();
+    let metric = Metric { grid, alignment };
+    let (labels, tree) = flood::divide(&shape, heights, targets, Rule::Lowest, &metric, exec)?;
+    let lower = |a: usize, b: usize| if heights[b] < heights[a] { b } else { a };
+    let mated = targets.iter().copied().reduce(lower);
+    let staircase = mated.map_or_else(Vec::new, |cell| tree.staircase(labels[cell], heights[cell].into()));
+    Ok(tolerance::choose(&tree, &staircase, tolerance::height_step(&shape, heights)))
+}

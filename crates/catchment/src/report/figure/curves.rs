@@ -1,0 +1,98 @@
+//! Curves over a logarithmic scale, in charts side by side.
+
+use super::Picture;
+use super::chart::{Chart, Line, Point, legend};
+use super::colour::{CURVES, Rgb};
+use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+
+/// One curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its points; those whose x is not positive are left out.
+    pub points: Vec<CurvePoint>,
+    /// Whether it is what the others are measured by: drawn in ink, not in a colour.
+    pub is_reference: bool,
+}
+
+/// One point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvePoint {
+    /// Place on the logarithmic scale.
+    pub x: f64,
+    /// Value.
+    pub y: f64,
+    /// The interval of the value, where it has one.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// A chart of curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveChart<'a> {
+    /// What runs to the right.
+    pub x_label: &'a str,
+    /// What runs up.
+    pub y_label: &'a str,
+    /// The curves; the same place in every chart has the same colour.
+    pub curves: Vec<Curve>,
+}
+
+/// Colour of a reference.
+const REFERENCE: Rgb = [0x1f, 0x29, 0x33];
+
+/// Draws charts side by side below a title and a line, with the names of the first one's curves.
+pub fn curves(title: &str, story: &str, charts: &[CurveChart]) -> Picture {
+    let (left, top, size, step) = (78.0, 96.0, [400.0, 300.0], 482.0);
+    let last = left + step * charts.len().saturating_sub(1) as f64;
+    let mut svg = Svg::new(last + size[0] + 28.0, top + size[1] + 56.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, title);
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, story);
+    let mut names = None;
+    for (k, chart) in charts.iter().enumerate() {
+        let rect = Rect { x: left + step * k as f64, y: top, w: size[0], h: size[1] };
+        let lines = lines(&chart.curves);
+        Chart { rect, x_label: chart.x_label, y_label: chart.y_label, lines: &lines, mark: None }
+            .draw(&mut svg);
+        names.get_or_insert(lines);
+    }
+    legend(&mut svg, &names.unwrap_or_default(), [left, top - 16.0]);
+    Picture { svg: svg.finish() }
+}
+
+fn lines(curves: &[Curve]) -> Vec<Line> {
+    let line = |(k, curve): (usize, &Curve)| Line {
+        name: curve.name.clone(),
+        colour: if curve.is_reference { REFERENCE } else { CURVES[k % CURVES.len()] },
+        points: curve.points.iter().map(|p| Point { x: p.x, y: p.y, interval: p.interval }).collect(),
+    };
+    curves.iter().enumerate().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+
+    #[test]
+    fn every_curve_is_drawn_in_its_chart() {
+        let curve = |name: &str, off: f64, is_reference: bool| Curve {
+            name: name.to_owned(),
+            points: [25.0, 50.0, 100.0]
+                .map(|x| CurvePoint { x, y: 0.5 + off / x, interval: is_reference.then_some([0.49, 0.51]) })
+                .to_vec(),
+            is_reference,
+        };
+        let some = vec![curve("transport", 1.0, false), curve("descent", -1.0, false)];
+        let mut all = some.clone();
+        all.push(curve("exact", 0.0, true));
+        let charts = [
+            CurveChart { x_label: "cells per axis", y_label: "Sum", curves: all },
+            CurveChart { x_label: "cells per axis", y_label: "time", curves: some },
+        ];
+        let picture = curves("Curves", "of two methods", &charts);
+        look("curves", &picture);
+        assert_eq!(picture.svg().matches("<circle").count(), 9 + 6);
+        assert!(!picture.svg().contains("NaN"));
+    }
+}

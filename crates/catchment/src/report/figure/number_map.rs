@@ -1,0 +1,188 @@
+//! Tables of numbers as maps: every cell in the colour of its number, with the number in it.
+//!
+//! ```text
+//!            a     b                      a     b
+//!         ┌─────┬─────┐                ┌─────┬─────┐
+//!   row 1 │ 0.5 │ 1.2 │          row 1 │  1  │ 0.9 │      maps side by side, cells of one size
+//!   row 2 │ 0.7 │     │          row 2 │ 1.1 │     │      NaN leaves a cell empty
+//!         └─────┴─────┘                └─────┴─────┘
+//! ```
+
+use super::Picture;
+use super::axis::short;
+use super::colour::{Rgb, hex, mix, sequential};
+use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
+
+/// How a number becomes a colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Colouring {
+    /// Dark to bright (viridis) from the first number to the second.
+    Sequential([f64; 2]),
+    /// From orange, at the first number and below, to white at the second: how much is missing.
+    Deficit([f64; 2]),
+    /// White at 1, blue below, orange above; full colour at this factor and at its inverse.
+    Ratio {
+        /// The factor, above 1.
+        full: f64,
+    },
+}
+
+/// How a number is written into its cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digits {
+    /// Two decimals below 10, one below 100, none above; no trailing zeros.
+    Short,
+    /// Always so many decimals.
+    Decimals(usize),
+}
+
+/// A table to draw.
+#[derive(Debug, Clone)]
+pub struct NumberMap<'a> {
+    /// What it shows.
+    pub title: &'a str,
+    /// Names of the rows.
+    pub rows: &'a [String],
+    /// Names of the columns.
+    pub columns: &'a [String],
+    /// Row by row; NaN leaves a cell empty.
+    pub values: Vec<Vec<f64>>,
+    /// How the numbers are written.
+    pub digits: Digits,
+    /// Their colours.
+    pub colouring: Colouring,
+}
+
+/// What stands above the maps, and their sizes, in units of the drawing.
+#[derive(Debug, Clone)]
+pub struct NumberSheet<'a> {
+    /// The title of the picture.
+    pub title: &'a str,
+    /// Lines below the title.
+    pub story: &'a [String],
+    /// Width and height of a cell.
+    pub cell: [f64; 2],
+    /// The picture is at least so wide: room for the title.
+    pub least_width: f64,
+}
+
+/// Room for the names of rows, above a map, and between maps.
+const NAMES: f64 = 82.0;
+const HEAD: f64 = 46.0;
+const GAP: f64 = 30.0;
+/// Room around everything.
+const MARGIN: f64 = 24.0;
+/// From the title to the first line of the story, and from line to line.
+const FIRST_LINE: f64 = 50.0;
+const LINE: f64 = 18.0;
+
+/// Draws maps side by side. All have as many rows and columns as the first.
+pub fn number_maps(sheet: &NumberSheet, maps: &[NumberMap]) -> Picture {
+    let [w, h] = sheet.cell;
+    let (columns, rows) = maps.first().map_or((0, 0), |map| (map.columns.len(), map.rows.len()));
+    let side = [columns as f64 * w, rows as f64 * h];
+    let (left, top) = (MARGIN + NAMES, 48.0 + 22.0 * sheet.story.len() as f64 + HEAD);
+    let step = side[0] + GAP + NAMES;
+    let width = left + maps.len() as f64 * step - GAP - NAMES + MARGIN;
+    let mut svg = Svg::new(width.max(sheet.least_width), top + side[1] + 28.0);
+    svg.bold([MARGIN, 30.0], TITLE, Anchor::Start, sheet.title);
+    for (k, line) in sheet.story.iter().enumerate() {
+        svg.text([MARGIN, FIRST_LINE + LINE * k as f64], LABEL, Anchor::Start, SOFT, line);
+    }
+    for (k, map) in maps.iter().enumerate() {
+        map.draw(&mut svg, [left + k as f64 * step, top], sheet.cell);
+    }
+    Picture { svg: svg.finish() }
+}
+
+impl NumberMap<'_> {
+    /// Draws it with its cells beginning at a place; `cell` is their size.
+    fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], [w, h]: [f64; 2]) {
+        svg.text([x, y - 26.0], LABEL, Anchor::Start, INK, self.title);
+        for (k, name) in self.columns.iter().enumerate() {
+            svg.text([x + (k as f64 + 0.5) * w, y - 7.0], TICK, Anchor::Middle, SOFT, name);
+        }
+        for (j, (name, row)) in self.rows.iter().zip(&self.values).enumerate() {
+            let top = y + j as f64 * h;
+            svg.text([x - 8.0, top + 0.5 * h + 3.8], TICK, Anchor::End, SOFT, name);
+            for (k, value) in row.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+                let fill = self.colouring.of(*value);
+                let rect = Rect { x: x + k as f64 * w, y: top, w, h };
+                svg.rect(rect, &format!(r##"fill="{}" stroke="#ffffff" stroke-width="1""##, hex(fill)));
+                let ink = if is_dark(fill) { "#ffffff" } else { INK };
+                let place = [rect.x + 0.5 * w, rect.y + 0.5 * h + 3.6];
+                svg.text(place, TICK - 1.0, Anchor::Middle, ink, &self.digits.write(*value));
+            }
+        }
+    }
+}
+
+impl Colouring {
+    fn of(self, value: f64) -> Rgb {
+        const ORANGE: Rgb = [0xd5, 0x5e, 0x00];
+        const BLUE: Rgb = [0x00, 0x72, 0xb2];
+        match self {
+            Self::Sequential([low, high]) => sequential((value - low) / (high - low).max(f64::MIN_POSITIVE)),
+            Self::Deficit([low, high]) => {
+                mix(ORANGE, [0xf2, 0xf6, 0xfa], ((value - low) / (high - low)).clamp(0.0, 1.0))
+            }
+            Self::Ratio { full } => {
+                let share = (value.max(1e-9).ln() / full.ln()).clamp(-1.0, 1.0);
+                mix([0xf7, 0xf7, 0xf7], if share < 0.0 { BLUE } else { ORANGE }, share.abs())
+            }
+        }
+    }
+}
+
+impl Digits {
+    fn write(self, value: f64) -> String {
+        match self {
+            Self::Short => short(value),
+            Self::Decimals(digits) => format!("{value:.digits$}"),
+        }
+    }
+}
+
+/// Whether white reads better on a colour than ink (relative luminance, Rec. 709).
+fn is_dark([r, g, b]: Rgb) -> bool {
+    0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b) < 130.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+
+    #[test]
+    fn every_number_has_its_cell_and_nothing_has_none() {
+        let names = ["a", "b"].map(str::to_owned);
+        let map = |colouring| NumberMap {
+            title: "numbers",
+            rows: &names,
+            columns: &names,
+            values: vec![vec![0.5, 2.0], vec![f64::NAN, 1.0]],
+            digits: Digits::Short,
+            colouring,
+        };
+        let maps = [
+            map(Colouring::Sequential([0.5, 2.0])),
+            map(Colouring::Deficit([0.5, 1.0])),
+            map(Colouring::Ratio { full: 2.0 }),
+        ];
+        let story = ["two lines".to_owned(), "of words".to_owned()];
+        let sheet = NumberSheet { title: "Maps", story: &story, cell: [56.0, 26.0], least_width: 640.0 };
+        let picture = number_maps(&sheet, &maps);
+        look("number-maps", &picture);
+        assert_eq!(picture.svg().matches(r##"stroke="#ffffff""##).count(), 9);
+        assert!(!picture.svg().contains("NaN"));
+    }
+
+    #[test]
+    fn a_ratio_of_one_is_white_and_the_ends_are_full() {
+        let of = |value| Colouring::Ratio { full: 2.0 }.of(value);
+        assert_eq!(
+            [of(1.0), of(0.5), of(0.1), of(2.0)],
+            [[0xf7, 0xf7, 0xf7], [0x00, 0x72, 0xb2], [0x00, 0x72, 0xb2], [0xd5, 0x5e, 0x00]]
+        );
+    }
+}
