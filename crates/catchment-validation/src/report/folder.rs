@@ -3,7 +3,8 @@
 use super::figure::{figure_name, is_picture, pictures};
 use crate::study::Reproduction;
 use catchment::exec::Exec;
-use catchment::report::folder::{REPORT, SaveError, csv, encode, has_only, is_report, write_all};
+use catchment::report::csv;
+use catchment::report::folder::{REPORT, SaveError, encode, has_only, is_report, write_all};
 use catchment::report::write::{self, WriteError};
 use std::path::Path;
 

@@ -41,6 +41,9 @@ pub struct Info {
     pub summary: &'static str,
     /// Whether its answer depends on nothing but the grid and its resolution: what studies of resolution compare.
     pub on_grids: bool,
+    /// Whether it departs from exact frictionless motion on purpose, so that pictures show its own cells and no slices followed
+    /// exactly.
+    pub departs: bool,
 }
 
 /// What a decision will take, estimated before it is made.
@@ -94,7 +97,7 @@ pub trait Decide: fmt::Debug + Send + Sync {
     /// What deciding a grid will take.
     fn cost(&self, problem: &Problem, grid: &Grid) -> Cost;
 
-    /// Names of the sections beside the accepted set that a report of its result has.
+    /// What it knows beside the outcomes, by the names of [`ByProducts`].
     fn by_products(&self) -> &'static [&'static str] {
         &[]
     }

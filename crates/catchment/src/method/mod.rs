@@ -4,7 +4,7 @@
 //! ```text
 //!   transport   arrival along exact directions over a grid      the default
 //!   descent     exact quasi-static motion of every pose         the ground truth
-//!   flood       basins of the heights, to the lowest neighbour  steepest: to the steepest
+//!   flood       basins of the heights, to the lowest neighbour  steepest: to the steepest; meyer: by a queue, with dams
 //!   partition   the contact space as polytopes, without a grid
 //!   kinematic   planar bounds and stepping
 //!   drop        trials in a rigid-body engine                   feature `drop`
@@ -35,6 +35,7 @@ pub static REGISTRY: &[Entry] = &[
     descent::door::ENTRY,
     flood::door::ENTRY,
     flood::door::ENTRY_STEEPEST,
+    flood::meyer::door::ENTRY,
     partition::door::ENTRY,
     kinematic::door::ENTRY,
     #[cfg(feature = "drop")]

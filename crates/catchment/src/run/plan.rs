@@ -61,8 +61,9 @@ impl Run {
             },
         };
         let sample = stop.map(|stop| correction::Settings { seed: self.seed, stop });
-        let floods = method.by_products().contains(&"basins");
-        Ok(Plan { method: method.clone(), domain, sample, heights: self.heights && is_grid && !floods, cost })
+        let has_heights = method.by_products().contains(&"landscape");
+        let heights = self.heights && is_grid && !has_heights;
+        Ok(Plan { method: method.clone(), domain, sample, heights, cost })
     }
 }
 

@@ -14,6 +14,7 @@ const INFO: Info = Info {
     name: "drop",
     summary: "drop tests of every cell's centre in a rigid-body engine: friction, mass, speed, bounce",
     on_grids: false,
+    departs: true,
 };
 
 /// Its line in the registry.

@@ -13,12 +13,14 @@ const LOWEST: Info = Info {
     name: "flood",
     summary: "fast flooding of the heights over the grid; biased, made for comparisons",
     on_grids: true,
+    departs: true,
 };
 
 const STEEPEST: Info = Info {
     name: "steepest",
     summary: "flooding along the steepest neighbour; biased too, made for comparisons",
     on_grids: true,
+    departs: true,
 };
 
 /// The line of [`Rule::Lowest`] in the registry.
@@ -65,7 +67,7 @@ impl Decide for Settings {
     }
 
     fn by_products(&self) -> &'static [&'static str] {
-        &["basins"]
+        &["landscape", "basins"]
     }
 
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {

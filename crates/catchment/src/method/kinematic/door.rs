@@ -15,6 +15,7 @@ const INFO: Info = Info {
     name: "kinematic",
     summary: "planar bounds and stepping of the dissertation; v-face, s-face and x-face",
     on_grids: false,
+    departs: false,
 };
 
 /// Its line in the registry.

@@ -15,6 +15,7 @@ const INFO: Info = Info {
     name: "partition",
     summary: "watersheds of the contact space as polytopes, without a grid; two or three errors",
     on_grids: false,
+    departs: false,
 };
 
 /// Its line in the registry.

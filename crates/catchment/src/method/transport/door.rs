@@ -14,6 +14,7 @@ const INFO: Info = Info {
     name: "transport",
     summary: "arrival fractions over the grid along exact directions; ambiguous cells by descent",
     on_grids: true,
+    departs: false,
 };
 
 /// Its line in the registry.

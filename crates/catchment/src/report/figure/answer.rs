@@ -87,9 +87,7 @@ impl Answer {
     /// Slices through zero, finer than the grid, each pose followed exactly: where some other error is free, and the method's own
     /// cells are not what is asked about (flooding and drop tests show themselves).
     fn finer_slices(&self, grid: &Grid, main: [Dof; 2], exec: &Exec) -> Result<Vec<Acceptance>, SaveError> {
-        let shows_itself = self.by_products.basins.is_some()
-            || self.run.method.follows().is_some_and(|own| own.info().name != "descent");
-        if shows_itself || grid.axes.len() < 3 {
+        if self.run.method.info().departs || grid.axes.len() < 3 {
             return Ok(Vec::new());
         }
         let (pair, settings) = (self.problem.pair(), descent::Settings::default());

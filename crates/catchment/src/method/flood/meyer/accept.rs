@@ -9,6 +9,7 @@
 
 use super::basins::Shore;
 use super::{Division, Rules, divide};
+use crate::advice::Advice;
 use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::design::{Alignment, ConnectorSpec, Design};
 use crate::exec::Exec;
@@ -40,7 +41,7 @@ impl Settings {
     /// families accepts the same cells wherever the two were compared.
     pub fn of(design: &Design) -> Self {
         let depth_tolerance = match &design.connector {
-            ConnectorSpec::Family(spec) => Some(Self::DEPTH_PER_FACE_HEIGHT * spec.aspect_ratio),
+            ConnectorSpec::Family(spec) => Some(Self::DEPTH_PER_FACE_HEIGHT * spec.aspect_ratio()),
             ConnectorSpec::Own(_) => None,
         };
         Self { depth_tolerance, ..Self::default() }
@@ -93,7 +94,7 @@ pub fn accept(
     }
     exec.ensure_fits("flooding", (heights.len() as u64).saturating_mul(BYTES_PER_CELL), |budget| {
         let largest = Resolution::largest_that_fits(budget, BYTES_PER_CELL, grid.axes.len());
-        format!("at most {largest} cells per axis fit")
+        vec![Advice::AtMostResolution(largest)]
     })?;
     let (shape, targets) = (grid.shape(), target::cells(grid, alignment));
     let tolerance = match settings.depth_tolerance {

@@ -28,6 +28,7 @@ mod accept;
 mod basins;
 pub mod brute;
 mod dams;
+pub(in crate::method) mod door;
 mod merge;
 pub(super) mod neighbourhood;
 #[cfg(test)]
