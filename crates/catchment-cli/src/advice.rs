@@ -46,7 +46,7 @@ mod tests {
     fn advice_inside_of_an_error_is_found() {
         let needs = |advice: Vec<Advice>| {
             let small = Exec::new().with_memory_budget(1);
-            let refused = small.reserve("a grid", 2, |_| advice).unwrap_err();
+            let refused = small.ensure_fits("a grid", 2, |_| advice).unwrap_err();
             of(&DropError::from(refused))
         };
         let both = vec![Advice::AtMostResolution(12), Advice::MoreMemory];

@@ -87,7 +87,11 @@ fn corrected_sums() {
             assert!(count == cells.len() && listed(count - 1).unwrap() == (count, Vec::new()));
             let mut outcomes = arrival.acceptance(exec).unwrap().outcomes;
             let some = &cells[..count.min(300)];
-            correction::settle(&pair, &grid, some, &mut outcomes, &descents, exec).unwrap();
+            let follow = |poses: Vec<_>, exec: &Exec| {
+                let run = descent::run(&pair, Domain::Poses(poses), &descents, exec);
+                run.map(|(decided, _)| decided.outcomes)
+            };
+            correction::settle(&grid, some, &mut outcomes, exec, follow).unwrap();
             assert!(
                 some.iter()
                     .all(|c| outcomes[*c] == descent::outcome(&pair, &grid.pose(*c), &descents).outcome)

@@ -181,14 +181,17 @@ fn rounded(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::schema::testing::design;
     use super::*;
+    use crate::problem::Draft;
+
+    fn problem(name: &str, place: &str) -> Problem {
+        let text = format!("name = {}\n[connector]\nfamily = \"pyramid\"\n", serde_json::json!(name));
+        Draft::read(SourceText::new(place, text)).and_then(Draft::build).unwrap()
+    }
 
     #[test]
     fn names_in_a_check_are_harmless() {
-        let mut design = design(DofSet::ALL);
-        design.name = "evil\u{1b}[2J\nname".to_owned();
-        let text = CheckReport::good(Path::new("a\u{7}.toml"), &design, false).table();
+        let text = CheckReport::good(&problem("evil\u{1b}[2J\nname", "a\u{7}.toml")).table();
         assert!(text.starts_with("a?.toml: no problems\n  name                evil?[2J?name\n"), "{text}");
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
         assert!(text.contains("  error in pitch      up to 90 deg\n"), "{text}");
@@ -196,10 +199,9 @@ mod tests {
 
     #[test]
     fn problems_are_told_with_their_places() {
-        let place = Some(Place { line: 3, column: 7, bytes: [40, 44] });
-        let problem = ProblemReport { message: "no such key".to_owned(), help: None, place };
-        let everywhere = ProblemReport { message: "empty".to_owned(), help: None, place: None };
-        let report = CheckReport::bad(Path::new("d.toml"), vec![problem, everywhere], 2);
+        let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\nkey = 4\n"));
+        let list = vec![Finding::new("no such key", None).at(Some(18..19)), Finding::new("empty", None)];
+        let report = CheckReport::bad(&Findings { source, list, omitted: 2 });
         assert_eq!(report.table(), "d.toml:3:7: no such key\nd.toml: empty\nand 2 more\n");
     }
 }

@@ -26,8 +26,6 @@ mod plan;
 mod requirement;
 mod stages;
 pub(crate) use stages::correct;
-#[cfg(test)]
-mod tests;
 
 pub use answer::{Answer, Corrected};
 pub use part::{Part, PartAnswer, PartError};

@@ -193,8 +193,8 @@ fn a_stop_is_obeyed_and_settings_without_sense_are_refused() {
     }
     let exec = Exec::new();
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
-    assert_eq!(with(&case.grid, Stop::Samples(9), &exec), CorrectionError::Cancelled(Cancelled));
-    assert_eq!(with(&grid(&[0]), Stop::Samples(9), &Exec::new()), CorrectionError::NoCells);
+    assert!(matches!(with(&case.grid, Stop::Samples(9), &exec), CorrectionError::Cancelled(Cancelled)));
+    assert!(matches!(with(&grid(&[0]), Stop::Samples(9), &Exec::new()), CorrectionError::NoCells));
 }
 
 /// A partition by a table.

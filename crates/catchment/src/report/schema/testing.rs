@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::acceptance::{Domain, Outcome};
-use crate::design::{ConnectorSpec, Family, FamilySpec, LengthUnit};
+use crate::design::{Alignment, ConnectorSpec, Family, FamilySpec, LengthUnit};
 use crate::landscape::Grid;
 use crate::pose::{DofSet, Mount};
 

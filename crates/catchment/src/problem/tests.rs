@@ -1,0 +1,153 @@
+//! Problems from texts, designs and values in memory.
+
+use super::*;
+use crate::connector::Source;
+use crate::design::{ConnectorSpec, Family, FamilySpec, HalfSpec};
+use crate::pose::{Dof, DofSet, Mount};
+use glam::DVec3;
+use std::fmt::Write;
+
+const V_FACE: &str = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+
+fn read(text: &str) -> Result<Problem, ProblemError> {
+    Draft::read(SourceText::new("d.toml", text)).and_then(Draft::build)
+}
+
+fn findings(error: ProblemError) -> Findings {
+    match error {
+        ProblemError::Findings(findings) => findings,
+        ProblemError::Load(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn it_goes_to_any_thread_and_is_one_value() {
+    fn goes_anywhere<T: Send + Sync + Clone + 'static>(_: &T) {}
+    let problem = read(V_FACE).unwrap();
+    goes_anywhere(&problem);
+    let there = problem.clone();
+    let digest = std::thread::spawn(move || there.digest().to_owned()).join().unwrap();
+    assert_eq!(digest, problem.digest());
+    assert_eq!(digest.len(), 64);
+}
+
+#[test]
+fn equal_digests_are_equal_problems_whatever_they_are_called() {
+    let digest = |text: &str| read(text).unwrap().digest().to_owned();
+    let own = digest(V_FACE);
+    assert_eq!(digest(&format!("name = \"another\"\n{V_FACE}")), own);
+    assert_eq!(digest(&V_FACE.replace("v-face\"\n", "v-face\"\nwidth = 50\nunit = \"mm\"\n")), own);
+    for changed in [
+        V_FACE.replace("aspect_ratio = 1.0", "aspect_ratio = 0.9"),
+        V_FACE.replace("rotation_length = 1.0", "rotation_length = 0.9"),
+        format!("{V_FACE}center_of_rotation = 0.1\n"),
+        format!("{V_FACE}[errors]\nx = 0.5\n"),
+    ] {
+        assert_ne!(digest(&changed), own, "{changed}");
+    }
+}
+
+#[test]
+fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
+    let meshes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/meshes");
+    let [plug, socket] = ["plug.stl", "socket.stl"].map(|name| std::fs::read(meshes.join(name)).unwrap());
+    let home = tempfile::tempdir().unwrap();
+    let problem = |folder: &str, plug: &[u8]| {
+        let folder = home.path().join(folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("a.stl"), &socket).unwrap();
+        std::fs::write(folder.join("b.stl"), plug).unwrap();
+        let text = std::fs::read_to_string(meshes.join("../pyramid-stl.toml")).unwrap();
+        let text = text.replace("meshes/socket.stl", "a.stl").replace("meshes/plug.stl", "b.stl");
+        std::fs::write(folder.join("d.toml"), text).unwrap();
+        Problem::open(folder.join("d.toml"))
+    };
+    let (here, there) = (problem("here", &plug).unwrap(), problem("there", &plug).unwrap());
+    assert_eq!(here.digest(), there.digest());
+    // The report says what was in the file, not only where it lay.
+    let ConnectorSpec::Own(own) = &here.design().connector else { panic!("it has halves of its own") };
+    let HalfSpec::Mesh { content: Some(content), .. } = &own.moving else { panic!("a mesh") };
+    assert_eq!((content.bytes, content.triangles), (plug.len() as u64, 6));
+    assert_ne!(problem("swapped", &socket).map_or_else(|e| e.to_string(), |p| p.digest().to_owned()), here.digest());
+}
+
+#[test]
+fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
+    let place = |text: &str| {
+        let found = findings(read(text).unwrap_err());
+        let source = found.source.unwrap();
+        let span = found.list[0].span.clone().unwrap();
+        source.text[span].to_owned()
+    };
+    assert_eq!(place("[connector]\nfamily = \"v-fac\"\n"), "\"v-fac\"");
+    let two_cubes = |height: f64| {
+        let mut piece = String::new();
+        for k in 0..8 {
+            write!(piece, "[{}, {}, {}],", f64::from(k & 1) - 0.5, f64::from(k >> 1 & 1) - 0.5, 0.3 * f64::from(k >> 2))
+                .unwrap();
+        }
+        format!(
+            "[connector]\nwidth = 1\nface_height = {height}\nfixed = {{ pieces = [[{piece}]] }}\nmoving = {{ pieces = [[{piece}]] }}\n\
+             [alignment]\nfree = [\"x\"]\n"
+        )
+    };
+    assert!(read(&two_cubes(0.3)).is_ok());
+    assert_eq!(place(&two_cubes(0.2)), "0.2");
+}
+
+#[test]
+fn a_refused_change_says_what_asked_for_it() {
+    let draft = Draft::read(SourceText::new("d.toml", V_FACE)).unwrap();
+    let all = DofSet::ALL;
+    let found = findings(draft.clone().change("free", |design| design.with_free(all)).unwrap_err());
+    assert!(found.list[0].message.starts_with("free: "), "{found}");
+    assert_eq!(&found.source.unwrap().text[found.list[0].span.clone().unwrap()], "\"v-face\"");
+    let changed = draft.change("aspect ratio", |design| design.with_aspect_ratio(0.5)).unwrap();
+    assert_ne!(changed.build().unwrap().digest(), read(V_FACE).unwrap().digest());
+}
+
+/// The triangles of a family's half, as drawn: from its face centre, facing +z.
+fn soup(family: Family, moving: bool) -> Vec<[DVec3; 3]> {
+    let mount = Mount::X;
+    let connector = Connector::of_family(&FamilySpec::new(family), mount).unwrap();
+    let half = if moving { &connector.moving } else { &connector.fixed };
+    let drawn = |p: DVec3| if moving { mount.apply(p) } else { p };
+    half.surfaces
+        .iter()
+        .flat_map(|surface| {
+            surface.triangles().into_iter().map(move |t| t.map(|k| drawn(surface.vertices[k as usize])))
+        })
+        .collect()
+}
+
+#[test]
+fn triangles_in_memory_are_the_same_problem_as_their_family() {
+    let free = DofSet::ALL.without(Dof::Y).without(Dof::Roll);
+    let alignment = Alignment { center_of_rotation: 0.5, ..Alignment::new(free, Mount::X) };
+    let [fixed, moving] = [false, true].map(|moving| Source::Triangles(soup(Family::Pyramid, moving)));
+    let problem = Problem::new(fixed, moving, alignment.clone()).unwrap();
+    let connector = ConnectorSpec::Family(FamilySpec::new(Family::Pyramid));
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    let family = Problem::of(design).unwrap();
+    for pose in [[0.2, 0.0, 0.0, 0.1, 0.3], [-0.4, 0.0, 0.0, -0.2, 0.0], [0.7, 0.0, 0.0, 0.0, 0.9]] {
+        let pose = crate::pose::PoseError::from_array(pose);
+        let (a, b) = (problem.follow(&pose), family.follow(&pose));
+        assert_eq!(a.outcome, b.outcome);
+        for (a, b) in a.error.to_array().into_iter().zip(b.error.to_array()) {
+            assert!((a - b).abs() < 1e-6);
+        }
+    }
+    assert_eq!(problem.digest().len(), 64);
+    assert!(problem.source().is_none());
+}
+
+#[test]
+fn what_is_wrong_in_memory_is_said_without_a_file() {
+    let alignment = Alignment::new(DofSet::EMPTY.with(Dof::X), Mount::X);
+    let mut open = soup(Family::Pyramid, true);
+    open.pop();
+    let fixed = Source::Triangles(soup(Family::Pyramid, false));
+    let found = findings(Problem::new(fixed, Source::Triangles(open), alignment).unwrap_err());
+    assert!(found.source.is_none() && !found.list.is_empty());
+    assert!(found.to_string().contains("moving half"), "{found}");
+}

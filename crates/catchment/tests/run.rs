@@ -1,0 +1,218 @@
+//! The run from outside: equal bits however it is entered or divided, doubts where they belong.
+
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
+use catchment::acceptance::{Outcome, Warning};
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use catchment::exec::Exec;
+use catchment::landscape::Resolution;
+use catchment::method::correction::Stop;
+use catchment::method::{Method, REGISTRY};
+use catchment::pose::{Dof, DofSet, PoseError};
+use catchment::poses::Distribution;
+use catchment::problem::Problem;
+use catchment::report::UnanswerableError;
+use catchment::run::{Answer, Over, Part, PartAnswer, PartError, Run, RunError, Sample};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+fn problem(family: Family, free: DofSet) -> Problem {
+    let alignment = Alignment { free, ..Alignment::default_for(Some(family)) };
+    let connector = ConnectorSpec::Family(FamilySpec::new(family));
+    Problem::of(Design { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment }).unwrap()
+}
+
+fn planar() -> Problem {
+    problem(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect())
+}
+
+fn run(method: &str, cells: usize, samples: usize) -> Run {
+    let sample = if samples == 0 { Sample::None } else { Sample::Until(Stop::Samples(samples)) };
+    let over = Over::Grid(Resolution::uniform(cells).unwrap());
+    Run { over, sample, ..Run::by(method.parse().unwrap()) }
+}
+
+/// The report without what differs between equal runs.
+fn told(answer: &Answer) -> Value {
+    let mut report = serde_json::to_value(answer.report()).unwrap();
+    report["timing"] = Value::Null;
+    report
+}
+
+#[test]
+fn every_registered_method_enters_the_same_way() {
+    let problem = planar();
+    for entry in REGISTRY {
+        let method = entry.method();
+        assert_eq!(method.name(), entry.info.name);
+        assert_eq!(entry.info.name.parse::<Method>().unwrap(), method);
+        let written = serde_json::to_value(&method).unwrap();
+        assert_eq!(serde_json::from_value::<Method>(written).unwrap(), method);
+        let answer = run(method.name(), 6, 30).on(&problem, &Exec::new()).unwrap();
+        assert_eq!(answer.acceptance.outcomes.len(), 36, "{method}");
+        assert_eq!(answer.acceptance.method, method.name());
+        let [lo, hi] = answer.sum_ci95().unwrap();
+        assert!(lo <= answer.sum() && answer.sum() <= hi, "{method}");
+        let [basins, partition] = ["basins", "partition"].map(|name| method.by_products().contains(&name));
+        assert_eq!(answer.by_products.basins.is_some(), basins, "{method}");
+        assert_eq!(answer.by_products.partition.is_some(), partition, "{method}");
+        if let Some(landscape) = &answer.by_products.landscape {
+            assert!(method.by_products().contains(&"landscape") && landscape.heights.len() == 36);
+        }
+        let cost = method.cost(&problem, answer.grid().unwrap());
+        assert!(cost.bytes_per_cell > 0 && cost.seconds > 0.0 && cost.seconds < 60.0, "{method}: {cost:?}");
+    }
+}
+
+#[test]
+fn settings_are_changed_by_name_and_others_are_refused() {
+    let with = |method: &str, changes: Value| {
+        let Value::Object(changes) = changes else { panic!("an object") };
+        method.parse::<Method>().unwrap().with(&changes)
+    };
+    let steepest = with("steepest", json!({ "depth_tolerance": 0.2 })).unwrap();
+    assert_eq!(steepest.settings(), json!({ "depth_tolerance": 0.2, "rule": "steepest" }));
+    let message = |method: &str, changes| with(method, changes).unwrap_err().to_string();
+    assert_eq!(
+        message("transport", json!({ "depth_tolerance": 0.2 })),
+        "`depth_tolerance` is a setting of flood and steepest and meyer; transport has none"
+    );
+    assert!(message("flood", json!({ "depth_tolerance": -1.0 })).contains("-1"));
+    assert_eq!("floot".parse::<Method>().unwrap_err().to_string(), "there is no method `floot`; did you mean flood?");
+    assert!(serde_json::from_value::<Method>(json!({ "name": "flood", "settings": { "deep": 1 } })).is_err());
+}
+
+#[test]
+fn a_run_is_data() {
+    let full = Run {
+        errors: Some(Distribution::Normal {
+            mean: PoseError::default(),
+            sigma: PoseError { x: 0.1, ..PoseError::default() },
+        }),
+        requirements: vec!["onaa.edge >= 0.1".parse().unwrap()],
+        heights: true,
+        seed: 7,
+        ..run("flood", 9, 50)
+    };
+    let text = serde_json::to_string(&full).unwrap();
+    let back: Run = serde_json::from_str(&text).unwrap();
+    assert_eq!(back, full);
+    assert_eq!(serde_json::from_str::<Run>("{}").unwrap(), Run::default());
+    let problem = planar();
+    assert_eq!(told(&back.on(&problem, &Exec::new()).unwrap()), told(&full.on(&problem, &Exec::new()).unwrap()));
+}
+
+#[test]
+fn parts_of_a_run_in_five_dimensions_give_the_bits_of_the_whole() {
+    let problem = problem(Family::Pyramid, DofSet::ALL);
+    let whole = run("descent", 3, 60);
+    let expected = told(&whole.on(&problem, &Exec::new()).unwrap());
+    for of in [1, 2, 7] {
+        let mut parts: Vec<PartAnswer> = (0..of)
+            .map(|number| whole.part(&problem, Part { number, of }, &Exec::new()).unwrap())
+            // Through the wire, as from another machine.
+            .map(|part| serde_json::from_str(&serde_json::to_string(&part).unwrap()).unwrap())
+            .collect();
+        parts.reverse();
+        assert_eq!(told(&whole.merge(&problem, parts, &Exec::new()).unwrap()), expected, "{of} parts");
+    }
+}
+
+#[test]
+fn parts_of_a_random_stream_give_the_bits_of_the_whole() {
+    let problem = problem(Family::Pyramid, DofSet::ALL);
+    for method in ["descent", "drop"].into_iter().filter(|name| name.parse::<Method>().is_ok()) {
+        let poses = if method == "drop" { 10 } else { 200 };
+        let whole = Run { over: Over::Stream(poses), seed: 3, ..Run::by(method.parse().unwrap()) };
+        let answer = whole.on(&problem, &Exec::new()).unwrap();
+        assert!(answer.sum_ci95().is_some() && answer.onaa().is_none());
+        for of in [1, 2, 7] {
+            let parts = (0..of).map(|number| whole.part(&problem, Part { number, of }, &Exec::new()).unwrap());
+            let merged = whole.merge(&problem, parts.collect(), &Exec::new()).unwrap();
+            assert_eq!(merged.acceptance.outcomes, answer.acceptance.outcomes);
+            assert_eq!(told(&merged), told(&answer), "{method}, {of} parts");
+        }
+    }
+}
+
+#[test]
+fn parts_that_make_no_whole_are_refused() {
+    let problem = planar();
+    let whole = run("descent", 5, 0);
+    let part = |run: &Run, number, of| run.part(&problem, Part { number, of }, &Exec::new());
+    let merged = |parts: Vec<PartAnswer>| {
+        whole.merge(&problem, parts, &Exec::new()).map(|_| ()).unwrap_err().to_string()
+    };
+    let [a, b, c] = [0, 1, 2].map(|number| part(&whole, number, 3).unwrap());
+    assert_eq!(merged(vec![a.clone(), c.clone()]), "part 1 is missing");
+    assert_eq!(merged(vec![a.clone(), a.clone(), b.clone(), c.clone()]), "part 0 is there twice");
+    assert_eq!(merged(vec![]), "part 0 is missing");
+    let other = part(&Run { seed: 9, ..whole.clone() }, 1, 3).unwrap();
+    assert_eq!(merged(vec![a.clone(), other, c.clone()]), "part 1 belongs to another run");
+    let foreign = PartAnswer { problem: "0".to_owned(), ..b.clone() };
+    assert_eq!(merged(vec![a.clone(), foreign, c.clone()]), "part 1 belongs to another problem");
+    let short = PartAnswer { outcomes: vec![Outcome::Aligned], ..b };
+    assert_eq!(merged(vec![a, short, c]), "part 1 has the wrong number of outcomes");
+    assert!(matches!(part(&whole, 3, 3), Err(PartError::NoSuchPart { number: 3, of: 3 })));
+    let whole = part(&run("transport", 5, 0), 0, 2);
+    assert!(matches!(whole, Err(PartError::Indivisible { method: "transport" })));
+    assert!(serde_json::from_value::<PartAnswer>(json!({ "outcomes": "ajx" })).is_err());
+}
+
+proptest! {
+    #[test]
+    fn parts_cover_everything_once(count in 0usize..1000, of in 1usize..50) {
+        let mut next = 0;
+        for number in 0..of {
+            let range = Part { number, of }.range(count);
+            prop_assert_eq!(range.start, next);
+            prop_assert!(range.len() <= count / of + 1);
+            next = range.end;
+        }
+        prop_assert_eq!(next, count);
+    }
+}
+
+#[test]
+fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
+    let asks = |method: &str, requirement: &str| {
+        let run = Run { requirements: vec![requirement.parse().unwrap()], ..run(method, 8, 0) };
+        run.check_requirements(&planar())
+    };
+    // A partition has a section of its own, a flood has basins; no other report has.
+    assert!(asks("partition", "partition.sum >= 0.1").is_ok());
+    assert!(asks("flood", "basins.minima >= 1").is_ok());
+    let refused = asks("descent", "partition.sum >= 0.1").unwrap_err();
+    assert!(matches!(refused, UnanswerableError::Requirement { .. }), "{refused}");
+    assert!(asks("descent", "acceptance.sample.descents >= 1").is_err());
+    assert!(asks("descent", "onaa.edge >= 0.1").is_ok());
+    let run = Run {
+        requirements: ["partition.sum >= 0.1", "onaa.edge >= 0.9"].map(|r| r.parse().unwrap()).to_vec(),
+        ..run("partition", 8, 0)
+    };
+    let verdicts = run.on(&planar(), &Exec::new()).unwrap().verdicts().unwrap();
+    assert_eq!(verdicts.iter().map(|verdict| verdict.met).collect::<Vec<_>>(), [true, false]);
+}
+
+#[test]
+fn a_grid_outside_its_own_sample_is_a_doubt_and_so_is_no_sample() {
+    let kinds = |run: Run| {
+        let answer = run.on(&problem(Family::Pyramid, DofSet::ALL), &Exec::new()).unwrap();
+        assert_eq!(answer.sum(), answer.report().acceptance.sum);
+        answer.warnings()
+    };
+    // Five cells per axis of flooding are far off, and a thousand exact poses show it.
+    let biased = kinds(run("flood", 5, 1000));
+    assert!(biased.iter().any(|w| matches!(w, Warning::OutsideSample { .. })), "{biased:?}");
+    assert!(kinds(run("flood", 5, 0)).contains(&Warning::NoInterval));
+    assert!(!kinds(run("descent", 3, 0)).contains(&Warning::NoInterval));
+}
+
+#[test]
+fn what_would_not_fit_is_refused_before_it_is_computed() {
+    let small = Exec::new().with_memory_budget(1000);
+    for entry in REGISTRY {
+        let refused = run(entry.info.name, 100, 0).on(&planar(), &small).unwrap_err();
+        assert!(matches!(refused, RunError::OutOfBudget(_)), "{}: {refused}", entry.info.name);
+    }
+}
