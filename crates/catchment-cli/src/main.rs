@@ -12,6 +12,7 @@ mod exit;
 mod failure;
 mod method_args;
 mod output;
+mod signals;
 mod source;
 
 use args::Cli;

@@ -5,6 +5,8 @@
 mod area;
 mod check;
 mod compare;
+mod files;
+mod kills;
 mod meshes;
 mod new;
 mod plumbing;
