@@ -5,6 +5,7 @@
 mod area;
 mod check;
 mod compare;
+mod door;
 mod files;
 mod kills;
 mod meshes;
