@@ -61,6 +61,9 @@ const WRITERS: [Writer; 5] = [
     },
 ];
 
+/// What is sent, one after another.
+const SIGNALS: [&[&str]; 5] = [&["-KILL"], &["-KILL"], &["-TERM"], &["-INT"], &["-TERM", "-TERM"]];
+
 /// Whether what is there is one version and whole: a folder by its manifest, a file by its bytes.
 fn is_whole(path: &Path, files: &[Vec<u8>]) -> bool {
     if path.is_file() {
@@ -135,10 +138,11 @@ fn killed_at_any_moment_old_or_new_is_there() {
                 .spawn()
                 .unwrap();
             std::thread::sleep(lasts.mul_f64(1.1 * random(&mut seed)));
-            let signal = ["-KILL", "-TERM", "-INT"][(3.0 * random(&mut seed)) as usize];
             let pid = child.id().to_string();
-            // It may have ended already.
-            let _ = Command::new("kill").args([signal, &pid]).stderr(Stdio::null()).status().unwrap();
+            for signal in SIGNALS[(SIGNALS.len() as f64 * random(&mut seed)) as usize] {
+                // It may have ended already.
+                let _ = Command::new("kill").args([*signal, &pid]).stderr(Stdio::null()).status().unwrap();
+            }
             let status = child.wait().unwrap();
             assert!(matches!(status.code(), None | Some(0 | 130 | 143)), "{case}: {status}");
             killed += usize::from(status.code() != Some(0));
@@ -146,6 +150,9 @@ fn killed_at_any_moment_old_or_new_is_there() {
             replaced += usize::from(
                 before.is_some_and(|old| fs::read(target.join(".catchment.json")).unwrap() != old),
             );
+            // Who has heard the signal, or two of them, leaves nothing.
+            let tidy = status.code().is_none() || entries(home.path()) == expected;
+            assert!(tidy, "{case}: {status}, but {:?}", entries(home.path()));
             swept += usize::from(entries(home.path()) != expected);
             // Nothing is swept but by whoever begins next.
             finish((number + 1) % 2);

@@ -68,7 +68,7 @@ impl Drop for Permit {
 
 impl Permit {
     /// One change of something at `path`.
-    #[cfg_attr(not(test), expect(clippy::unused_self, reason = "the permit is what allows it"))]
+    #[expect(clippy::unused_self, reason = "the permit is what allows it")]
     pub(crate) fn step<T, E: From<io::Error>>(
         &self,
         path: &Path,

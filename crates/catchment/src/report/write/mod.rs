@@ -195,17 +195,21 @@ fn sync_parent(path: &Path) {
 
 /// Where a file goes, and the permissions that it takes over.
 fn look_for_file(path: &Path, replace: bool) -> Result<(PathBuf, Option<Permissions>), WriteError> {
-    let path = || path.to_owned();
-    let there = fs::metadata(path());
-    match &there {
-        Ok(meta) if meta.is_dir() => return Err(WriteError::IsFolder { path: path() }),
-        Ok(meta) if !meta.is_file() => return Err(WriteError::NotAFile { path: path() }),
-        _ => {}
+    let there = fs::metadata(path).ok();
+    if let Some(meta) = &there {
+        let path = path.to_owned();
+        if meta.is_dir() {
+            return Err(WriteError::IsFolder { path });
+        }
+        if !meta.is_file() {
+            return Err(WriteError::NotAFile { path });
+        }
     }
-    if !replace && fs::symlink_metadata(path()).is_ok() {
-        return Err(WriteError::Exists { path: path() });
+    // Also a link that leads nowhere.
+    if !replace && fs::symlink_metadata(path).is_ok() {
+        return Err(WriteError::Exists { path: path.to_owned() });
     }
-    Ok((place(&path())?, there.ok().map(|meta| meta.permissions())))
+    Ok((place(path)?, there.map(|meta| meta.permissions())))
 }
 
 /// Refuses a place for a file as [`file`] would, and tries it out.
@@ -241,7 +245,7 @@ pub fn file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), WriteError> 
     Ok(())
 }
 
-/// Writes a file into a folder that is being filled; `name` may name folders in it, which are made.
+/// Writes a file into a folder that is being filled; `name` may name one folder in it, which is made.
 ///
 /// # Errors
 /// Whatever the system refuses.

@@ -147,6 +147,8 @@ fn is_at(file: &File, path: &Path) -> bool {
 /// Waits until nobody else works on the folder at `place`, and keeps others waiting until the lock is dropped.
 pub(super) fn claim(place: &Path) -> Option<File> {
     loop {
+        // Nothing else, such as a pipe, is opened.
+        fs::symlink_metadata(place).ok().filter(fs::Metadata::is_dir)?;
         let folder = File::open(place).ok()?;
         folder.lock().ok()?;
         if is_at(&folder, place) {
