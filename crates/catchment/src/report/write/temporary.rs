@@ -66,10 +66,12 @@ impl Temporary {
                 Ok((lock, made)) => {
                     // Somebody who sweeps may have found it before it was locked.
                     let kept = lock.as_ref().is_none_or(|lock| !is_held(lock) && is_at(lock, &path));
-                    let temporary = Self { path, finished: false, _lock: lock };
+                    let mut temporary = Self { path, finished: false, _lock: lock };
                     if kept {
                         return Ok((temporary, made));
                     }
+                    // It is theirs to remove, and the name may be another's by then.
+                    temporary.keep();
                 }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(WriteError::at(place, error)),
