@@ -12,6 +12,7 @@ mod exit;
 mod failure;
 mod method_args;
 mod output;
+mod setting;
 mod signals;
 mod source;
 

@@ -67,17 +67,18 @@ impl From<Point> for OffsetsAt {
 
 pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     args.output.check()?;
+    let method = args.method.of()?;
     let problem = args.design.problem()?;
     let source = read_table(&args.poses)?;
     let table = PoseTable::parse(&source.text, problem.design(), args.offsets_at.into())
         .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
-    let method = args.method.of()?;
     let running = args.exec.start()?;
     let (acceptance, ends) = problem.follow_by(&method, table.errors(), &running.exec)?;
     drop(running);
     let report = OutcomesReport::new(&problem, &table, &method, &acceptance, &ends);
     args.output.write(&if args.json { report.to_json()? } else { report.to_csv()? })?;
-    let mut said: Vec<String> = report.warnings.iter().map(|warning| format!("warning: {}", warning.message)).collect();
+    let mut said: Vec<String> =
+        report.warnings.iter().map(|warning| format!("warning: {}", warning.message)).collect();
     said.extend(report.summary());
     to_stderr(&said);
     Ok(ExitStatus::Done)

@@ -14,9 +14,9 @@ pub use clock::Stopwatch;
 pub use memory::{Bytes, OutOfBudget};
 pub use progress::Progress;
 
+use crate::advice::{Advice, Advised};
 use clock::Deadline;
 use progress::Reporter;
-use crate::advice::{Advice, Advised};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

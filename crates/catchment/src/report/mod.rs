@@ -27,9 +27,9 @@ mod export;
 pub mod figure;
 pub mod folder;
 mod outcomes;
-pub mod schema;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
+pub mod schema;
 mod sensitivity;
 mod slices;
 mod table;
@@ -43,7 +43,8 @@ mod zraa;
 pub use answer::UnanswerableError;
 pub use check::{CheckBody, CheckReport, Place, ProblemReport};
 pub use comparison::{
-    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided, MethodResult,
+    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,
+    MethodResult,
 };
 pub use convergence::{ConvergenceBody, ConvergenceReport};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};

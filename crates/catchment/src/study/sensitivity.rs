@@ -52,12 +52,15 @@ impl Settings {
     pub const RHO: [f64; 2] = [0.25, 2.0];
     /// Values of ρ from the least to the greatest, each a fixed factor (the fourth root of two) above the last.
     const RHOS: usize = 13;
+    /// How many of them double ρ.
+    const RHOS_PER_OCTAVE: f64 = 4.0;
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        let [least, greatest] = Self::RHO;
-        let rho = |k: usize| least * (greatest / least).powf(k as f64 / (Self::RHOS - 1) as f64);
+        let [least, _] = Self::RHO;
+        // The system's power, folded by the compiler or not, has other last bits.
+        let rho = |k: usize| least * libm::exp2(k as f64 / Self::RHOS_PER_OCTAVE);
         Self {
             poses: None,
             seed: 1,
@@ -292,14 +295,15 @@ impl<'a> CommonPoses<'a> {
     /// Follows every pose in a design.
     fn follow(&mut self, design: Design) -> Result<Acceptance, SensitivityError> {
         let aspect_ratio = Parameter::AspectRatio.of(&design).unwrap_or(f64::NAN);
-        let changed = self.problem.with(design).map_err(|error| SensitivityError::Geometry {
-            aspect_ratio,
-            problem: error.to_string(),
-        })?;
+        let changed = self
+            .problem
+            .with(design)
+            .map_err(|error| SensitivityError::Geometry { aspect_ratio, problem: error.to_string() })?;
         let total = 1 + 2 * Parameter::ALL.len() + self.settings.rotation_lengths.len();
         let share = |k: usize| k as f64 / total as f64;
         let part = self.exec.part([share(self.done), share(self.done + 1)], "sensitivity");
-        let (acceptance, _) = descent::run(changed.pair(), self.poses.clone(), &self.settings.descent, &part)?;
+        let (acceptance, _) =
+            descent::run(changed.pair(), self.poses.clone(), &self.settings.descent, &part)?;
         self.done += 1;
         self.undecided += acceptance.counts()[Outcome::Undecided as usize - 1];
         Ok(acceptance)
@@ -377,6 +381,14 @@ mod tests {
     }
 
     #[test]
+    fn every_fourth_rho_is_twice_the_last_to_the_bit() {
+        let rhos = Settings::default().rotation_lengths;
+        assert_eq!(rhos.iter().copied().step_by(4).collect::<Vec<_>>(), [0.25, 0.5, 1.0, 2.0]);
+        assert_eq!([rhos[0], rhos[Settings::RHOS - 1]], Settings::RHO);
+        assert_eq!(rhos[1..4], [0.297_301_778_750_680_26, 0.353_553_390_593_273_8, 0.420_448_207_626_857_25]);
+    }
+
+    #[test]
     fn poses_that_fare_alike_cancel() {
         // Ten of a thousand poses change sides, eight to the better: (8 − 2)/1000, and the variance of that.
         let discordance = Discordance { poses: 1000, gained: 8, lost: 2 };
@@ -396,7 +408,8 @@ mod tests {
 
     #[test]
     fn the_same_for_any_number_of_threads_and_the_parameters_of_the_design() {
-        let settings = Settings { poses: Some(200), rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
+        let settings =
+            Settings { poses: Some(200), rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
         let with = |threads| {
             let exec = Exec::new().with_threads(threads).unwrap();
             run(&Problem::of(planar()).unwrap(), &settings, &exec).unwrap()
@@ -415,14 +428,21 @@ mod tests {
     fn without_rotation_rho_does_not_matter() {
         // Translation alone: ρ weighs nothing, the Sum is ZRAA's 1 D of the V-Face, and no pose changes sides.
         let design = design(Family::VFace, DofSet::EMPTY.with(Dof::X));
-        let found = run(&Problem::of(design).unwrap(), &Settings { poses: Some(300), ..Settings::default() }, &Exec::new()).unwrap();
+        let found = run(
+            &Problem::of(design).unwrap(),
+            &Settings { poses: Some(300), ..Settings::default() },
+            &Exec::new(),
+        )
+        .unwrap();
         assert_eq!((found.slopes[0].gained, found.slopes[0].lost, found.spread), (0, 0, 0.0));
         assert!(found.sum_ci95[0] < 1.0 && 1.0 < found.sum_ci95[1], "{:?}", found.sum_ci95);
     }
 
     #[test]
     fn what_cannot_be_compared_is_refused() {
-        let refused = |settings: Settings, exec: &Exec| run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err();
+        let refused = |settings: Settings, exec: &Exec| {
+            run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err()
+        };
         let none = Settings { poses: Some(0), ..Settings::default() };
         assert!(matches!(refused(none, &Exec::new()), SensitivityError::Nothing));
         let small = Exec::new().with_memory_budget(1000);

@@ -22,8 +22,8 @@
 //! Units: D, s, kg; see [`Settings`]. Engine: rapier, with bits that do not depend on threads or machine. Source of the test: the
 //! dissertation, section 4.2.
 
-mod engine;
 pub(super) mod door;
+mod engine;
 pub mod export;
 mod mass;
 mod pieces;
