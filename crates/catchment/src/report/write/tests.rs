@@ -365,7 +365,7 @@ fn a_folder_survives_every_stop() {
         read: &saved,
         is_folder: true,
     });
-    assert!(steps > 100, "{steps}");
+    assert!(steps > 50, "{steps}");
 }
 
 /// Stopped, and stopped again while that is put in order.
@@ -420,7 +420,7 @@ fn a_study_survives_every_stop() {
         },
         is_folder: true,
     });
-    assert!(steps > 100, "{steps}");
+    assert!(steps > 50, "{steps}");
 }
 
 #[cfg(feature = "zarr")]
@@ -453,7 +453,7 @@ fn a_group_survives_every_stop() {
         },
         is_folder: true,
     });
-    assert!(steps > 100, "{steps}");
+    assert!(steps > 50, "{steps}");
 }
 
 #[cfg(all(feature = "figure", feature = "zarr"))]
