@@ -13,6 +13,7 @@ mod failure;
 mod method_args;
 mod output;
 mod setting;
+mod signals;
 mod source;
 
 use args::Cli;

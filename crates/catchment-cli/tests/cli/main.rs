@@ -6,6 +6,8 @@ mod area;
 mod check;
 mod compare;
 mod door;
+mod files;
+mod kills;
 mod meshes;
 mod new;
 mod plumbing;
