@@ -20,7 +20,7 @@ impl From<ExitStatus> for ExitCode {
         Self::from(match status {
             ExitStatus::Done => 0,
             ExitStatus::RequirementNotMet => 1,
-            ExitStatus::Failed => 2,
+            ExitStatus::Failed => FAILED_CODE,
             ExitStatus::Interrupted => INTERRUPTED_CODE,
         })
     }
@@ -28,3 +28,6 @@ impl From<ExitStatus> for ExitCode {
 
 /// 128 + SIGINT, as shells expect.
 pub(crate) const INTERRUPTED_CODE: u8 = 130;
+
+/// That of every failure.
+pub(crate) const FAILED_CODE: u8 = 2;

@@ -19,7 +19,8 @@ use serde_json::{Value, json};
 fn problem(family: Family, free: DofSet) -> Problem {
     let alignment = Alignment { free, ..Alignment::default_for(Some(family)) };
     let connector = ConnectorSpec::Family(FamilySpec::new(family));
-    Problem::of(Design { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment }).unwrap()
+    Problem::of(Design { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment })
+        .unwrap()
 }
 
 fn planar() -> Problem {
@@ -78,7 +79,10 @@ fn settings_are_changed_by_name_and_others_are_refused() {
         "`depth_tolerance` is a setting of flood and steepest and meyer; transport has none"
     );
     assert!(message("flood", json!({ "depth_tolerance": -1.0 })).contains("-1"));
-    assert_eq!("floot".parse::<Method>().unwrap_err().to_string(), "there is no method `floot`; did you mean flood?");
+    assert_eq!(
+        "floot".parse::<Method>().unwrap_err().to_string(),
+        "there is no method `floot`; did you mean flood?"
+    );
     assert!(serde_json::from_value::<Method>(json!({ "name": "flood", "settings": { "deep": 1 } })).is_err());
 }
 
@@ -99,7 +103,10 @@ fn a_run_is_data() {
     assert_eq!(back, full);
     assert_eq!(serde_json::from_str::<Run>("{}").unwrap(), Run::default());
     let problem = planar();
-    assert_eq!(told(&back.on(&problem, &Exec::new()).unwrap()), told(&full.on(&problem, &Exec::new()).unwrap()));
+    assert_eq!(
+        told(&back.on(&problem, &Exec::new()).unwrap()),
+        told(&full.on(&problem, &Exec::new()).unwrap())
+    );
 }
 
 #[test]
@@ -127,7 +134,8 @@ fn parts_of_a_random_stream_give_the_bits_of_the_whole() {
         let answer = whole.on(&problem, &Exec::new()).unwrap();
         assert!(answer.sum_ci95().is_some() && answer.onaa().is_none());
         for of in [1, 2, 7] {
-            let parts = (0..of).map(|number| whole.part(&problem, Part { number, of }, &Exec::new()).unwrap());
+            let parts =
+                (0..of).map(|number| whole.part(&problem, Part { number, of }, &Exec::new()).unwrap());
             let merged = whole.merge(&problem, parts.collect(), &Exec::new()).unwrap();
             assert_eq!(merged.acceptance.outcomes, answer.acceptance.outcomes);
             assert_eq!(told(&merged), told(&answer), "{method}, {of} parts");

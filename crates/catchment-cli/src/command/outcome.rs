@@ -77,7 +77,8 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     drop(running);
     let report = OutcomesReport::new(&problem, &table, &method, &acceptance, &ends);
     args.output.write(&if args.json { report.to_json()? } else { report.to_csv()? })?;
-    let mut said: Vec<String> = report.warnings.iter().map(|warning| format!("warning: {}", warning.message)).collect();
+    let mut said: Vec<String> =
+        report.warnings.iter().map(|warning| format!("warning: {}", warning.message)).collect();
     said.extend(report.summary());
     to_stderr(&said);
     Ok(ExitStatus::Done)

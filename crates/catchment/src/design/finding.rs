@@ -108,10 +108,7 @@ mod tests {
             Finding::new("all of it", None).at(Some(3..3)),
         ];
         let findings = Findings { source, list, omitted: 2 };
-        assert_eq!(
-            findings.to_string(),
-            "d.toml:2:5: wrong; write 3\nd.toml: all of it\nand 2 more"
-        );
+        assert_eq!(findings.to_string(), "d.toml:2:5: wrong; write 3\nd.toml: all of it\nand 2 more");
         let bare = Findings { source: None, list: vec![Finding::new("wrong", None)], omitted: 0 };
         assert_eq!(bare.to_string(), "wrong");
     }

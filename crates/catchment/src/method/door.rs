@@ -15,8 +15,8 @@
 //! What decides translation alone ([`zraa`](super::zraa)) is not forced in.
 
 use super::descent::End;
-use crate::advice::Advice;
 use crate::acceptance::{Acceptance, Domain};
+use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::design::{Design, nearest};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
@@ -289,7 +289,9 @@ impl Method {
             settings.insert(key.clone(), value.clone());
         }
         let method = Self::read(self.name(), Value::Object(settings))?;
-        method.check().map_err(|error| MethodError::Refused { method: method.name(), reason: error.to_string() })?;
+        method
+            .check()
+            .map_err(|error| MethodError::Refused { method: method.name(), reason: error.to_string() })?;
         Ok(method)
     }
 

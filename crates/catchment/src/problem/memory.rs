@@ -28,9 +28,9 @@ impl Problem {
 /// What a design says of a half that came from a source.
 fn spec(source: Source, content: Option<MeshContent>, built: &Half) -> HalfSpec {
     match (source, content) {
-        (Source::Pieces(pieces), _) => {
-            HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(|p| p.to_array()).collect()).collect())
-        }
+        (Source::Pieces(pieces), _) => HalfSpec::Pieces(
+            pieces.iter().map(|piece| piece.iter().map(|p| p.to_array()).collect()).collect(),
+        ),
         (Source::Mesh { path, scale, .. }, content) => HalfSpec::Mesh { path, scale, content },
         (_, Some(content)) => HalfSpec::Memory { content },
         // A half of a family, which a design of two halves of one's own cannot name.

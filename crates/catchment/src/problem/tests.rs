@@ -7,7 +7,8 @@ use crate::pose::{Dof, DofSet, Mount};
 use glam::DVec3;
 use std::fmt::Write;
 
-const V_FACE: &str = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+const V_FACE: &str =
+    "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
 
 fn read(text: &str) -> Result<Problem, ProblemError> {
     Draft::read(SourceText::new("d.toml", text)).and_then(Draft::build)
@@ -68,7 +69,10 @@ fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
     let ConnectorSpec::Own(own) = &here.design().connector else { panic!("it has halves of its own") };
     let HalfSpec::Mesh { content: Some(content), .. } = &own.moving else { panic!("a mesh") };
     assert_eq!((content.bytes, content.triangles), (plug.len() as u64, 6));
-    assert_ne!(problem("swapped", &socket).map_or_else(|e| e.to_string(), |p| p.digest().to_owned()), here.digest());
+    assert_ne!(
+        problem("swapped", &socket).map_or_else(|e| e.to_string(), |p| p.digest().to_owned()),
+        here.digest()
+    );
 }
 
 #[test]
@@ -83,8 +87,14 @@ fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
     let two_cubes = |height: f64| {
         let mut piece = String::new();
         for k in 0..8 {
-            write!(piece, "[{}, {}, {}],", f64::from(k & 1) - 0.5, f64::from(k >> 1 & 1) - 0.5, 0.3 * f64::from(k >> 2))
-                .unwrap();
+            write!(
+                piece,
+                "[{}, {}, {}],",
+                f64::from(k & 1) - 0.5,
+                f64::from(k >> 1 & 1) - 0.5,
+                0.3 * f64::from(k >> 2)
+            )
+            .unwrap();
         }
         format!(
             "[connector]\nwidth = 1\nface_height = {height}\nfixed = {{ pieces = [[{piece}]] }}\nmoving = {{ pieces = [[{piece}]] }}\n\

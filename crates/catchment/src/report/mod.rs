@@ -16,6 +16,8 @@
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
+#[cfg(feature = "zarr")]
+mod bounded;
 mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
@@ -27,9 +29,9 @@ mod export;
 pub mod figure;
 pub mod folder;
 mod outcomes;
-pub mod schema;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
+pub mod schema;
 mod sensitivity;
 mod slices;
 mod table;
@@ -43,7 +45,8 @@ mod zraa;
 pub use answer::UnanswerableError;
 pub use check::{CheckBody, CheckReport, Place, ProblemReport};
 pub use comparison::{
-    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided, MethodResult,
+    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,
+    MethodResult,
 };
 pub use convergence::{ConvergenceBody, ConvergenceReport};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
@@ -55,6 +58,6 @@ pub use schema::{Report, RunBody};
 pub use sensitivity::{SensitivityBody, SensitivityReport};
 pub use slices::{SliceReport, SlicesBody, SlicesReport};
 pub use table::{table, table_with};
-pub use text::{csv, number, printable};
+pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use zraa::{ZraaBody, ZraaFound, ZraaReport};

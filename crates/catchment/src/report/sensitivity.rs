@@ -37,7 +37,8 @@ impl SensitivityReport {
         let mut text = String::new();
         let f = &self.found;
         heading(&mut text, &self.design);
-        let poses = format!("{} random poses, the same in every run", grouped(f.settings.poses.unwrap_or_default()));
+        let poses =
+            format!("{} random poses, the same in every run", grouped(f.settings.poses.unwrap_or_default()));
         row(&mut text, "method", &format!("descent, {poses}"));
         text.push('\n');
         row(&mut text, "Sum", &format!("{} {}", significant(f.sum), f.unit));

@@ -10,10 +10,12 @@
 //! The grid's first axis runs fastest in memory, so in the row-major order of Zarr its dimensions are reversed. The
 //! metadata are consolidated. The same run writes the same bytes but for the report's `timing`.
 
+mod outcomes;
 mod read;
 
 pub use read::read;
 
+use super::bounded;
 use super::schema::{Report, Unit};
 use super::write::{self, WriteError};
 use crate::acceptance::{Acceptance, Outcome};
@@ -105,8 +107,8 @@ pub fn write(
 
 /// Whether a folder is a group written by [`write()`].
 pub fn is_group(path: &Path) -> bool {
-    let text = std::fs::read_to_string(path.join("zarr.json")).unwrap_or_default();
-    let root: Value = serde_json::from_str(&text).unwrap_or_default();
+    let text = bounded::read(&path.join("zarr.json"), bounded::REPORT_BYTES).unwrap_or_default();
+    let root: Value = serde_json::from_slice(&text).unwrap_or_default();
     root["node_type"] == "group" && root["attributes"]["catchment"].is_u64()
 }
 

@@ -74,7 +74,9 @@ impl Plan {
     /// It would not.
     pub fn ensure_fits(&self, exec: &Exec) -> Result<(), OutOfBudget> {
         let (cells, axes) = match &self.domain {
-            Domain::Grid(grid) => (grid.checked_len().map_or(u64::MAX, |cells| cells as u64), grid.axes.len()),
+            Domain::Grid(grid) => {
+                (grid.checked_len().map_or(u64::MAX, |cells| cells as u64), grid.axes.len())
+            }
             Domain::Poses(poses) => (poses.len() as u64, 1),
         };
         let per_cell = self.cost.bytes_per_cell + if self.heights { Landscape::bytes(1) } else { 0 };

@@ -133,8 +133,11 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Agreem
         exec.check()?;
         tried.push(Tried { method: method.name(), answer });
     }
-    let found: Vec<&Acceptance> =
-        tried.iter().filter_map(|tried| tried.answer.as_ref().ok()).map(|answer| &answer.acceptance).collect();
+    let found: Vec<&Acceptance> = tried
+        .iter()
+        .filter_map(|tried| tried.answer.as_ref().ok())
+        .map(|answer| &answer.acceptance)
+        .collect();
     let between = |a: &Acceptance, b: &Acceptance| -> Result<Overlap, AgreementError> {
         let paired = Paired::of(a, b)?;
         Ok(Overlap::of(&confusion(&paired.first, &paired.second, exec)?))

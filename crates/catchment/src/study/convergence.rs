@@ -14,8 +14,8 @@
 use super::refinement::{Refinement, RefinementError, Sampled};
 use crate::exec::{Bytes, Exec, OutOfBudget};
 use crate::landscape::Resolution;
-use crate::method::{Decide, Method, descent};
 use crate::method::correction::{self, Stop};
+use crate::method::{Decide, Method, descent};
 use crate::problem::Problem;
 use serde::Serialize;
 
@@ -144,7 +144,8 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Conver
         return Err(ConvergenceError::Tolerance { tolerance });
     }
     let affordable = || descent::Settings::default().default_samples(problem.pair());
-    let settings = &Settings { descents: Some(settings.descents.unwrap_or_else(affordable)), ..settings.clone() };
+    let settings =
+        &Settings { descents: Some(settings.descents.unwrap_or_else(affordable)), ..settings.clone() };
     let total = settings.methods.len() as f64;
     let sequences = settings
         .methods
@@ -269,10 +270,17 @@ mod tests {
     #[test]
     fn every_method_is_refined_until_it_is_stable_or_something_stops_it() {
         let problem = problem(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect());
-        let settings =
-            Settings { tolerance: 0.1, time_limit_s: f64::INFINITY, descents: Some(200), ..Settings::default() };
+        let settings = Settings {
+            tolerance: 0.1,
+            time_limit_s: f64::INFINITY,
+            descents: Some(200),
+            ..Settings::default()
+        };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
-        assert_eq!(found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(), ["transport", "descent", "flood", "steepest"]);
+        assert_eq!(
+            found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(),
+            ["transport", "descent", "flood", "steepest"]
+        );
         assert_eq!(found.unit, "D·rad");
         for sequence in &found.sequences {
             assert_eq!(sequence.end, StopReason::Stable);
@@ -294,7 +302,8 @@ mod tests {
         );
         let hasty = Settings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
         let found = run(&problem, &hasty, &Exec::new()).unwrap();
-        let once = |s: &Sequence| s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. });
+        let once =
+            |s: &Sequence| s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. });
         assert!(found.sequences.iter().all(once));
         let small = Exec::new().with_memory_budget(2_000_000);
         let strict = Settings { tolerance: 1e-9, ..settings.clone() };

@@ -9,9 +9,9 @@
 
 pub mod agreement;
 pub mod convergence;
+pub mod refinement;
 pub mod sensitivity;
 pub mod slices;
-pub mod refinement;
 
 use crate::acceptance::Outcome;
 use crate::method::descent;

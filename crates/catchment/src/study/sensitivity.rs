@@ -398,7 +398,8 @@ mod tests {
 
     #[test]
     fn the_same_for_any_number_of_threads_and_the_parameters_of_the_design() {
-        let settings = Settings { poses: Some(200), rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
+        let settings =
+            Settings { poses: Some(200), rotation_lengths: vec![2.0, 0.25], ..Settings::default() };
         let with = |threads| {
             let exec = Exec::new().with_threads(threads).unwrap();
             run(&Problem::of(planar()).unwrap(), &settings, &exec).unwrap()
@@ -417,14 +418,21 @@ mod tests {
     fn without_rotation_rho_does_not_matter() {
         // Translation alone: ρ weighs nothing, the Sum is ZRAA's 1 D of the V-Face, and no pose changes sides.
         let design = design(Family::VFace, DofSet::EMPTY.with(Dof::X));
-        let found = run(&Problem::of(design).unwrap(), &Settings { poses: Some(300), ..Settings::default() }, &Exec::new()).unwrap();
+        let found = run(
+            &Problem::of(design).unwrap(),
+            &Settings { poses: Some(300), ..Settings::default() },
+            &Exec::new(),
+        )
+        .unwrap();
         assert_eq!((found.slopes[0].gained, found.slopes[0].lost, found.spread), (0, 0, 0.0));
         assert!(found.sum_ci95[0] < 1.0 && 1.0 < found.sum_ci95[1], "{:?}", found.sum_ci95);
     }
 
     #[test]
     fn what_cannot_be_compared_is_refused() {
-        let refused = |settings: Settings, exec: &Exec| run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err();
+        let refused = |settings: Settings, exec: &Exec| {
+            run(&Problem::of(planar()).unwrap(), &settings, exec).unwrap_err()
+        };
         let none = Settings { poses: Some(0), ..Settings::default() };
         assert!(matches!(refused(none, &Exec::new()), SensitivityError::Nothing));
         let small = Exec::new().with_memory_budget(1000);

@@ -15,8 +15,8 @@
 //! Not promised: anything about errors off these planes. Lengths in D, angles in radians.
 
 use super::pose_bytes;
-use crate::advice::Advice;
 use crate::acceptance::{Acceptance, Domain, Warning};
+use crate::advice::Advice;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Resolution, ResolutionError};
 use crate::merit::estimate::Estimate;
@@ -168,12 +168,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices
 }
 
 /// Decides a plane by itself.
-fn decide(
-    problem: &Problem,
-    grid: Grid,
-    judge: &dyn Follow,
-    exec: &Exec,
-) -> Result<Acceptance, SlicesError> {
+fn decide(problem: &Problem, grid: Grid, judge: &dyn Follow, exec: &Exec) -> Result<Acceptance, SlicesError> {
     Ok(judge.follow(problem, Domain::Grid(grid), exec)?.0)
 }
 
@@ -236,8 +231,12 @@ mod tests {
         let problem = problem(Family::Pyramid, DofSet::ALL.without(Dof::Y).without(Dof::Roll));
         let found = run(&problem, &settings(5, &[[Dof::Yaw, Dof::X]]), &Exec::new()).unwrap();
         let whole = Grid::over(problem.alignment(), |_| 5);
-        let all =
-            descent::run(problem.pair(), Domain::Grid(whole.clone()), &descent::Settings::default(), &Exec::new());
+        let all = descent::run(
+            problem.pair(),
+            Domain::Grid(whole.clone()),
+            &descent::Settings::default(),
+            &Exec::new(),
+        );
         let outcomes = all.unwrap().0.outcomes;
         let plane =
             slice::Slice::of(&whole, &[Dof::X, Dof::Yaw], &crate::pose::PoseError::default()).unwrap();

@@ -106,7 +106,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let report = answer.report();
     let mut notes = targets.write(&answer, &running.exec)?;
     drop(running);
-    let printed = if args.json { to_stdout(&report.to_json()?) } else { to_stdout(&table_with(&report, advice::flags)) };
+    let printed = if args.json {
+        to_stdout(&report.to_json()?)
+    } else {
+        to_stdout(&table_with(&report, advice::flags))
+    };
     let verdicts = answer.verdicts()?;
     let status = if verdicts.iter().all(|verdict| verdict.met) {
         printed?;

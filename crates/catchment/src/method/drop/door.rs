@@ -42,11 +42,7 @@ impl Decide for Settings {
         /// Core-seconds per pose with its trials.
         const POSE_SECONDS: f64 = 0.02;
         let cells = grid.axes.iter().map(|axis| axis.cells as f64).product::<f64>();
-        Cost {
-            what: "the outcome of every cell",
-            bytes_per_cell: POSE_BYTES,
-            seconds: cells * POSE_SECONDS,
-        }
+        Cost { what: "the outcome of every cell", bytes_per_cell: POSE_BYTES, seconds: cells * POSE_SECONDS }
     }
 
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {

@@ -22,8 +22,8 @@
 //! Units: D, s, kg; see [`Settings`]. Engine: rapier, with bits that do not depend on threads or machine. Source of the test: the
 //! dissertation, section 4.2.
 
-mod engine;
 pub(super) mod door;
+mod engine;
 pub mod export;
 mod mass;
 mod pieces;
@@ -130,7 +130,7 @@ fn decide(
     error: &PoseError,
     exec: &Exec,
 ) -> Result<End, Cancelled> {
-    let mut ends: Vec<End> = Vec::with_capacity(settings.trials as usize);
+    let mut ends: Vec<End> = Vec::new();
     for trial in 0..settings.trials {
         ends.push(engine.fall(&perturbed(pair, settings, error, trial), exec)?);
         let agree = ends.iter().filter(|e| e.outcome == ends[ends.len() - 1].outcome).count();

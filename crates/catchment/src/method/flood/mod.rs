@@ -244,7 +244,9 @@ fn divide(
     let count = drained.minima.len() as u64;
     let tree = count.saturating_mul((size_of::<Minimum>() + size_of::<Link>()) as u64);
     let needed = passes::bytes(count).saturating_mul(exec.threads() as u64).saturating_add(tree);
-    exec.ensure_fits("the passes between basins", needed, |_| vec![Advice::CoarserGrid, Advice::FewerThreads])?;
+    exec.ensure_fits("the passes between basins", needed, |_| {
+        vec![Advice::CoarserGrid, Advice::FewerThreads]
+    })?;
     let passes = passes::passes(shape, heights, &drained, exec)?;
     let bottom = |cell: &usize| {
         let basin = drained.labels[*cell];

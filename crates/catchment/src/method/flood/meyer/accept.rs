@@ -9,8 +9,8 @@
 
 use super::basins::Shore;
 use super::{Division, Rules, divide};
-use crate::advice::Advice;
 use crate::acceptance::{Acceptance, Domain, Outcome};
+use crate::advice::Advice;
 use crate::design::{Alignment, ConnectorSpec, Design};
 use crate::exec::Exec;
 use crate::landscape::{Landscape, Resolution};

@@ -59,11 +59,7 @@ impl Decide for Settings {
         const NEIGHBOUR_SECONDS: f64 = 5e-8;
         let cells = grid.axes.iter().map(|axis| axis.cells as f64).product::<f64>();
         let neighbours = 3f64.powf(grid.axes.len() as f64);
-        Cost {
-            what: "flooding",
-            bytes_per_cell: bytes(1),
-            seconds: cells * neighbours * NEIGHBOUR_SECONDS,
-        }
+        Cost { what: "flooding", bytes_per_cell: bytes(1), seconds: cells * neighbours * NEIGHBOUR_SECONDS }
     }
 
     fn by_products(&self) -> &'static [&'static str] {
@@ -71,8 +67,8 @@ impl Decide for Settings {
     }
 
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
-        let landscape = Landscape::compute(problem.pair(), grid_of(&INFO, domain)?, exec)
-            .map_err(FloodError::from)?;
+        let landscape =
+            Landscape::compute(problem.pair(), grid_of(&INFO, domain)?, exec).map_err(FloodError::from)?;
         let flooding = accept(&landscape, problem.alignment(), &self.for_problem(problem), exec)?;
         let used = Self { depth_tolerance: Some(flooding.tolerance.depth), ..*self };
         let by_products = ByProducts { landscape: Some(landscape), ..ByProducts::default() };
