@@ -34,17 +34,21 @@ pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
 /// on one line), it says their numbers instead.
 fn report(source: Option<&SourceText>, finding: Finding) -> Report {
     let mut diagnostic = diagnostic(&finding.message, finding.help);
-    let (Some(source), Some(span)) = (source, finding.span) else {
+    let Some(source) = source else { return Report::new(diagnostic) };
+    let name = printable(&source.path.display().to_string());
+    let Some(span) = finding.span else {
+        if !diagnostic.message.contains(&name) {
+            diagnostic.message = format!("{name}: {}", diagnostic.message);
+        }
         return Report::new(diagnostic);
     };
     let span = first_line(&source.text, span);
     if is_too_wide_around(source, span.start) {
         let (line, column) = source.line_column(span.start);
-        diagnostic.message = format!("line {line}, column {column}: {}", diagnostic.message);
+        diagnostic.message = format!("{name}, line {line}, column {column}: {}", diagnostic.message);
         return Report::new(diagnostic);
     }
     diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, span)]);
-    let name = printable(&source.path.display().to_string());
     Report::new(diagnostic).with_source_code(NamedSource::new(name, printable(&source.text)))
 }
 

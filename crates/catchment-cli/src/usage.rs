@@ -24,7 +24,7 @@ pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
 }
 
 /// Takes from what the person wrote, and the complaint repeats, what could steer a terminal.
-fn silence(usage: &mut clap::Error) {
+pub(crate) fn silence(usage: &mut clap::Error) {
     let silent = |text: &String| printable(text);
     let repeated: Vec<(ContextKind, ContextValue)> = usage
         .context()

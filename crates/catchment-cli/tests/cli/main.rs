@@ -3,8 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up should stop")]
 
 mod area;
+mod bad_inputs;
 mod check;
 mod compare;
+mod hostile;
+mod limits;
 mod meshes;
 mod new;
 mod plumbing;
