@@ -4,21 +4,26 @@
 //! (x, y, roll, pitch, yaw) their contact passively corrects: the *area of acceptance*, the catchment
 //! basin of the mated pose in configuration space.
 //!
-//! # The tour: from a design to its numbers
+//! # Ten lines
 //!
 //! A V-shaped tip meets its notch, free to be wrong in x and pitch. Which errors does it forgive?
+#![cfg_attr(all(feature = "figure", feature = "zarr"), doc = "```")]
+#![cfg_attr(not(all(feature = "figure", feature = "zarr")), doc = "```ignore")]
+#![doc = include_str!("../examples/quickstart.rs")]
+//! ```
+//!
+//! The same without a file, from triangles in memory:
 //!
 //! ```
-//! use catchment::acceptance::Domain;
-//! use catchment::connector::Connector;
-//! use catchment::contact::Pair;
-//! use catchment::exec::Exec;
-//! use catchment::landscape::Grid;
-//! use catchment::merit::onaa::Onaa;
-//! use catchment::merit::sum::Sum;
-//! use catchment::method::descent;
-//! use catchment::report::{self, Report};
-//! use catchment::design;
+#![doc = include_str!("../examples/in_memory.rs")]
+//! ```
+//!
+//! # The tour: what a run does
+//!
+//! ```
+//! use catchment::prelude::*;
+//! use catchment::design::SourceText;
+//! use catchment::report;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // 1. What a person wrote. Every problem comes back at once, each with its place in the text.
@@ -36,29 +41,32 @@
 //!     x = "50 mm"
 //!     pitch = "90 deg"
 //! "#;
-//! let design = design::read(text, ".".as_ref())?.design;
+//! let draft = Draft::read(SourceText::new("v-face.toml", text))?;
 //!
-//! // 2. Two solids, and what happens when one is lowered onto the other: they touch where the notch's two
-//! //    corners meet the slopes of the tip. Aligned, the centre of rotation is at the world's origin.
-//! let connector = Connector::build(&design).map_err(|problems| problems[0].to_string())?;
-//! let pair = Pair::new(&connector, &design.alignment);
+//! // 2. Two solids that hold in the mated pose, and a digest of all that an answer depends on.
+//! let problem = draft.build()?;
+//! assert!(problem.doubts().is_empty() && problem.digest().len() == 64);
 //!
-//! // 3. Every cell of the error box is followed to its end, exactly and without a grid in between.
-//! let grid = Grid::over(&design.alignment, |_| 40);
-//! let (settings, exec) = (descent::Settings::default(), Exec::new());
-//! let (acceptance, _ends) = descent::run(&pair, Domain::Grid(grid), &settings, &exec)?;
+//! // 3. A run is data: the method with its settings, the grid, the random poses. The default method, transport, decides every
+//! //    cell of the error box from its neighbours; random poses, followed exactly, then make the Sum unbiased.
+//! let run = Run { over: Over::Grid("40".parse()?), ..Run::default() };
+//! let plan = run.plan(&problem)?;
+//! assert_eq!((plan.method.name(), plan.domain.len()), ("transport", 1600));
 //!
-//! // 4. What the accepted set is worth: 2.39 D·rad at full resolution, 38 % of the error box.
-//! let sum = Sum::of(&acceptance, &design.alignment);
-//! assert!((sum.sum - 2.39).abs() < 0.05, "{}", sum.sum);
-//! assert_eq!(sum.unit(), "D·rad");
-//! assert!((Onaa::of(&acceptance, &exec)?.edge - 0.3).abs() < 0.03);
+//! // 4. What the accepted set is worth: 2.38 D·rad, 38 % of the error box, with a 95 % interval.
+//! let answer = run.on(&problem, &Exec::new())?;
+//! let [lo, hi] = answer.sum_ci95().ok_or("random poses were drawn")?;
+//! assert!(lo < 2.38 && 2.38 < hi && hi - lo < 0.2, "{lo} {hi}");
+//! assert_eq!(answer.unit(), "D·rad");
+//! assert!(answer.onaa().is_some_and(|onaa| (onaa.edge - 0.3).abs() < 0.03));
 //!
 //! // 5. For people, in their own units.
-//! let report = Report::new(&design, &acceptance, serde_json::to_value(&settings)?, None, &exec)?;
-//! let table = report::table(&report);
+//! let table = report::table(&answer.report());
 //! assert!(table.contains("mm") && table.contains("deg"), "{table}");
-//! # println!("{table}");
+//!
+//! // 6. Another method enters by the same door; its settings have names.
+//! let flood: Method = "flood".parse()?;
+//! assert!(Run { over: run.over, ..Run::by(flood) }.on(&problem, &Exec::new())?.by_products.basins.is_some());
 //! # Ok(())
 //! # }
 //! ```
@@ -68,30 +76,33 @@
 //! Data walks through them in one direction; imports run against it.
 //!
 //! ```text
-//! design ─▶ poses ─▶ connector ─▶ contact ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ study ─▶ report
+//! design ─▶ poses ─▶ connector ─▶ contact ─▶ problem ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ run ─▶ study ─▶ report
 //! ```
 //!
 //! - [`design`]: the design file, typed; all its problems at once, each with line, column and advice.
-//! - [`poses`]: pose errors as people write them, tables of them, and how they are distributed.
-//! - [`connector`]: the two halves as closed solids, from a family, convex pieces or STL files.
+//! - [`poses`]: pose errors as people write them: one, tables of them, and how they are distributed.
+//! - [`connector`]: the two halves as closed solids, from a family, convex pieces, mesh files or triangles in memory.
 //! - [`contact`]: the height of first contact, exactly, and what touches there.
+//! - [`problem`]: the alignment problem as one value: geometry, alignment, mated pose checked, digest.
 //! - [`landscape`]: the error grid over any of the five errors, and the heights over it.
 //! - [`acceptance`]: what becomes of every pose error; the one result that all methods share.
-//! - [`method`]: ways to decide: exact descent, flooding, the planar kinematic one, translation alone.
+//! - [`method`]: ways to decide, all through one door: transport (the default), exact descent, flooding in three forms, the
+//!   polyhedral partition, the planar kinematic one, drop tests; and translation alone.
 //! - [`merit`]: what an accepted set is worth: Sum, ONAA, tolerances, success probability.
-//! - [`study`]: many computations of one design: slices, convergence, sensitivity.
-//! - [`report`]: JSON, text, pictures, Zarr.
+//! - [`run`]: plan, decide, correct, settle, measure: from a problem to its answer. Over many machines, too.
+//! - [`study`]: many runs, and what they say together.
+//! - [`report`]: JSON, text, tables, pictures, Zarr: the one place that tells results.
 //!
-//! [`pose`] owns frames, signs and the order of angles; [`exec`] owns threads, cancelling, progress and the
+//! [`pose`] owns frames, signs, the order of angles and the metric; [`exec`] owns threads, the clock, cancelling, progress and the
 //! memory budget, none of which changes a bit of a result; [`suggest`] knows what a misspelt word meant, [`advice`] what helps
-//! where something is refused. [`polytope`] is the geometry of convex sets in up to six
-//! dimensions.
+//! where something is refused. [`polytope`] is the geometry of convex sets in up to six dimensions. [`prelude`] is one `use` for
+//! all that a program needs.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
 //!
 //! # What is not promised
 //!
-//! The model is frictionless, quasi-static and overdamped: friction, speed, mass and bounce are left out. A grid
+//! The model is frictionless, quasi-static and overdamped: friction, speed, mass and bounce are left out (drop tests have them). A grid
 //! sees the centres of its cells and nothing between. Doubts about a result travel inside it, as
 //! [`acceptance::Warning`]s. The file `docs/limits.md` of the source tree has the whole list.
 
@@ -107,6 +118,7 @@ pub mod method;
 pub mod polytope;
 pub mod pose;
 pub mod poses;
+pub mod prelude;
 pub mod problem;
 pub mod report;
 pub mod run;

@@ -7,14 +7,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms that must build where there is no system, such as a page in a browser.
-const CORE: [&str; 12] = [
+const CORE: [&str; 15] = [
     "pose",
     "exec",
     "suggest",
+    "advice",
     "polytope",
     "design",
+    "poses",
     "connector",
     "contact",
+    "problem",
     "landscape",
     "acceptance",
     "method",
@@ -44,7 +47,7 @@ const ALLOWED: [(&str, &str, &str); 5] = [
     ("exec/threads.rs", "a thread", "the pools of a run; the caller's own thread where there are none"),
     ("exec/memory/system.rs", "a file", "how much memory is free, on Linux"),
     ("design/load.rs", "a file", "reading a design file"),
-    ("connector/stl/mod.rs", "a file", "reading a mesh"),
+    ("connector/source/disk.rs", "a file", "reading a mesh"),
 ];
 
 /// Lines of code that ask for something they may not, as `place:line: what`. What follows the unit tests of a file is not
@@ -116,4 +119,34 @@ fn asking_is_found_where_it_is_not_allowed() {
     ] {
         assert_eq!(found(place, text), [""; 0], "{place}");
     }
+}
+
+/// String literals of a line that name an option of a command line.
+fn options(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default();
+    let quoted = code.split('"').skip(1).step_by(2);
+    quoted.into_iter().any(|text| {
+        text.match_indices("--").any(|(at, _)| {
+            let before = text[..at].chars().next_back();
+            let after = text[at + 2..].chars().next();
+            before.is_none_or(|c| !c.is_alphanumeric() && c != '-') && after.is_some_and(|c| c.is_ascii_lowercase())
+        })
+    })
+}
+
+#[test]
+fn no_message_of_the_library_names_an_option() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    let mut found = Vec::new();
+    for file in &files {
+        let text = fs::read_to_string(file).unwrap();
+        let code = text.lines().take_while(|line| line.trim() != "#[cfg(test)]");
+        for (line, number) in code.zip(1..).filter(|(line, _)| options(line)) {
+            found.push(format!("{}:{number}: {}", file.display(), line.trim()));
+        }
+    }
+    assert!(found.is_empty(), "advice is data; only the command line names its options:\n{}", found.join("\n"));
+    assert!(options("    \"use at most --resolution 3\"") && !options("a --b // \"--c\"") && !options("\"a--b\""));
 }

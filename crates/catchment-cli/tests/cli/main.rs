@@ -6,6 +6,7 @@ mod area;
 mod bad_inputs;
 mod check;
 mod compare;
+mod door;
 mod hostile;
 mod limits;
 mod meshes;

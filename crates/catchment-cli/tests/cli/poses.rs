@@ -210,7 +210,7 @@ fn a_drop_test_is_exported_with_all_that_it_needs() {
 #[test]
 fn equal_rows_meet_the_same_end_in_drop_tests() {
     // On the border of the accepted set, where the perturbation decides.
-    let table = "x_mm,yaw_deg\n".to_owned() + &"24.9,30\n".repeat(12);
+    let table = "x_mm,yaw_deg\n".to_owned() + &"25,30\n".repeat(12);
     let output = outcome(&table, &["--method", "drop"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let rows = cells(&output.stdout);
@@ -219,12 +219,15 @@ fn equal_rows_meet_the_same_end_in_drop_tests() {
 
 #[test]
 fn near_names_are_refused_and_carried_columns_named() {
-    for name in ["x mm", "dx", "X_mm", "rol", "delta_x", "x.mm", "\u{feff}\u{feff}x", "x\0"] {
+    for name in ["x mm", "dx", "X_mm", "rol", "delta_x", "x.mm", "x\0"] {
         let output = outcome(&format!("{name},yaw\n9,0\n"), &[]);
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{name}: {stderr}");
         assert!(!stderr.contains(['\0', '\u{1b}']), "{stderr:?}");
     }
+    // A byte order mark that does not begin the file is part of a name.
+    let output = outcome("yaw,\u{feff}x_mm\n0,90\n", &[]);
+    assert_eq!(output.status.code(), Some(2));
     let ends = ["x_mm", "x [mm]", "x (mm)"].map(|name| {
         let output = outcome(&format!("part,{name},time\nA,90,1\n"), &[]);
         let stderr = String::from_utf8(output.stderr).unwrap();

@@ -70,7 +70,7 @@ impl Exec {
         self
     }
 
-    /// The same for another run: its stages start from 0 again.
+    /// The same for another run: its stages start from 0 again. A part of a run stays a part of it.
     #[must_use]
     pub fn anew(&self) -> Self {
         Self { progress: self.progress.as_ref().map(Reporter::anew), ..self.clone() }

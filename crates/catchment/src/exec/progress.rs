@@ -29,9 +29,9 @@ impl Reporter {
         Self { run: Arc::new(run), span: [0.0, 1.0], stage: None }
     }
 
-    /// For another run with the same consumer.
+    /// For another run with the same consumer; a part stays a part of its run.
     pub(super) fn anew(&self) -> Self {
-        Self::new(Arc::clone(&self.run.consumer))
+        if self.stage.is_some() { self.clone() } else { Self::new(Arc::clone(&self.run.consumer)) }
     }
 
     fn at(&self, fraction: f64) -> f64 {

@@ -145,12 +145,14 @@ fn error_in(word: &str) -> Option<(Dof, &str)> {
         return Some((Dof::ALL[k], ""));
     }
     let starts = std::iter::once(word).chain(DECORATIONS.iter().filter_map(|d| word.strip_prefix(d)));
-    starts.into_iter().find_map(|rest| {
-        let (dof, tail) = Dof::ALL.into_iter().find_map(|dof| Some((dof, rest.strip_prefix(dof.name())?)))?;
-        let known = tail.is_empty()
+    let known = |tail: &str| {
+        tail.is_empty()
             || DECORATIONS.contains(&tail)
-            || UNITS.iter().any(|(symbol, _)| symbol.eq_ignore_ascii_case(tail));
-        known.then_some((dof, tail))
+            || UNITS.iter().any(|(symbol, _)| symbol.eq_ignore_ascii_case(tail))
+    };
+    starts.into_iter().find_map(|rest| {
+        let after = |dof: Dof| Some((dof, rest.strip_prefix(dof.name())?)).filter(|(_, tail)| known(tail));
+        Dof::ALL.into_iter().find_map(after)
     })
 }
 

@@ -72,6 +72,19 @@ impl Problem {
         Draft::from(design).build()
     }
 
+    /// This problem with another design, such as one with its centre of rotation elsewhere. Where the halves stay as they are they
+    /// are not built again, and no file is read.
+    ///
+    /// # Errors
+    /// Everything that is wrong with its geometry or its mated pose.
+    pub fn with(&self, design: Design) -> Result<Self, ProblemError> {
+        let own = self.design();
+        if design.connector == own.connector && design.alignment.mount == own.alignment.mount {
+            return Draft::from(design).with_halves(self.connector().clone(), Draft::is_apart);
+        }
+        Self::of(design)
+    }
+
     fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {
         // What the meshes held is known by now, so that there is a digest.
         // Known of every design whose halves were built.

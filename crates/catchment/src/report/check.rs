@@ -185,8 +185,9 @@ mod tests {
     use crate::problem::Draft;
 
     fn problem(name: &str, place: &str) -> Problem {
-        let text = format!("name = {}\n[connector]\nfamily = \"pyramid\"\n", serde_json::json!(name));
-        Draft::read(SourceText::new(place, text)).and_then(Draft::build).unwrap()
+        let draft = Draft::read(SourceText::new(place, "[connector]\nfamily = \"pyramid\"\n")).unwrap();
+        let named = draft.change("name", |design| Ok(Design { name: name.to_owned(), ..design }));
+        named.and_then(Draft::build).unwrap()
     }
 
     #[test]

@@ -155,6 +155,7 @@ impl Run {
     /// # Errors
     /// See [`RunError`]; nothing is left behind.
     pub fn on(&self, problem: &Problem, exec: &Exec) -> Result<Answer, RunError> {
+        let exec = &exec.anew();
         let plan = self.plan(problem)?;
         plan.ensure_fits(exec)?;
         let started = Stopwatch::start();

@@ -20,8 +20,6 @@
 use super::pose_bytes;
 use crate::acceptance::{Acceptance, Domain, Outcome};
 use crate::advice::Advice;
-use crate::connector::Connector;
-use crate::contact::Pair;
 use crate::design::{Complaint, ConnectorSpec, Design, Quantity, Unit};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::merit::sum::Sum;
@@ -185,8 +183,8 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Sensit
     exec.ensure_fits("the random poses", per_pose.saturating_mul(poses as u64), |budget| {
         vec![Advice::AtMostSamples(budget / per_pose)]
     })?;
-    let mut common = CommonPoses::new(design, settings, exec);
-    let own = common.follow(design)?;
+    let mut common = CommonPoses::new(problem, settings, exec);
+    let own = common.follow(design.clone())?;
     let slopes = Parameter::ALL
         .into_iter()
         .filter_map(|parameter| Some((parameter, parameter.of(design)?)))
@@ -196,7 +194,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Sensit
     rhos.sort_by(f64::total_cmp);
     let runs = rhos
         .iter()
-        .map(|rho| common.follow(&Parameter::RotationLength.set(design.clone(), *rho)?))
+        .map(|rho| common.follow(Parameter::RotationLength.set(design.clone(), *rho)?))
         .collect::<Result<Vec<Acceptance>, SensitivityError>>()?;
     let measured = |acceptance: &Acceptance| {
         let sum = Sum::of(acceptance, &design.alignment);
@@ -267,7 +265,7 @@ impl Parameter {
 
 /// The same poses, followed again and again.
 struct CommonPoses<'a> {
-    design: &'a Design,
+    problem: &'a Problem,
     settings: &'a Settings,
     exec: &'a Exec,
     poses: Domain,
@@ -278,10 +276,10 @@ struct CommonPoses<'a> {
 }
 
 impl<'a> CommonPoses<'a> {
-    fn new(design: &'a Design, settings: &'a Settings, exec: &'a Exec) -> Self {
-        let alignment = &design.alignment;
+    fn new(problem: &'a Problem, settings: &'a Settings, exec: &'a Exec) -> Self {
+        let alignment = problem.alignment();
         Self {
-            design,
+            problem,
             settings,
             exec,
             poses: Domain::random(alignment, settings.poses.unwrap_or_default(), settings.seed),
@@ -292,16 +290,16 @@ impl<'a> CommonPoses<'a> {
     }
 
     /// Follows every pose in a design.
-    fn follow(&mut self, design: &Design) -> Result<Acceptance, SensitivityError> {
-        let connector = Connector::build(design).map_err(|problems| SensitivityError::Geometry {
-            aspect_ratio: Parameter::AspectRatio.of(design).unwrap_or(f64::NAN),
-            problem: problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
+    fn follow(&mut self, design: Design) -> Result<Acceptance, SensitivityError> {
+        let aspect_ratio = Parameter::AspectRatio.of(&design).unwrap_or(f64::NAN);
+        let changed = self.problem.with(design).map_err(|error| SensitivityError::Geometry {
+            aspect_ratio,
+            problem: error.to_string(),
         })?;
-        let pair = Pair::new(&connector, &design.alignment);
         let total = 1 + 2 * Parameter::ALL.len() + self.settings.rotation_lengths.len();
         let share = |k: usize| k as f64 / total as f64;
         let part = self.exec.part([share(self.done), share(self.done + 1)], "sensitivity");
-        let (acceptance, _) = descent::run(&pair, self.poses.clone(), &self.settings.descent, &part)?;
+        let (acceptance, _) = descent::run(changed.pair(), self.poses.clone(), &self.settings.descent, &part)?;
         self.done += 1;
         self.undecided += acceptance.counts()[Outcome::Undecided as usize - 1];
         Ok(acceptance)
@@ -313,8 +311,8 @@ impl<'a> CommonPoses<'a> {
             Parameter::RotationLength | Parameter::AspectRatio => self.settings.relative_step * value,
         };
         let between = [value - step, value + step];
-        let below = self.follow(&parameter.set(self.design.clone(), between[0])?)?;
-        let above = self.follow(&parameter.set(self.design.clone(), between[1])?)?;
+        let below = self.follow(parameter.set(self.problem.design().clone(), between[0])?)?;
+        let above = self.follow(parameter.set(self.problem.design().clone(), between[1])?)?;
         let discordance = Discordance::of(&below, &above);
         let scale = self.measure / (between[1] - between[0]);
         Ok(Slope {
