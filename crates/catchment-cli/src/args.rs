@@ -104,13 +104,14 @@ fn with_advice(complaint: &Complaint) -> String {
 }
 
 #[cfg(test)]
+#[path = "../../catchment/tests/readers/mutate.rs"]
+mod mutate;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use clap::CommandFactory;
     use std::path::Path;
-
-    #[path = "../../../catchment/tests/readers/mutate.rs"]
-    mod mutate;
 
     #[test]
     fn the_command_line_is_well_formed() {
@@ -122,7 +123,8 @@ mod tests {
     fn spoilt_command_lines_are_read_or_refused() {
         const RUNS: usize = 2000;
         let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/arguments");
-        let mut paths: Vec<PathBuf> = std::fs::read_dir(corpus).unwrap().map(|entry| entry.unwrap().path()).collect();
+        let mut paths: Vec<PathBuf> =
+            std::fs::read_dir(corpus).unwrap().map(|entry| entry.unwrap().path()).collect();
         paths.sort();
         let seeds: Vec<Vec<u8>> = paths.iter().map(|path| std::fs::read(path).unwrap()).collect();
         let mut dice = mutate::Dice::new(9);
@@ -137,7 +139,10 @@ mod tests {
                 refused += 1;
                 crate::usage::silence(&mut usage);
                 let shown = usage.to_string();
-                assert!(!shown.chars().any(|c| c.is_control() && c != '\n' && c != '\t'), "{text:?}: {shown:?}");
+                assert!(
+                    !shown.chars().any(|c| c.is_control() && c != '\n' && c != '\t'),
+                    "{text:?}: {shown:?}"
+                );
             }
         }
         assert!(refused > RUNS / 10, "{refused} of {RUNS} refused");

@@ -129,7 +129,8 @@ fn options(line: &str) -> bool {
         text.match_indices("--").any(|(at, _)| {
             let before = text[..at].chars().next_back();
             let after = text[at + 2..].chars().next();
-            before.is_none_or(|c| !c.is_alphanumeric() && c != '-') && after.is_some_and(|c| c.is_ascii_lowercase())
+            before.is_none_or(|c| !c.is_alphanumeric() && c != '-')
+                && after.is_some_and(|c| c.is_ascii_lowercase())
         })
     })
 }
@@ -147,6 +148,12 @@ fn no_message_of_the_library_names_an_option() {
             found.push(format!("{}:{number}: {}", file.display(), line.trim()));
         }
     }
-    assert!(found.is_empty(), "advice is data; only the command line names its options:\n{}", found.join("\n"));
-    assert!(options("    \"use at most --resolution 3\"") && !options("a --b // \"--c\"") && !options("\"a--b\""));
+    assert!(
+        found.is_empty(),
+        "advice is data; only the command line names its options:\n{}",
+        found.join("\n")
+    );
+    assert!(
+        options("    \"use at most --resolution 3\"") && !options("a --b // \"--c\"") && !options("\"a--b\"")
+    );
 }

@@ -3,6 +3,7 @@
 //! ```text
 //!   name    what is wrong
 //!   files   name and content, beside v.toml, p.toml, good.csv and the stored result a.zarr, or in place of one of its files
+//!   edits   name of a file, and what in it is replaced by what, once
 //!   args    of the program
 //!   says    a piece of what it says; line breaks and frames count as spaces
 //!   exit    its exit code
@@ -20,7 +21,10 @@ use std::time::{Duration, Instant};
 #[derive(Deserialize)]
 struct Case {
     name: String,
+    #[serde(default)]
     files: BTreeMap<String, String>,
+    #[serde(default)]
+    edits: BTreeMap<String, [String; 2]>,
     args: Vec<String>,
     says: String,
     exit: i32,
@@ -69,6 +73,11 @@ fn home(stored: &BTreeMap<PathBuf, Vec<u8>>, from: &Path, case: &Case) -> tempfi
     for (path, text) in &case.files {
         put(Path::new(path), text.as_bytes());
     }
+    for (path, [from, to]) in &case.edits {
+        let text = fs::read_to_string(home.path().join(path)).unwrap();
+        assert!(text.contains(from), "{}: {path} has no {from}", case.name);
+        put(Path::new(path), text.replacen(from, to, 1).as_bytes());
+    }
     home
 }
 
@@ -104,7 +113,8 @@ fn every_bad_input_of_the_catalogue_is_refused_as_it_says() {
     assert!(cases.len() >= CASES, "{} cases", cases.len());
     let from = tempfile::tempdir().unwrap();
     fs::write(from.path().join("v.toml"), V_FACE).unwrap();
-    let told = run(from.path(), &["run", "v.toml", "--method", "flood", "--resolution", "20", "-o", "a.zarr"]);
+    let told =
+        run(from.path(), &["run", "v.toml", "--method", "flood", "--resolution", "20", "-o", "a.zarr"]);
     assert!(told.starts_with("exit 0"), "{told}");
     let stored = contents(from.path());
     let started = Instant::now();

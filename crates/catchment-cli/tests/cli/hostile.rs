@@ -10,7 +10,8 @@ const NAME: &str = "a\u{1b}[2J\u{9b}2J\u{202e}b";
 /// Whether a text could steer a terminal.
 fn steers(text: &str) -> bool {
     text.chars().any(|c| {
-        c.is_control() && c != '\n' || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        c.is_control() && c != '\n'
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
     })
 }
 
@@ -30,7 +31,8 @@ fn home() -> tempfile::TempDir {
 fn said(home: &Path, args: &[&str]) -> (Option<i32>, String) {
     let args = args.iter().map(|arg| arg.replace('@', NAME));
     let output = catchment(home).args(args).output().unwrap();
-    let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let text =
+        format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     (output.status.code(), text)
 }
 
@@ -100,7 +102,10 @@ fn pictures_and_models_of_a_design_whose_name_steers_are_well_formed() {
             if name.ends_with(".svg") || name.ends_with(".xml") || name.ends_with(".sdf") {
                 let text = fs::read_to_string(home.path().join(folder).join(&name)).unwrap();
                 // XML 1.0 has no form for these, not even an escaped one.
-                assert!(!text.chars().any(|c| c < ' ' && !matches!(c, '\t' | '\n' | '\r')), "{folder}/{name}");
+                assert!(
+                    !text.chars().any(|c| c < ' ' && !matches!(c, '\t' | '\n' | '\r')),
+                    "{folder}/{name}"
+                );
                 assert!(!text.contains("&#27;") && !text.contains("&#x1b;"), "{folder}/{name}");
                 seen += 1;
             }

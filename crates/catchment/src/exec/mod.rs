@@ -13,6 +13,7 @@ mod threads;
 pub use clock::Stopwatch;
 pub use memory::{Bytes, OutOfBudget};
 pub use progress::Progress;
+pub use threads::ThreadsError;
 
 use crate::advice::{Advice, Advised};
 use clock::Deadline;
@@ -58,7 +59,7 @@ impl Exec {
     ///
     /// # Errors
     /// When the system refuses to start that many threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
+    pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
         self.threads = if threads == 0 { Threads::Shared } else { Threads::exactly(threads)? };
         Ok(self)
     }

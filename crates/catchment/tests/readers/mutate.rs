@@ -1,11 +1,11 @@
 //! Spoilt copies of good input, the same ones in every run.
 
 /// Random numbers: a counter, scrambled (`splitmix64`).
-pub struct Dice(u64);
+pub(crate) struct Dice(u64);
 
 impl Dice {
     /// The same numbers for the same seed.
-    pub const fn new(seed: u64) -> Self {
+    pub(crate) const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
@@ -17,12 +17,12 @@ impl Dice {
     }
 
     /// Below `n`; 0 for `n` = 0.
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n.max(1) as u64) as usize
     }
 
     /// One of them.
-    pub fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
+    pub(crate) fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
         let at = self.below(of.len());
         &of[at]
     }
@@ -30,18 +30,48 @@ impl Dice {
 
 /// Numbers at which readers break.
 const NUMBERS: [&str; 16] = [
-    "0", "-0", "-1", "1e308", "-1e308", "1e-320", "1e999", "nan", "inf", "0.1", "255", "65536", "4294967295",
-    "18446744073709551615", "18446744073709551616", "1.7976931348623157e308",
+    "0",
+    "-0",
+    "-1",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "1e999",
+    "nan",
+    "inf",
+    "0.1",
+    "255",
+    "65536",
+    "4294967295",
+    "18446744073709551615",
+    "18446744073709551616",
+    "1.7976931348623157e308",
 ];
 
 /// Pieces that mean something to a reader.
 const PIECES: [&[u8]; 18] = [
-    b"\0", b"\x1b[2J", b"\xff\xfe", b"\xef\xbb\xbf", b"\n", b"\r", b",", b"\"", b"[", b"{", b"}", b"=", b" mm", b" deg",
-    b"null", b"\xe2\x80\xae", b"\xc2\x9b", b"////////",
+    b"\0",
+    b"\x1b[2J",
+    b"\xff\xfe",
+    b"\xef\xbb\xbf",
+    b"\n",
+    b"\r",
+    b",",
+    b"\"",
+    b"[",
+    b"{",
+    b"}",
+    b"=",
+    b" mm",
+    b" deg",
+    b"null",
+    b"\xe2\x80\xae",
+    b"\xc2\x9b",
+    b"////////",
 ];
 
 /// A copy of `seed` with one to four faults; `others` lend pieces.
-pub fn spoilt(dice: &mut Dice, seed: &[u8], others: &[Vec<u8>]) -> Vec<u8> {
+pub(crate) fn spoilt(dice: &mut Dice, seed: &[u8], others: &[Vec<u8>]) -> Vec<u8> {
     // Longest piece that is copied or left out, and longest input.
     const PIECE: usize = 200;
     const LONGEST: usize = 1 << 20;

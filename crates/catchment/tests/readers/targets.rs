@@ -13,13 +13,13 @@ use catchment::run::Requirement;
 use std::path::Path;
 
 /// A design in millimetres, free in all five errors.
-pub fn design() -> Design {
+pub(crate) fn design() -> Design {
     let text = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \"mm\"\naspect_ratio = 0.5\n";
     read(text, Path::new("")).expect("the design of the targets").design
 }
 
 /// A design file gives a design that obeys its own rules, or problems whose places lie in the text.
-pub fn design_file(bytes: &[u8]) {
+pub(crate) fn design_file(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     match read(&text, Path::new("no-such-folder")) {
         Ok(file) => {
@@ -49,7 +49,7 @@ pub fn design_file(bytes: &[u8]) {
 }
 
 /// What the STL reader accepts is a closed solid, and what it refuses has few reasons.
-pub fn stl_file(bytes: &[u8]) {
+pub(crate) fn stl_file(bytes: &[u8]) {
     match stl::from_bytes(bytes, bytes.len() as u64, 1.0) {
         Ok(surface) => {
             assert!(surface.volume() > 0.0);
@@ -60,7 +60,7 @@ pub fn stl_file(bytes: &[u8]) {
 }
 
 /// A table of poses has as many errors as rows, all finite, and objections lie in the text.
-pub fn pose_table(bytes: &[u8]) {
+pub(crate) fn pose_table(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
     for at in [OffsetsAt::Face, OffsetsAt::Cor] {
@@ -85,7 +85,7 @@ pub fn pose_table(bytes: &[u8]) {
 }
 
 /// One line that a person writes: a pose, a quantity, degrees of freedom, a distribution.
-pub fn line(bytes: &[u8]) {
+pub(crate) fn line(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
     if let Ok(error) = parse_pose(&text, &design) {
@@ -106,7 +106,7 @@ pub fn line(bytes: &[u8]) {
 }
 
 /// A stored report that is read is written again, and told, whatever its numbers are.
-pub fn report(bytes: &[u8]) {
+pub(crate) fn report(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(report) = Report::from_json(&text) {
         let again = report.to_json().expect("what was read has a JSON form");
@@ -118,7 +118,7 @@ pub fn report(bytes: &[u8]) {
 }
 
 /// A requirement is a path and a number.
-pub fn requirement(bytes: &[u8]) {
+pub(crate) fn requirement(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(requirement) = text.parse::<Requirement>() {
         let report = serde_json::json!({ "onaa": { "edge": 0.25 }, "success": null });
@@ -127,7 +127,7 @@ pub fn requirement(bytes: &[u8]) {
 }
 
 /// A resolution gives a grid with that many cells, or says why not.
-pub fn resolution(bytes: &[u8]) {
+pub(crate) fn resolution(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     if let Ok(resolution) = text.parse::<Resolution>()
         && let Ok(grid) = resolution.grid(&design().alignment, &[3; 5])
@@ -138,11 +138,11 @@ pub fn resolution(bytes: &[u8]) {
 }
 
 /// What stands between the files of a group in one input.
-pub const FILES_END: &[u8] = b"\n=====\n";
+pub(crate) const FILES_END: &[u8] = b"\n=====\n";
 
 /// Three files of a group, one behind the other: its metadata, those of its outcomes, and their first chunk.
 #[cfg(feature = "zarr")]
-pub fn group(bytes: &[u8]) {
+pub(crate) fn group(bytes: &[u8]) {
     use catchment::exec::Exec;
     const NAMES: [&str; 3] = ["zarr.json", "outcome/zarr.json", "outcome/c/0/0"];
     let home = tempfile::tempdir().expect("a folder for a group");

@@ -113,20 +113,21 @@ mod tests {
     use crate::exec::Exec;
     use crate::pose::Dof;
 
+    type Spoil = fn(&mut RunBody);
+
     #[test]
     fn what_is_written_is_sound_and_what_cannot_be_is_named() {
         let design = design([Dof::X, Dof::Yaw].into_iter().collect());
         let report =
             Report::new(&design, &blob(&design, 9), serde_json::Value::Null, None, &Exec::new()).unwrap();
         report.check().unwrap();
-        type Spoil = fn(&mut RunBody);
         let spoils: [(&str, Spoil); 12] = [
             ("design.width must be above 0", |b| b.design.width = -1.0),
             ("design.alignment.rotation_length must be above 0", |b| {
                 b.design.alignment.rotation_length = 0.0;
             }),
             ("design.alignment.half_ranges must be above 0", |b| {
-                b.design.alignment.half_ranges[0] = f64::NAN
+                b.design.alignment.half_ranges[0] = f64::NAN;
             }),
             ("axes must each be there once", |b| b.axes.swap(0, 1)),
             ("axes: yaw: lo and hi must be in order", |b| b.axes[1].hi = -9.0),
