@@ -53,15 +53,19 @@ impl<T: Body + Serialize> Envelope<T> {
     /// # Errors
     /// None at present: every field has a JSON form.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string_pretty(self).map(|text| escaped(&text) + "\n")
+        serde_json::to_string_pretty(self).map(|text| escaped(text) + "\n")
     }
 }
 
 /// JSON with `\u` and a number for every character that could steer a terminal; they stand in strings alone.
-fn escaped(json: &str) -> String {
+fn escaped(json: String) -> String {
+    let raw = |c: char| c != '\n' && super::text::steers(c);
+    if !json.contains(raw) {
+        return json;
+    }
     let mut text = String::with_capacity(json.len());
     for c in json.chars() {
-        if c != '\n' && super::text::steers(c) {
+        if raw(c) {
             text.extend(c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")));
         } else {
             text.push(c);
