@@ -1,7 +1,7 @@
 //! The settings of drop tests, as a person writes them.
 
 use crate::failure::Failure;
-use crate::method_args::{Change, with_changes};
+use crate::setting::{Change, with_changes};
 use catchment::method::Method;
 use catchment::method::drop::Settings;
 use clap::Args;

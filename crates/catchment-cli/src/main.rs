@@ -14,6 +14,7 @@ mod exit;
 mod failure;
 mod method_args;
 mod output;
+mod setting;
 mod source;
 mod usage;
 

@@ -2,21 +2,11 @@
 
 use crate::drop_args::DropArgs;
 use crate::failure::Failure;
-use catchment::method::{Entry, Method, MethodError, REGISTRY};
+use crate::setting::{Change, with_changes};
+use catchment::method::{Entry, Method, REGISTRY};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
-use serde_json::{Map, Value};
-
-/// A setting that was given by an option.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Change {
-    /// The option.
-    pub(crate) option: &'static str,
-    /// The setting that it changes.
-    pub(crate) setting: &'static str,
-    /// To what.
-    pub(crate) value: Value,
-}
+use serde_json::Value;
 
 /// A method that decides grids, and its settings.
 #[derive(Debug, Args)]
@@ -93,23 +83,6 @@ impl PoseMethodArgs {
     pub(crate) fn of(&self) -> Result<Method, Failure> {
         with_changes(&self.method, &self.drop.changes())
     }
-}
-
-/// A method with some of its settings changed; a refusal names the option.
-pub(crate) fn with_changes(method: &Method, changes: &[Change]) -> Result<Method, Failure> {
-    let map: Map<String, Value> =
-        changes.iter().map(|change| (change.setting.to_owned(), change.value.clone())).collect();
-    method.with(&map).map_err(|error| match error {
-        MethodError::NoSuchSetting { method, setting, owners } => {
-            let option = changes.iter().find(|change| change.setting == setting).map_or("", |c| c.option);
-            let message = format!("{option} is a setting of {}; {method} has none", owners.join(" and "));
-            let help =
-                format!("add --method {}, or leave it out", owners.first().copied().unwrap_or_default());
-            Failure::with_help(message, Some(help))
-        }
-        MethodError::Refused { reason, .. } => Failure::with_help(reason, None),
-        error @ MethodError::Unknown { .. } => error.into(),
-    })
 }
 
 /// One method, or all of them.

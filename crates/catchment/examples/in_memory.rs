@@ -1,3 +1,6 @@
+//! From triangles in memory to their area of acceptance: no file, no path.
+#![allow(clippy::print_stdout, reason = "an example tells what it found")]
+
 use catchment::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,3 +1,6 @@
+//! From a design file to its area of acceptance.
+#![allow(clippy::print_stdout, reason = "an example tells what it found")]
+
 use catchment::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -109,7 +109,9 @@ fn members(group: &str) -> Vec<&str> {
 /// The imports in one file that run along the flow. `place` is its path below `src`.
 fn violations(place: &str, text: &str) -> Vec<Violation> {
     let parts: Vec<&str> = place.trim_end_matches(".rs").split('/').filter(|part| *part != "mod").collect();
-    let Some(from) = parts.first().filter(|part| **part != "lib" && **part != FACADE) else { return Vec::new() };
+    let Some(from) = parts.first().filter(|part| **part != "lib" && **part != FACADE) else {
+        return Vec::new();
+    };
     // A `use` may go on over several lines: statements, with the line they begin on.
     let (mut found, mut statement, mut begin) = (Vec::new(), String::new(), 1);
     for (number, line) in text.lines().enumerate() {

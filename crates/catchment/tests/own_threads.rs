@@ -1,8 +1,6 @@
 //! A run uses threads of its own: the process-wide pool of `rayon`, which no run can size and which panics where the
 //! system refuses threads, is never asked for. This file is a process of its own, so that it can tell.
 
-#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
-
 use catchment::acceptance::Domain;
 use catchment::connector::Connector;
 use catchment::contact::Pair;

@@ -267,7 +267,10 @@ fn a_partition_says_how_large_it_is_and_draws_its_outline() {
 fn slices_and_strips_belong_to_the_partition() {
     let home = home();
     let said = run(home.path(), &["run", "v.toml", "--slices", "8"]);
-    assert!(said.starts_with("exit 2") && said.contains("--slices is a setting of partition; transport has none"), "{said}");
+    assert!(
+        said.starts_with("exit 2") && said.contains("--slices is a setting of partition; transport has none"),
+        "{said}"
+    );
     let said = run(home.path(), &["run", "v.toml", "--method", "partition", "--strips", "0"]);
     assert!(said.starts_with("exit 2") && said.contains("strips must be at least 1"), "{said}");
 }

@@ -165,6 +165,17 @@ fn a_header_of_a_million_names_is_refused_in_linear_time() {
 }
 
 #[test]
+fn names_that_every_row_would_repeat_are_counted() {
+    let home = home();
+    let long = "n".repeat(1_000_000);
+    fs::write(home.path().join("q.csv"), format!("x,{long}\n") + &"3,\n".repeat(100_000)).unwrap();
+    let output = limited(home.path(), "ulimit -v 1500000", "outcome v.toml --poses q.csv --json");
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("the answer for every pose needs") && said.contains("try fewer poses"), "{said}");
+}
+
+#[test]
 fn what_is_no_file_is_not_waited_for() {
     let home = home();
     let dir = home.path();

@@ -2,6 +2,7 @@
 
 use super::{home, json};
 use serde_json::Value;
+use std::fmt::Write;
 
 /// The paths of all fields, in their order, those of a list once; `settings` are the methods' own.
 fn fields(value: &Value, path: &str, found: &mut Vec<String>) {
@@ -49,7 +50,7 @@ fn every_json_has_one_head_and_its_fields() {
         assert_eq!(names[names.len() - 2..], ["warnings", "timing"]);
         let mut found = Vec::new();
         fields(&report, "", &mut found);
-        told += &format!("{kind}\n  {}\n", found.join("\n  "));
+        writeln!(told, "{kind}\n  {}", found.join("\n  ")).unwrap();
     }
     insta::assert_snapshot!("fields", told);
 }

@@ -169,7 +169,10 @@ mod tests {
         assert_eq!(refused(Vec::new()), MergeError::Nothing);
         assert_eq!(refused(vec![0..2, 3..of]).to_string(), format!("rotation 2 of {of} is in no part"));
         assert_eq!(refused(vec![0..3, 2..of]).to_string(), format!("rotation 2 of {of} is in two parts"));
-        assert_eq!(refused(vec![0..of - 1]), MergeError::Rotation { rotation: of - 1, of, missing: true });
+        assert_eq!(
+            refused(std::iter::once(0..of - 1).collect()),
+            MergeError::Rotation { rotation: of - 1, of, missing: true }
+        );
         let mut other = part(0..of);
         other.grid.axes[0].hi += 1.0;
         assert_eq!(Landscape::merge([part(0..of), other]), Err(MergeError::Different));

@@ -58,6 +58,11 @@ impl<'a> PoseTable<'a> {
             found.push(fault, || spans(text, start).into_iter().next());
             return Err(Findings { source: None, list: found.list, omitted: 0 });
         }
+        if width == 1 && names[0].contains([';', '\t']) {
+            let fault = Fault::new("one column alone", "separate the columns with commas");
+            found.push(fault, || spans(text, start).into_iter().next());
+            return Err(Findings { source: None, list: found.list, omitted: 0 });
+        }
         let columns = columns(&names, &spans(text, start), design, &mut found);
         let mut errors = Vec::new();
         let mut locked_said = [false; 5];
@@ -180,12 +185,8 @@ fn columns(names: &StringRecord, spans: &[Range<usize>], design: &Design, found:
         found.push(fault, || spans.get(index).cloned());
     }
     if columns.iter().all(Option::is_none) && !wrong {
-        let help = if names.len() == 1 && names[0].contains([';', '\t']) {
-            "separate the columns with commas"
-        } else {
-            "the first line names the columns: x, y, roll, pitch, yaw, in D and radians, or with a unit as in \
-             x_mm and pitch_deg"
-        };
+        let help = "the first line names the columns: x, y, roll, pitch, yaw, in D and radians, or with a unit as in \
+                    x_mm and pitch_deg";
         found.push(Fault::new("no column is a pose error", help), || whole(spans));
     }
     columns

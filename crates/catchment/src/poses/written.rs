@@ -30,7 +30,7 @@ pub(super) fn resolve(
     for (dof, quantity) in Dof::ALL.into_iter().zip(written) {
         let Some(quantity) = quantity else { continue };
         if quantity.value != 0.0 && dof.is_rotation() && !alignment.free.contains(dof) {
-            faults.push((dof, locked(dof, *quantity, "it stays 0".to_owned())));
+            faults.push((dof, locked(dof, *quantity, "it stays 0")));
             continue;
         }
         match in_range(dof, *quantity, design) {
@@ -55,7 +55,7 @@ pub(super) fn resolve(
                     implied_by(implied, quantity.unit, design)
                 }
             };
-            faults.push((dof, locked(dof, quantity, stays)));
+            faults.push((dof, locked(dof, quantity, &stays)));
         }
     }
     if faults.is_empty() { Ok(at.to_face(&measured, alignment)) } else { Err(faults) }
@@ -76,7 +76,7 @@ fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault>
     Ok(value)
 }
 
-fn locked(dof: Dof, quantity: Quantity, stays: String) -> Fault {
+fn locked(dof: Dof, quantity: Quantity, stays: &str) -> Fault {
     let name = dof.name();
     let help = if dof.is_rotation() {
         format!("leave {name} out, or free it in [alignment] of the design")

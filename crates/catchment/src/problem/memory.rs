@@ -3,6 +3,7 @@
 use super::{Draft, Problem, ProblemError, places};
 use crate::connector::{Connector, Half, Source};
 use crate::design::{Alignment, ConnectorSpec, Design, HalfSpec, MeshContent, OwnSpec};
+use glam::DVec3;
 
 impl Problem {
     /// The problem of two halves, both drawn facing +z from their face centres, in D.
@@ -28,9 +29,9 @@ impl Problem {
 /// What a design says of a half that came from a source.
 fn spec(source: Source, content: Option<MeshContent>, built: &Half) -> HalfSpec {
     match (source, content) {
-        (Source::Pieces(pieces), _) => HalfSpec::Pieces(
-            pieces.iter().map(|piece| piece.iter().map(|p| p.to_array()).collect()).collect(),
-        ),
+        (Source::Pieces(pieces), _) => {
+            HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(DVec3::to_array).collect()).collect())
+        }
         (Source::Mesh { path, scale, .. }, content) => HalfSpec::Mesh { path, scale, content },
         (_, Some(content)) => HalfSpec::Memory { content },
         // A half of a family, which a design of two halves of one's own cannot name.

@@ -95,21 +95,16 @@ impl CheckReport {
     /// The design as understood, degrees and lengths in its own unit beside D; or the problems, a line each.
     pub fn table(&self) -> String {
         let mut text = String::new();
-        match &self.design {
-            Some(design) => {
-                line(&mut text, &format!("{}: no problems", self.file));
-                understood(&mut text, design, self.ungendered == Some(true));
-            }
-            None => {
-                for problem in &self.problems {
-                    let place =
-                        problem.place.map_or_else(String::new, |p| format!("{}:{}:", p.line, p.column));
-                    line(&mut text, &format!("{}:{place} {}", self.file, problem.message));
-                }
-                if self.omitted > 0 {
-                    line(&mut text, &format!("and {} more", self.omitted));
-                }
-            }
+        if let Some(design) = &self.design {
+            line(&mut text, &format!("{}: no problems", self.file));
+            understood(&mut text, design, self.ungendered == Some(true));
+        }
+        for problem in &self.problems {
+            let place = problem.place.map_or_else(String::new, |p| format!("{}:{}:", p.line, p.column));
+            line(&mut text, &format!("{}:{place} {}", self.file, problem.message));
+        }
+        if self.omitted > 0 {
+            line(&mut text, &format!("and {} more", self.omitted));
         }
         text
     }

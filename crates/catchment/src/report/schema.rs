@@ -327,7 +327,7 @@ impl From<Warning> for WarningReport {
 
 impl WarningReport {
     /// A doubt that is only a sentence.
-    pub fn note(text: impl ToString) -> Self {
+    pub fn note(text: &(impl ToString + ?Sized)) -> Self {
         Self::from(Warning::Note { text: text.to_string() })
     }
 }

@@ -186,7 +186,7 @@ mod tests {
         let mut design = design([Dof::X, Dof::Pitch].into_iter().collect::<DofSet>());
         design.name = "a\u{1b}[2Jb".to_owned();
         let path = Trajectory { waypoints, outcome: Outcome::Aligned };
-        let doubts = vec![WarningReport::note("shallow".to_owned())];
+        let doubts = vec![WarningReport::note("shallow")];
         TraceReport::new(&design, Settings::default(), PoseError::default(), &path, doubts)
     }
 

@@ -160,6 +160,6 @@ impl Run {
         plan.ensure_fits(exec)?;
         let started = Stopwatch::start();
         let decided = stages::decide(&plan, problem, exec)?;
-        stages::finish(self, plan, problem, decided, started, exec)
+        stages::finish(self, &plan, problem, decided, started, exec)
     }
 }

@@ -163,7 +163,7 @@ impl Run {
         let method = plan.method.name();
         let acceptance = Acceptance { method, domain: plan.domain.clone(), outcomes, warnings };
         let decided = Decided::plain(acceptance, plan.method.settings_for(problem));
-        Ok(stages::finish(self, plan, problem, decided, started, exec)?)
+        Ok(stages::finish(self, &plan, problem, decided, started, exec)?)
     }
 
     /// The plan, where it can be divided.

@@ -36,7 +36,7 @@ pub(super) fn decide(plan: &Plan, problem: &Problem, exec: &Exec) -> Result<Deci
 /// Everything after the decision.
 pub(super) fn finish(
     run: &Run,
-    plan: Plan,
+    plan: &Plan,
     problem: &Problem,
     decided: Decided,
     started: Stopwatch,
@@ -94,15 +94,12 @@ pub(crate) fn correct(
         Ok(decided.map_err(CorrectionError::from)?.0.outcomes)
     };
     let shape = grid.shape();
-    let found = match doubts {
-        Some(doubts) => {
-            let by = ByFraction::new(|cell| doubts.fraction(cell), shape);
-            correction::estimate(grid, &by, settings, exec, follow)
-        }
-        None => {
-            let by = ByNeighbours::new(&acceptance.outcomes, shape);
-            correction::estimate(grid, &by, settings, exec, follow)
-        }
+    let found = if let Some(doubts) = doubts {
+        let by = ByFraction::new(|cell| doubts.fraction(cell), shape);
+        correction::estimate(grid, &by, settings, exec, follow)
+    } else {
+        let by = ByNeighbours::new(&acceptance.outcomes, shape);
+        correction::estimate(grid, &by, settings, exec, follow)
     }?;
     Ok(Corrected { found, seed: settings.seed, method: judge.info().name, settings: judge.settings() })
 }

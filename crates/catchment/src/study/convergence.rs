@@ -39,7 +39,7 @@ pub struct Settings {
 }
 
 fn names<S: serde::Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(methods.iter().map(|method| method.name()))
+    serializer.collect_seq(methods.iter().map(Method::name))
 }
 
 impl Default for Settings {

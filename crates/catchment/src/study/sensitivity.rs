@@ -292,14 +292,15 @@ impl<'a> CommonPoses<'a> {
     /// Follows every pose in a design.
     fn follow(&mut self, design: Design) -> Result<Acceptance, SensitivityError> {
         let aspect_ratio = Parameter::AspectRatio.of(&design).unwrap_or(f64::NAN);
-        let changed = self.problem.with(design).map_err(|error| SensitivityError::Geometry {
-            aspect_ratio,
-            problem: error.to_string(),
-        })?;
+        let changed = self
+            .problem
+            .with(design)
+            .map_err(|error| SensitivityError::Geometry { aspect_ratio, problem: error.to_string() })?;
         let total = 1 + 2 * Parameter::ALL.len() + self.settings.rotation_lengths.len();
         let share = |k: usize| k as f64 / total as f64;
         let part = self.exec.part([share(self.done), share(self.done + 1)], "sensitivity");
-        let (acceptance, _) = descent::run(changed.pair(), self.poses.clone(), &self.settings.descent, &part)?;
+        let (acceptance, _) =
+            descent::run(changed.pair(), self.poses.clone(), &self.settings.descent, &part)?;
         self.done += 1;
         self.undecided += acceptance.counts()[Outcome::Undecided as usize - 1];
         Ok(acceptance)

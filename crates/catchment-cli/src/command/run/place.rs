@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use catchment::exec::Exec;
 use catchment::report::Target;
+use catchment::report::figure::Drawn;
 use catchment::report::folder::{REPORT, RESULT, StudyFolder};
 use catchment::run::Answer;
 use clap::Args;
@@ -60,7 +61,7 @@ impl Targets<'_> {
     /// Writes everything and says what was written.
     pub(super) fn write(&self, answer: &Answer, exec: &Exec) -> Result<Vec<String>, Failure> {
         let draws = self.0.iter().any(|target| !matches!(target, Target::Group(_)));
-        let drawn = if draws { answer.draw(exec)? } else { Default::default() };
+        let drawn = if draws { answer.draw(exec)? } else { Drawn::default() };
         let mut notes = drawn.left_out.clone();
         for target in &self.0 {
             notes.push(match target {

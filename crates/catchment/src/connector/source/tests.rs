@@ -56,7 +56,9 @@ fn triangles_in_memory_are_complained_about_by_number() {
     let many = vec![good[0]; mesh::MAX_TRIANGLES + 1];
     assert!(matches!(complaint(many), MeshProblem::TooMany { .. }));
     let mut inside_out = good.clone();
-    inside_out.iter_mut().for_each(|t| t.swap(0, 1));
+    for triangle in &mut inside_out {
+        triangle.swap(0, 1);
+    }
     assert_eq!(complaint(inside_out), MeshProblem::InsideOut);
     let shifted = good.iter().map(|t| t.map(|p| p + DVec3::new(0.3, 0.4, 0.5)));
     let crossing: Vec<_> = good.iter().copied().chain(shifted).collect();
