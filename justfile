@@ -25,10 +25,10 @@ run *arguments:
 docs:
     cargo doc --locked --workspace --no-deps --all-features --open
 
-# fuzz a reader: just fuzz stl 600 (needs nightly and cargo-fuzz)
+# fuzz a reader: design, stl, poses, lines, report, zarr, requirement or resolution: just fuzz stl 600 (needs nightly and cargo-fuzz)
 fuzz target='design' seconds='60':
     mkdir -p fuzz/findings/{{ target }}
-    cargo +nightly fuzz run {{ target }} fuzz/findings/{{ target }} fuzz/corpus/{{ target }} -- -max_total_time={{ seconds }} -rss_limit_mb=2048 {{ if target == 'design' { '-dict=fuzz/design.dict' } else { '' } }}
+    cargo +nightly fuzz run {{ target }} fuzz/findings/{{ target }} fuzz/corpus/{{ target }} -- -max_total_time={{ seconds }} -rss_limit_mb=2048 -malloc_limit_mb=256 {{ if target == 'design' { '-dict=fuzz/design.dict' } else { '' } }}
 
 # kill the program at random moments while it writes; what is there must be old or new, complete
 kills count='300':

@@ -104,12 +104,47 @@ fn with_advice(complaint: &Complaint) -> String {
 }
 
 #[cfg(test)]
+#[path = "../../catchment/tests/readers/mutate.rs"]
+mod mutate;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use clap::CommandFactory;
+    use std::path::Path;
 
     #[test]
     fn the_command_line_is_well_formed() {
         Cli::command().debug_assert();
+    }
+
+    /// Command lines and thousands of spoilt ones, a word per line: read or refused with a message that steers no terminal.
+    #[test]
+    fn spoilt_command_lines_are_read_or_refused() {
+        const RUNS: usize = 2000;
+        let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/arguments");
+        let mut paths: Vec<PathBuf> =
+            std::fs::read_dir(corpus).unwrap().map(|entry| entry.unwrap().path()).collect();
+        paths.sort();
+        let seeds: Vec<Vec<u8>> = paths.iter().map(|path| std::fs::read(path).unwrap()).collect();
+        let mut dice = mutate::Dice::new(9);
+        let mut refused = 0;
+        for number in 0..seeds.len() + RUNS {
+            let seed = seeds.get(number).cloned().unwrap_or_else(|| dice.one(&seeds).clone());
+            let line = if number < seeds.len() { seed } else { mutate::spoilt(&mut dice, &seed, &seeds) };
+            let text = String::from_utf8_lossy(&line);
+            let words = std::iter::once("catchment").chain(text.lines());
+            if let Err(mut usage) = Cli::try_parse_from(words) {
+                assert!(number >= seeds.len() || !usage.use_stderr(), "{text}: {usage}");
+                refused += 1;
+                crate::usage::silence(&mut usage);
+                let shown = usage.to_string();
+                assert!(
+                    !shown.chars().any(|c| c.is_control() && c != '\n' && c != '\t'),
+                    "{text:?}: {shown:?}"
+                );
+            }
+        }
+        assert!(refused > RUNS / 10, "{refused} of {RUNS} refused");
     }
 }

@@ -5,6 +5,7 @@ use crate::exit::ExitStatus;
 use crate::{output, signals};
 use catchment::design::Findings;
 use catchment::problem::ProblemError;
+use catchment::report::printable;
 use miette::{MietteDiagnostic, Report};
 use std::any::Any;
 use std::io::Write;
@@ -25,20 +26,16 @@ impl Failure {
 
     /// One message with advice.
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
-        let mut diagnostic = MietteDiagnostic::new(message);
-        diagnostic.help = help;
-        Self { reports: vec![Report::new(diagnostic)], closing: None, broken_pipe: false }
+        Self { reports: vec![Report::new(diagnostic(&message, help))], closing: None, broken_pipe: false }
     }
 
     /// Everything that is wrong with the text of an option.
     pub(crate) fn of_option(option: &str, text: &str, refusal: Findings) -> Self {
         let count = refusal.list.len() + refusal.omitted;
         let reports = refusal.list.into_iter().map(|objection| {
-            let mut diagnostic = MietteDiagnostic::new(format!("{option}: {}", objection.message));
-            diagnostic.help = objection.help;
-            Report::new(diagnostic)
+            Report::new(diagnostic(&format!("{option}: {}", objection.message), objection.help))
         });
-        let shown: String = text.chars().filter(|c| !c.is_control()).take(80).collect();
+        let shown: String = printable(text).chars().take(80).collect();
         let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));
         Self::many(reports.collect(), closing)
     }
@@ -80,12 +77,28 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
             return Self::of_findings(findings);
         }
         let Some(error) = error else { return Self::many(Vec::new(), None) };
-        let report = match advice::of(&error) {
-            Some(help) => Report::new(MietteDiagnostic::new(error.to_string()).with_help(help)),
-            None => Report::from_err(error),
-        };
-        Self { reports: vec![report], closing: None, broken_pipe: false }
+        Self::with_help(with_causes(&error), advice::of(&error))
     }
+}
+
+/// A message and its advice, which may repeat what a file says: a file must not steer the terminal.
+pub(crate) fn diagnostic(message: &str, help: Option<String>) -> MietteDiagnostic {
+    let lines = |text: &str| text.lines().map(printable).collect::<Vec<_>>().join("\n");
+    let mut diagnostic = MietteDiagnostic::new(lines(message));
+    diagnostic.help = help.map(|help| lines(&help));
+    diagnostic
+}
+
+/// The message of an error, and those of its causes that it does not repeat itself.
+fn with_causes(error: &dyn std::error::Error) -> String {
+    let mut message = error.to_string();
+    let causes = std::iter::successors(error.source(), |cause| cause.source());
+    for cause in causes.map(ToString::to_string) {
+        if !message.contains(&cause) {
+            message = format!("{message}: {cause}");
+        }
+    }
+    message
 }
 
 /// The error, if it is a `T`.

@@ -3,7 +3,9 @@
 //! Data goes to stdout, everything else to stderr. Exit codes: see [`exit::ExitStatus`].
 
 mod advice;
+mod allocation;
 mod args;
+mod bug;
 mod command;
 mod drop_args;
 mod error_args;
@@ -15,24 +17,16 @@ mod output;
 mod setting;
 mod signals;
 mod source;
+mod usage;
 
 use args::Cli;
 use clap::Parser;
-use exit::ExitStatus;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let status = match Cli::try_parse() {
+    let status = bug::caught(|| match Cli::try_parse() {
         Ok(cli) => cli.command.run().unwrap_or_else(failure::Failure::show),
-        Err(usage) => {
-            // Help and version are data; a reader that has gone away is no trouble.
-            let shown = usage.print();
-            if usage.use_stderr() || shown.is_err_and(|e| e.kind() != std::io::ErrorKind::BrokenPipe) {
-                ExitStatus::Failed
-            } else {
-                ExitStatus::Done
-            }
-        }
-    };
+        Err(usage) => usage::tell(usage),
+    });
     status.into()
 }

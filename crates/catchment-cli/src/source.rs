@@ -1,10 +1,10 @@
 //! Whatever is wrong with what a person gave, shown in its place.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, diagnostic};
 use catchment::design::{Finding, Findings, SourceText};
 use catchment::poses::{TextError, read_text};
 use catchment::problem::ProblemError;
-use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
+use miette::{LabeledSpan, NamedSource, Report};
 use std::fs::File;
 use std::io;
 use std::ops::Range;
@@ -33,19 +33,22 @@ pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
 /// The finding as a report with the lines it is about. Where those are too long to show (a mesh written
 /// on one line), it says their numbers instead.
 fn report(source: Option<&SourceText>, finding: Finding) -> Report {
-    let mut diagnostic = MietteDiagnostic::new(finding.message);
-    diagnostic.help = finding.help;
-    let (Some(source), Some(span)) = (source, finding.span) else {
+    let mut diagnostic = diagnostic(&finding.message, finding.help);
+    let Some(source) = source else { return Report::new(diagnostic) };
+    let name = printable(&source.path.display().to_string());
+    let Some(span) = finding.span else {
+        if !diagnostic.message.contains(&name) {
+            diagnostic.message = format!("{name}: {}", diagnostic.message);
+        }
         return Report::new(diagnostic);
     };
     let span = first_line(&source.text, span);
     if is_too_wide_around(source, span.start) {
         let (line, column) = source.line_column(span.start);
-        diagnostic.message = format!("line {line}, column {column}: {}", diagnostic.message);
+        diagnostic.message = format!("{name}, line {line}, column {column}: {}", diagnostic.message);
         return Report::new(diagnostic);
     }
     diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, span)]);
-    let name = printable(&source.path.display().to_string());
     Report::new(diagnostic).with_source_code(NamedSource::new(name, printable(&source.text)))
 }
 
@@ -65,7 +68,7 @@ fn is_too_wide_around(source: &SourceText, byte: usize) -> bool {
 /// The text with control characters replaced, byte for byte: a file must not steer the terminal.
 fn printable(text: &str) -> String {
     text.chars().fold(String::with_capacity(text.len()), |mut shown, c| {
-        if c.is_control() && !matches!(c, '\n' | '\r' | '\t') {
+        if !matches!(c, '\n' | '\r' | '\t') && catchment::report::steers(c) {
             shown.extend(std::iter::repeat_n('?', c.len_utf8()));
         } else {
             shown.push(c);
@@ -94,7 +97,7 @@ impl Failure {
     /// Why there is no problem to decide.
     pub(crate) fn of_problem(error: ProblemError) -> Self {
         match error {
-            ProblemError::Load(error) => Self::with_help(printable(&error.to_string()), None),
+            ProblemError::Load(error) => Self::with_help(error.to_string(), None),
             ProblemError::Findings(findings) => Self::of_findings(findings),
         }
     }

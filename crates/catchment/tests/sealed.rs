@@ -45,7 +45,7 @@ const ASKS: [(&str, &str); 12] = [
 const ALLOWED: [(&str, &str, &str); 5] = [
     ("exec/clock.rs", "the time", "deadlines and stopwatches; stands still where there is no clock"),
     ("exec/threads.rs", "a thread", "the pools of a run; the caller's own thread where there are none"),
-    ("exec/memory.rs", "a file", "how much memory is free, on Linux"),
+    ("exec/memory/system.rs", "a file", "how much memory is free, on Linux"),
     ("design/load.rs", "a file", "reading a design file"),
     ("connector/source/disk.rs", "a file", "reading a mesh"),
 ];

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
 use crate::output::{OutputArgs, to_stderr};
 use crate::source::read_table;
+use catchment::advice::Advice;
 use catchment::design::Findings;
 use catchment::poses::{OffsetsAt, PoseTable};
 use catchment::report::OutcomesReport;
@@ -73,6 +74,10 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     let table = PoseTable::parse(&source.text, problem.design(), args.offsets_at.into())
         .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
     let running = args.exec.start()?;
+    let needed = OutcomesReport::bytes(&table, args.json);
+    running
+        .exec
+        .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
     let (acceptance, ends) = problem.follow_by(&method, table.errors(), &running.exec)?;
     drop(running);
     let report = OutcomesReport::new(&problem, &table, &method, &acceptance, &ends);

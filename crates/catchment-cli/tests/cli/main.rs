@@ -3,11 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up should stop")]
 
 mod area;
+mod bad_inputs;
 mod check;
 mod compare;
 mod door;
 mod files;
+mod hostile;
 mod kills;
+mod limits;
 mod meshes;
 mod new;
 mod plumbing;

@@ -35,21 +35,32 @@ impl fmt::Display for Bytes {
     }
 }
 
-/// Memory the system can hand out without swapping; 4 GiB where it does not say.
+/// Memory the system can hand out without swapping, and that this process may still take; 4 GiB where it does not say.
 pub(super) fn available() -> u64 {
     const FALLBACK: u64 = 4 << 30;
-    said_by_the_system().unwrap_or(FALLBACK)
+    let limit = limit();
+    system::free(system::ROOT).unwrap_or(FALLBACK).min(limit)
 }
 
-#[cfg(target_os = "linux")]
-fn said_by_the_system() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
-    kib.checked_mul(1024)
+/// What this process may still take before the system refuses it or ends it; as good as no limit where there is none.
+pub(super) fn limit() -> u64 {
+    system::limit(system::ROOT).unwrap_or(u64::MAX)
 }
 
 #[cfg(not(target_os = "linux"))]
-fn said_by_the_system() -> Option<u64> {
-    None
+mod system {
+    use std::path::Path;
+
+    pub(super) const ROOT: &str = "";
+
+    pub(super) fn free(_: impl AsRef<Path>) -> Option<u64> {
+        None
+    }
+
+    pub(super) fn limit(_: impl AsRef<Path>) -> Option<u64> {
+        None
+    }
 }
+
+#[cfg(target_os = "linux")]
+mod system;

@@ -13,6 +13,7 @@ mod threads;
 pub use clock::Stopwatch;
 pub use memory::{Bytes, OutOfBudget};
 pub use progress::Progress;
+pub use threads::ThreadsError;
 
 use crate::advice::{Advice, Advised};
 use clock::Deadline;
@@ -54,12 +55,12 @@ impl Exec {
         Self::default()
     }
 
-    /// Uses exactly `threads` worker threads of its own (0 means one per core).
+    /// Uses exactly `threads` worker threads of its own; 0 means one per core, or fewer where the system refuses them.
     ///
     /// # Errors
     /// When the system refuses to start that many threads.
-    pub fn with_threads(mut self, threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
-        self.threads = Threads::exactly(threads)?;
+    pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
+        self.threads = if threads == 0 { Threads::Shared } else { Threads::exactly(threads)? };
         Ok(self)
     }
 
@@ -131,9 +132,13 @@ impl Exec {
         self.threads.install(work)
     }
 
-    /// Bytes one result may use: the set budget, else three quarters of the memory the system says is free.
+    /// Bytes one result may use: the set budget, else three quarters of the memory the system says is free. Never more
+    /// than the limits of this process leave (its address space, its control group): beyond them it would be ended.
     pub fn memory_budget(&self) -> u64 {
-        self.memory_budget.unwrap_or_else(|| memory::available() / 4 * 3)
+        match self.memory_budget {
+            Some(bytes) => bytes.min(memory::limit()),
+            None => memory::available() / 4 * 3,
+        }
     }
 
     /// Compares what a result needs with the budget, *before* anything is allocated.

@@ -11,6 +11,16 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::num::NonZero;
 use std::sync::{Arc, OnceLock};
 
+/// The system refuses threads.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the system does not start {threads} threads ({reason}): ask for fewer, or for as many as it gives")]
+pub struct ThreadsError {
+    /// How many were asked for.
+    pub threads: usize,
+    /// What the system says.
+    pub reason: String,
+}
+
 /// Where work runs.
 #[derive(Clone, Default)]
 pub(super) enum Threads {
@@ -22,8 +32,10 @@ pub(super) enum Threads {
 }
 
 impl Threads {
-    pub(super) fn exactly(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
-        Ok(Self::Own(Arc::new(ThreadPoolBuilder::new().num_threads(threads).build()?)))
+    pub(super) fn exactly(threads: usize) -> Result<Self, ThreadsError> {
+        let refused =
+            |error: rayon::ThreadPoolBuildError| ThreadsError { threads, reason: error.to_string() };
+        Ok(Self::Own(Arc::new(ThreadPoolBuilder::new().num_threads(threads).build().map_err(refused)?)))
     }
 
     fn pool(&self) -> Option<&ThreadPool> {

@@ -98,6 +98,11 @@ impl<'a> PoseTable<'a> {
         Ok(Self { text, design, at, columns, errors })
     }
 
+    /// The text that was read.
+    pub const fn text(&self) -> &str {
+        self.text
+    }
+
     /// The pose errors of the face centre, one per row, in D and radians.
     pub fn errors(&self) -> &[PoseError] {
         &self.errors

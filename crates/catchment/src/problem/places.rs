@@ -44,7 +44,8 @@ fn same_kind(a: &Problem, b: &Problem) -> bool {
     match (a, b) {
         (Problem::Mesh { side: a, error: first, .. }, Problem::Mesh { side: b, error, .. }) => {
             a == b
-                && (discriminant(first) == discriminant(error) || matches!(error, MeshProblem::More { .. }))
+                && (discriminant(first) == discriminant(error)
+                    || matches!(error, MeshProblem::More { .. } | MeshProblem::NotLookedAt { .. }))
         }
         _ => false,
     }

@@ -48,13 +48,30 @@ impl<T: Body> Envelope<T> {
 }
 
 impl<T: Body + Serialize> Envelope<T> {
-    /// The report as indented JSON, ending with a line break.
+    /// The report as indented JSON, ending with a line break. Characters that could steer a terminal are escaped.
     ///
     /// # Errors
     /// None at present: every field has a JSON form.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string_pretty(self).map(|text| text + "\n")
+        serde_json::to_string_pretty(self).map(|text| escaped(text) + "\n")
     }
+}
+
+/// JSON with `\u` and a number for every character that could steer a terminal; they stand in strings alone.
+fn escaped(json: String) -> String {
+    let raw = |c: char| c != '\n' && super::text::steers(c);
+    if !json.contains(raw) {
+        return json;
+    }
+    let mut text = String::with_capacity(json.len());
+    for c in json.chars() {
+        if raw(c) {
+            text.extend(c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")));
+        } else {
+            text.push(c);
+        }
+    }
+    text
 }
 
 impl<T: Body + for<'de> Deserialize<'de>> Envelope<T> {

@@ -16,6 +16,8 @@
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
+#[cfg(feature = "zarr")]
+mod bounded;
 mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
@@ -56,6 +58,6 @@ pub use schema::{Report, RunBody};
 pub use sensitivity::{SensitivityBody, SensitivityReport};
 pub use slices::{SliceReport, SlicesBody, SlicesReport};
 pub use table::{table, table_with};
-pub use text::{csv, number, printable};
+pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use zraa::{ZraaBody, ZraaFound, ZraaReport};

@@ -73,6 +73,23 @@ impl<'a> OutcomesReport<'a> {
         Self { design: problem.design(), table, settings: method.settings(), acceptance, ends, warnings }
     }
 
+    /// Bytes of memory that telling a table takes, as JSON or as CSV, at most. Every row of the JSON repeats the names of the
+    /// columns that are carried through.
+    pub fn bytes(table: &PoseTable<'_>, json: bool) -> u64 {
+        /// A row of CSV: outcome and final errors, and the same again while the text is checked.
+        const CSV_ROW: u64 = 500;
+        /// A row of JSON: two poses before and as text.
+        const JSON_ROW: u64 = 1400;
+        /// A cell of a carried column: its place in a map, and the quotes and spaces around it.
+        const CELL: u64 = 250;
+        /// Copies of the name of a column, and of the table's text.
+        const COPIES: u64 = 3;
+        let rows = table.errors().len() as u64;
+        let cells: u64 = table.carried().iter().map(|(_, name)| CELL + COPIES * name.len() as u64).sum();
+        let row = if json { JSON_ROW + cells } else { CSV_ROW };
+        rows.saturating_mul(row).saturating_add(COPIES * table.text().len() as u64)
+    }
+
     /// The table as it came, with the outcome and the final errors in the units of their columns.
     ///
     /// # Errors

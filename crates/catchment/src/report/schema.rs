@@ -364,12 +364,14 @@ impl From<Tolerance> for ToleranceReport {
 pub(crate) mod basins;
 mod partition;
 mod sample;
+mod sound;
 #[cfg(test)]
 pub(crate) mod testing;
 
 pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, StepReport};
 pub use partition::PartitionReport;
 pub use sample::SampleReport;
+pub use sound::UnsoundError;
 
 #[cfg(test)]
 mod tests {

@@ -10,11 +10,12 @@ const NAMES: usize = 17;
 /// The text with a question mark for every character that could steer a terminal: controls, and the marks that
 /// change the direction of writing. Names come from files, and files from anywhere.
 pub fn printable(text: &str) -> String {
-    let steers = |c: char| {
-        c.is_control()
-            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-    };
     text.chars().map(|c| if steers(c) { '?' } else { c }).collect()
+}
+
+/// Whether a character could steer a terminal, or a reader's eye.
+pub fn steers(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// Ends a line of text with what may be printed of `content`.

@@ -10,6 +10,7 @@
 //! The grid's first axis runs fastest in memory, so in the row-major order of Zarr its dimensions are reversed. The
 //! metadata are consolidated. The same run writes the same bytes but for the report's `timing`.
 
+mod outcomes;
 mod read;
 
 pub use read::read;

@@ -1,6 +1,6 @@
 //! From loose triangles to a closed surface, or to every reason why they are none.
 
-use super::{MeshProblem, PLAUSIBLE_WIDTH, Reported, Triangle, WELD};
+use super::{MAX_REPORTED, MeshProblem, PLAUSIBLE_WIDTH, Reported, Triangle, WELD};
 use crate::connector::Surface;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, HashMap};
@@ -146,7 +146,8 @@ fn volume(vertices: &[DVec3], indexed: &[[u32; 3]]) -> f64 {
         .sum()
 }
 
-/// Pairs of triangles that cross: an edge of the one pierces the other. Sorted sweep along x.
+/// Pairs of triangles that cross: an edge of the one pierces the other. Sorted sweep along x, which ends with the first few:
+/// a mesh in which everything crosses has as many pairs as the square of its triangles.
 fn crossings(
     triangles: &[Triangle],
     vertices: &[DVec3],
@@ -160,6 +161,7 @@ fn crossings(
             (a.min(b).min(c), a.max(b).max(c))
         })
         .collect();
+    let sheets: Vec<Sheet> = indexed.iter().map(|&t| Sheet::of(corners(vertices, t))).collect();
     let mut order: Vec<usize> = (0..indexed.len()).collect();
     order.sort_by(|&a, &b| boxes[a].0.x.total_cmp(&boxes[b].0.x).then(a.cmp(&b)));
     let mut found = Vec::new();
@@ -169,17 +171,49 @@ fn crossings(
                 break;
             }
             let apart = boxes[i].0.cmpgt(boxes[j].1).any() || boxes[j].0.cmpgt(boxes[i].1).any();
-            if apart {
+            if apart || sheets[i].is_clear_of(&sheets[j], tolerance) && !share_a_side(indexed[i], indexed[j])
+            {
                 continue;
             }
-            if let Some(at) = cross(vertices, indexed[i], indexed[j], tolerance) {
-                let (first, second) = (i.min(j), i.max(j));
-                let (first, second) = (triangles[first].place, triangles[second].place);
-                found.push(MeshProblem::SelfIntersection { first, second, at });
+            let Some(at) = cross(vertices, indexed[i], indexed[j], tolerance) else { continue };
+            if found.len() == MAX_REPORTED {
+                found.push(MeshProblem::NotLookedAt { count: order.len() - position });
+                return found;
             }
+            let (first, second) = (i.min(j), i.max(j));
+            let (first, second) = (triangles[first].place, triangles[second].place);
+            found.push(MeshProblem::SelfIntersection { first, second, at });
         }
     }
     found
+}
+
+/// A triangle and the plane that it lies in.
+struct Sheet {
+    corners: [DVec3; 3],
+    normal: DVec3,
+}
+
+impl Sheet {
+    fn of(corners: [DVec3; 3]) -> Self {
+        let [a, b, c] = corners;
+        Self { corners, normal: (b - a).cross(c - a).normalize_or_zero() }
+    }
+
+    /// Whether no side of either can pierce the other: each lies on one side of the other's plane. By the same numbers as
+    /// [`pierced`], so that nothing is missed.
+    fn is_clear_of(&self, other: &Self, tolerance: f64) -> bool {
+        self.has_on_one_side(other, tolerance) && other.has_on_one_side(self, tolerance)
+    }
+
+    fn has_on_one_side(&self, other: &Self, tolerance: f64) -> bool {
+        let heights = other.corners.map(|corner| self.normal.dot(corner - self.corners[0]));
+        heights.iter().all(|h| *h <= tolerance) || heights.iter().all(|h| *h >= -tolerance)
+    }
+}
+
+fn share_a_side(first: [u32; 3], second: [u32; 3]) -> bool {
+    first.iter().filter(|k| second.contains(k)).count() >= 2
 }
 
 /// Where two triangles cross, if they do. Sharing a corner or a side is no crossing, folding over it is.

@@ -187,6 +187,12 @@ pub enum MeshProblem {
         /// Where.
         at: DVec3,
     },
+    /// More triangles may cross than those before it.
+    #[error("and {count} triangles were not looked at, which may cross others too")]
+    NotLookedAt {
+        /// How many.
+        count: usize,
+    },
     /// The size makes no sense beside D.
     #[error(
         "the half is {width:.3e} D wide; a connector's half is about 1 D: check the mesh's unit and the design's width"
@@ -259,7 +265,7 @@ impl Reported {
     fn extend(&mut self, kind: impl IntoIterator<Item = MeshProblem>) {
         let mut rest = 0;
         for (k, problem) in kind.into_iter().enumerate() {
-            if k < MAX_REPORTED {
+            if k < MAX_REPORTED || matches!(problem, MeshProblem::NotLookedAt { .. }) {
                 self.problems.push(problem);
             } else {
                 rest += 1;

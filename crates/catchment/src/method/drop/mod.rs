@@ -130,7 +130,7 @@ fn decide(
     error: &PoseError,
     exec: &Exec,
 ) -> Result<End, Cancelled> {
-    let mut ends: Vec<End> = Vec::with_capacity(settings.trials as usize);
+    let mut ends: Vec<End> = Vec::new();
     for trial in 0..settings.trials {
         ends.push(engine.fall(&perturbed(pair, settings, error, trial), exec)?);
         let agree = ends.iter().filter(|e| e.outcome == ends[ends.len() - 1].outcome).count();

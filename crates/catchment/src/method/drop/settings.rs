@@ -110,6 +110,9 @@ pub struct SettingError {
 /// Most steps of one trial: an hour of computing, not a hang.
 const MOST_STEPS: f64 = 1e8;
 
+/// Most trials per pose: a share of 1 % apart from one half shows in as many, and more would take minutes per pose.
+const MOST_TRIALS: u32 = 9_999;
+
 impl Settings {
     /// Refuses what no trial can be made with.
     ///
@@ -163,6 +166,11 @@ impl Settings {
         }
         if self.trials.is_multiple_of(2) {
             let (value, advice) = (f64::from(self.trials), "give an odd number, so that there is a majority");
+            return Err(SettingError { name: "trials", value, advice });
+        }
+        if self.trials > MOST_TRIALS {
+            let (value, advice) =
+                (f64::from(self.trials), "give at most 9999; a few perturbed trials decide");
             return Err(SettingError { name: "trials", value, advice });
         }
         Ok(())

@@ -1,27 +1,33 @@
-//! Reading a group back: the report and the outcomes, checked against each other.
+//! Reading a group back: the report and the outcomes, checked against each other. Nothing is believed: a group may come from
+//! anywhere, so files are read up to a limit, numbers are checked before they are used, and only what this program writes is read.
 
-use super::{LAYOUT, ZarrError, storage};
-use crate::acceptance::{Acceptance, Domain, Outcome};
+use super::outcomes::{self, Refused};
+use super::{LAYOUT, ZarrError};
+use crate::acceptance::{Acceptance, Domain};
 use crate::advice::Advice;
 use crate::exec::Exec;
 use crate::landscape::{Grid, GridAxis};
 use crate::method::REGISTRY;
-use crate::report::Report;
+use crate::report::{Report, bounded};
 use serde_json::Value;
 use std::path::Path;
-use std::sync::Arc;
-use zarrs::array::Array;
-use zarrs::filesystem::FilesystemStore;
+
+/// Bytes of memory that a byte of JSON may take while it is read: `[0,0,…` becomes a value for every two bytes.
+const BYTES_PER_BYTE: u64 = 40;
 
 /// Reads a group written by [`write()`](super::write()): its report, and the outcomes over the grid. The heights are left.
 ///
 /// # Errors
 /// When it is no such group, of another version, too large for the memory allowed, or its parts do not fit together.
 pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError> {
-    let bad = |reason: String| ZarrError::Content { path: path.to_owned(), reason };
+    let at = |path: &Path, reason: String| ZarrError::Content { path: path.to_owned(), reason };
+    let bad = |reason: String| at(path, reason);
     let no_group = |error| bad(format!("it holds no zarr.json ({error}); give a result of `run -o`"));
-    let text = std::fs::read_to_string(path.join("zarr.json")).map_err(no_group)?;
-    let mut root: Value = serde_json::from_str(&text).map_err(|error| bad(error.to_string()))?;
+    let text = bounded::read(&path.join("zarr.json"), bounded::REPORT_BYTES).map_err(no_group)?;
+    let needed = BYTES_PER_BYTE * text.len() as u64;
+    exec.ensure_fits("the report of a stored result", needed, |_| vec![Advice::MoreMemory])?;
+    let mut root: Value =
+        serde_json::from_slice(&text).map_err(|error| bad(format!("zarr.json: {error}")))?;
     let attributes = &mut root["attributes"];
     match attributes["catchment"].as_u64() {
         Some(layout) if layout == u64::from(LAYOUT) => {}
@@ -30,30 +36,34 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     }
     let report: Report = serde_json::from_value(attributes["report"].take())
         .map_err(|error| bad(format!("its report cannot be read: {error}")))?;
+    drop(root);
+    report.check().map_err(|error| bad(format!("its report cannot be: {error}")))?;
     let method = REGISTRY.iter().map(|entry| entry.info.name).find(|name| *name == report.method);
     let method = method.ok_or_else(|| bad(format!("its method `{}` is not known", report.method)))?;
     let axes = report.axes.iter().map(|a| GridAxis { dof: a.axis, lo: a.lo, hi: a.hi, cells: a.cells });
     let grid = Grid { axes: axes.collect() };
-    let store = Arc::new(FilesystemStore::new(path).map_err(|error| bad(error.to_string()))?);
-    let array = Array::open(store, "/outcome").map_err(|error| bad(error.to_string()))?;
-    let shape: Vec<u64> = grid.axes.iter().rev().map(|axis| axis.cells as u64).collect();
-    if array.shape() != shape {
-        return Err(bad(format!(
-            "its outcomes are over {:?} cells, its report says {shape:?}",
-            array.shape()
-        )));
+    if grid.axes.is_empty() {
+        return Err(bad("its report is over no grid".to_owned()));
     }
     let cells = grid.checked_len().ok_or_else(|| bad("it has too many cells".to_owned()))?;
-    // The codes as they are stored, and the outcomes that they become.
-    exec.ensure_fits("the outcomes of a stored result", 2 * cells as u64, |_| vec![Advice::MoreMemory])?;
-    exec.check()?;
-    let codes: Vec<u8> = array.retrieve_array_subset(&array.subset_all()).map_err(storage)?;
-    exec.check()?;
-    let outcome = |code: u8| Outcome::ALL.into_iter().find(|outcome| *outcome as u8 == code);
-    let outcomes: Option<Vec<Outcome>> = codes.into_iter().map(outcome).collect();
-    let outcomes = outcomes.ok_or_else(|| bad("some of its cells have no outcome".to_owned()))?;
+    if cells != report.acceptance.cells {
+        let told = report.acceptance.cells;
+        return Err(bad(format!("its axes have {cells} cells, its report counts {told}")));
+    }
+    exec.ensure_fits("the outcomes of a stored result", cells as u64, |_| vec![Advice::MoreMemory])?;
+    let shape: Vec<usize> = grid.axes.iter().rev().map(|axis| axis.cells).collect();
+    let outcomes = outcomes::read(path, &shape, exec).map_err(|refused| match refused {
+        Refused::Content(path, reason) => at(&path, reason),
+        Refused::Cancelled(cancelled) => cancelled.into(),
+    })?;
     let warnings = report.warnings.iter().map(|doubt| doubt.warning.clone()).collect();
-    Ok((report, Acceptance { method, domain: Domain::Grid(grid), outcomes, warnings }))
+    let acceptance = Acceptance { method, domain: Domain::Grid(grid), outcomes, warnings };
+    let [aligned, jammed, missed, undecided] = acceptance.counts();
+    let told = report.acceptance.outcomes;
+    if [aligned, jammed, missed, undecided] != [told.aligned, told.jammed, told.missed, told.undecided] {
+        return Err(bad("its outcomes are not those that its report counts".to_owned()));
+    }
+    Ok((report, acceptance))
 }
 
 #[cfg(test)]
@@ -92,7 +102,10 @@ mod tests {
                 .contains("its layout is 9, this program reads 1")
         );
         assert!(message("\"method\": \"flood\"", "\"method\": \"guess\"").contains("`guess` is not known"));
-        assert!(message("\"cells\": 7", "\"cells\": 8").contains("its outcomes are over [7, 7, 7] cells"));
+        assert!(
+            message("\"cells\": 7", "\"cells\": 8")
+                .contains("its axes have 392 cells, its report counts 343")
+        );
         let lacking = message("\"acceptance\"", "\"acceptence\"");
         assert!(lacking.contains("its report cannot be read: missing field `acceptance`"), "{lacking}");
         let newer = message("\"schema\": 3", "\"schema\": 4");
@@ -100,5 +113,58 @@ mod tests {
         assert!(message("\"catchment\": 1,", "").contains("not written by this program"));
         let nowhere = read(home.path(), &Exec::new()).unwrap_err().to_string();
         assert!(nowhere.starts_with("cannot read"), "{nowhere}");
+    }
+    /// A group of 7 × 7 cells, and what is said of it when a file of it is replaced.
+    fn spoilt(file: &str, bytes: &[u8]) -> String {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("out.zarr");
+        let design = design([Dof::X, Dof::Yaw].into_iter().collect());
+        let acceptance = blob(&design, 7);
+        let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
+        write(&path, &report, &acceptance, None, &Exec::new()).unwrap();
+        std::fs::write(path.join(file), bytes).unwrap();
+        read(&path, &Exec::new()).unwrap_err().to_string()
+    }
+
+    fn packed(bytes: &[u8]) -> Vec<u8> {
+        use std::io::Write;
+        let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        gzip.write_all(bytes).unwrap();
+        gzip.finish().unwrap()
+    }
+
+    #[test]
+    fn a_chunk_that_unpacks_to_more_than_its_cells_is_refused_at_once() {
+        let bomb = packed(&vec![1; 64 << 20]);
+        assert!(bomb.len() < 100_000);
+        assert!(spoilt("outcome/c/0/0", &bomb).contains("unpacks to more than its 49 cells"));
+        assert!(spoilt("outcome/c/0/0", &packed(&[1; 48])).contains("unpacks to 48 of 49 cells"));
+        assert!(spoilt("outcome/c/0/0", b"no gzip").contains("it is no gzip stream"));
+        assert!(spoilt("outcome/c/0/0", &packed(&[9; 49])).contains("9 is the code of no outcome"));
+        assert!(spoilt("outcome/c/0/0", &packed(&[1; 49])).contains("not those that its report counts"));
+    }
+
+    #[test]
+    fn an_array_that_this_program_would_not_have_written_is_refused() {
+        let like = |shape: &str, chunk: &str, kind: &str, codecs: &str| {
+            let text = format!(
+                r#"{{"zarr_format":3,"node_type":"array","shape":{shape},"data_type":"{kind}","fill_value":0,
+                "chunk_grid":{{"name":"regular","configuration":{{"chunk_shape":{chunk}}}}},
+                "chunk_key_encoding":{{"name":"default","configuration":{{"separator":"/"}}}},"codecs":{codecs}}}"#
+            );
+            spoilt("outcome/zarr.json", text.as_bytes())
+        };
+        let codecs = r#"[{"name":"bytes"},{"name":"gzip"}]"#;
+        let huge = like("[7,7]", "[1099511627776,1099511627776]", "uint8", codecs);
+        assert!(
+            huge.contains("chunk_shape is [1099511627776,1099511627776], this program writes [7,7]"),
+            "{huge}"
+        );
+        assert!(like("[7,9]", "[7,7]", "uint8", codecs).contains("over [7,9] cells, its report says [7, 7]"));
+        assert!(like("[7,7]", "[0,0]", "uint8", codecs).contains("chunk_shape is [0,0]"));
+        assert!(like("[7,7]", "[7,7]", "float64", codecs).contains("data_type is \"float64\""));
+        assert!(like("[7,7]", "[7,7]", "uint8", r#"[{"name":"blosc"}]"#).contains("codecs is [\"blosc\"]"));
+        assert!(like("[7,7]", "[7,7]", "uint8", "7").contains("codecs is null"));
+        assert!(spoilt("outcome/zarr.json", b"[").contains("outcome/zarr.json: EOF"));
     }
 }

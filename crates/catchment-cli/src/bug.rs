@@ -1,0 +1,57 @@
+//! A panic is a bug of the program. The person is told so, where it was and what to do; files that were being written go away,
+//! and the exit code is that of every other failure.
+
+use crate::exit::ExitStatus;
+use catchment::report::printable;
+use std::io::{self, Write};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+
+/// Does the work; a panic on any of its threads ends it as a failure.
+pub(crate) fn caught(work: impl FnOnce() -> ExitStatus) -> ExitStatus {
+    panic::set_hook(Box::new(|bug| {
+        // Nobody is left to tell when stderr itself is gone.
+        let _ = io::stderr().lock().write_all(told(bug).as_bytes());
+    }));
+    // Nothing of the work is used after a panic.
+    panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(ExitStatus::Failed)
+}
+
+/// What is said of a panic.
+fn told(bug: &PanicHookInfo<'_>) -> String {
+    let message = bug.payload_as_str().unwrap_or("no message");
+    let place = bug.location().map_or_else(|| "an unknown place".to_owned(), ToString::to_string);
+    format!(
+        "catchment: this is a bug of the program, not of your input: {}\n  at {place}, version {}, {} {}\n  Please report it \
+         with the command line and its files at {}.\n",
+        printable(message),
+        env!("CARGO_PKG_VERSION"),
+        std::env::consts::OS,
+        std::env::consts::ARCH,
+        env!("CARGO_PKG_REPOSITORY"),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::{Arc, Mutex};
+
+    #[test]
+    fn a_panic_on_any_thread_is_a_failure_that_says_where_to_report_it() {
+        assert_eq!(caught(|| ExitStatus::Done), ExitStatus::Done);
+        let heard = Arc::new(Mutex::new(String::new()));
+        let listener = Arc::clone(&heard);
+        let ended = caught(|| {
+            panic::set_hook(Box::new(move |bug| *listener.lock().unwrap() = told(bug)));
+            std::thread::scope(|scope| {
+                scope.spawn(|| panic!("a \u{1b}[2Jbug"));
+            });
+            ExitStatus::Done
+        });
+        let _ = panic::take_hook();
+        assert_eq!(ended, ExitStatus::Failed);
+        let heard = heard.lock().unwrap();
+        assert!(heard.contains("a bug of the program") && heard.contains("a ?[2Jbug"), "{heard}");
+        assert!(heard.contains("bug.rs:") && heard.contains(env!("CARGO_PKG_REPOSITORY")), "{heard}");
+    }
+}

@@ -1,0 +1,42 @@
+//! What is said of a command line that cannot be read, and the help that was asked for.
+
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use catchment::report::printable;
+use clap::error::{ContextKind, ContextValue};
+use std::io::{self, Write};
+
+/// Prints it: help and version on stdout, complaints on stderr.
+pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
+    if usage.use_stderr() {
+        silence(&mut usage);
+        // Nobody is left to tell when stderr itself is gone.
+        let _ = usage.print();
+        return ExitStatus::Failed;
+    }
+    match usage.print().and_then(|()| io::stdout().flush()) {
+        // A reader that has gone away is no trouble.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Failure::with_help(format!("cannot write to stdout: {error}"), None).show()
+        }
+        _ => ExitStatus::Done,
+    }
+}
+
+/// Takes from what the person wrote, and the complaint repeats, what could steer a terminal.
+pub(crate) fn silence(usage: &mut clap::Error) {
+    let silent = |text: &String| printable(text);
+    let repeated: Vec<(ContextKind, ContextValue)> = usage
+        .context()
+        .filter_map(|(kind, value)| match value {
+            ContextValue::String(text) => Some((kind, ContextValue::String(silent(text)))),
+            ContextValue::Strings(texts) => {
+                Some((kind, ContextValue::Strings(texts.iter().map(silent).collect())))
+            }
+            _ => None,
+        })
+        .collect();
+    for (kind, value) in repeated {
+        usage.insert(kind, value);
+    }
+}

@@ -1,0 +1,217 @@
+//! Under the limits of the system and with bombs for input: a message and exit code 2, never an abort.
+
+#![cfg(target_os = "linux")]
+
+use crate::{catchment, designs, home};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// Runs the program in a shell that first sets limits, such as `ulimit -v 400000`.
+fn limited(folder: &Path, limits: &str, args: &str) -> Output {
+    let shell = format!("{limits}; exec \"$0\" {args}");
+    Command::new("bash")
+        .args(["-c", &shell, env!("CARGO_BIN_EXE_catchment")])
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap()
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_small_address_space_ends_with_an_answer_or_a_message() {
+    let home = home();
+    let dir = home.path();
+    let design = designs().join("pyramid.toml");
+    fs::copy(&design, dir.join("p.toml")).unwrap();
+    fs::write(dir.join("q.csv"), "x\n".to_owned() + &"0.01\n".repeat(20_000)).unwrap();
+    let commands = [
+        "check p.toml",
+        "run v.toml --resolution 400",
+        "run p.toml --free x,y,yaw --resolution 60 --method flood",
+        "run p.toml --free x,y,yaw --resolution 60 -o out",
+        "slices v.toml --resolution 100",
+        "outcome p.toml --poses q.csv",
+        "trace v.toml --pose x=0.1 -o t.png --force",
+    ];
+    for kib in [1_500_000, 400_000, 200_000, 100_000] {
+        for args in commands {
+            let output = limited(dir, &format!("ulimit -v {kib}"), args);
+            let said = told(&output);
+            let refused =
+                output.status.code() == Some(2) && !said.is_empty() && !said.contains("a bug of the program");
+            assert!(output.status.success() || refused, "{args} in {kib} KiB: {}: {said}", output.status);
+        }
+    }
+}
+
+#[test]
+fn the_budget_knows_the_limit_of_the_address_space() {
+    let home = home();
+    let output = limited(home.path(), "ulimit -v 1500000", "run v.toml --resolution 20000 --memory '1 TiB'");
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("of memory, more than the") && said.contains("MiB allowed"), "{said}");
+}
+
+#[test]
+fn a_process_limit_takes_threads_and_changes_no_result() {
+    let home = home();
+    let dir = home.path();
+    let args = "run v.toml --method flood --resolution 30 --json";
+    let free = limited(dir, "true", args);
+    let body = |output: &Output| {
+        let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        report["timing"].take();
+        report
+    };
+    // Limits do not bind the superuser: the program runs as nobody then.
+    let is_root = Command::new("id").arg("-u").output().is_ok_and(|id| id.stdout == b"0\n");
+    fs::set_permissions(dir, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    for processes in 1..8 {
+        let limit = format!("ulimit -u {processes}");
+        let bound = if is_root {
+            Command::new("setpriv")
+                .args(["--reuid", "65534", "--clear-groups", "bash", "-c"])
+                .args([&format!("{limit}; exec \"$0\" {args}"), env!("CARGO_BIN_EXE_catchment")])
+                .current_dir(dir)
+                .output()
+                .unwrap()
+        } else {
+            limited(dir, &limit, args)
+        };
+        let said = told(&bound);
+        match bound.status.code() {
+            Some(0) => assert_eq!(body(&bound), body(&free)),
+            // Nothing can listen to Ctrl-C without a thread; and nobody may be forbidden to run what lies here.
+            Some(2 | 126) => assert!(!said.is_empty() && !said.contains("a bug of the program"), "{said}"),
+            _ => panic!("{processes} processes: {}: {said}", bound.status),
+        }
+    }
+}
+
+#[test]
+fn threads_that_cannot_be_had_are_named() {
+    let home = home();
+    let output = limited(home.path(), "ulimit -v 400000", "run v.toml --threads 1024");
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("the system does not start 1024 threads"), "{said}");
+}
+
+#[test]
+fn help_that_cannot_be_written_says_so() {
+    let home = home();
+    for args in ["--help", "--version", "run --help", "check v.toml", "schema", "completions bash", "man"] {
+        let output = limited(home.path(), "true", &format!("{args} > /dev/full"));
+        let said = told(&output);
+        assert_eq!(output.status.code(), Some(2), "{args}: {said}");
+        assert!(said.contains("cannot write to stdout"), "{args}: {said}");
+    }
+}
+
+/// A text STL of tetrahedra that all cross each other.
+fn tangle(tetrahedra: usize) -> String {
+    let mut text = String::from("solid tangle\n");
+    for k in 0..tetrahedra {
+        let by = k as f64 * 1e-4;
+        let corners = [[by, 0.0, 0.0], [1.0 + by, 0.1, 0.0], [0.3, 1.0 + by, 0.0], [0.4, 0.3, 1.0 + by]];
+        for face in [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in face.map(|corner: usize| corners[corner]) {
+                text += &format!("vertex {x} {y} {z}\n");
+            }
+            text += "endloop\nendfacet\n";
+        }
+    }
+    text + "endsolid tangle\n"
+}
+
+#[test]
+fn a_mesh_in_which_everything_crosses_is_refused_at_its_first_crossings() {
+    let home = home();
+    let dir = home.path();
+    fs::write(dir.join("m.stl"), tangle(5000)).unwrap();
+    let half = "mesh = \"m.stl\"";
+    let design = format!(
+        "[connector]\nwidth = 1.0\nface_height = 0.0\n[connector.fixed]\n{half}\n[connector.moving]\n{half}\n"
+    );
+    fs::write(dir.join("d.toml"), design).unwrap();
+    let started = Instant::now();
+    let output = limited(dir, "ulimit -v 1000000", "check d.toml");
+    let said = told(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("cross near") && said.contains("triangles were not looked at"), "{said}");
+    assert!(started.elapsed() < Duration::from_secs(10) && said.len() < 4000, "{:?}", started.elapsed());
+}
+
+#[test]
+fn a_header_of_a_million_names_is_refused_in_linear_time() {
+    let home = home();
+    let names: String = (0..1_000_000).map(|k| format!("column{k},")).collect();
+    fs::write(home.path().join("q.csv"), names + "x\n").unwrap();
+    let started = Instant::now();
+    let output = catchment(home.path()).args(["outcome", "v.toml", "--poses", "q.csv"]).output().unwrap();
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("q.csv, line 1, column 1: 1000001 columns"), "{said}");
+    assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
+}
+
+#[test]
+fn names_that_every_row_would_repeat_are_counted() {
+    let home = home();
+    let long = "n".repeat(1_000_000);
+    fs::write(home.path().join("q.csv"), format!("x,{long}\n") + &"3,\n".repeat(100_000)).unwrap();
+    let output = limited(home.path(), "ulimit -v 1500000", "outcome v.toml --poses q.csv --json");
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("the answer for every pose needs") && said.contains("try fewer poses"), "{said}");
+}
+
+#[test]
+fn what_is_no_file_is_not_waited_for() {
+    let home = home();
+    let dir = home.path();
+    fs::create_dir(dir.join("e.zarr")).unwrap();
+    let made = Command::new("mkfifo").arg(dir.join("e.zarr/zarr.json")).status().unwrap();
+    assert!(made.success());
+    let output = limited(dir, "true", "compare e.zarr v.toml");
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("it is no regular file"), "{said}");
+    // Longer than any report: not one byte of it is on the disk.
+    fs::remove_file(dir.join("e.zarr/zarr.json")).unwrap();
+    fs::File::create(dir.join("e.zarr/zarr.json")).unwrap().set_len(3 << 30).unwrap();
+    let output = limited(dir, "ulimit -v 1000000", "compare e.zarr v.toml");
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("longer than"), "{said}");
+}
+
+#[test]
+fn extreme_but_allowed_alignments_end() {
+    let home = home();
+    let far = fs::read_to_string(home.path().join("v.toml")).unwrap()
+        + "[errors]\nx = 100.0\npitch = \"180 deg\"\n";
+    fs::write(home.path().join("far.toml"), far).unwrap();
+    for args in [
+        "check far.toml --cor 100",
+        "check far.toml --rotation-length 0.001",
+        "run v.toml --cor 100 --resolution 20",
+        "run v.toml --cor=-100 --rotation-length 0.001 --resolution 20",
+        "run far.toml --rotation-length 1000 --resolution 20",
+    ] {
+        let started = Instant::now();
+        let output = limited(home.path(), "true", args);
+        let said = told(&output);
+        assert!(matches!(output.status.code(), Some(0 | 2)), "{args}: {}: {said}", output.status);
+        assert!(started.elapsed() < Duration::from_secs(60), "{args}: {:?}", started.elapsed());
+    }
+}

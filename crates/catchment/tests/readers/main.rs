@@ -1,0 +1,98 @@
+//! Every reader on the corpora of the fuzzer and thousands of spoilt copies of them, the same ones in every run: no panic, no
+//! hang, and no more memory than is named here. The fuzzer itself, for hours: `just fuzz`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
+mod mutate;
+mod targets;
+
+use mutate::{Dice, spoilt};
+use peak_alloc::PeakAlloc;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// One at a time: the memory of all threads is counted together.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// Spoilt copies per reader; more by the environment variable `READER_RUNS`.
+const RUNS: usize = 2000;
+
+/// Bytes that a reader may take for an input of at most a megabyte, and as long as it may take on a busy machine.
+const MOST_BYTES: usize = 64 << 20;
+const LONGEST: Duration = Duration::from_secs(10);
+
+/// What lies in the corpus of a reader.
+fn corpus(name: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(name);
+    let mut paths: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    assert!(!paths.is_empty(), "{} is empty", folder.display());
+    paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
+}
+
+/// Runs a reader on its corpus and on spoilt copies.
+fn replay(name: &str, reader: fn(&[u8])) {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let seeds = corpus(name);
+    let runs = std::env::var("READER_RUNS").ok().and_then(|runs| runs.parse().ok()).unwrap_or(RUNS);
+    let mut dice = Dice::new(name.len() as u64);
+    let spoilt = (0..runs).map(|_| {
+        let seed = dice.one(&seeds);
+        spoilt(&mut dice, seed, &seeds)
+    });
+    for (number, input) in seeds.iter().cloned().chain(spoilt).enumerate() {
+        MEMORY.reset_peak_usage();
+        let (before, started) = (MEMORY.current_usage(), Instant::now());
+        let ended = std::panic::catch_unwind(|| reader(&input));
+        let (taken, time) = (MEMORY.peak_usage().saturating_sub(before), started.elapsed());
+        let shown = || format!("{name}, input {number}:\n{}", String::from_utf8_lossy(&input));
+        assert!(ended.is_ok(), "a panic on {}", shown());
+        assert!(taken <= MOST_BYTES, "{taken} bytes of memory on {}", shown());
+        assert!(time <= LONGEST, "{time:?} on {}", shown());
+    }
+}
+
+#[test]
+fn design_files() {
+    replay("design", targets::design_file);
+}
+
+#[test]
+fn stl_files() {
+    replay("stl", targets::stl_file);
+}
+
+#[test]
+fn tables_of_poses() {
+    replay("poses", targets::pose_table);
+}
+
+#[test]
+fn lines_that_people_write() {
+    replay("lines", targets::line);
+}
+
+#[test]
+fn reports() {
+    replay("report", targets::report);
+}
+
+#[test]
+fn requirements() {
+    replay("requirement", targets::requirement);
+}
+
+#[test]
+fn resolutions() {
+    replay("resolution", targets::resolution);
+}
+
+#[cfg(feature = "zarr")]
+#[test]
+fn groups() {
+    replay("zarr", targets::group);
+}

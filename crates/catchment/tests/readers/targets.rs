@@ -1,0 +1,165 @@
+//! What must hold of every reader on any bytes: no panic, bounded memory, and what is accepted obeys its own rules. The fuzzer
+//! runs these functions as well as the test beside this file.
+
+#![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
+
+use catchment::connector::stl;
+use catchment::design::{Design, Problems, Quantity, keys, parse_dofs, read};
+use catchment::landscape::Resolution;
+use catchment::pose::Dof;
+use catchment::poses::{Distribution, OffsetsAt, PoseTable, parse_pose};
+use catchment::report::{Report, table};
+use catchment::run::Requirement;
+use std::path::Path;
+
+/// A design in millimetres, free in all five errors.
+pub(crate) fn design() -> Design {
+    let text = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \"mm\"\naspect_ratio = 0.5\n";
+    read(text, Path::new("")).expect("the design of the targets").design
+}
+
+/// A design file gives a design that obeys its own rules, or problems whose places lie in the text.
+pub(crate) fn design_file(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    match read(&text, Path::new("no-such-folder")) {
+        Ok(file) => {
+            let design = file.design;
+            assert!(design.width > 0.0 && design.width.is_finite());
+            assert!(!design.alignment.free.is_empty());
+            for (half_range, key) in design.alignment.half_ranges.iter().zip(&keys::ERROR_KEYS) {
+                let (keys::Kind::Length(range) | keys::Kind::Angle(range)) = key.kind else {
+                    panic!("an error is a length or an angle")
+                };
+                assert!(range.contains(*half_range));
+            }
+            let free = design.alignment.free;
+            let again = design.clone().with_free(free).expect("what the file allows, an override allows");
+            assert_eq!(again, design);
+        }
+        Err(problems) => {
+            assert!(!problems.list.is_empty() && problems.list.len() <= Problems::MOST);
+            for problem in &problems.list {
+                assert!(problem.line >= 1 && problem.column >= 1);
+                assert!(text.get(problem.span.clone()).is_some(), "{problem:?} is not a piece of the text");
+                assert!(!problem.complaint.to_string().is_empty());
+                assert!(problem.complaint.help().is_none_or(|help| !help.is_empty()));
+            }
+        }
+    }
+}
+
+/// What the STL reader accepts is a closed solid, and what it refuses has few reasons.
+pub(crate) fn stl_file(bytes: &[u8]) {
+    match stl::from_bytes(bytes, bytes.len() as u64, 1.0) {
+        Ok(surface) => {
+            assert!(surface.volume() > 0.0);
+            assert!(surface.vertices.iter().all(|v| v.is_finite()));
+        }
+        Err(problems) => assert!((1..60).contains(&problems.len()), "{} problems", problems.len()),
+    }
+}
+
+/// A table of poses has as many errors as rows, all finite, and objections lie in the text.
+pub(crate) fn pose_table(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let design = design();
+    for at in [OffsetsAt::Face, OffsetsAt::Cor] {
+        match PoseTable::parse(&text, &design, at) {
+            Ok(table) => {
+                assert!(table.errors().iter().all(|error| error.to_array().iter().all(|v| v.is_finite())));
+                assert_eq!(table.rows().count(), table.errors().len());
+                let width = table.header().len();
+                assert!(table.rows().all(|row| row.len() == width));
+                for error in table.errors() {
+                    assert!(table.in_units(error).iter().all(|v| v.is_finite()));
+                }
+            }
+            Err(findings) => {
+                assert!(!findings.list.is_empty());
+                for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+                    assert!(text.get(span).is_some(), "an objection is not a piece of the text");
+                }
+            }
+        }
+    }
+}
+
+/// One line that a person writes: a pose, a quantity, degrees of freedom, a distribution.
+pub(crate) fn line(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let design = design();
+    if let Ok(error) = parse_pose(&text, &design) {
+        assert!(error.to_array().iter().all(|v| v.is_finite()));
+    }
+    if let Ok(quantity) = text.parse::<Quantity>() {
+        let _ = design.clone().with_center_of_rotation(quantity);
+        if let Ok(design) = design.clone().with_rotation_length(quantity) {
+            assert!(design.alignment.rotation_length > 0.0 && design.alignment.rotation_length.is_finite());
+        }
+    }
+    if let Ok(free) = parse_dofs(&text) {
+        let _ = design.clone().with_free(free);
+    }
+    let _ = text.parse::<Dof>();
+    let _ = Distribution::normal(&text, &design);
+    let _ = Distribution::uniform(&text, &design);
+}
+
+/// A stored report that is read is written again, and told, whatever its numbers are.
+pub(crate) fn report(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    if let Ok(report) = Report::from_json(&text) {
+        let again = report.to_json().expect("what was read has a JSON form");
+        assert_eq!(Report::from_json(&again).expect("what was written is read"), report);
+        if report.check().is_ok() {
+            assert!(!table(&report).chars().any(|c| c.is_control() && c != '\n'));
+        }
+    }
+}
+
+/// A requirement is a path and a number.
+pub(crate) fn requirement(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    if let Ok(requirement) = text.parse::<Requirement>() {
+        let report = serde_json::json!({ "onaa": { "edge": 0.25 }, "success": null });
+        let _ = requirement.judge(&report);
+    }
+}
+
+/// A resolution gives a grid with that many cells, or says why not.
+pub(crate) fn resolution(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    if let Ok(resolution) = text.parse::<Resolution>()
+        && let Ok(grid) = resolution.grid(&design().alignment, &[3; 5])
+    {
+        assert!(grid.axes.iter().all(|axis| axis.cells > 0));
+        let _ = grid.checked_len();
+    }
+}
+
+/// What stands between the files of a group in one input.
+pub(crate) const FILES_END: &[u8] = b"\n=====\n";
+
+/// Three files of a group, one behind the other: its metadata, those of its outcomes, and their first chunk.
+#[cfg(feature = "zarr")]
+pub(crate) fn group(bytes: &[u8]) {
+    use catchment::exec::Exec;
+    const NAMES: [&str; 3] = ["zarr.json", "outcome/zarr.json", "outcome/c/0/0"];
+    let home = tempfile::tempdir().expect("a folder for a group");
+    std::fs::create_dir_all(home.path().join("outcome/c/0")).expect("a folder for a chunk");
+    let mut rest = bytes;
+    for name in NAMES {
+        let end = rest.windows(FILES_END.len()).position(|window| window == FILES_END);
+        let (file, others) = end.map_or((rest, &[][..]), |at| (&rest[..at], &rest[at + FILES_END.len()..]));
+        std::fs::write(home.path().join(name), file).expect("a file of a group");
+        rest = others;
+    }
+    let exec = Exec::new().with_memory_budget(8 << 20);
+    match catchment::report::zarr::read(home.path(), &exec) {
+        Ok((report, acceptance)) => {
+            assert_eq!(acceptance.outcomes.len(), report.acceptance.cells);
+            report.check().expect("what is read is sound");
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
