@@ -75,7 +75,9 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
         .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
     let running = args.exec.start()?;
     let needed = OutcomesReport::bytes(&table, args.json);
-    running.exec.ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
+    running
+        .exec
+        .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
     let (acceptance, ends) = problem.follow_by(&method, table.errors(), &running.exec)?;
     drop(running);
     let report = OutcomesReport::new(&problem, &table, &method, &acceptance, &ends);
