@@ -30,6 +30,10 @@ fuzz target='design' seconds='60':
     mkdir -p fuzz/findings/{{ target }}
     cargo +nightly fuzz run {{ target }} fuzz/findings/{{ target }} fuzz/corpus/{{ target }} -- -max_total_time={{ seconds }} -rss_limit_mb=2048 -malloc_limit_mb=256 {{ if target == 'design' { '-dict=fuzz/design.dict' } else { '' } }}
 
+# kill the program at random moments while it writes; what is there must be old or new, complete
+kills count='300':
+    CATCHMENT_KILLS={{ count }} cargo test --locked -p catchment-cli --test cli killed -- --nocapture
+
 # accept the program's new output after reading it: runs the snapshot tests, shows what changed
 golden:
     INSTA_UPDATE=always cargo test --locked -p catchment-cli --test cli

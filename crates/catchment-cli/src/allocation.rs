@@ -4,7 +4,7 @@
 
 #![expect(unsafe_code, reason = "an allocator has no safe form; all calls go to the system's unchanged")]
 
-use crate::exit::FAILED_CODE;
+use crate::exit::ExitStatus;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::{self, Write};
 
@@ -53,5 +53,5 @@ fn leave(size: usize) -> ! {
         "catchment: out of memory: the system refused {size} bytes; use a coarser grid (--resolution), fewer threads (--threads), \
          or raise its limit"
     );
-    std::process::exit(i32::from(FAILED_CODE));
+    std::process::exit(i32::from(ExitStatus::Failed.code()));
 }

@@ -16,7 +16,7 @@ use std::path::PathBuf;
     name = "catchment",
     version,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done, 1 done but a requirement is not met, 2 could not compute, 130 interrupted.",
+    after_help = "Exit codes: 0 done, 1 requirement not met, 2 could not compute, 130 interrupted, 143 terminated.",
     after_long_help = "Examples:\n  \
         catchment new pyramid -o design.toml    a commented starting point\n  \
         catchment check design.toml             everything that is wrong with it\n  \
@@ -29,7 +29,7 @@ use std::path::PathBuf;
         catchment export design.toml --pose x=0.2 -o trial\n                                          a drop test for MuJoCo and Gazebo\n  \
         catchment reproduce 5.7                 a published table beside ours\n\n\
         Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\
-        Exit codes: 0 done, 1 done but a requirement is not met, 2 could not compute, 130 interrupted."
+        Exit codes: 0 done, 1 requirement not met, 2 could not compute, 130 interrupted, 143 terminated."
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]

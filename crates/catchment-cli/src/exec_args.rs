@@ -1,20 +1,12 @@
-//! How a computation runs: threads, memory, progress, Ctrl-C. Nothing here changes a result.
+//! How a computation runs: threads, memory, progress. Nothing here changes a result.
 
-use crate::exit::INTERRUPTED_CODE;
 use crate::failure::Failure;
+use crate::signals;
 use catchment::exec::Exec;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
-/// Whether Ctrl-C was pressed.
-pub(crate) fn interrupted() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
-}
 
 /// Options of every command that computes.
 #[derive(Debug, Args)]
@@ -31,7 +23,7 @@ pub(crate) struct ExecArgs {
     quiet: bool,
 }
 
-/// An [`Exec`] that Ctrl-C cancels, with its progress bar, which goes away with it.
+/// An [`Exec`] that signals cancel, with its progress bar, which goes away with it.
 pub(crate) struct Running {
     /// Hand it to the library.
     pub exec: Exec,
@@ -45,7 +37,7 @@ impl Drop for Running {
 }
 
 impl ExecArgs {
-    /// Starts threads, the progress bar (on a terminal only) and the handling of Ctrl-C: once per process.
+    /// Starts threads, the progress bar (on a terminal only) and the handling of signals: once per process.
     pub(crate) fn start(&self) -> Result<Running, Failure> {
         const STEPS: u64 = 1000;
         let mut exec = Exec::new().with_threads(usize::from(self.threads))?;
@@ -64,21 +56,9 @@ impl ExecArgs {
             }));
             bar
         };
-        let cancel = exec.cancel_flag();
-        ctrlc::set_handler(move || {
-            cancel.store(true, Ordering::Relaxed);
-            if INTERRUPTED.swap(true, Ordering::Relaxed) {
-                leave();
-            }
-        })?;
+        signals::listen(exec.cancel_flag())?;
         Ok(Running { exec, bar })
     }
-}
-
-/// Ctrl-C a second time: whoever presses it twice does not want to wait for the end of a step.
-#[expect(clippy::exit, reason = "the computation does not listen, and the person insists")]
-fn leave() {
-    std::process::exit(i32::from(INTERRUPTED_CODE));
 }
 
 /// A size such as `4 GiB`, `500 MB` or `1e9` (bytes).
@@ -114,7 +94,7 @@ mod tests {
         let running = args.start().unwrap();
         assert_eq!(running.exec.threads(), 2);
         assert_eq!(running.exec.memory_budget(), 1000);
-        assert!(!interrupted() && !running.exec.is_cancelled());
+        assert!(signals::received().is_none() && !running.exec.is_cancelled());
     }
 
     #[test]

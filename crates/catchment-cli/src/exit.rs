@@ -13,21 +13,26 @@ pub(crate) enum ExitStatus {
     Failed,
     /// Stopped by Ctrl-C.
     Interrupted,
+    /// Asked to end by the system, or by the terminal that went away.
+    Terminated,
+}
+
+impl ExitStatus {
+    /// The number that the system is told.
+    pub(crate) const fn code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::RequirementNotMet => 1,
+            Self::Failed => 2,
+            // 128 and the number of the signal, as shells expect.
+            Self::Interrupted => 130,
+            Self::Terminated => 143,
+        }
+    }
 }
 
 impl From<ExitStatus> for ExitCode {
     fn from(status: ExitStatus) -> Self {
-        Self::from(match status {
-            ExitStatus::Done => 0,
-            ExitStatus::RequirementNotMet => 1,
-            ExitStatus::Failed => FAILED_CODE,
-            ExitStatus::Interrupted => INTERRUPTED_CODE,
-        })
+        Self::from(status.code())
     }
 }
-
-/// 128 + SIGINT, as shells expect.
-pub(crate) const INTERRUPTED_CODE: u8 = 130;
-
-/// That of every failure.
-pub(crate) const FAILED_CODE: u8 = 2;

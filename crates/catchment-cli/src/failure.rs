@@ -1,8 +1,8 @@
 //! Why a command could not do its work, and how that is shown.
 
 use crate::advice;
-use crate::exec_args;
 use crate::exit::ExitStatus;
+use crate::{output, signals};
 use catchment::design::Findings;
 use catchment::problem::ProblemError;
 use catchment::report::printable;
@@ -52,9 +52,9 @@ impl Failure {
         }
         let mut stderr = std::io::stderr().lock();
         // Nobody is left to tell when stderr itself is gone.
-        if exec_args::interrupted() {
-            let _ = writeln!(stderr, "interrupted; nothing was written");
-            return ExitStatus::Interrupted;
+        if let Some(status) = signals::received() {
+            let _ = writeln!(stderr, "interrupted; {}", output::what_was_written());
+            return status;
         }
         for report in &self.reports {
             let _ = writeln!(stderr, "{report:?}");

@@ -15,6 +15,7 @@ mod failure;
 mod method_args;
 mod output;
 mod setting;
+mod signals;
 mod source;
 mod usage;
 

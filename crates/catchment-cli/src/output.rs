@@ -3,9 +3,11 @@
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use catchment::report::printable;
+use catchment::report::write::{self, WriteError};
 use clap::Args;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Where a text goes.
 #[derive(Debug, Args)]
@@ -67,19 +69,37 @@ impl FileArgs {
     }
 }
 
-/// Whether a file can be written at `path`, as far as can be seen beforehand.
+/// Tries out whether a file can be written at `path`.
 fn check_place(path: &Path, replace: bool) -> Result<(), Failure> {
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let (reason, help) = if path.is_dir() {
-        ("it is a folder", None)
-    } else if !replace && path.symlink_metadata().is_ok() {
-        ("it exists", Some("--force replaces it".to_owned()))
-    } else if !folder.is_dir() {
-        ("its folder does not exist", Some("create it first".to_owned()))
+    write::check_file(path, replace).map_err(refused)
+}
+
+/// What cannot be written, with the option that helps.
+fn refused(error: WriteError) -> Failure {
+    match error {
+        WriteError::Exists { .. } => {
+            Failure::with_help(error.to_string(), Some("--force replaces it".to_owned()))
+        }
+        error => error.into(),
+    }
+}
+
+/// What this process has completed.
+static WRITTEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// A file or folder is complete, whatever happens from now on.
+pub(crate) fn written(path: &Path) {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).push(path.display().to_string());
+}
+
+/// What is there although the command did not come to its end.
+pub(crate) fn what_was_written() -> String {
+    let written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
+    if written.is_empty() {
+        "nothing was written".to_owned()
     } else {
-        return Ok(());
-    };
-    Err(Failure::with_help(format!("cannot write {}: {reason}", path.display()), help))
+        printable(&format!("complete before that: {}", written.join(", ")))
+    }
 }
 
 /// Prints data. A reader that went away (`| head`) ends the command quietly.
@@ -108,22 +128,11 @@ pub(crate) fn to_stderr(lines: &[String]) {
     }
 }
 
-/// Writes a file under a temporary name beside its place and moves it there when it is complete.
+/// Writes a file, which is there whole or not at all.
 fn write_file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), Failure> {
-    let failed = |error: &io::Error| {
-        let help = (error.kind() == io::ErrorKind::AlreadyExists).then(|| "--force replaces it".to_owned());
-        Failure::with_help(format!("cannot write {}: {error}", path.display()), help)
-    };
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".catchment-");
-    // Temporary files are private by default; this one becomes an ordinary file, subject to the umask.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder).map_err(|error| failed(&error))?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(|error| failed(&error))?;
-    let placed = if replace { file.persist(path) } else { file.persist_noclobber(path) };
-    placed.map(drop).map_err(|error| failed(&error.error))
+    write::file(path, bytes, replace).map_err(refused)?;
+    written(path);
+    Ok(())
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::method_parser;
-use crate::output::tell;
+use crate::output::{tell, written};
 use catchment::landscape::Resolution;
 use catchment::method::Method;
 use catchment::problem::Problem;
@@ -73,6 +73,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
             Err(error) => return Err(error.into()),
         }
         notes.push(folder.write(&json, &report.records(), pictures, exec, |_| Ok(()))?);
+        written(folder.path);
     }
     drop(running);
     tell(&if args.json { json } else { report.table() }, &notes)

@@ -4,14 +4,16 @@ use crate::args::DesignArgs;
 use crate::drop_args::DropArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{to_stderr, to_stdout};
+use crate::output::{to_stderr, to_stdout, written};
+use crate::signals;
+use catchment::exec::Exec;
 use catchment::method::drop::export::{Scene, mjcf, sdf};
 use catchment::poses::parse_pose;
-use catchment::report::folder::has_only;
+use catchment::report::folder::{Files, save_files};
 use catchment::report::schema::WarningReport;
 use catchment::report::{ExportBody, ExportReport, write};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Write a drop test for other engines: MJCF for MuJoCo, SDF for Gazebo
 ///
@@ -44,8 +46,11 @@ pub(crate) struct ExportArgs {
 const MJCF: &str = "trial.xml";
 const SDF: &str = "trial.sdf";
 
+/// The kind of such a folder.
+const KIND: &str = "export";
+
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
-    write::check_folder(&args.output, is_ours)?;
+    write::check_folder(&args.output, KIND)?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
     let error = parse_pose(&args.pose, design)
@@ -53,15 +58,15 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     let settings = args.drop.settings()?;
     let scene = Scene::new(&design.name, pair, &settings, &error)?;
     let world = sdf::write(&scene)?;
-    write::folder(&args.output, is_ours, |folder| -> Result<(), Failure> {
-        let inside = folder.join(sdf::MESHES);
-        std::fs::create_dir(&inside)?;
-        for (name, bytes) in &world.meshes {
-            write::file(&inside.join(name), bytes)?;
-        }
-        write::file(&folder.join(SDF), world.text.as_bytes())?;
-        Ok(write::file(&folder.join(MJCF), mjcf::write(&scene).as_bytes())?)
-    })?;
+    let meshes = world.meshes.len();
+    let inside = |(name, bytes)| (format!("{}/{name}", sdf::MESHES), bytes);
+    let mut files: Files = world.meshes.into_iter().map(inside).collect();
+    files.push((SDF.to_owned(), world.text.into_bytes()));
+    files.push((MJCF.to_owned(), mjcf::write(&scene).into_bytes()));
+    let exec = Exec::new();
+    signals::listen(exec.cancel_flag())?;
+    save_files(&args.output, KIND, &files, &exec)?;
+    written(&args.output);
     let file = |name: &str| args.output.join(name).display().to_string();
     let said: Vec<String> = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
     let body = ExportBody {
@@ -70,23 +75,10 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
         start: error,
         mjcf: file(MJCF),
         sdf: file(SDF),
-        meshes: world.meshes.len(),
+        meshes,
     };
     let report = ExportReport::new(body, problem.doubts().iter().map(WarningReport::note).collect());
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
     to_stderr(&said);
     Ok(ExitStatus::Done)
-}
-
-/// Whether a folder was written by this command, or is empty: replacing it loses nothing else.
-fn is_ours(path: &Path) -> bool {
-    has_only(path, |name| {
-        let meshes = || {
-            has_only(&path.join(name), |mesh| {
-                mesh.strip_suffix(".stl")
-                    .is_some_and(|mesh| mesh.starts_with("fixed-") || mesh.starts_with("moving-"))
-            })
-        };
-        name == MJCF || name == SDF || name == sdf::MESHES && meshes()
-    })
 }

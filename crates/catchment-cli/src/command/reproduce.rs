@@ -4,7 +4,7 @@
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{to_stderr, to_stdout};
+use crate::output::{to_stderr, to_stdout, written};
 use catchment::report::csv;
 use catchment_validation::report::{Effort, folder};
 use catchment_validation::study::accuracy::{self, CASES};
@@ -106,6 +106,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     let mut notes = Vec::new();
     if let Some(path) = &args.output {
         notes.push(folder::save(&found, path, VERSION, &running.exec)?);
+        written(path);
     }
     let threads = running.exec.threads();
     drop(running);

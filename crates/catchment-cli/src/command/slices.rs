@@ -6,7 +6,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
-use crate::output::tell;
+use crate::output::{tell, written};
 use catchment::landscape::Resolution;
 use catchment::pose::Dof;
 use catchment::report::folder::{StudyFolder, encode};
@@ -79,8 +79,9 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
         let picture = figure::slice_matrix(design, problem.connector(), &found)?;
         let pictures = encode(&[(folder.name, picture)], exec)?;
         let groups = |folder: &Path| found.save_groups(folder, &problem, &report, exec);
-        let written = folder.write(&json, &report.records(), pictures, exec, groups)?;
-        notes.push(format!("{written}, {} Zarr groups", found.slices.len()));
+        let said = folder.write(&json, &report.records(), pictures, exec, groups)?;
+        written(folder.path);
+        notes.push(format!("{said}, {} Zarr groups", found.slices.len()));
     }
     drop(running);
     tell(&if args.json { json } else { report.table() }, &notes)

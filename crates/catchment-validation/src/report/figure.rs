@@ -3,7 +3,6 @@
 use crate::study::reproduce::{Entry, TableComparison};
 use crate::study::resolution::{self, Found};
 use crate::study::{FIGURE, Reproduction};
-use crate::tables::Table;
 use catchment::report::figure::{
     Colouring, Curve, CurveChart, CurvePoint, Digits, FigureError, NumberMap, NumberSheet, Picture, curves,
     number_maps,
@@ -25,15 +24,6 @@ pub fn pictures(found: &Reproduction) -> Result<Vec<(String, Picture)>, FigureEr
 /// Name of the figure's files, without ending.
 pub fn figure_name() -> String {
     format!("figure-{FIGURE}")
-}
-
-/// Whether a file's name is that of one of these pictures, as SVG or PNG, or of the figure's CSV.
-pub fn is_picture(name: &str) -> bool {
-    let table = name.strip_prefix("table-").and_then(|rest| rest.rsplit_once('.'));
-    let is_table =
-        table.is_some_and(|(table, ending)| Table::of(table).is_some() && matches!(ending, "png" | "svg"));
-    let figure = name.strip_prefix(&figure_name());
-    is_table || figure.is_some_and(|ending| matches!(ending, ".png" | ".svg" | ".csv"))
 }
 
 /// Draws a published table, ours, and the ratio of the two: the first two in the same colours.
@@ -141,15 +131,5 @@ mod tests {
         assert!(picture.png(1.0).unwrap().starts_with(b"\x89PNG"));
         assert_eq!(picture.svg().matches("<circle").count(), 2 * 9 + 2);
         assert!(!picture.svg().contains("NaN"));
-    }
-
-    #[test]
-    fn names_of_pictures_are_known_again() {
-        for name in ["table-3.3.svg", "table-slices.png", "figure-5.13.csv", "figure-5.13.png"] {
-            assert!(is_picture(name), "{name}");
-        }
-        for name in ["table-3.3.csv", "table-9.9.svg", "figure-5.13.txt", "holiday.png"] {
-            assert!(!is_picture(name), "{name}");
-        }
     }
 }

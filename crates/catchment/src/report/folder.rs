@@ -4,10 +4,11 @@
 //!   run       report.json, result.zarr, and every picture as .png and .svg
 //!   a study   report.json, and its table, picture and groups under its own name
 //! ```
+//!
+//! Each holds a manifest of its files beside them; see [`write`](mod@super::write).
 
 use super::write::{self, WriteError};
 use crate::exec::{Cancelled, Exec};
-use serde_json::Value;
 use std::path::Path;
 
 /// The name of the JSON report in such a folder.
@@ -67,16 +68,32 @@ pub fn encode<N: std::fmt::Display>(
     Ok(files)
 }
 
-/// Writes files into a folder.
+/// Writes files into a folder that is being filled; a name may name folders in it.
 ///
 /// # Errors
 /// Whatever the system refuses, or it was asked to stop.
 pub fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Result<(), SaveError> {
     for (name, bytes) in files {
         exec.check()?;
-        write::file(&folder.join(name), bytes)?;
+        write::part(folder, name, bytes)?;
     }
     Ok(())
+}
+
+/// Writes a folder of files, which must not exist, be empty or hold an older result of the same kind.
+///
+/// # Errors
+/// Whatever the system refuses, or it was asked to stop. Nothing is left behind and an older result stays as it was.
+pub fn save_files(
+    path: &Path,
+    kind: &str,
+    files: &[(String, Vec<u8>)],
+    exec: &Exec,
+) -> Result<(), SaveError> {
+    write::folder(path, kind, |folder| {
+        write_all(folder, files, exec)?;
+        Ok(exec.check()?)
+    })
 }
 
 /// What a study writes into its folder: `report.json`, a picture and a table of one name, perhaps Zarr groups.
@@ -84,7 +101,7 @@ pub fn write_all(folder: &Path, files: &[(String, Vec<u8>)], exec: &Exec) -> Res
 pub struct StudyFolder<'a> {
     /// The folder.
     pub path: &'a Path,
-    /// Name of the picture and the table, without ending.
+    /// Name of the picture and the table, without ending, and the kind of the folder.
     pub name: &'static str,
 }
 
@@ -94,7 +111,8 @@ impl StudyFolder<'_> {
     /// # Errors
     /// Something else is there, or its parent is no folder.
     pub fn check(&self) -> Result<(), WriteError> {
-        write::check_folder(self.path, |path| self.is_ours(path))
+        write::check_utf8(self.path)?;
+        write::check_folder(self.path, self.name)
     }
 
     /// Writes everything and says what was written; `more` adds to the folder.
@@ -111,50 +129,15 @@ impl StudyFolder<'_> {
     ) -> Result<String, SaveError> {
         let drawn = if files.is_empty() { String::new() } else { format!(", {} as PNG and SVG", self.name) };
         files.push((format!("{}.csv", self.name), super::text::csv(records)?));
-        write::folder(
-            self.path,
-            |path| self.is_ours(path),
-            |folder| -> Result<(), SaveError> {
-                write_all(folder, &files, exec)?;
-                more(folder)?;
-                write::file(&folder.join(REPORT), json.as_bytes())?;
-                Ok(exec.check()?)
-            },
-        )?;
+        write::folder(self.path, self.name, |folder| -> Result<(), SaveError> {
+            write_all(folder, &files, exec)?;
+            more(folder)?;
+            write::part(folder, REPORT, json.as_bytes())?;
+            Ok(exec.check()?)
+        })?;
         let (place, name) = (self.path.display(), self.name);
         Ok(format!("wrote {place}: {REPORT}, {name}.csv{drawn}"))
     }
-
-    /// Whether a folder was written by the same study, or is empty: replacing it loses nothing else.
-    fn is_ours(&self, path: &Path) -> bool {
-        has_only(path, |name| {
-            let ours =
-                name.strip_prefix(self.name).is_some_and(|end| matches!(end, ".png" | ".svg" | ".csv"));
-            ours || name == REPORT && is_report(&path.join(REPORT)) || is_group(&path.join(name))
-        })
-    }
-}
-
-/// Whether a folder is a Zarr group of this program.
-pub fn is_group(path: &Path) -> bool {
-    let text = std::fs::read_to_string(path.join("zarr.json")).unwrap_or_default();
-    let root: Value = serde_json::from_str(&text).unwrap_or_default();
-    root["node_type"] == "group" && root["attributes"]["catchment"].is_u64()
-}
-
-/// Whether a file is a JSON report of this program.
-pub fn is_report(path: &Path) -> bool {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    let report: Value = serde_json::from_str(&text).unwrap_or_default();
-    report["schema"].is_u64() && report["catchment"].is_string()
-}
-
-/// Whether a folder holds only entries of known names.
-pub fn has_only(path: &Path, known: impl Fn(&str) -> bool) -> bool {
-    // A link may lead to a folder that other things rely on.
-    let is_folder = std::fs::symlink_metadata(path).is_ok_and(|meta| meta.is_dir());
-    let Ok(mut entries) = std::fs::read_dir(path) else { return false };
-    is_folder && entries.all(|entry| entry.is_ok_and(|e| e.file_name().to_str().is_some_and(&known)))
 }
 
 #[cfg(test)]
@@ -164,12 +147,16 @@ mod tests {
     #[test]
     fn only_what_the_same_study_wrote_is_replaced() {
         let home = tempfile::tempdir().unwrap();
-        let study = StudyFolder { path: home.path(), name: "slices" };
-        assert!(study.check().is_ok(), "nothing is lost with an empty folder");
-        std::fs::write(home.path().join("slices.csv"), "").unwrap();
-        std::fs::write(home.path().join(REPORT), r#"{ "schema": 1, "catchment": "0.1.0" }"#).unwrap();
-        assert!(study.check().is_ok());
-        std::fs::write(home.path().join("overview.png"), "").unwrap();
-        assert!(study.check().is_err(), "a run was written there");
+        let path = &home.path().join("out");
+        let [slices, other] = ["slices", "difference"].map(|name| StudyFolder { path, name });
+        let write = |study: StudyFolder| study.write("{}", &[], Files::new(), &Exec::new(), |_| Ok(()));
+        std::fs::create_dir(path).unwrap();
+        assert!(slices.check().is_ok(), "nothing is lost with an empty folder");
+        write(slices).unwrap();
+        assert!(slices.check().is_ok() && other.check().is_err());
+        assert!(matches!(write(other), Err(SaveError::Write(WriteError::OtherKind { .. }))));
+        std::fs::write(path.join("notes.txt"), "mine").unwrap();
+        assert!(matches!(write(slices), Err(SaveError::Write(WriteError::Strange { changed: false, .. }))));
+        assert!(path.join("slices.csv").exists());
     }
 }

@@ -6,8 +6,8 @@
 //!   save_pictures  DIR, every picture alone
 //! ```
 
-use super::figure::{self, Drawn};
-use super::folder::{REPORT, RESULT, SaveError, encode, has_only, is_group, is_report, write_all};
+use super::figure::Drawn;
+use super::folder::{REPORT, RESULT, SaveError, encode, save_files, write_all};
 use super::write::{self, WriteError};
 use super::{Report, SlicesReport, zarr};
 use crate::exec::Exec;
@@ -15,6 +15,11 @@ use crate::problem::Problem;
 use crate::run::{Answer, RunError};
 use crate::study::slices::Slices;
 use std::path::Path;
+
+/// The kind of a folder with everything.
+const RUN: &str = "run";
+/// The kind of a folder with pictures alone.
+const PICTURES: &str = "pictures";
 
 /// What was written, and which pictures could not be drawn, with the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,10 +48,10 @@ impl Answer {
         let pictures = encode(&drawn.pictures, exec)?;
         let report = self.report();
         let json = report.to_json()?;
-        write::folder(path, is_result, |folder| -> Result<(), SaveError> {
+        write::folder(path, RUN, |folder| -> Result<(), SaveError> {
             write_all(folder, &pictures, exec)?;
             zarr::write(&folder.join(RESULT), &report, &self.acceptance, self.heights(), exec)?;
-            write::file(&folder.join(REPORT), json.as_bytes())?;
+            write::part(folder, REPORT, json.as_bytes())?;
             Ok(exec.check()?)
         })?;
         Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
@@ -66,7 +71,7 @@ impl Answer {
     /// Those of [`Answer::save`].
     pub fn save_pictures(&self, path: &Path, drawn: &Drawn, exec: &Exec) -> Result<Saved, SaveError> {
         let pictures = encode(&drawn.pictures, exec)?;
-        write::folder(path, has_only_pictures, |folder| write_all(folder, &pictures, exec))?;
+        save_files(path, PICTURES, &pictures, exec)?;
         Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
     }
 
@@ -115,52 +120,13 @@ impl Target<'_> {
     /// # Errors
     /// Something else is there, or its parent is no folder.
     pub fn check(&self) -> Result<(), WriteError> {
-        match self {
-            Self::Folder(path) => write::check_folder(path, is_result),
-            Self::Group(path) => write::check_folder(path, is_group),
-            Self::Pictures(path) => write::check_folder(path, has_only_pictures),
+        if let Self::Folder(path) | Self::Group(path) = self {
+            write::check_utf8(path)?;
         }
-    }
-}
-
-/// Whether a folder holds pictures of a run, or nothing: replacing it loses nothing else.
-fn has_only_pictures(path: &Path) -> bool {
-    has_only(path, is_picture)
-}
-
-/// Whether a folder was written by [`Answer::save`], or is empty: replacing it loses nothing else.
-fn is_result(path: &Path) -> bool {
-    has_only(path, |name| {
-        is_picture(name)
-            || name == REPORT && is_report(&path.join(REPORT))
-            || name == RESULT && is_group(&path.join(RESULT))
-    })
-}
-
-fn is_picture(name: &str) -> bool {
-    figure::NAMES
-        .iter()
-        .any(|picture| name.strip_prefix(picture).is_some_and(|ending| matches!(ending, ".png" | ".svg")))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_what_a_run_wrote_is_replaced() {
-        let home = tempfile::tempdir().unwrap();
-        let folder = home.path();
-        assert!(is_result(folder) && has_only_pictures(folder), "nothing is lost with an empty folder");
-        std::fs::write(folder.join("overview.png"), "").unwrap();
-        assert!(is_result(folder) && has_only_pictures(folder));
-        std::fs::write(folder.join(REPORT), r#"{ "schema": 1, "catchment": "0.1.0" }"#).unwrap();
-        assert!(is_result(folder) && !has_only_pictures(folder));
-        std::fs::write(folder.join(REPORT), "{}").unwrap();
-        assert!(!is_result(folder));
-        std::fs::remove_file(folder.join(REPORT)).unwrap();
-        std::fs::write(folder.join("holiday.png"), "").unwrap();
-        assert!(!is_result(folder) && !has_only_pictures(folder));
-        assert!(!is_result(&folder.join("holiday.png")) && !is_result(&folder.join("nowhere")));
+        match self {
+            Self::Folder(path) => write::check_folder(path, RUN),
+            Self::Group(path) => write::check_folder(path, zarr::KIND),
+            Self::Pictures(path) => write::check_folder(path, PICTURES),
+        }
     }
 }

@@ -15,7 +15,6 @@ mod read;
 
 pub use read::read;
 
-use super::bounded;
 use super::schema::{Report, Unit};
 use super::write::{self, WriteError};
 use crate::acceptance::{Acceptance, Outcome};
@@ -32,6 +31,9 @@ use zarrs::filesystem::FilesystemStore;
 
 /// Version of the group's layout, its attribute `catchment`.
 pub const LAYOUT: u32 = 1;
+
+/// The kind of the folder in its manifest, `.catchment.json`, which readers of Zarr pass over.
+pub(super) const KIND: &str = "group";
 
 /// Cells per chunk at most: a megabyte or a few, read in one go.
 const CHUNK_CELLS: usize = 1 << 20;
@@ -78,6 +80,12 @@ pub enum ZarrError {
     Cancelled(#[from] Cancelled),
 }
 
+impl From<std::io::Error> for ZarrError {
+    fn from(error: std::io::Error) -> Self {
+        storage(error)
+    }
+}
+
 fn storage<E: std::error::Error>(error: E) -> ZarrError {
     ZarrError::Storage { reason: error.to_string() }
 }
@@ -100,16 +108,7 @@ pub fn write(
     {
         return Err(ZarrError::Shape { heights: heights.len(), cells: grid.len() });
     }
-    write::folder(path, is_group, |folder| {
-        exec.install(|| fill(folder, report, acceptance, grid, heights, exec))
-    })
-}
-
-/// Whether a folder is a group written by [`write()`].
-pub fn is_group(path: &Path) -> bool {
-    let text = bounded::read(&path.join("zarr.json"), bounded::REPORT_BYTES).unwrap_or_default();
-    let root: Value = serde_json::from_slice(&text).unwrap_or_default();
-    root["node_type"] == "group" && root["attributes"]["catchment"].is_u64()
+    write::folder(path, KIND, |folder| exec.install(|| fill(folder, report, acceptance, grid, heights, exec)))
 }
 
 fn fill(
@@ -129,8 +128,14 @@ fn fill(
             "lower_border": axis.lo,
             "upper_border": axis.hi,
         });
-        let plan =
-            Plan { name: axis.dof.name(), axes: &[*axis], kind: data_type::float64(), fill: f64::NAN, exec };
+        let plan = Plan {
+            name: axis.dof.name(),
+            axes: &[*axis],
+            kind: data_type::float64(),
+            fill: f64::NAN,
+            folder,
+            exec,
+        };
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, |k| axis.center(k))?);
     }
     let attributes = json!({
@@ -138,14 +143,20 @@ fn fill(
         "flag_values": Outcome::ALL.map(|o| o as u8),
         "flag_meanings": Outcome::ALL.map(Outcome::name).join(" "),
     });
-    let plan = Plan { name: "outcome", axes: &grid.axes, kind: data_type::uint8(), fill: 0u8, exec };
+    let plan = Plan { name: "outcome", axes: &grid.axes, kind: data_type::uint8(), fill: 0u8, folder, exec };
     let code = |cell: usize| acceptance.outcomes[cell] as u8;
     arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, code)?);
     if let Some(heights) = heights {
         let finite = |cell: usize| if heights[cell].is_finite() { heights[cell] } else { f32::NAN };
         let attributes = json!({ "long_name": "z of the centre of rotation at first contact", "units": "D" });
-        let plan =
-            Plan { name: "height", axes: &grid.axes, kind: data_type::float32(), fill: f32::NAN, exec };
+        let plan = Plan {
+            name: "height",
+            axes: &grid.axes,
+            kind: data_type::float32(),
+            fill: f32::NAN,
+            folder,
+            exec,
+        };
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, finite)?);
     }
     let report = serde_json::to_value(report).map_err(storage)?;
@@ -156,9 +167,7 @@ fn fill(
         "consolidated_metadata": { "kind": "inline", "must_understand": false, "metadata": arrays },
     });
     let text = serde_json::to_string_pretty(&root).map_err(storage)?;
-    let place = folder.join("zarr.json");
-    std::fs::write(&place, text).map_err(|e| WriteError::at(&place, e))?;
-    Ok(())
+    Ok(write::part(folder, "zarr.json", text.as_bytes())?)
 }
 
 fn long_name(axis: &GridAxis) -> String {
@@ -181,6 +190,7 @@ struct Plan<'a, T> {
     axes: &'a [GridAxis],
     kind: DataType,
     fill: T,
+    folder: &'a Path,
     exec: &'a Exec,
 }
 
@@ -212,17 +222,22 @@ where
                 .map_err(storage)?;
         // The library's own name and version would change the bytes with every upgrade.
         let options = ArrayMetadataOptions::default().with_include_zarrs_metadata(false);
-        array.store_metadata_opt(&options).map_err(storage)?;
+        stored(self.folder, || array.store_metadata_opt(&options).map_err(storage))?;
         let grid: Vec<usize> = shape.iter().zip(&chunk).map(|(n, c)| n.div_ceil(*c)).collect();
         let chunks: usize = grid.iter().product();
         (0..chunks).into_par_iter().try_for_each(|number| {
             self.exec.check()?;
             let place = unravel(number, &grid);
             let data = gather(&shape, &chunk, &place, self.fill, &value);
-            array.store_chunk(&wide(&place), data).map_err(storage)
+            stored(self.folder, || array.store_chunk(&wide(&place), data).map_err(storage))
         })?;
         serde_json::to_value(array.metadata_opt(&options)).map_err(storage)
     }
+}
+
+/// Lets the storage library write, when files may be changed.
+fn stored(folder: &Path, put: impl FnOnce() -> Result<(), ZarrError>) -> Result<(), ZarrError> {
+    write::permit().step(folder, put)
 }
 
 /// Whole rows of the fastest dimensions, as many as fit into a chunk.

@@ -52,12 +52,15 @@ impl Settings {
     pub const RHO: [f64; 2] = [0.25, 2.0];
     /// Values of ρ from the least to the greatest, each a fixed factor (the fourth root of two) above the last.
     const RHOS: usize = 13;
+    /// How many of them double ρ.
+    const RHOS_PER_OCTAVE: f64 = 4.0;
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        let [least, greatest] = Self::RHO;
-        let rho = |k: usize| least * (greatest / least).powf(k as f64 / (Self::RHOS - 1) as f64);
+        let [least, _] = Self::RHO;
+        // The system's power, folded by the compiler or not, has other last bits.
+        let rho = |k: usize| least * libm::exp2(k as f64 / Self::RHOS_PER_OCTAVE);
         Self {
             poses: None,
             seed: 1,
@@ -375,6 +378,14 @@ mod tests {
 
     fn planar() -> Design {
         design(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect())
+    }
+
+    #[test]
+    fn every_fourth_rho_is_twice_the_last_to_the_bit() {
+        let rhos = Settings::default().rotation_lengths;
+        assert_eq!(rhos.iter().copied().step_by(4).collect::<Vec<_>>(), [0.25, 0.5, 1.0, 2.0]);
+        assert_eq!([rhos[0], rhos[Settings::RHOS - 1]], Settings::RHO);
+        assert_eq!(rhos[1..4], [0.297_301_778_750_680_26, 0.353_553_390_593_273_8, 0.420_448_207_626_857_25]);
     }
 
     #[test]

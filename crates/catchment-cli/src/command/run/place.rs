@@ -1,10 +1,12 @@
 //! Where the files of a run go.
 
 use crate::failure::Failure;
+use crate::output::written;
 use catchment::exec::Exec;
 use catchment::report::Target;
 use catchment::report::figure::Drawn;
 use catchment::report::folder::{REPORT, RESULT, StudyFolder};
+use catchment::report::write;
 use catchment::run::Answer;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -20,6 +22,16 @@ pub(crate) struct PlaceArgs {
     figures: Option<PathBuf>,
 }
 
+/// Where a path leads, however it is written; its end need not exist.
+fn real(path: &Path) -> Result<PathBuf, Failure> {
+    let place = std::path::absolute(write::place(path)?)?;
+    let known = place.ancestors().find_map(|folder| Some((folder, folder.canonicalize().ok()?)));
+    Ok(match known {
+        Some((folder, real)) => place.strip_prefix(folder).map_or(place.clone(), |rest| real.join(rest)),
+        None => place,
+    })
+}
+
 /// Places that can be written, as far as can be known beforehand.
 pub(super) struct Targets<'a>(Vec<Target<'a>>);
 
@@ -28,9 +40,13 @@ impl PlaceArgs {
     pub(super) fn targets(&self) -> Result<Targets<'_>, Failure> {
         let is_group = |path: &Path| path.extension().is_some_and(|ending| ending == "zarr");
         let (output, figures) = (self.output.as_deref(), self.figures.as_deref());
-        if output.is_some() && output == figures {
-            let help = Some("-o alone writes the pictures too".to_owned());
-            return Err(Failure::with_help("-o and --figures name the same folder".to_owned(), help));
+        if let (Some(output), Some(figures)) = (output, figures) {
+            let [output, figures] = [real(output)?, real(figures)?];
+            if output.starts_with(&figures) || figures.starts_with(&output) {
+                let help = Some("-o alone writes the pictures too".to_owned());
+                let message = "-o and --figures name the same folder, or one is inside of the other";
+                return Err(Failure::with_help(message.to_owned(), help));
+            }
         }
         let output =
             output.map(|path| if is_group(path) { Target::Group(path) } else { Target::Folder(path) });
@@ -67,14 +83,17 @@ impl Targets<'_> {
             notes.push(match target {
                 Target::Pictures(path) => {
                     let saved = answer.save_pictures(path, &drawn, exec)?;
+                    written(path);
                     format!("wrote {} pictures as PNG and SVG into {}", saved.pictures, path.display())
                 }
                 Target::Group(path) => {
                     answer.save_group(path, exec)?;
+                    written(path);
                     format!("wrote {}", path.display())
                 }
                 Target::Folder(path) => {
                     let pictures = answer.save_drawn(path, &drawn, exec)?.pictures;
+                    written(path);
                     let place = path.display();
                     format!("wrote {place}: {REPORT}, {RESULT}, {pictures} pictures as PNG and SVG")
                 }

@@ -5,7 +5,7 @@ use super::sample::duration;
 use crate::exec_args::Running;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::tell;
+use crate::output::{tell, written};
 use catchment::problem::Problem;
 use catchment::report::figure::Picture;
 use catchment::report::folder::{StudyFolder, encode};
@@ -108,6 +108,7 @@ impl Told {
         if let Some(folder) = folder {
             let pictures = encode(&[(folder.name, self.picture)], &running.exec)?;
             notes.push(folder.write(&self.json, &self.records, pictures, &running.exec, |_| Ok(()))?);
+            written(folder.path);
         }
         drop(running);
         tell(if args.json { &self.json } else { &self.table }, &notes)

@@ -4,7 +4,7 @@
 //! triangles, each with its place ──weld──▶ corners shared ──check──▶ Surface, in D
 //! ```
 //!
-//! Every source of triangles comes through here, the files of [`super::source`] as well as triangles in memory. Corners closer
+//! Every source of triangles comes through here, the files of the sources as well as triangles in memory. Corners closer
 //! than [`WELD`] of the model's size are one. The winding counts, counter-clockwise seen from outside. Nothing is
 //! repaired or dropped: a mesh is either closed, wound outward and free of self-intersections, or every reason
 //! against it is reported with its place. Coordinates in messages are those of the source.

@@ -6,7 +6,7 @@
 //!      └──▶ FamilySpec::Cone(Cone)  the name with its parameters
 //! ```
 //!
-//! Lengths in D, angles in radians. A family's parameters stand in [`keys`](super::keys); the reader, the templates and the
+//! Lengths in D, angles in radians. A family's parameters stand in [`keys`]; the reader, the templates and the
 //! digest walk over them by key, so that nothing else has to know a family. How a family looks is drawn in
 //! [`crate::connector`], which also judges whether its parameters make a solid: here they only have their types.
 

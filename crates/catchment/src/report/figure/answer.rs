@@ -11,9 +11,6 @@ use crate::pose::{CorPose, Dof, PoseError};
 use crate::report::folder::SaveError;
 use crate::run::Answer;
 
-/// Names of all pictures there can be, without ending.
-pub const NAMES: [&str; 7] = ["overview", "slices", "heights", "basins", "partition", "section", "solids"];
-
 /// Cells per axis of the slice in the overview, and of the many in the slices, where the method decides each cell
 /// by itself and the grid is coarser.
 const OVERVIEW_CELLS: usize = 71;

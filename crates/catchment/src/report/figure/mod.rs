@@ -50,7 +50,7 @@ mod svg;
 mod trajectory;
 
 pub use agreement::agreement;
-pub use answer::{Drawn, NAMES};
+pub use answer::Drawn;
 pub use basins::basins;
 pub use convergence::convergence;
 pub use curves::{Curve, CurveChart, CurvePoint, curves};

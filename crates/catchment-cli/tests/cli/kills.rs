@@ -1,0 +1,241 @@
+//! Ended at any moment: the real binary under SIGKILL, SIGTERM and SIGINT while it writes.
+//!
+//! ```text
+//!   complete 1 ──▶ run, killed at random ──▶ 1 or 2, complete? ──▶ run to the end ──▶ complete, nothing left over?
+//! ```
+//!
+//! `CATCHMENT_KILLS=300` kills so often; the moments follow from the seed and from how fast the machine is.
+
+use super::{catchment, entries, home};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+const POSES: &str = "poses.csv";
+const TARGET: &str = "target";
+
+/// A command that writes to [`TARGET`], in two versions.
+struct Writer {
+    name: &'static str,
+    versions: [&'static [&'static str]; 2],
+}
+
+const WRITERS: [Writer; 5] = [
+    Writer {
+        name: "run -o",
+        versions: [
+            &["run", "v.toml", "--resolution", "6", "--samples", "0", "-o", TARGET],
+            &["run", "v.toml", "--resolution", "7", "--samples", "0", "-o", TARGET],
+        ],
+    },
+    Writer {
+        name: "run -o NAME.zarr",
+        versions: [
+            &["run", "v.toml", "--resolution", "6", "--samples", "0", "-o", "target.zarr"],
+            &["run", "v.toml", "--resolution", "7", "--samples", "0", "-o", "target.zarr"],
+        ],
+    },
+    Writer {
+        name: "slices -o",
+        versions: [
+            &["slices", "v.toml", "--resolution", "6", "-o", TARGET],
+            &["slices", "v.toml", "--resolution", "7", "-o", TARGET],
+        ],
+    },
+    Writer {
+        name: "outcome -o --force",
+        versions: [
+            &["outcome", "v.toml", "--poses", POSES, "-o", TARGET, "--force"],
+            &["outcome", "v.toml", "--poses", POSES, "--json", "-o", TARGET, "--force"],
+        ],
+    },
+    Writer {
+        name: "export -o",
+        versions: [
+            &["export", "pyramid.toml", "--pose", "x=0.1", "-o", TARGET],
+            &["export", "pyramid.toml", "--pose", "x=0.2", "-o", TARGET],
+        ],
+    },
+];
+
+/// What is sent, one after another.
+const SIGNALS: [&[&str]; 5] = [&["-KILL"], &["-KILL"], &["-TERM"], &["-INT"], &["-TERM", "-TERM"]];
+
+/// Whether what is there is one version and whole: a folder by its manifest, a file by its bytes.
+fn is_whole(path: &Path, files: &[Vec<u8>]) -> bool {
+    if path.is_file() {
+        return files.contains(&fs::read(path).unwrap());
+    }
+    let Ok(text) = fs::read(path.join(".catchment.json")) else { return false };
+    let manifest: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let listed: BTreeMap<String, String> = serde_json::from_value(manifest["files"].clone()).unwrap();
+    let mut found = BTreeMap::new();
+    let mut open = vec![path.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let inner = entry.unwrap().path();
+            if inner.is_dir() {
+                open.push(inner);
+            } else {
+                let name = inner.strip_prefix(path).unwrap().to_str().unwrap().to_owned();
+                let digest = Sha256::digest(fs::read(&inner).unwrap());
+                found.insert(name, digest.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
+            }
+        }
+    }
+    found.remove(".catchment.json");
+    found == listed
+}
+
+/// A small generator (splitmix64): the same moments every time.
+fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+#[cfg(unix)]
+#[test]
+fn killed_at_any_moment_old_or_new_is_there() {
+    let wanted = std::env::var("CATCHMENT_KILLS").ok().map_or(30, |text| text.parse::<usize>().unwrap());
+    let mut seed = 7;
+    let (mut killed, mut replaced, mut swept) = (0, 0, 0);
+    for writer in WRITERS {
+        let home = home();
+        fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
+        fs::write(home.path().join(POSES), "x,yaw\n0.1,0\n0.2,0.1\n9,0\n").unwrap();
+        let target = home.path().join(if writer.name.contains("zarr") { "target.zarr" } else { TARGET });
+        let finish = |version: usize| {
+            let output = catchment(home.path()).args(writer.versions[version]).output().unwrap();
+            assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        };
+        let mut files = Vec::new();
+        let mut expected = entries(home.path());
+        expected.push(target.file_name().unwrap().to_str().unwrap().to_owned());
+        expected.sort();
+        let mut lasts = Duration::MAX;
+        for version in 0..2 {
+            let started = Instant::now();
+            finish(version);
+            lasts = lasts.min(started.elapsed());
+            if target.is_file() {
+                files.push(fs::read(&target).unwrap());
+            }
+        }
+        for number in 0..wanted.div_ceil(WRITERS.len()) {
+            let case = format!("{}, kill {number}", writer.name);
+            let before =
+                fs::read_dir(&target).is_ok().then(|| fs::read(target.join(".catchment.json")).unwrap());
+            let mut child = catchment(home.path())
+                .args(writer.versions[number % 2])
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .unwrap();
+            std::thread::sleep(lasts.mul_f64(1.1 * random(&mut seed)));
+            let pid = child.id().to_string();
+            for signal in SIGNALS[(SIGNALS.len() as f64 * random(&mut seed)) as usize] {
+                // It may have ended already.
+                let _ = Command::new("kill").args([*signal, &pid]).stderr(Stdio::null()).status().unwrap();
+            }
+            let status = child.wait().unwrap();
+            assert!(matches!(status.code(), None | Some(0 | 130 | 143)), "{case}: {status}");
+            killed += usize::from(status.code() != Some(0));
+            assert!(is_whole(&target, &files), "{case}: lost or mixed");
+            replaced += usize::from(
+                before.is_some_and(|old| fs::read(target.join(".catchment.json")).unwrap() != old),
+            );
+            // Who has heard the signal, or two of them, leaves nothing.
+            let tidy = status.code().is_none() || entries(home.path()) == expected;
+            assert!(tidy, "{case}: {status}, but {:?}", entries(home.path()));
+            swept += usize::from(entries(home.path()) != expected);
+            // Nothing is swept but by whoever begins next.
+            finish((number + 1) % 2);
+            assert!(is_whole(&target, &files), "{case}: lost or mixed after the next start");
+            assert_eq!(entries(home.path()), expected, "{case}: left-overs after the next start");
+        }
+    }
+    println!(
+        "{killed} ended early, {replaced} replaced a folder, {swept} left something, all of it put in order"
+    );
+    assert!(killed > 0);
+}
+
+/// The handler stands when its thread does.
+#[cfg(target_os = "linux")]
+fn wait_for_handler(pid: u32) {
+    let tasks = format!("/proc/{pid}/task");
+    let stands = || {
+        fs::read_dir(&tasks).unwrap().any(|task| {
+            let name = fs::read_to_string(task.unwrap().path().join("comm")).unwrap_or_default();
+            name.trim() == "signals"
+        })
+    };
+    while !stands() {
+        std::thread::yield_now();
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn every_request_to_end_is_heard_and_told() {
+    for (signal, twice, code) in [
+        ("-INT", false, 130),
+        ("-TERM", false, 143),
+        ("-HUP", false, 143),
+        ("-TERM", true, 143),
+        ("-INT", true, 130),
+    ] {
+        let home = home();
+        let child = catchment(home.path())
+            .args(["run", "v.toml", "--resolution", "3000", "-o", "out", "--threads", "1"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        wait_for_handler(child.id());
+        for _ in 0..=usize::from(twice) {
+            let pid = child.id().to_string();
+            // After the first the process may have ended.
+            let _ = Command::new("kill").args([signal, &pid]).stderr(Stdio::null()).status().unwrap();
+        }
+        let output = child.wait_with_output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{signal}: {stderr}");
+        assert!(
+            twice && stderr.is_empty() || stderr == "interrupted; nothing was written\n",
+            "{signal}: {stderr}"
+        );
+        assert_eq!(entries(home.path()), ["v.toml"], "{signal}");
+    }
+}
+
+/// `nohup` keeps it alive.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_that_is_to_be_ignored_is() {
+    let home = home();
+    let script = format!(
+        "trap '' HUP; exec {} run v.toml --resolution 60 --samples 0 -q",
+        env!("CARGO_BIN_EXE_catchment")
+    );
+    let child = Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(home.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    for _ in 0..5 {
+        std::thread::sleep(Duration::from_millis(5));
+        let _ = Command::new("kill").args(["-HUP", &child.id().to_string()]).stderr(Stdio::null()).status();
+    }
+    let status = child.wait_with_output().unwrap().status;
+    // Before the shell has set its trap the signal ends it.
+    assert!(matches!(status.code(), None | Some(0)), "{status}");
+}

@@ -1,0 +1,202 @@
+//! The few calls that change files: one gate in front of them, and in tests a fault in any of them.
+//!
+//! ```text
+//!   permit() ──▶ step, step, …      none begins after abandon(); those that have begun end first
+//! ```
+//!
+//! Several steps under one permit, such as an exchange and what must follow it, are not torn apart by [`abandon`]. A
+//! process that is killed is another matter: it stops between any two steps, and the next start sees to it.
+
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How long [`abandon`] waits for steps that have begun: a disk that does not answer must not hold the process.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Who changes files, and what would be left behind now.
+struct Gate {
+    busy: usize,
+    shut: bool,
+    unfinished: Vec<PathBuf>,
+}
+
+static GATE: Mutex<Gate> = Mutex::new(Gate { busy: 0, shut: false, unfinished: Vec::new() });
+static CHANGED: Condvar = Condvar::new();
+
+fn gate() -> MutexGuard<'static, Gate> {
+    GATE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends all writing of this process, for a process that must end at once: waits for steps that have begun, removes
+/// what is unfinished, and holds up whoever wants to write from now on, for ever. Call it right before the end.
+///
+/// What was there stays, and what was completed stays.
+pub fn abandon() {
+    let mut gate = gate();
+    gate.shut = true;
+    let (mut gate, waited) = CHANGED
+        .wait_timeout_while(gate, PATIENCE, |gate| gate.busy > 0)
+        .unwrap_or_else(PoisonError::into_inner);
+    if waited.timed_out() {
+        return; // the next start removes what is left
+    }
+    for path in std::mem::take(&mut gate.unfinished) {
+        // The process ends; what cannot be removed now is removed by the next start.
+        let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+    }
+}
+
+/// Waits until files may be changed. Not to be asked for by somebody who has one.
+pub(crate) fn permit() -> Permit {
+    let mut gate = CHANGED.wait_while(gate(), |gate| gate.shut).unwrap_or_else(PoisonError::into_inner);
+    gate.busy += 1;
+    Permit(())
+}
+
+/// Leave to change files, until it is dropped.
+pub(crate) struct Permit(());
+
+impl Drop for Permit {
+    fn drop(&mut self) {
+        gate().busy -= 1;
+        CHANGED.notify_all();
+    }
+}
+
+impl Permit {
+    /// One change of something at `path`.
+    #[expect(clippy::unused_self, reason = "the permit is what allows it")]
+    pub(crate) fn step<T, E: From<io::Error>>(
+        &self,
+        path: &Path,
+        change: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        #[cfg(test)]
+        super::faults::reach(path)?;
+        #[cfg(not(test))]
+        let _ = path;
+        change()
+    }
+
+    /// From now on this is unfinished, or no longer.
+    #[expect(clippy::unused_self, reason = "the permit is what allows it")]
+    pub(super) fn unfinished(&self, path: &Path, is: bool) {
+        let list = &mut gate().unfinished;
+        list.retain(|known| known != path);
+        if is {
+            list.push(path.to_owned());
+        }
+    }
+
+    pub(super) fn create_dir(&self, path: &Path) -> io::Result<()> {
+        self.step(path, || fs::create_dir(path))
+    }
+
+    pub(super) fn create(&self, path: &Path) -> io::Result<File> {
+        self.step(path, || OpenOptions::new().write(true).create_new(true).open(path))
+    }
+
+    pub(super) fn write(&self, path: &Path, file: &mut File, bytes: &[u8]) -> io::Result<()> {
+        self.step(path, || file.write_all(bytes))
+    }
+
+    pub(super) fn sync(&self, path: &Path, file: &File) -> io::Result<()> {
+        self.step(path, || file.sync_all())
+    }
+
+    pub(super) fn set_permissions(&self, path: &Path, permissions: Permissions) -> io::Result<()> {
+        self.step(path, || fs::set_permissions(path, permissions))
+    }
+
+    pub(super) fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.step(to, || fs::rename(from, to))
+    }
+
+    /// Renames, unless something is there. Where the system cannot do both in one step, it looks first.
+    pub(super) fn rename_to_new(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.step(to, || match renamed(from, to, Manner::NoReplace) {
+            Some(done) => done,
+            None if fs::symlink_metadata(to).is_ok() => Err(ErrorKind::AlreadyExists.into()),
+            None => fs::rename(from, to),
+        })
+    }
+
+    /// Exchanges two folders in one step; `None` where the system cannot.
+    pub(super) fn exchange(&self, a: &Path, b: &Path) -> io::Result<Option<()>> {
+        #[cfg(test)]
+        if super::faults::cannot_exchange(b) {
+            return Ok(None);
+        }
+        self.step(b, || renamed(a, b, Manner::Exchange).transpose())
+    }
+
+    pub(super) fn remove_file(&self, path: &Path) -> io::Result<()> {
+        self.step(path, || gone(fs::remove_file(path)))
+    }
+
+    pub(super) fn remove_dir(&self, path: &Path) -> io::Result<()> {
+        self.step(path, || gone(fs::remove_dir(path)))
+    }
+
+    /// Removes a file, or a folder with all that is in it.
+    pub(super) fn remove_tree(&self, path: &Path) -> io::Result<()> {
+        if !fs::symlink_metadata(path)?.is_dir() {
+            return self.remove_file(path);
+        }
+        open_up(path);
+        for entry in fs::read_dir(path)? {
+            self.remove_tree(&entry?.path())?;
+        }
+        self.remove_dir(path)
+    }
+}
+
+/// What another has removed already is removed.
+fn gone(result: io::Result<()>) -> io::Result<()> {
+    result.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
+}
+
+/// Lets the owner remove what is in a folder, which may have taken over the permissions of a read-only one.
+pub(super) fn open_up(folder: &Path) {
+    #[cfg(unix)]
+    if let Ok(meta) = fs::symlink_metadata(folder) {
+        use std::os::unix::fs::PermissionsExt;
+        const OWNER: u32 = 0o700;
+        let mode = meta.permissions().mode();
+        if mode & OWNER != OWNER {
+            // Where it does not help, removing will say why.
+            let _ = fs::set_permissions(folder, Permissions::from_mode(mode | OWNER));
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = folder;
+}
+
+/// How to rename.
+enum Manner {
+    NoReplace,
+    Exchange,
+}
+
+/// Renames in a manner that not every system has; `None` if this one has not.
+#[cfg(any(target_os = "linux", target_vendor = "apple"))]
+fn renamed(from: &Path, to: &Path, manner: Manner) -> Option<io::Result<()>> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    use rustix::io::Errno;
+    let flags = match manner {
+        Manner::NoReplace => RenameFlags::NOREPLACE,
+        Manner::Exchange => RenameFlags::EXCHANGE,
+    };
+    match renameat_with(CWD, from, CWD, to, flags) {
+        Err(Errno::INVAL | Errno::NOSYS | Errno::NOTSUP) => None,
+        result => Some(result.map_err(io::Error::from)),
+    }
+}
+
+#[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
+fn renamed(_: &Path, _: &Path, _: Manner) -> Option<io::Result<()>> {
+    None
+}

@@ -1,0 +1,427 @@
+//! Writing: complete or not at all, and never over what others wrote.
+//!
+//! ```text
+//!   file      .name.PID.tmp  ──write, fsync──▶  rename to name
+//!   folder    .name.PID.tmp/ ──fill, manifest, fsync──▶  exchange with name  ──look again──▶  remove the old
+//! ```
+//!
+//! Everything is written beside its place under a temporary name and takes the place when it is on the disk. Whoever
+//! looks at the place sees the old content or the new, and a failed run leaves nothing behind. What a killed run leaves is
+//! put in order by whoever writes to the same place next.
+//!
+//! A folder holds a manifest of what was written into it ([`MANIFEST`]). Only a folder of the same kind is replaced,
+//! and only if nothing in it was added or changed since; an empty folder may be used. Links are followed: what they
+//! lead to is replaced, and they stay. Permissions of what is replaced stay.
+//!
+//! *Not promised:* that a folder never vanishes for a moment where the system cannot exchange two (some network disks,
+//! Windows), and that what is put into the old folder in the instant between the last look and its removal is found at
+//! its place again. It is not removed: it stays in the hidden folder beside it, and the next run says so.
+
+mod disk;
+#[cfg(test)]
+pub(crate) mod faults;
+mod manifest;
+mod temporary;
+#[cfg(test)]
+mod tests;
+
+pub use disk::abandon;
+pub(crate) use disk::permit;
+pub use manifest::MANIFEST;
+
+use manifest::Manifest;
+use std::fs::{self, File, Permissions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use temporary::{ASIDE, Temporary, claim, hidden, sweep};
+
+/// Links that lead to links that lead to links: the system's own limit.
+const LINKS: usize = 40;
+
+/// Why something could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// No room left.
+    #[error("cannot write {}: the disk is full", path.display())]
+    DiskFull {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// The system does not allow it.
+    #[error("cannot write {}: permission denied", path.display())]
+    Denied {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// The folder to write into does not exist.
+    #[error("cannot write {}: its folder does not exist; create it first", path.display())]
+    NoFolder {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// Something without a manifest is there, and it would be lost.
+    #[error(
+        "cannot write {}: something is there that is not a catchment result (it has no readable {MANIFEST}); \
+         move it away or choose another name",
+        path.display()
+    )]
+    NotAResult {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// A result of another kind is there, and it would be lost.
+    #[error(
+        "cannot write {}: another result is there ({found}, not {kind}); move it away or choose another name",
+        path.display()
+    )]
+    OtherKind {
+        /// What was to be written.
+        path: PathBuf,
+        /// What is there.
+        found: String,
+        /// What was to be written there.
+        kind: String,
+    },
+    /// Something in the result that is there would be lost.
+    #[error(
+        "cannot write {}: {} in it was {}; move it away or choose another name",
+        path.display(),
+        name.display(),
+        if *changed { "changed since it was written" } else { "not written by catchment" }
+    )]
+    Strange {
+        /// The folder.
+        path: PathBuf,
+        /// Its path in the folder.
+        name: PathBuf,
+        /// It was written with the folder, and changed since.
+        changed: bool,
+    },
+    /// A file is there that is not to be replaced.
+    #[error("cannot write {}: it exists", path.display())]
+    Exists {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// A folder is where a file shall be.
+    #[error("cannot write {}: it is a folder", path.display())]
+    IsFolder {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// A device, a pipe or a socket is there.
+    #[error("cannot write {}: it is not an ordinary file", path.display())]
+    NotAFile {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// The name leaves no room for a temporary one, or is too long for the system.
+    #[error("cannot write {}: its name is too long", path.display())]
+    NameTooLong {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// Groups are named in UTF-8.
+    #[error("cannot write {}: the path is not UTF-8, which stored grids need", path.display())]
+    NotUtf8 {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// The path names no file.
+    #[error("cannot write {}: the path does not end with a name", path.display())]
+    NoName {
+        /// The path.
+        path: PathBuf,
+    },
+    /// Anything else the system reports.
+    #[error("cannot write {}: {source}", path.display())]
+    Io {
+        /// What was to be written.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+impl WriteError {
+    /// Sorts a system error.
+    pub(crate) fn at(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::DiskFull { path },
+            ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => Self::Denied { path },
+            ErrorKind::NotFound | ErrorKind::NotADirectory => Self::NoFolder { path },
+            ErrorKind::InvalidFilename => Self::NameTooLong { path },
+            ErrorKind::AlreadyExists => Self::Exists { path },
+            _ => Self::Io { path, source },
+        }
+    }
+}
+
+/// The folder in which a path lies.
+fn parent(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
+}
+
+/// Where a path leads when links are followed; it need not exist.
+///
+/// # Errors
+/// It has no name at its end, or links lead in a circle.
+pub fn place(path: &Path) -> Result<PathBuf, WriteError> {
+    // Without the separator or the dot at its end, which would follow a link.
+    let mut place: PathBuf = path.components().collect();
+    for _ in 0..LINKS {
+        if place.file_name().is_none() {
+            return Err(WriteError::NoName { path: path.to_owned() });
+        }
+        match fs::read_link(&place) {
+            Ok(to) => place = parent(&place).join(to).components().collect(),
+            Err(_) => return Ok(place),
+        }
+    }
+    Err(WriteError::at(path, io::Error::other("its links lead in a circle")))
+}
+
+/// Refuses a path that is not UTF-8, for those who store grids.
+pub(crate) fn check_utf8(path: &Path) -> Result<(), WriteError> {
+    if place(path)?.to_str().is_some() { Ok(()) } else { Err(WriteError::NotUtf8 { path: path.to_owned() }) }
+}
+
+/// Makes a rename survive a power cut, where the system can.
+fn sync_parent(path: &Path) {
+    // Some systems cannot open folders; the rename itself has already happened.
+    let _ = File::open(parent(path)).and_then(|folder| folder.sync_all());
+}
+
+/// Where a file goes, and the permissions that it takes over.
+fn look_for_file(path: &Path, replace: bool) -> Result<(PathBuf, Option<Permissions>), WriteError> {
+    let there = fs::metadata(path).ok();
+    if let Some(meta) = &there {
+        let path = path.to_owned();
+        if meta.is_dir() {
+            return Err(WriteError::IsFolder { path });
+        }
+        if !meta.is_file() {
+            return Err(WriteError::NotAFile { path });
+        }
+    }
+    // Also a link that leads nowhere.
+    if !replace && fs::symlink_metadata(path).is_ok() {
+        return Err(WriteError::Exists { path: path.to_owned() });
+    }
+    Ok((place(path)?, there.map(|meta| meta.permissions())))
+}
+
+/// Refuses a place for a file as [`file`] would, and tries it out.
+///
+/// # Errors
+/// Those of [`file`].
+pub fn check_file(path: &Path, replace: bool) -> Result<(), WriteError> {
+    let (place, _) = look_for_file(path, replace)?;
+    sweep(&place)?;
+    Temporary::file(&place).map(drop)
+}
+
+/// Writes a file; an existing ordinary *file* stays or is replaced. Links stay, and so do permissions.
+///
+/// # Errors
+/// Whatever the system refuses; something else in the way.
+pub fn file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), WriteError> {
+    let (place, permissions) = look_for_file(path, replace)?;
+    sweep(&place)?;
+    let (mut temporary, mut file) = Temporary::file(&place)?;
+    let write = || -> io::Result<()> {
+        let new = &temporary.path;
+        if let Some(permissions) = permissions {
+            permit().set_permissions(new, permissions)?;
+        }
+        permit().write(new, &mut file, bytes)?;
+        permit().sync(new, &file)?;
+        if replace { permit().rename(new, &place) } else { permit().rename_to_new(new, &place) }
+    };
+    write().map_err(|error| WriteError::at(path, error))?;
+    temporary.keep();
+    sync_parent(&place);
+    Ok(())
+}
+
+/// Writes a file into a folder that is being filled; `name` may name one folder in it, which is made.
+///
+/// # Errors
+/// Whatever the system refuses.
+pub fn part(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
+    let path = folder.join(name);
+    let write = || -> io::Result<()> {
+        let permit = permit();
+        if !parent(&path).is_dir() {
+            permit.create_dir(parent(&path))?;
+        }
+        let mut file = permit.create(&path)?;
+        permit.write(&path, &mut file, bytes)
+    };
+    write().map_err(|error| WriteError::at(&path, error))
+}
+
+/// What is at the place of a folder.
+enum There {
+    Nothing,
+    Empty,
+    Ours(Manifest),
+}
+
+/// What is at a place that may be used for a folder of this kind.
+fn look(place: &Path, kind: &str) -> Result<There, WriteError> {
+    let path = || place.to_owned();
+    match fs::symlink_metadata(place) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(There::Nothing),
+        Err(error) => return Err(WriteError::at(place, error)),
+        Ok(meta) if !meta.is_dir() => return Err(WriteError::NotAResult { path: path() }),
+        Ok(_) => {}
+    }
+    let mut entries = fs::read_dir(place).map_err(|error| WriteError::at(place, error))?;
+    if entries.next().is_none() {
+        return Ok(There::Empty);
+    }
+    let manifest = Manifest::read(place).ok_or_else(|| WriteError::NotAResult { path: path() })?;
+    if manifest.kind != kind {
+        return Err(WriteError::OtherKind { path: path(), found: manifest.kind, kind: kind.to_owned() });
+    }
+    nothing_strange(&manifest, place, place)?;
+    Ok(There::Ours(manifest))
+}
+
+/// The same while nobody else of this program works on it.
+fn look_undisturbed(place: &Path, kind: &str) -> Result<There, WriteError> {
+    let _others_wait = claim(place);
+    look(place, kind)
+}
+
+/// Refuses a folder with something in it that is not in its manifest; `shown` is its name for people.
+fn nothing_strange(manifest: &Manifest, folder: &Path, shown: &Path) -> Result<(), WriteError> {
+    match manifest.strange(folder).map_err(|error| WriteError::at(shown, error))? {
+        None => Ok(()),
+        Some(strange) => {
+            Err(WriteError::Strange { path: shown.to_owned(), name: strange.name, changed: strange.changed })
+        }
+    }
+}
+
+/// Refuses a place for a folder as [`folder`] would, and tries it out; puts in order what a killed run left there.
+///
+/// # Errors
+/// Those of [`folder`].
+pub fn check_folder(path: &Path, kind: &str) -> Result<(), WriteError> {
+    let place = place(path)?;
+    sweep(&place)?;
+    look_undisturbed(&place, kind)?;
+    Temporary::folder(&place).map(drop)
+}
+
+/// Writes a folder: `fill` fills an empty one, which then takes the place of `path`. What is there already is
+/// replaced only if it is of the same kind and nothing in it was added or changed.
+///
+/// # Errors
+/// Those of `fill`, and whatever the system refuses. What was there is there again.
+pub fn folder<E: From<WriteError>>(
+    path: &Path,
+    kind: &str,
+    fill: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), E> {
+    let place = place(path)?;
+    sweep(&place)?;
+    look_undisturbed(&place, kind)?;
+    let mut new = Temporary::folder(&place)?;
+    fill(&new.path)?;
+    let complete = || -> io::Result<()> {
+        let manifest = Manifest::of(&new.path, kind)?.to_json()?;
+        sync_tree(&new.path)?;
+        let path = new.path.join(MANIFEST);
+        let permit = permit();
+        let mut file = permit.create(&path)?;
+        permit.write(&path, &mut file, &manifest)?;
+        permit.sync(&path, &file)?;
+        // Its entry, which some systems do not let be synced.
+        let _ = File::open(&new.path).and_then(|folder| folder.sync_all());
+        Ok(())
+    };
+    complete().map_err(|error| WriteError::at(path, error))?;
+    while !put(&mut new, &place, kind)? {}
+    sync_parent(&place);
+    Ok(())
+}
+
+/// Lets a complete folder take its place; says `false` if somebody else was faster and it has to be tried again.
+fn put(new: &mut Temporary, place: &Path, kind: &str) -> Result<bool, WriteError> {
+    let at = |error| WriteError::at(place, error);
+    let others_wait = claim(place);
+    let there = look(place, kind)?;
+    if let (There::Empty | There::Ours(_), Ok(meta)) = (&there, fs::symlink_metadata(place)) {
+        permit().set_permissions(&new.path, meta.permissions()).map_err(at)?;
+    }
+    match there {
+        There::Nothing | There::Empty => {
+            #[cfg(not(unix))]
+            if matches!(there, There::Empty) {
+                permit().remove_dir(place).map_err(at)?;
+            }
+            // An empty folder at the place gives way; one that is not refuses.
+            let renamed = permit().rename(&new.path, place);
+            match renamed {
+                Err(error) if error.kind() == ErrorKind::DirectoryNotEmpty => return Ok(false),
+                renamed => renamed.map_err(at)?,
+            }
+            new.keep();
+        }
+        There::Ours(old) => replace(new, place, &old)?,
+    }
+    drop(others_wait);
+    Ok(true)
+}
+
+/// Exchanges, looks again, and removes the old folder, or puts it back.
+fn replace(new: &mut Temporary, place: &Path, old: &Manifest) -> Result<(), WriteError> {
+    let at = |error| WriteError::at(place, error);
+    let permit = permit();
+    let exchanged = permit.exchange(&new.path, place).map_err(at)?.is_some();
+    let aside = if exchanged { new.path.clone() } else { hidden(place, 0, ASIDE)? };
+    if !exchanged {
+        permit.rename(place, &aside).map_err(at)?;
+    }
+    // Somebody may have put something into it until now.
+    let undisturbed = nothing_strange(old, &aside, place);
+    let stepped = match undisturbed {
+        Ok(()) if exchanged => Ok(()),
+        Ok(()) => permit.rename(&new.path, place).map_err(at),
+        Err(refused) => Err(refused),
+    };
+    let back = match (&stepped, exchanged) {
+        (Ok(()), _) => Ok(()),
+        (Err(_), true) => permit.exchange(&new.path, place).map(drop),
+        (Err(_), false) => permit.rename(&aside, place),
+    };
+    permit.unfinished(&new.path, stepped.is_err() && back.is_ok());
+    if stepped.is_ok() {
+        // What came in this very moment is not listed, and stops it; what is left is put in order by the next start.
+        let _ = old.remove(&aside, &permit);
+    }
+    drop(permit);
+    if stepped.is_ok() || back.is_err() {
+        new.keep();
+    }
+    back.map_err(|error| WriteError::at(&aside, error))?;
+    stepped
+}
+
+fn sync_tree(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            sync_tree(&path)?;
+            // Its entries, which some systems do not let be synced.
+            let _ = File::open(&path).and_then(|folder| folder.sync_all());
+        } else {
+            File::open(&path)?.sync_all()?;
+        }
+    }
+    Ok(())
+}

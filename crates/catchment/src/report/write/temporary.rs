@@ -1,0 +1,208 @@
+//! What is being written, beside its place; and what a killed process left there.
+//!
+//! ```text
+//!   .NAME.PID.tmp   new, not complete; after an exchange: old, to be removed
+//!   .NAME.PID.old   old, stepped aside where the system cannot exchange
+//! ```
+//!
+//! Whoever writes holds a lock on it, which ends with the process. So the next start knows what nobody works on any
+//! more, on every machine that sees the same disk. Where the system knows no such locks, left-overs stay.
+
+use super::disk::permit;
+use super::manifest::Manifest;
+use super::{WriteError, parent};
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// New, or old and to be removed.
+pub(super) const NEW: &str = "tmp";
+/// Stepped aside.
+pub(super) const ASIDE: &str = "old";
+
+/// Threads of one process, and processes of one number on several machines, that write to one place at the same time.
+const WRITERS: usize = 64;
+
+/// Something unfinished beside its place: removed when dropped.
+#[derive(Debug)]
+pub(super) struct Temporary {
+    pub(super) path: PathBuf,
+    finished: bool,
+    /// Released when dropped.
+    _lock: Option<File>,
+}
+
+impl Temporary {
+    /// An empty folder.
+    pub(super) fn folder(place: &Path) -> Result<Self, WriteError> {
+        Self::make(place, |path| {
+            let permit = permit();
+            permit.create_dir(path)?;
+            permit.unfinished(path, true);
+            // Some systems cannot open folders.
+            Ok((File::open(path).ok(), ()))
+        })
+        .map(|(made, ())| made)
+    }
+
+    /// An empty file.
+    pub(super) fn file(place: &Path) -> Result<(Self, File), WriteError> {
+        Self::make(place, |path| {
+            let permit = permit();
+            let file = permit.create(path)?;
+            permit.unfinished(path, true);
+            Ok((file.try_clone().ok(), file))
+        })
+    }
+
+    fn make<T>(
+        place: &Path,
+        create: impl Fn(&Path) -> io::Result<(Option<File>, T)>,
+    ) -> Result<(Self, T), WriteError> {
+        for number in 0..WRITERS {
+            let path = hidden(place, number, NEW)?;
+            match create(&path) {
+                Ok((lock, made)) => {
+                    // Somebody who sweeps may have found it before it was locked.
+                    let kept = lock.as_ref().is_none_or(|lock| !is_held(lock) && is_at(lock, &path));
+                    let mut temporary = Self { path, finished: false, _lock: lock };
+                    if kept {
+                        return Ok((temporary, made));
+                    }
+                    // It is theirs to remove, and the name may be another's by then.
+                    temporary.keep();
+                }
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(WriteError::at(place, error)),
+            }
+        }
+        Err(WriteError::at(place, ErrorKind::ResourceBusy.into()))
+    }
+
+    /// It has its place, or must stay where it is.
+    pub(super) fn keep(&mut self) {
+        permit().unfinished(&self.path, false);
+        self.finished = true;
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.finished {
+            let permit = permit();
+            // Nobody is left to tell; the next start tries again.
+            let _ = permit.remove_tree(&self.path);
+            permit.unfinished(&self.path, false);
+        }
+    }
+}
+
+/// The hidden name beside a place.
+pub(super) fn hidden(place: &Path, number: usize, ending: &str) -> Result<PathBuf, WriteError> {
+    let name = place.file_name().ok_or_else(|| WriteError::NoName { path: place.to_owned() })?;
+    let mut hidden = start(name);
+    hidden.push(std::process::id().to_string());
+    if number > 0 {
+        hidden.push(format!("-{number}"));
+    }
+    hidden.push(format!(".{ending}"));
+    Ok(place.with_file_name(hidden))
+}
+
+fn start(name: &OsStr) -> OsString {
+    let mut start = OsString::from(".");
+    start.push(name);
+    start.push(".");
+    start
+}
+
+/// The ending of a hidden name of this start, if it is one.
+fn ending(name: &OsStr, start: &OsStr) -> Option<&'static str> {
+    let rest = name.as_encoded_bytes().strip_prefix(start.as_encoded_bytes())?;
+    let (number, ending) = std::str::from_utf8(rest).ok()?.split_once('.')?;
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_number = number.split_once('-').map_or_else(|| digits(number), |(a, b)| digits(a) && digits(b));
+    [NEW, ASIDE].into_iter().find(|known| is_number && ending == *known)
+}
+
+/// Whether somebody else holds the lock; if not, it is taken.
+fn is_held(file: &File) -> bool {
+    matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock))
+}
+
+/// Whether a file or folder that was opened is still the one at `path`.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let same = |a: fs::Metadata, b: fs::Metadata| a.dev() == b.dev() && a.ino() == b.ino();
+        fs::symlink_metadata(path).is_ok_and(|there| file.metadata().is_ok_and(|here| same(here, there)))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        fs::symlink_metadata(path).is_ok()
+    }
+}
+
+/// Waits until nobody else works on the folder at `place`, and keeps others waiting until the lock is dropped.
+pub(super) fn claim(place: &Path) -> Option<File> {
+    loop {
+        // Nothing else, such as a pipe, is opened.
+        fs::symlink_metadata(place).ok().filter(fs::Metadata::is_dir)?;
+        let folder = File::open(place).ok()?;
+        folder.lock().ok()?;
+        if is_at(&folder, place) {
+            return Some(folder);
+        }
+    }
+}
+
+/// Restores and removes what killed processes left beside a place.
+///
+/// # Errors
+/// A left-over holds something that is not from this program.
+pub(super) fn sweep(place: &Path) -> Result<(), WriteError> {
+    let Some(name) = place.file_name() else { return Ok(()) };
+    let start = start(name);
+    let Ok(entries) = fs::read_dir(parent(place)) else { return Ok(()) };
+    let mut left: Vec<(&'static str, PathBuf)> = entries
+        .filter_map(Result::ok)
+        .filter_map(|entry| {
+            Some((ending(&entry.file_name(), &start)?, place.with_file_name(entry.file_name())))
+        })
+        .collect();
+    left.sort(); // what stepped aside comes first: it may be all there is
+    for (ending, path) in left {
+        let Ok(meta) = fs::symlink_metadata(&path) else { continue };
+        if !meta.is_file() && !meta.is_dir() {
+            continue;
+        }
+        // Without a lock nobody can know whether it is still being written.
+        let Ok(lock) = File::open(&path) else { continue };
+        if lock.try_lock().is_err() || !is_at(&lock, &path) {
+            continue;
+        }
+        let at = |error| WriteError::at(&path, error);
+        let permit = permit();
+        if ending == ASIDE && fs::symlink_metadata(place).is_err() {
+            permit.rename_to_new(&path, place).map_err(at)?;
+        } else if meta.is_dir()
+            && let Some(manifest) = Manifest::read(&path)
+        {
+            match manifest.strange(&path).map_err(at)? {
+                None => manifest.remove(&path, &permit).map_err(at)?,
+                Some(strange) => {
+                    return Err(WriteError::Strange { path, name: strange.name, changed: strange.changed });
+                }
+            }
+        } else if ending == NEW {
+            permit.remove_tree(&path).map_err(at)?;
+        } else {
+            // Its manifest went last; if it is not empty, it is not from here.
+            let _ = permit.remove_dir(&path);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,495 @@
+//! What is promised of files, one by one; and every writer stopped at every step.
+
+use super::faults::{self, Fault};
+use super::*;
+use crate::exec::Exec;
+use crate::report::folder::{Files, SaveError, StudyFolder, save_files};
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::process::Command;
+
+const KIND: &str = "test";
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// A folder for a test, in memory where there is one: nothing here is about disks that lose what was synced.
+fn home() -> tempfile::TempDir {
+    let memory = Path::new("/dev/shm");
+    if memory.is_dir() { tempfile::tempdir_in(memory).unwrap() } else { tempfile::tempdir().unwrap() }
+}
+
+fn save(path: &Path, version: usize) -> Result<(), SaveError> {
+    let files: Files = ["a", "inner/b", "inner/c"]
+        .iter()
+        .map(|name| ((*name).to_owned(), format!("{name} {version}").into_bytes()))
+        .collect();
+    save_files(path, KIND, &files, &Exec::new())
+}
+
+/// Which version a folder holds, if it is whole.
+fn saved(path: &Path) -> Option<usize> {
+    if !Manifest::read(path)?.is_whole(path) {
+        return None;
+    }
+    let text = fs::read_to_string(path.join("a")).ok()?;
+    text.strip_prefix("a ")?.parse().ok()
+}
+
+#[test]
+fn a_file_is_replaced_and_nothing_else_appears() {
+    let home = home();
+    let path = home.path().join("a.json");
+    file(&path, b"one", false).unwrap();
+    assert!(matches!(file(&path, b"two", false), Err(WriteError::Exists { .. })));
+    assert!(matches!(check_file(&path, false), Err(WriteError::Exists { .. })));
+    assert_eq!(fs::read(&path).unwrap(), b"one");
+    check_file(&path, true).unwrap();
+    file(&path, b"three", true).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"three");
+    assert_eq!(names(home.path()), ["a.json"]);
+}
+
+#[test]
+fn refusals_are_typed_and_leave_nothing() {
+    let home = home();
+    let nowhere = home.path().join("missing/a.json");
+    assert!(matches!(file(&nowhere, b"", true), Err(WriteError::NoFolder { .. })));
+    assert!(matches!(check_folder(&nowhere, KIND), Err(WriteError::NoFolder { .. })));
+    assert!(matches!(file(home.path(), b"", true), Err(WriteError::IsFolder { .. })));
+    assert!(matches!(check_folder(Path::new("/"), KIND), Err(WriteError::NoName { .. })));
+    assert!(matches!(check_folder(&home.path().join(".."), KIND), Err(WriteError::NoName { .. })));
+    for length in [250, 300] {
+        let long = home.path().join("a".repeat(length));
+        assert!(matches!(check_file(&long, false), Err(WriteError::NameTooLong { .. })), "{length}");
+        assert!(matches!(check_folder(&long, KIND), Err(WriteError::NameTooLong { .. })), "{length}");
+    }
+    let file = home.path().join("file");
+    fs::write(&file, "").unwrap();
+    assert!(matches!(check_folder(&file.join("inner"), KIND), Err(WriteError::NoFolder { .. })));
+    assert!(matches!(check_folder(&file, KIND), Err(WriteError::NotAResult { .. })));
+    assert_eq!(names(home.path()), ["file"]);
+    // A device that is always full, where the system has one.
+    if Path::new("/dev/full").exists() {
+        let full = OpenOptions::new().write(true).open("/dev/full").unwrap().write_all(b"x").unwrap_err();
+        assert!(matches!(WriteError::at(home.path(), full), WriteError::DiskFull { .. }));
+    }
+}
+
+#[test]
+fn a_folder_appears_whole_or_not_at_all() {
+    let home = home();
+    let path = home.path().join("out");
+    save(&path, 1).unwrap();
+    save(&path, 2).unwrap();
+    let failed = folder(&path, KIND, |new| {
+        part(new, "half", b"three")?;
+        Err(WriteError::DiskFull { path: new.to_owned() })
+    });
+    assert!(matches!(failed, Err(WriteError::DiskFull { .. })));
+    assert_eq!(saved(&path), Some(2));
+    assert_eq!(names(home.path()), ["out"]);
+    assert_eq!(names(&path), [MANIFEST, "a", "inner"]);
+}
+
+#[test]
+fn only_an_unchanged_result_of_the_same_kind_is_replaced() {
+    let home = home();
+    let path = &home.path().join("out");
+    let renew = || {
+        let _ = fs::remove_dir_all(path);
+        save(path, 1).unwrap();
+    };
+    let refuses = |why: fn(&WriteError) -> bool| {
+        let before = Manifest::of(path, KIND).ok();
+        let [checked, written] = [check_folder(path, KIND), folder(path, KIND, |_| Ok(()))];
+        assert!(
+            checked.as_ref().is_err_and(why) && written.as_ref().is_err_and(why),
+            "{checked:?} {written:?}"
+        );
+        assert_eq!(Manifest::of(path, KIND).ok(), before);
+        assert_eq!(names(home.path()), ["out"]);
+    };
+    renew();
+    fs::write(path.join("inner/notes"), "mine").unwrap();
+    refuses(
+        |e| matches!(e, WriteError::Strange { name, changed: false, .. } if name == Path::new("inner/notes")),
+    );
+    renew();
+    fs::write(path.join("inner/b"), "edited").unwrap();
+    refuses(|e| matches!(e, WriteError::Strange { name, changed: true, .. } if name == Path::new("inner/b")));
+    renew();
+    fs::create_dir(path.join("plans")).unwrap();
+    refuses(|e| matches!(e, WriteError::Strange { changed: false, .. }));
+    renew();
+    let other = folder(path, "another", |_| Ok::<_, WriteError>(()));
+    assert!(matches!(other, Err(WriteError::OtherKind { .. })));
+    for manifest in ["", "{}", r#"{"catchment":"0","kind":"test","files":{"../../x":"00"}}"#] {
+        renew();
+        fs::write(path.join(MANIFEST), manifest).unwrap();
+        refuses(|e| matches!(e, WriteError::NotAResult { .. }));
+    }
+    renew();
+    fs::remove_file(path.join(MANIFEST)).unwrap();
+    refuses(|e| matches!(e, WriteError::NotAResult { .. }));
+    // What is missing is nobody's loss, and neither is an empty folder.
+    renew();
+    fs::remove_file(path.join("inner/b")).unwrap();
+    save(path, 2).unwrap();
+    fs::remove_dir_all(path).unwrap();
+    fs::create_dir(path).unwrap();
+    save(path, 3).unwrap();
+    assert_eq!(saved(path), Some(3));
+}
+
+/// Notes that are put into the old result while the new one is computed and written.
+#[test]
+fn what_comes_while_the_new_is_written_is_kept() {
+    for exchange in [true, false] {
+        for late in [false, true] {
+            let home = home();
+            let path = home.path().join("out");
+            save(&path, 1).unwrap();
+            faults::set(home.path(), Fault::Crash, usize::MAX, exchange);
+            let fill = |new: &Path| {
+                part(new, "a", b"a 2")?;
+                if late {
+                    faults::before_exchange(home.path(), &path.join("notes"));
+                } else {
+                    fs::write(path.join("notes"), "mine").unwrap();
+                }
+                Ok(())
+            };
+            let refused = folder::<WriteError>(&path, KIND, fill);
+            faults::clear(home.path());
+            assert!(matches!(refused, Err(WriteError::Strange { changed: false, .. })), "{refused:?}");
+            assert_eq!(names(home.path()), ["out"]);
+            assert!(path.join("notes").exists());
+            fs::remove_file(path.join("notes")).unwrap();
+            assert_eq!(saved(&path), Some(1));
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_stay_and_so_do_permissions() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let home = home();
+    let at = |name: &str| home.path().join(name);
+    let mode = |name: &str| fs::metadata(at(name)).unwrap().permissions().mode() & 0o7777;
+    fs::create_dir(at("far")).unwrap();
+    fs::write(at("far/file"), "old").unwrap();
+    fs::set_permissions(at("far/file"), Permissions::from_mode(0o640)).unwrap();
+    symlink("far/file", at("link")).unwrap();
+    symlink("link", at("again")).unwrap();
+    assert!(matches!(file(&at("again"), b"", false), Err(WriteError::Exists { .. })));
+    file(&at("again"), b"new", true).unwrap();
+    assert_eq!((fs::read(at("far/file")).unwrap(), mode("far/file")), (b"new".to_vec(), 0o640));
+    symlink("far/new", at("dangling")).unwrap();
+    file(&at("dangling"), b"new", true).unwrap();
+    assert_eq!(names(&at("far")), ["file", "new"]);
+    symlink("round", at("round")).unwrap();
+    assert!(file(&at("round"), b"", true).is_err());
+
+    save(&at("far/out"), 1).unwrap();
+    fs::set_permissions(at("far/out"), Permissions::from_mode(0o2750)).unwrap();
+    symlink("far/out", at("out")).unwrap();
+    for version in 2..4 {
+        save(&at("out/"), version).unwrap();
+        assert!(fs::symlink_metadata(at("out")).unwrap().is_symlink());
+        assert_eq!((saved(&at("far/out")), mode("far/out")), (Some(version), 0o2750));
+    }
+    fs::create_dir(at("empty")).unwrap();
+    fs::set_permissions(at("empty"), Permissions::from_mode(0o700)).unwrap();
+    save(&at("empty"), 1).unwrap();
+    assert_eq!(mode("empty"), 0o700);
+    fs::set_permissions(at("empty"), Permissions::from_mode(0o500)).unwrap();
+    save(&at("empty"), 2).unwrap();
+    assert_eq!((saved(&at("empty")), mode("empty")), (Some(2), 0o500));
+    assert_eq!(names(home.path()), ["again", "dangling", "empty", "far", "link", "out", "round"]);
+    // A link in a result is no part of it.
+    symlink("a", at("empty/inner/link")).unwrap();
+    assert!(matches!(save(&at("empty"), 3), Err(SaveError::Write(WriteError::Strange { .. }))));
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_ordinary_file_stays() {
+    let home = home();
+    let pipe = home.path().join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for path in [&pipe, Path::new("/dev/null")] {
+        assert!(matches!(check_file(path, true), Err(WriteError::NotAFile { .. })));
+        assert!(matches!(file(path, b"", true), Err(WriteError::NotAFile { .. })));
+    }
+    assert!(matches!(check_folder(&pipe, KIND), Err(WriteError::NotAResult { .. })));
+    // A pipe in the place of a part is not opened, which would wait for ever.
+    let out = home.path().join("out");
+    save(&out, 1).unwrap();
+    fs::remove_file(out.join("a")).unwrap();
+    fs::rename(&pipe, out.join("a")).unwrap();
+    assert!(matches!(check_folder(&out, KIND), Err(WriteError::Strange { changed: true, .. })));
+    fs::rename(out.join("a"), out.join(MANIFEST)).unwrap();
+    assert!(matches!(check_folder(&out, KIND), Err(WriteError::NotAResult { .. })));
+}
+
+#[test]
+fn left_overs_are_put_in_order_and_nothing_of_others_is() {
+    let home = home();
+    let at = |name: &str| home.path().join(name);
+    // Old stepped aside, new not complete: the old one returns.
+    save(&at(".out.1.old"), 1).unwrap();
+    fs::create_dir(at(".out.1.tmp")).unwrap();
+    fs::write(at(".out.1.tmp/a"), "half").unwrap();
+    fs::write(at(".out.1-3.tmp"), "half a file").unwrap();
+    check_folder(&at("out"), KIND).unwrap();
+    assert_eq!((names(home.path()), saved(&at("out"))), (vec!["out".to_owned()], Some(1)));
+    // Nobody else's names.
+    for name in [".out.x.tmp", ".out.1.bak", "out.1.tmp", ".out.1-.tmp", ".other.1.tmp"] {
+        fs::write(at(name), "").unwrap();
+    }
+    // Somebody writes there now.
+    let working = Temporary::folder(&at("out")).unwrap();
+    check_folder(&at("out"), KIND).unwrap();
+    assert_eq!(names(home.path()).len(), 7);
+    drop(working);
+    assert_eq!(names(home.path()).len(), 6);
+    // An old result, to be removed, into which somebody has put something.
+    save(&at(".out.2.old"), 2).unwrap();
+    fs::write(at(".out.2.old/notes"), "mine").unwrap();
+    let refused = check_folder(&at("out"), KIND);
+    assert!(matches!(refused, Err(WriteError::Strange { path, .. }) if path == at(".out.2.old")));
+    fs::remove_file(at(".out.2.old/notes")).unwrap();
+    check_folder(&at("out"), KIND).unwrap();
+    assert_eq!(saved(&at("out")), Some(1));
+    assert_eq!(names(home.path()).len(), 6);
+}
+
+#[test]
+fn many_write_to_one_place() {
+    let home = home();
+    let path = &home.path().join("out");
+    std::thread::scope(|scope| {
+        for writer in 0..4 {
+            scope.spawn(move || {
+                for version in 0..8 {
+                    save(path, 10 * writer + version).unwrap();
+                }
+            });
+        }
+    });
+    assert!(saved(path).is_some_and(|version| version % 10 == 7));
+    assert_eq!(names(home.path()), ["out"]);
+}
+
+/// How one writer writes a version, and which one is there, whole.
+struct Writer<'a> {
+    write: &'a dyn Fn(&Path, usize) -> bool,
+    check: &'a dyn Fn(&Path) -> bool,
+    read: &'a dyn Fn(&Path) -> Option<usize>,
+    /// Folders are exchanged, files are renamed.
+    is_folder: bool,
+}
+
+/// Stops a writer at every step; returns their number.
+fn stop_everywhere(writer: &Writer) -> usize {
+    let manners: &[bool] = if writer.is_folder { &[true, false] } else { &[true] };
+    let mut steps = 0;
+    for exchange in manners {
+        for fault in [Fault::Crash, Fault::Fail] {
+            for first in [true, false] {
+                steps += stop(writer, fault, *exchange, first);
+            }
+        }
+    }
+    steps
+}
+
+fn stop(writer: &Writer, fault: Fault, exchange: bool, first: bool) -> usize {
+    for step in 0.. {
+        let case = format!("{fault:?} at {step}, exchange {exchange}, first {first}");
+        let home = home();
+        let path = &home.path().join("out");
+        assert!(first || (writer.write)(path, 1));
+        faults::set(home.path(), fault, step, exchange);
+        let done = (writer.write)(path, 2);
+        let happened = faults::clear(home.path());
+        let there = (writer.read)(path);
+        // Without exchange there is a moment without either, for whoever looks before the next start.
+        let gap = first || (!exchange && fault == Fault::Crash);
+        assert!(
+            matches!(there, Some(1 | 2)) || gap && fs::symlink_metadata(path).is_err(),
+            "{case}: {there:?}"
+        );
+        assert!(!done || there == Some(2), "{case}: done, but {there:?}");
+        assert!((writer.check)(path), "{case}");
+        let there = (writer.read)(path);
+        assert!(
+            matches!(there, Some(1 | 2)) || first && fs::symlink_metadata(path).is_err(),
+            "{case}: {there:?}"
+        );
+        let here = if there.is_some() { vec!["out"] } else { Vec::new() };
+        assert_eq!(names(home.path()), here, "{case}");
+        assert!((writer.write)(path, 3), "{case}");
+        assert_eq!((writer.read)(path), Some(3), "{case}");
+        assert_eq!(names(home.path()), ["out"], "{case}");
+        if !happened {
+            assert!(done, "{case}");
+            return step;
+        }
+    }
+    unreachable!("a writer that never ends")
+}
+
+#[test]
+fn a_file_survives_every_stop() {
+    let steps = stop_everywhere(&Writer {
+        write: &|path, version| file(path, version.to_string().as_bytes(), true).is_ok(),
+        check: &|path| check_file(path, true).is_ok(),
+        read: &|path| fs::read_to_string(path).ok()?.parse().ok(),
+        is_folder: false,
+    });
+    assert!(steps > 12, "{steps}");
+}
+
+#[test]
+fn a_folder_survives_every_stop() {
+    let steps = stop_everywhere(&Writer {
+        write: &|path, version| save(path, version).is_ok(),
+        check: &|path| check_folder(path, KIND).is_ok(),
+        read: &saved,
+        is_folder: true,
+    });
+    assert!(steps > 50, "{steps}");
+}
+
+/// Stopped, and stopped again while that is put in order.
+#[test]
+fn recovery_survives_every_stop() {
+    for exchange in [true, false] {
+        for step in 0.. {
+            let mut happened = false;
+            for again in 0.. {
+                let home = home();
+                let path = &home.path().join("out");
+                save(path, 1).unwrap();
+                faults::set(home.path(), Fault::Crash, step, exchange);
+                let _ = save(path, 2);
+                happened = faults::clear(home.path());
+                faults::set(home.path(), Fault::Crash, again, exchange);
+                let _ = check_folder(path, KIND);
+                let stopped = faults::clear(home.path());
+                check_folder(path, KIND).unwrap();
+                assert!(matches!(saved(path), Some(1 | 2)), "{exchange} {step} {again}");
+                assert_eq!(names(home.path()), ["out"], "{exchange} {step} {again}");
+                if !stopped {
+                    break;
+                }
+            }
+            if !happened {
+                break;
+            }
+        }
+    }
+}
+
+#[test]
+fn a_study_survives_every_stop() {
+    fn study(path: &Path) -> StudyFolder<'_> {
+        StudyFolder { path, name: "slices" }
+    }
+    let steps = stop_everywhere(&Writer {
+        write: &|path, version| {
+            let more = |new: &Path| -> Result<(), SaveError> {
+                let written = write_group(&new.join("x-y.zarr"), version);
+                if written { Ok(()) } else { Err(WriteError::NoName { path: new.to_owned() }.into()) }
+            };
+            study(path).write(&version.to_string(), &[], Files::new(), &Exec::new(), more).is_ok()
+        },
+        check: &|path| study(path).check().is_ok(),
+        read: &|path| {
+            Manifest::read(path)?.is_whole(path).then_some(())?;
+            let group = path.join("x-y.zarr");
+            (!cfg!(feature = "zarr") || Manifest::read(&group)?.is_whole(&group)).then_some(())?;
+            fs::read_to_string(path.join("report.json")).ok()?.parse().ok()
+        },
+        is_folder: true,
+    });
+    assert!(steps > 50, "{steps}");
+}
+
+#[cfg(feature = "zarr")]
+fn write_group(path: &Path, version: usize) -> bool {
+    use crate::pose::Dof;
+    use crate::report::Report;
+    use crate::report::schema::testing::{blob, design};
+    let design = design([Dof::X, Dof::Y].into_iter().collect());
+    let acceptance = blob(&design, 4);
+    let report = Report::new(&design, &acceptance, version.into(), None, &Exec::new()).unwrap();
+    crate::report::zarr::write(path, &report, &acceptance, None, &Exec::new()).is_ok()
+}
+
+#[cfg(not(feature = "zarr"))]
+fn write_group(_: &Path, _: usize) -> bool {
+    true
+}
+
+#[cfg(feature = "zarr")]
+#[test]
+fn a_group_survives_every_stop() {
+    let steps = stop_everywhere(&Writer {
+        write: &write_group,
+        check: &|path| check_folder(path, "group").is_ok(),
+        read: &|path| {
+            Manifest::read(path)?.is_whole(path).then_some(())?;
+            let root: serde_json::Value =
+                serde_json::from_slice(&fs::read(path.join("zarr.json")).ok()?).ok()?;
+            Some(root["attributes"]["report"]["settings"].as_u64()? as usize)
+        },
+        is_folder: true,
+    });
+    assert!(steps > 50, "{steps}");
+}
+
+#[cfg(all(feature = "figure", feature = "zarr"))]
+#[test]
+fn a_run_survives_every_stop() {
+    use crate::problem::Problem;
+    use crate::report::Target;
+    use crate::run::{Over, Run, Sample};
+    let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+    let designs = home();
+    let design = designs.path().join("v.toml");
+    fs::write(&design, text).unwrap();
+    let problem = Problem::open(design).unwrap();
+    let exec = Exec::new();
+    let answers: Vec<_> = (1..4)
+        .map(|version| {
+            let over = Over::Grid((4 + version).to_string().parse().unwrap());
+            let run = Run { over, sample: Sample::None, ..Run::default() };
+            let answer = run.on(&problem, &exec).unwrap();
+            let mut drawn = answer.draw(&exec).unwrap();
+            drawn.pictures.truncate(1);
+            (answer, drawn)
+        })
+        .collect();
+    let cells: Vec<usize> = answers.iter().map(|(answer, _)| answer.acceptance.outcomes.len()).collect();
+    stop_everywhere(&Writer {
+        write: &|path, version| {
+            let (answer, drawn) = &answers[version - 1];
+            answer.save_drawn(path, drawn, &exec).is_ok()
+        },
+        check: &|path| Target::Folder(path).check().is_ok(),
+        read: &|path| {
+            Manifest::read(path)?.is_whole(path).then_some(())?;
+            let (_, acceptance) = crate::report::zarr::read(&path.join("result.zarr"), &exec).ok()?;
+            Some(1 + cells.iter().position(|cells| *cells == acceptance.outcomes.len())?)
+        },
+        is_folder: true,
+    });
+}
