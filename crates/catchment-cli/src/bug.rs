@@ -42,7 +42,7 @@ mod tests {
         let heard = Arc::new(Mutex::new(String::new()));
         let listener = Arc::clone(&heard);
         let ended = caught(|| {
-            panic::set_hook(Box::new(move |bug| *listener.lock().unwrap() = told(bug)));
+            panic::set_hook(Box::new(move |bug| listener.lock().unwrap().push_str(&told(bug))));
             std::thread::scope(|scope| {
                 scope.spawn(|| panic!("a \u{1b}[2Jbug"));
             });

@@ -37,7 +37,8 @@ fn report(source: Option<&SourceText>, finding: Finding) -> Report {
     let Some(source) = source else { return Report::new(diagnostic) };
     let name = printable(&source.path.display().to_string());
     let Some(span) = finding.span else {
-        if !diagnostic.message.contains(&name) {
+        // What is said of an option is not said of the file.
+        if !diagnostic.message.contains(&name) && !diagnostic.message.starts_with("--") {
             diagnostic.message = format!("{name}: {}", diagnostic.message);
         }
         return Report::new(diagnostic);

@@ -11,7 +11,10 @@ pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
     if usage.use_stderr() {
         silence(&mut usage);
         // Nobody is left to tell when stderr itself is gone.
-        let _ = usage.print();
+        let _ = match still_steering(&usage) {
+            Some(text) => io::stderr().write_all(text.as_bytes()),
+            None => usage.print(),
+        };
         return ExitStatus::Failed;
     }
     match usage.print().and_then(|()| io::stdout().flush()) {
@@ -39,4 +42,12 @@ pub(crate) fn silence(usage: &mut clap::Error) {
     for (kind, value) in repeated {
         usage.insert(kind, value);
     }
+}
+
+/// A silenced complaint in which the reason of a parser still repeats such characters: its text without them, and without colours.
+pub(crate) fn still_steering(usage: &clap::Error) -> Option<String> {
+    let text = usage.to_string();
+    let silent: String =
+        text.split_inclusive('\n').map(|line| printable(line.trim_end_matches('\n')) + "\n").collect();
+    (silent.trim_end() != text.trim_end()).then_some(silent)
 }

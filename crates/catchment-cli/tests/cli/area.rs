@@ -1,6 +1,6 @@
 //! `catchment run`: what it prints, what it writes, what it refuses.
 
-use super::{catchment, entries, home, run};
+use super::{catchment, entries, home, run, written};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -180,7 +180,7 @@ fn a_folder_holds_report_pictures_and_group() {
         .chain(["report.json".to_owned(), "result.zarr".to_owned()])
         .collect();
     expected.sort();
-    assert_eq!(entries(&out), expected);
+    assert_eq!(written(&out), expected);
     for name in &expected[..] {
         let bytes = || fs::read(out.join(name)).unwrap();
         match name.rsplit_once('.').unwrap().1 {
@@ -218,7 +218,7 @@ fn one_error_has_no_maps_but_the_halves() {
     );
     assert!(report.starts_with("exit 0\n"), "{report}");
     assert_eq!(
-        entries(&home.path().join("pictures")),
+        written(&home.path().join("pictures")),
         ["section.png", "section.svg", "solids.png", "solids.svg"]
     );
 }
@@ -259,7 +259,7 @@ fn a_partition_says_how_large_it_is_and_draws_its_outline() {
     let (sum, grid) = (sum.as_f64().unwrap(), grid.as_f64().unwrap());
     assert!((sum / grid - 1.0).abs() < 0.02, "{sum} exactly, {grid} over the grid");
     assert_eq!(report["settings"], serde_json::json!({ "slices": 8, "strips": 4 }));
-    let pictures = entries(&home.path().join("out"));
+    let pictures = written(&home.path().join("out"));
     assert!(["partition.png", "partition.svg"].iter().all(|name| pictures.contains(&(*name).to_owned())));
 }
 

@@ -1,6 +1,6 @@
 //! `catchment compare` and `run --method all`: acceptances beside each other.
 
-use super::{V_FACE, designs, entries, home, json, run};
+use super::{V_FACE, designs, home, json, run, written};
 use std::fs;
 
 #[test]
@@ -20,7 +20,7 @@ fn two_methods_of_a_design() {
     let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
     assert!(told.contains("wrote out: report.json, difference.csv, difference as PNG and SVG"), "{told}");
     assert_eq!(
-        entries(&home.path().join("out")),
+        written(&home.path().join("out")),
         ["difference.csv", "difference.png", "difference.svg", "report.json"]
     );
     let same = json(home.path(), &["compare", "v.toml", "v.toml", "--resolution", "12", "--json"]);
@@ -75,12 +75,12 @@ fn more_errors_are_compared_in_slices_and_one_has_no_picture() {
     let args = ["compare", design, "--methods", "transport,flood", "--resolution", "5", "-o", "out"];
     let told = run(home.path(), &args);
     assert!(told.starts_with("exit 0\n") && told.contains("5 × 5 × 5 × 5 × 5 = 3 125 poses"), "{told}");
-    assert!(entries(&home.path().join("out")).contains(&"difference.png".to_owned()));
+    assert!(written(&home.path().join("out")).contains(&"difference.png".to_owned()));
     fs::write(home.path().join("x.toml"), V_FACE.to_owned() + "free = [\"x\"]\n").unwrap();
     let args = ["compare", "x.toml", "--methods", "flood,descent", "--resolution", "9", "-o", "line"];
     let told = run(home.path(), &args);
     assert!(told.contains("no picture: a map needs two free errors"), "{told}");
-    assert_eq!(entries(&home.path().join("line")), ["difference.csv", "report.json"]);
+    assert_eq!(written(&home.path().join("line")), ["difference.csv", "report.json"]);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn every_method_that_applies_stands_beside_the_others() {
         "{told}"
     );
     assert_eq!(
-        entries(&home.path().join("out")),
+        written(&home.path().join("out")),
         ["methods.csv", "methods.png", "methods.svg", "report.json"]
     );
     // What does not apply, and what takes too long, is named with the reason.

@@ -108,7 +108,7 @@ fn killed_at_any_moment_old_or_new_is_there() {
     for writer in WRITERS {
         let home = home();
         fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
-        fs::write(home.path().join(POSES), "x,yaw\n0.1,0\n0.2,0.1\n9,0\n").unwrap();
+        fs::write(home.path().join(POSES), "x,pitch\n0.1,0\n0.2,0.1\n9,0\n").unwrap();
         let target = home.path().join(if writer.name.contains("zarr") { "target.zarr" } else { TARGET });
         let finish = |version: usize| {
             let output = catchment(home.path()).args(writer.versions[version]).output().unwrap();

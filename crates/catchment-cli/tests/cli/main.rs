@@ -77,3 +77,10 @@ fn entries(folder: &Path) -> Vec<String> {
     names.sort();
     names
 }
+
+/// Names in a folder that the program has written, sorted: what its manifest lists, which is there too.
+fn written(folder: &Path) -> Vec<String> {
+    let mut names = entries(folder);
+    assert_eq!(names.remove(0), ".catchment.json", "{names:?}");
+    names
+}

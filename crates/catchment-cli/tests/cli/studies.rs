@@ -1,6 +1,6 @@
 //! `catchment slices`, `run --converge`, `run --sensitivity`: many computations of one design.
 
-use super::{catchment, designs, entries, home, json, run};
+use super::{catchment, designs, entries, home, json, run, written};
 use serde_json::Value;
 use std::fs;
 
@@ -34,7 +34,7 @@ fn all_slices_of_five_errors_are_written_and_replaced() {
         "{told}"
     );
     let out = home.path().join("out");
-    let names = entries(&out);
+    let names = written(&out);
     assert_eq!(names.len(), 4 + 10, "{names:?}");
     for name in ["report.json", "slices.csv", "slices.png", "slices.svg", "x-yaw.zarr", "roll-pitch.zarr"] {
         assert!(names.iter().any(|n| n == name), "{name}");
@@ -45,7 +45,7 @@ fn all_slices_of_five_errors_are_written_and_replaced() {
     let csv = fs::read_to_string(out.join("slices.csv")).unwrap();
     assert!(csv.starts_with("slice,cells,sum,unit,") && csv.lines().count() == 11, "{csv}");
     assert!(slices(&["--axes", "pitch,x"]).starts_with("exit 0\n"));
-    assert_eq!(entries(&out), ["report.json", "slices.csv", "slices.png", "slices.svg", "x-pitch.zarr"]);
+    assert_eq!(written(&out), ["report.json", "slices.csv", "slices.png", "slices.svg", "x-pitch.zarr"]);
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn refinement_says_when_it_is_stable() {
         "{told}"
     );
     assert_eq!(
-        entries(&home.path().join("out")),
+        written(&home.path().join("out")),
         ["convergence.csv", "convergence.png", "convergence.svg", "report.json"]
     );
 }
@@ -124,7 +124,7 @@ fn slopes_and_spread_are_told_and_written() {
     let told = run(home.path(), &[&args[..], &["-o", "out"]].concat());
     assert!(told.contains("wrote out: report.json, sensitivity.csv"), "{told}");
     assert_eq!(
-        entries(&home.path().join("out")),
+        written(&home.path().join("out")),
         ["report.json", "sensitivity.csv", "sensitivity.png", "sensitivity.svg"]
     );
     // What a run wrote there is not replaced by a study.

@@ -1,6 +1,6 @@
 //! `catchment zraa` and `catchment reproduce`: numbers that are known.
 
-use super::{catchment, designs, json, run};
+use super::{catchment, designs, json, run, written};
 use std::fs;
 
 /// `zraa` of a committed design as JSON.
@@ -89,7 +89,7 @@ fn tables_are_written_with_pictures_and_exact_values() {
         told.contains("Held or known, and not computed") && told.contains("measured forces of latches"),
         "{told}"
     );
-    let names = super::entries(&dir.path().join("out"));
+    let names = written(&dir.path().join("out"));
     assert_eq!(
         names,
         ["report.json", "table-2.1.png", "table-2.1.svg", "table-3.3.png", "table-3.3.svg", "tables.csv"]
