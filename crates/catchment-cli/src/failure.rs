@@ -25,6 +25,7 @@ impl Failure {
     }
 
     /// One message with advice.
+    #[expect(clippy::needless_pass_by_value, reason = "every caller makes it on the spot")]
     pub(crate) fn with_help(message: String, help: Option<String>) -> Self {
         Self { reports: vec![Report::new(diagnostic(&message, help))], closing: None, broken_pipe: false }
     }

@@ -1,6 +1,7 @@
 //! Names that would steer a terminal, through every command that repeats them.
 
 use crate::{V_FACE, catchment, entries};
+use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
@@ -100,7 +101,10 @@ fn pictures_and_models_of_a_design_whose_name_steers_are_well_formed() {
     let mut seen = 0;
     for folder in ["out", "trial"] {
         for name in entries(&home.path().join(folder)) {
-            if name.ends_with(".svg") || name.ends_with(".xml") || name.ends_with(".sdf") {
+            if ["svg", "xml", "sdf"]
+                .iter()
+                .any(|ending| Path::new(&name).extension() == Some(OsStr::new(ending)))
+            {
                 let text = fs::read_to_string(home.path().join(folder).join(&name)).unwrap();
                 // XML 1.0 has no form for these, not even an escaped one.
                 assert!(

@@ -7,7 +7,6 @@
 //! `CATCHMENT_KILLS=300` kills so often; the moments follow from the seed and from how fast the machine is.
 
 use super::{catchment, entries, home};
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -81,8 +80,8 @@ fn is_whole(path: &Path, files: &[Vec<u8>]) -> bool {
                 open.push(inner);
             } else {
                 let name = inner.strip_prefix(path).unwrap().to_str().unwrap().to_owned();
-                let digest = Sha256::digest(fs::read(&inner).unwrap());
-                found.insert(name, digest.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
+                let content = catchment::design::MeshContent::of(&fs::read(&inner).unwrap(), 0);
+                found.insert(name, content.sha256);
             }
         }
     }

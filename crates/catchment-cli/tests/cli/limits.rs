@@ -3,6 +3,7 @@
 #![cfg(target_os = "linux")]
 
 use crate::{catchment, designs, home};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -125,7 +126,7 @@ fn tangle(tetrahedra: usize) -> String {
         for face in [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] {
             text += "facet normal 0 0 0\nouter loop\n";
             for [x, y, z] in face.map(|corner: usize| corners[corner]) {
-                text += &format!("vertex {x} {y} {z}\n");
+                writeln!(text, "vertex {x} {y} {z}").unwrap();
             }
             text += "endloop\nendfacet\n";
         }
@@ -154,7 +155,10 @@ fn a_mesh_in_which_everything_crosses_is_refused_at_its_first_crossings() {
 #[test]
 fn a_header_of_a_million_names_is_refused_in_linear_time() {
     let home = home();
-    let names: String = (0..1_000_000).map(|k| format!("column{k},")).collect();
+    let mut names = String::new();
+    for k in 0..1_000_000 {
+        write!(names, "column{k},").unwrap();
+    }
     fs::write(home.path().join("q.csv"), names + "x\n").unwrap();
     let started = Instant::now();
     let output = catchment(home.path()).args(["outcome", "v.toml", "--poses", "q.csv"]).output().unwrap();
@@ -168,7 +172,10 @@ fn a_header_of_a_million_names_is_refused_in_linear_time() {
 fn names_that_every_row_would_repeat_are_counted() {
     let home = home();
     // A megabyte of commas, and a gigabyte of names as JSON.
-    let names: String = (0..900).map(|k| format!(",{k:n>180}")).collect();
+    let mut names = String::new();
+    for k in 0..900 {
+        write!(names, ",{k:n>180}").unwrap();
+    }
     let row = "3".to_owned() + &",".repeat(900) + "\n";
     fs::write(home.path().join("q.csv"), format!("x{names}\n") + &row.repeat(5000)).unwrap();
     let output = limited(home.path(), "ulimit -v 1500000", "outcome v.toml --poses q.csv --json");
@@ -214,6 +221,6 @@ fn extreme_but_allowed_alignments_end() {
         let output = limited(home.path(), "true", args);
         let said = told(&output);
         assert!(matches!(output.status.code(), Some(0 | 2)), "{args}: {}: {said}", output.status);
-        assert!(started.elapsed() < Duration::from_secs(60), "{args}: {:?}", started.elapsed());
+        assert!(started.elapsed() < Duration::from_mins(1), "{args}: {:?}", started.elapsed());
     }
 }

@@ -176,6 +176,7 @@ pub(super) fn open_up(folder: &Path) {
 }
 
 /// How to rename.
+#[derive(Clone, Copy)]
 enum Manner {
     NoReplace,
     Exchange,

@@ -8,6 +8,7 @@
 //! or differs from it, belongs to somebody else. What is missing is nobody's loss.
 
 use super::disk::{Permit, open_up};
+use crate::design::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
@@ -161,5 +162,5 @@ fn digest(path: &Path) -> io::Result<String> {
             count => hash.update(&piece[..count]),
         }
     }
-    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hex(&hash.finalize()))
 }
