@@ -212,10 +212,10 @@ fn look_for_file(path: &Path, replace: bool) -> Result<(PathBuf, Option<Permissi
     Ok((place(path)?, there.map(|meta| meta.permissions())))
 }
 
-/// Refuses a place for a file as [`file`] would, and tries it out.
+/// Refuses a place for a file as [`file()`] would, and tries it out.
 ///
 /// # Errors
-/// Those of [`file`].
+/// Those of [`file()`].
 pub fn check_file(path: &Path, replace: bool) -> Result<(), WriteError> {
     let (place, _) = look_for_file(path, replace)?;
     sweep(&place)?;
