@@ -62,7 +62,9 @@ fn main() {
         let pair = pair("pyramid.toml");
         let landscape = landscape(&pair, 12);
         let settings = Settings { rule, ..Settings::default() };
-        let flood = || flood::flood(&landscape, &pair.alignment, &settings, &Exec::new()).expect("flooded");
+        let flood = || {
+            flood::flood(&landscape, &pair.alignment, &|_| true, &settings, &Exec::new()).expect("flooded")
+        };
         let name = format!("to the {rule:?} neighbour, pyramid, 12 cells per axis");
         rates.measure(&name, "floods of cells", landscape.heights.len(), &mut || drop(flood()), None);
     }
@@ -74,7 +76,12 @@ fn main() {
         "judged, v-face, 24 cells per axis",
         "floods of cells",
         landscape.heights.len(),
-        &mut || drop(flood::flood(&landscape, &small.alignment, &settings, &Exec::new()).expect("flooded")),
+        &mut || {
+            drop(
+                flood::flood(&landscape, &small.alignment, &|_| true, &settings, &Exec::new())
+                    .expect("flooded"),
+            )
+        },
         Some(&mut || {
             drop((brute::tree(&shape, &landscape.heights), brute::basins(&shape, &landscape.heights)));
         }),
@@ -87,8 +94,8 @@ fn main() {
         "floods of cells",
         landscape.heights.len(),
         &mut || {
-            let found =
-                meyer::accept(&landscape, &plane.alignment, &settings, &Exec::new()).expect("flooded");
+            let found = meyer::accept(&landscape, &plane.alignment, &|_| true, &settings, &Exec::new())
+                .expect("flooded");
             let share = found.acceptance.counts()[0] as f64 / landscape.heights.len() as f64;
             assert!((0.05..0.9).contains(&share), "{share} of the box accepted");
         },
@@ -153,7 +160,7 @@ impl Smooth {
 
     fn flood(landscape: &Landscape, alignment: &Alignment, threads: usize) -> Flooding {
         let exec = Exec::new().with_threads(threads).expect("threads");
-        flood::flood(landscape, alignment, &Settings::default(), &exec).expect("flooded")
+        flood::flood(landscape, alignment, &|_| true, &Settings::default(), &exec).expect("flooded")
     }
 }
 

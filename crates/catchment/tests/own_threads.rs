@@ -21,7 +21,7 @@ fn the_process_wide_pool_is_never_started() {
     for exec in [Exec::new(), Exec::new().with_threads(2).unwrap()] {
         assert!(exec.threads() > 0);
         let landscape = Landscape::compute(&pair, &grid, &exec).unwrap();
-        flood::flood(&landscape, &design.alignment, &flood::Settings::default(), &exec).unwrap();
+        flood::flood(&landscape, &design.alignment, &|_| true, &flood::Settings::default(), &exec).unwrap();
         let arrival = transport::run(&pair, &grid, &transport::Settings::default(), &exec).unwrap();
         assert!(arrival.mean() > 0.0);
         let acceptance = arrival.acceptance(&exec).unwrap();

@@ -14,6 +14,7 @@ mod family;
 mod hull;
 pub mod mesh;
 mod problem;
+mod round;
 mod source;
 pub mod stl;
 mod surface;

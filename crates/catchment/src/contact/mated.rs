@@ -8,10 +8,15 @@
 //!
 //! The second line is tried in every combination of signs of the free degrees of freedom. Slopes below 1 % and
 //! directions far from all of these are not seen: it is a check for wrong geometry, not a proof.
+//!
+//! The seat must also hold: where it leaves an error more play than the design allows, as flat on flat or a round plug's yaw, there is no
+//! one mated pose to align with, and the design has to say what counts.
 
 use super::Pair;
+use super::play::{Play, directions, play, unit};
+use crate::design::Alignment;
 use crate::pose::{CorPose, Dof, PoseError};
-use glam::{DMat3, DVec2};
+use glam::DVec2;
 
 /// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
 /// four digits, below any play that matters.
@@ -57,6 +62,62 @@ pub enum MatedProblem {
         /// How much deeper, in D.
         sinks: f64,
     },
+    /// The seat leaves an error free.
+    #[error("the seat leaves {} free: {} off the half rests as deep as without any error", dof.name(), amount(*dof, *play))]
+    Free {
+        /// Which.
+        dof: Dof,
+        /// How far off it may rest at least, D or radians.
+        play: f64,
+    },
+    /// A half is round, and its yaw counts.
+    #[error("rotation about z changes nothing: the {half} half is round about the approach axis (found)")]
+    Round {
+        /// Which half.
+        half: &'static str,
+    },
+    /// Not all that may rest in the seat counts.
+    #[error(
+        "docked.{} = {} is less than the play of the seat, {}: a half may be seated and not count as docked",
+        dof.name(), amount(*dof, *limit), amount(*dof, *play)
+    )]
+    LimitCutsPlay {
+        /// Which error.
+        dof: Dof,
+        /// Its limit, D or radians.
+        limit: f64,
+        /// Its play, D or radians.
+        play: f64,
+    },
+}
+
+impl MatedProblem {
+    /// What helps.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Free { dof, .. } => {
+                let name = dof.name();
+                let ignore =
+                    if *dof == Dof::Yaw { ", dont_care = [\"yaw\"] if it does not matter" } else { "" };
+                let unit = if dof.is_rotation() { "1 deg" } else { "0.01 D" };
+                Some(format!(
+                    "say how far off still counts as docked: [docked] {name} = \"{unit}\"{ignore}, or lock it: leave {name} \
+                     out of free"
+                ))
+            }
+            Self::Round { .. } => Some(
+                "write dont_care = [\"yaw\"]; or, if its facets are meant, [docked] yaw = \"1 deg\""
+                    .to_owned(),
+            ),
+            Self::LimitCutsPlay { .. } => Some("allow more, or draw a tighter seat".to_owned()),
+            _ => None,
+        }
+    }
+}
+
+/// An amount of an error for a person.
+fn amount(dof: Dof, value: f64) -> String {
+    if dof.is_rotation() { format!("{:.2} deg", value.to_degrees()) } else { format!("{value:.4} D") }
 }
 
 /// The parts of an error that are not 0.
@@ -72,8 +133,10 @@ fn described(error: &PoseError) -> String {
 
 /// Everything that keeps the aligned pose of a pair from being a mated pose; empty when it is one.
 pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
-    let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
-    let Some(height) = pair.height(&aligned) else { return vec![MatedProblem::Apart] };
+    let height = pair.mated_height();
+    if height == f64::NEG_INFINITY {
+        return vec![MatedProblem::Apart];
+    }
     let above = height + pair.alignment.center_of_rotation;
     let mut problems = Vec::new();
     if above > CONTACT_TOLERANCE {
@@ -81,8 +144,41 @@ pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
     } else if above < -CONTACT_TOLERANCE {
         problems.push(MatedProblem::Gap { gap: -above });
     }
-    problems.extend(deepest(pair, height));
+    if let Some(deepest) = deepest(pair, height) {
+        problems.push(deepest);
+    } else if let Some(half) = round_half(pair) {
+        problems.push(MatedProblem::Round { half });
+    } else {
+        problems.extend(play(pair).iter().filter_map(|play| loose(pair, play)));
+    }
     problems
+}
+
+/// What is wrong with the play of one error.
+fn loose(pair: &Pair, found: &Play) -> Option<MatedProblem> {
+    let (dof, play) = (found.axis, found.most());
+    let docked = &pair.alignment.docked;
+    if play <= docked.most_play(dof) {
+        return None;
+    }
+    Some(match docked.limit(dof) {
+        Some(limit) => MatedProblem::LimitCutsPlay { dof, limit, play },
+        None => MatedProblem::Free { dof, play },
+    })
+}
+
+/// A half that is round where it can meet the other, if the yaw counts although nobody said how much.
+fn round_half(pair: &Pair) -> Option<&'static str> {
+    let Alignment { free, dont_care, docked, .. } = &pair.alignment;
+    if !free.contains(Dof::Yaw) || dont_care.contains(Dof::Yaw) || docked.limit(Dof::Yaw).is_some() {
+        return None;
+    }
+    let ([_, top], [bottom, _]) = (pair.fixed.span(), pair.moving.span());
+    let height = pair.mated_height();
+    if pair.moving.is_round([f64::NEG_INFINITY, top - height]) {
+        return Some("moving");
+    }
+    pair.fixed.is_round([bottom + height, f64::INFINITY]).then_some("fixed")
 }
 
 /// The probe that sinks deepest, if one sinks more than rounding and curvature explain.
@@ -90,14 +186,11 @@ fn deepest(pair: &Pair, aligned: f64) -> Option<MatedProblem> {
     let free: Vec<Dof> =
         pair.alignment.free.iter().filter(|dof| !pair.alignment.dont_care.contains(*dof)).collect();
     let mut worst: Option<(f64, PoseError)> = None;
-    for code in 1..3usize.pow(free.len() as u32) {
-        let signs: Vec<f64> =
-            (0..free.len()).map(|k| [0.0, 1.0, -1.0][code / 3usize.pow(k as u32) % 3]).collect();
+    for signs in directions(free.len()) {
         let count = signs.iter().filter(|s| **s != 0.0).count();
         let mut error = [0.0; 5];
         for (dof, sign) in free.iter().zip(&signs) {
-            let unit = if dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 };
-            error[dof.index()] = sign * PROBE / (count as f64).sqrt() / unit;
+            error[dof.index()] = sign * PROBE / (count as f64).sqrt() / unit(pair, *dof);
         }
         let error = PoseError::from_array(error);
         let pose = CorPose { lateral: DVec2::new(error.x, error.y), rotation: error.rotation() };

@@ -19,7 +19,9 @@ pub mod mated;
 mod mirror;
 mod nearby;
 mod plan;
+mod play;
 mod raster;
+mod seat;
 mod shape;
 #[cfg(test)]
 mod tests;
@@ -29,11 +31,13 @@ pub use element::Meeting;
 pub use envelope::Envelope;
 pub use mirror::Mirror;
 pub use nearby::Nearby;
+pub use play::{Play, play};
+pub use seat::Seat;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::CorPose;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use shape::Shape;
 
 /// A connector whose moving half is given from the COR: ready for heights.
@@ -48,6 +52,7 @@ pub struct Pair {
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
     mirrors: Vec<Mirror>,
+    mated_height: f64,
 }
 
 impl Pair {
@@ -59,7 +64,17 @@ impl Pair {
         let shapes = |half: &Half| half.surfaces.iter().map(Shape::new).collect();
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
         let mirrors = mirror::of(&fixed, &moving);
-        Self { fixed, moving, alignment: alignment.clone(), fixed_shapes, moving_shapes, mirrors }
+        let alignment = alignment.clone();
+        let mut pair =
+            Self { fixed, moving, alignment, fixed_shapes, moving_shapes, mirrors, mated_height: 0.0 };
+        let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
+        pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
+        pair
+    }
+
+    /// h₀, the z of the COR at first contact without any error, in D; −∞ where the halves pass each other by.
+    pub const fn mated_height(&self) -> f64 {
+        self.mated_height
     }
 
     /// The reflections that map the pair onto itself: poses that are images of each other have the same fate.

@@ -2,6 +2,7 @@
 
 use super::Family;
 use super::complaint::Complaint;
+use super::docked::Docked;
 use super::family::Freedom;
 use crate::pose::{Dof, DofSet, Mount, rotation_angle};
 use glam::DMat3;
@@ -26,6 +27,9 @@ pub struct Alignment {
     pub symmetry: u32,
     /// Half-ranges of the error box in the order of [`Dof::ALL`]: D and radians. Only free ones count.
     pub half_ranges: [f64; 5],
+    /// What counts as docked.
+    #[serde(default)]
+    pub docked: Docked,
 }
 
 impl Alignment {
@@ -44,6 +48,7 @@ impl Alignment {
             mount,
             symmetry: 1,
             half_ranges: Self::DEFAULT_HALF_RANGES,
+            docked: Docked { depth: Docked::DEFAULT_DEPTH, limits: [None; 5] },
         }
     }
 
@@ -65,6 +70,16 @@ impl Alignment {
         // "90 deg" may round to one unit in the last place above π/2.
         let beyond = self.half_ranges[Dof::Pitch.index()] > FRAC_PI_2 * (1.0 + 4.0 * f64::EPSILON);
         (self.free.rotations() == 3 && beyond).then_some(Complaint::PitchBeyondPole)
+    }
+
+    /// The yaw nearest to `yaw` at which the pair is aligned: a multiple of 2π/n for an n-fold symmetry, and the yaw itself where it
+    /// does not matter. In radians.
+    pub fn nearest_yaw(&self, yaw: f64) -> f64 {
+        if self.dont_care.contains(Dof::Yaw) {
+            return yaw;
+        }
+        let turn = TAU / f64::from(self.symmetry.max(1));
+        (yaw / turn).round() * turn
     }
 
     /// How far a rotation is from the nearest one that counts as aligned, in radians: the mated one and those of the symmetry;

@@ -9,12 +9,12 @@
 //! their bytes.
 
 use super::family::Value;
-use super::{Alignment, ConnectorSpec, Design, HalfSpec};
+use super::{Alignment, ConnectorSpec, Design, Docked, HalfSpec};
 use crate::pose::{Dof, DofSet, Mount};
 use sha2::{Digest, Sha256};
 
 /// Changes with every change of what follows it.
-const TAG: &str = "catchment alignment problem 1";
+const TAG: &str = "catchment alignment problem 2";
 
 impl Design {
     /// SHA-256 of everything in this design that changes an answer; `None` while it is unknown what a mesh held, see
@@ -91,8 +91,16 @@ impl Hash {
     }
 
     fn alignment(&mut self, alignment: &Alignment) {
-        let Alignment { free, dont_care, center_of_rotation, rotation_length, mount, symmetry, half_ranges } =
-            alignment;
+        let Alignment {
+            free,
+            dont_care,
+            center_of_rotation,
+            rotation_length,
+            mount,
+            symmetry,
+            half_ranges,
+            docked: Docked { depth, limits },
+        } = alignment;
         self.text("alignment");
         self.dofs(*free);
         self.dofs(*dont_care);
@@ -105,6 +113,11 @@ impl Hash {
         self.count(u64::from(*symmetry));
         for range in half_ranges {
             self.number(*range);
+        }
+        self.number(*depth);
+        for limit in limits {
+            self.count(u64::from(limit.is_some()));
+            self.number(limit.unwrap_or_default());
         }
     }
 }
@@ -141,6 +154,9 @@ mod tests {
         other(&|d| d.alignment.symmetry = 2);
         other(&|d| d.alignment.free = DofSet::ALL);
         other(&|d| d.alignment.dont_care = DofSet::EMPTY);
+        other(&|d| d.alignment.docked.depth = 0.01);
+        other(&|d| d.alignment.docked.limits[0] = Some(0.01));
+        other(&|d| d.alignment.docked.limits[1] = Some(0.01));
         let mut digests: Vec<_> = others.iter().map(|design| design.digest().unwrap()).collect();
         digests.sort_unstable();
         digests.dedup();

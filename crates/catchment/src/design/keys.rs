@@ -101,11 +101,14 @@ pub enum Table {
     Alignment,
     /// `[errors]`.
     Errors,
+    /// `[docked]`.
+    Docked,
 }
 
 impl Table {
     /// Every table.
-    pub const ALL: [Self; 5] = [Self::Root, Self::Connector, Self::Half, Self::Alignment, Self::Errors];
+    pub const ALL: [Self; 6] =
+        [Self::Root, Self::Connector, Self::Half, Self::Alignment, Self::Errors, Self::Docked];
 
     /// For a person.
     pub const fn name(self) -> &'static str {
@@ -115,6 +118,7 @@ impl Table {
             Self::Half => "[connector.fixed] and [connector.moving]",
             Self::Alignment => "[alignment]",
             Self::Errors => "[errors]",
+            Self::Docked => "[docked]",
         }
     }
 
@@ -253,6 +257,9 @@ keys! {
     /// `[errors]`
     ERRORS = key(Table::Root, "errors", Kind::Table(Table::Errors),
         "Half-ranges of the error box: an error x of 0.5 means x from -0.5 D to 0.5 D.");
+    /// `[docked]`
+    DOCKED = key(Table::Root, "docked", Kind::Table(Table::Docked),
+        "What counts as docked: how deep, and how far off a half may come to rest.");
 
     /// `connector.family`
     FAMILY = key(Table::Connector, "family", Kind::Family, family::NAMES);
@@ -356,10 +363,33 @@ keys! {
     /// `errors.yaw`
     ERROR_YAW = key(Table::Errors, "yaw", Kind::Angle(Range::new(1e-6, PI, "rad")),
         "Largest rotation about the approach axis.");
+
+    /// `docked.depth`
+    DOCKED_DEPTH = key(Table::Docked, "depth", Kind::Length(Range::new(1e-6, 1.0, "D")),
+        "How far above its mated height the half may lie and count as seated.");
+    /// `docked.x`
+    DOCKED_X = key(Table::Docked, "x", Kind::Length(Range::new(1e-6, 100.0, "D")),
+        "Largest offset along x at rest that still counts. Without it: whatever the seat allows, up to 0.05 D.");
+    /// `docked.y`
+    DOCKED_Y = key(Table::Docked, "y", Kind::Length(Range::new(1e-6, 100.0, "D")),
+        "Largest offset along y at rest that still counts.");
+    /// `docked.roll`
+    DOCKED_ROLL = key(Table::Docked, "roll", Kind::Angle(Range::new(1e-6, PI, "rad")),
+        "Largest rotation about x at rest that still counts. Without it: whatever the seat allows, up to 5 deg.");
+    /// `docked.pitch`
+    DOCKED_PITCH = key(Table::Docked, "pitch", Kind::Angle(Range::new(1e-6, PI, "rad")),
+        "Largest rotation about y at rest that still counts.");
+    /// `docked.yaw`
+    DOCKED_YAW = key(Table::Docked, "yaw", Kind::Angle(Range::new(1e-6, PI, "rad")),
+        "Largest rotation about the approach axis at rest that still counts.");
 }
 
 /// The error half-ranges in the order of [`crate::pose::Dof::ALL`].
 pub const ERROR_KEYS: [Key; 5] = [ERROR_X, ERROR_Y, ERROR_ROLL, ERROR_PITCH, ERROR_YAW];
+/// The limits at rest in the order of [`crate::pose::Dof::ALL`], and their places in the file.
+pub const DOCKED_KEYS: [Key; 5] = [DOCKED_X, DOCKED_Y, DOCKED_ROLL, DOCKED_PITCH, DOCKED_YAW];
+/// Where they stand.
+pub const DOCKED_PLACES: [&str; 5] = ["docked.x", "docked.y", "docked.roll", "docked.pitch", "docked.yaw"];
 
 /// A coordinate of a drawn point: 1000 widths away is a wrong unit.
 pub const COORDINATE: Key = key(

@@ -364,6 +364,15 @@ impl<'t> Walk<'t> {
                 self.reader.complain(complaint, span);
             }
         }
+        if let Some(section) = self.reader.section(root, &keys::DOCKED) {
+            self.reader.refuse_unknown_keys(&section, Table::Docked);
+            if let Some(depth) = self.reader.number(&section, &keys::DOCKED_DEPTH, scale) {
+                alignment.docked.depth = depth;
+            }
+            for (limit, key) in alignment.docked.limits.iter_mut().zip(&keys::DOCKED_KEYS) {
+                *limit = self.reader.number(&section, key, scale);
+            }
+        }
         alignment
     }
 

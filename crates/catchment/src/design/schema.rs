@@ -110,7 +110,8 @@ mod tests {
             + properties(connector)
             + properties(&connector["properties"]["fixed"])
             + properties(&schema["properties"]["alignment"])
-            + properties(&schema["properties"]["errors"]);
+            + properties(&schema["properties"]["errors"])
+            + properties(&schema["properties"]["docked"]);
         assert_eq!(counted, keys::KEYS.iter().filter(|key| key.kind != Kind::Later).count());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::family::{Freedom, Value};
 use super::keys::{self, Applies, Key, Kind, Table};
-use super::{Alignment, Family, FamilySpec};
+use super::{Alignment, Docked, Family, FamilySpec};
 use crate::pose::{Dof, DofSet, Mount};
 use std::fmt::Write;
 
@@ -13,7 +13,7 @@ pub fn template(family: Family) -> String {
          # A docking connector. Bare numbers are in D (the width) and radians; strings carry a unit: \"5 mm\",\n\
          # \"30 deg\". The first line is for editors; `catchment schema -o schema.json` writes the file it names.\n\n",
     );
-    for table in [Table::Root, Table::Connector, Table::Alignment, Table::Errors] {
+    for table in [Table::Root, Table::Connector, Table::Alignment, Table::Errors, Table::Docked] {
         if table != Table::Root {
             let _ = writeln!(text, "\n{}", table.name());
         }
@@ -44,7 +44,7 @@ fn is_active(key: &Key, family: Family) -> bool {
                 || (*key == keys::DONT_CARE && family.freedom() == Freedom::Round)
         }
         Table::Errors => free.iter().any(|dof| keys::ERROR_KEYS[dof.index()] == *key),
-        Table::Half => false,
+        Table::Half | Table::Docked => false,
     }
 }
 
@@ -69,6 +69,11 @@ fn default_text(key: &Key, family: Family) -> Option<String> {
             let dof = key.name.parse::<Dof>().ok()?;
             let value = alignment.half_ranges[dof.index()];
             if matches!(key.kind, Kind::Angle(_)) { Some(degrees(value)) } else { number(value) }
+        }
+        keys::DOCKED_DEPTH => number(alignment.docked.depth),
+        _ if key.table == Table::Docked => {
+            let [length, angle] = Docked::MOST_PLAY;
+            if matches!(key.kind, Kind::Angle(_)) { Some(degrees(angle)) } else { number(length) }
         }
         _ => match spec.get(key)? {
             Value::Number(value) if matches!(key.kind, Kind::Angle(_)) => Some(degrees(value)),

@@ -108,12 +108,12 @@ impl Draft {
     /// # Errors
     /// Everything that is wrong with the geometry or the mated pose.
     pub fn check(self) -> Result<Problem, ProblemError> {
-        self.built(|_| true)
+        self.built(|problem| !matches!(problem, MatedProblem::LimitCutsPlay { .. }))
     }
 
-    /// Whether the halves do not meet in the aligned pose.
+    /// Whether there is no mated pose to decide about: the halves do not meet in it, or the seat leaves an error free.
     pub(super) const fn is_apart(problem: &MatedProblem) -> bool {
-        !matches!(problem, MatedProblem::NotMinimum { .. })
+        !matches!(problem, MatedProblem::NotMinimum { .. } | MatedProblem::LimitCutsPlay { .. })
     }
 
     fn built(self, refuses: impl Fn(&MatedProblem) -> bool) -> Result<Problem, ProblemError> {
@@ -141,7 +141,7 @@ impl Draft {
         if !apart.is_empty() {
             let list = apart
                 .iter()
-                .map(|problem| self.finding(places::of_mated(problem), problem.to_string(), None))
+                .map(|problem| self.finding(places::of_mated(problem), problem.to_string(), problem.help()))
                 .collect();
             return Err(Findings { source: self.source, list, omitted: 0 }.into());
         }

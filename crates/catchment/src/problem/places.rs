@@ -2,7 +2,7 @@
 
 use crate::connector::{MeshProblem, Problem, Side};
 use crate::contact::mated::MatedProblem;
-use crate::design::{Complaint, Finding, Findings};
+use crate::design::{Complaint, Finding, Findings, keys};
 use std::mem::discriminant;
 
 /// The key that forbids a change.
@@ -20,7 +20,10 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
     match problem {
         MatedProblem::Collision { .. } | MatedProblem::Gap { .. } => "connector.face_height",
         MatedProblem::Apart => "connector",
-        MatedProblem::NotMinimum { .. } => "alignment.free",
+        MatedProblem::NotMinimum { .. } | MatedProblem::Free { .. } | MatedProblem::Round { .. } => {
+            "alignment.free"
+        }
+        MatedProblem::LimitCutsPlay { dof, .. } => keys::DOCKED_PLACES[dof.index()],
     }
 }
 

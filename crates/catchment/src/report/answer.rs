@@ -113,7 +113,8 @@ impl Run {
         if let (true, Some(grid)) = (by_products.contains(&"basins"), acceptance.grid()) {
             // So few cells are flooded in no time.
             let landscape = Landscape::compute(problem.pair(), grid, &exec)?;
-            let flooding = flood::flood(&landscape, problem.alignment(), &flood::Settings::default(), &exec);
+            let flooding =
+                flood::flood(&landscape, problem.alignment(), &|_| true, &flood::Settings::default(), &exec);
             if let Ok(flooding) = flooding {
                 report = report.with_basins(&acceptance, &flooding.hierarchy);
             }

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! in the metric `|v|² + ρ²|ω|²` (v at the COR), several simultaneous contacts as a matter of course, until
-//! aligned, at rest, or off. No grid is involved, and no sampling of surfaces.
+//! docked ([`crate::contact::Seat`]), at rest elsewhere, or off. No grid is involved, and no sampling of surfaces.
 //!
 //! Not promised: friction, speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
 //! the motion could go either way, may be reported as jammed there.
@@ -24,7 +24,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
 use crate::pose::PoseError;
-use motion::Motion;
+use motion::{Motion, Until};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -38,15 +38,13 @@ pub struct Settings {
     pub step: f64,
     /// Largest mismatch between a step's predicted and true height, as a share of the step; beyond it the step is halved.
     pub surprise: f64,
-    /// Aligned: face centres this close (D) and rotation within this angle (radians).
-    pub aligned_within: f64,
     /// Steps after which a motion counts as undecided.
     pub max_steps: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { step: 0.02, surprise: 0.05, aligned_within: 0.02, max_steps: 20_000 }
+        Self { step: 0.02, surprise: 0.05, max_steps: 20_000 }
     }
 }
 
@@ -68,9 +66,16 @@ impl<'a> Follower<'a> {
         Self(Motion::new(pair, settings))
     }
 
-    /// Follows one pose to its end.
+    /// Follows one pose until it is known what becomes of it: a half in a seat all of which counts is docked before it has come
+    /// to rest.
     pub fn follow(&mut self, error: &PoseError) -> End {
-        let (outcome, error) = self.0.follow(error, None);
+        let (outcome, error) = self.0.follow(error, Until::Known, None);
+        End { outcome, error }
+    }
+
+    /// Follows one pose until it has come to rest, also in the seat.
+    pub fn rest(&mut self, error: &PoseError) -> End {
+        let (outcome, error) = self.0.follow(error, Until::AtRest, None);
         End { outcome, error }
     }
 }
@@ -83,7 +88,7 @@ pub fn outcome(pair: &Pair, error: &PoseError, settings: &Settings) -> End {
 /// Follows one pose and keeps its path.
 pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory {
     let mut waypoints = Vec::new();
-    let (outcome, _) = Motion::new(pair, settings).follow(error, Some(&mut waypoints));
+    let (outcome, _) = Motion::new(pair, settings).follow(error, Until::Known, Some(&mut waypoints));
     Trajectory { waypoints, outcome }
 }
 
@@ -106,7 +111,7 @@ pub fn run(
                 || Motion::new(pair, settings),
                 |motion, k| {
                     exec.check()?;
-                    let (outcome, error) = motion.follow(&domain.pose(k), None);
+                    let (outcome, error) = motion.follow(&domain.pose(k), Until::Known, None);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(256) {
                         exec.report(done as f64 / count as f64, "descents");

@@ -8,8 +8,8 @@
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
-use crate::contact::{Contact, Meeting, Nearby, Pair};
-use crate::pose::{CorPose, Dof, PoseError, ROTATIONS, euler_axes, face_from_cor, rotation};
+use crate::contact::{Contact, Meeting, Nearby, Pair, Seat};
+use crate::pose::{CorPose, Dof, PoseError, ROTATIONS, euler_axes, rotation};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// Position of the moving half.
@@ -22,6 +22,15 @@ struct State {
     spin: DQuat,
     /// (roll, pitch, yaw) where some rotation is locked; unused when all three are free.
     angles: [f64; 3],
+}
+
+/// How long a motion is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Until {
+    /// Until it is known what becomes of it.
+    Known,
+    /// Until it has come to rest.
+    AtRest,
 }
 
 /// How a motion goes on.
@@ -86,6 +95,7 @@ const SAME: f64 = 1e-12;
 pub(super) struct Motion<'a> {
     pair: &'a Pair,
     settings: &'a Settings,
+    seat: Seat<'a>,
     nearby: Nearby<'a>,
     contacts: Vec<(Contact, Meeting)>,
     /// Scratch for [`Motion::cut`].
@@ -107,6 +117,7 @@ impl<'a> Motion<'a> {
         Self {
             pair,
             settings,
+            seat: Seat::new(pair),
             nearby: pair.nearby(slack, near),
             contacts: Vec::new(),
             carrying: Vec::new(),
@@ -123,6 +134,7 @@ impl<'a> Motion<'a> {
     pub(super) fn follow(
         &mut self,
         error: &PoseError,
+        until: Until,
         mut record: Option<&mut Vec<Waypoint>>,
     ) -> (Outcome, PoseError) {
         let alignment = &self.pair.alignment;
@@ -141,17 +153,21 @@ impl<'a> Motion<'a> {
         };
         let mut travelled = 0.0;
         let mut mark = (0, travelled, z);
+        // A half that is seated stays so.
+        let mut seated = false;
+        let called = until == Until::Known && !self.seat.is_limited();
         for count in 0..self.settings.max_steps {
             self.gather(&state, pace.step);
             if let Some(waypoints) = record.as_deref_mut() {
                 waypoints.push(self.waypoint(&state, travelled));
             }
-            if self.is_aligned(&state) {
+            seated = seated || self.is_seated(&state);
+            if seated && called {
                 return (Outcome::Aligned, self.error_of(&state));
             }
             if travelled - mark.1 > self.settings.step || count - mark.0 > LEVEL_STEPS {
                 if mark.2 - state.cor.z < LEVEL * self.settings.step {
-                    return (Outcome::Jammed, self.error_of(&state));
+                    return self.end(Outcome::Jammed, &state, seated);
                 }
                 mark = (count, travelled, state.cor.z);
             }
@@ -160,10 +176,18 @@ impl<'a> Motion<'a> {
                     state = next;
                     travelled += length;
                 }
-                Advance::Ended(outcome, last) => return (outcome, self.error_of(&last)),
+                Advance::Ended(outcome, last) => return self.end(outcome, &last, seated),
             }
         }
-        (Outcome::Undecided, self.error_of(&state))
+        self.end(Outcome::Undecided, &state, seated)
+    }
+
+    /// What an end is called: rest in the seat, within what the design allows, is docked.
+    fn end(&mut self, outcome: Outcome, last: &State, seated: bool) -> (Outcome, PoseError) {
+        let error = self.error_of(last);
+        let docked =
+            outcome == Outcome::Jammed && (seated || self.is_seated(last)) && self.seat.allows(&error);
+        (if docked { Outcome::Aligned } else { outcome }, error)
     }
 
     /// One step from `state`, whose contacts have been gathered: halved until the height agrees with it.
@@ -437,12 +461,12 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Whether the pose is the mated one, or a declared equivalent, within the tolerance.
-    fn is_aligned(&self, state: &State) -> bool {
-        let alignment = &self.pair.alignment;
-        let tolerance = self.settings.aligned_within;
-        let face = state.cor + face_from_cor(&state.rotation, alignment.center_of_rotation);
-        face.truncate().length() <= tolerance && alignment.turned_by(&state.rotation) <= tolerance
+    /// Whether the half has come into the seat.
+    fn is_seated(&mut self, state: &State) -> bool {
+        state.cor.z <= self.seat.level() && {
+            let error = self.error_of(state);
+            self.seat.holds(&error, state.cor.z)
+        }
     }
 
     fn error_of(&self, state: &State) -> PoseError {

@@ -10,7 +10,7 @@ use super::pieces::{Part, parts};
 use super::settings::{Push, Settings};
 use super::turning::Turning;
 use crate::acceptance::Outcome;
-use crate::contact::Pair;
+use crate::contact::{Pair, Seat};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::End;
 use crate::pose::{CorPose, Dof, DofSet, PoseError, face_from_cor, rotation};
@@ -82,6 +82,8 @@ impl<'a> Engine<'a> {
         let cor = start.lateral.extend(height + self.settings.drop_height);
         let mut fall = Fall::new(self, cor, start.rotation);
         let lost = self.apart(cor.with_z(height), &start.rotation) + self.settings.lost_beyond;
+        let mut seat = Seat::new(self.pair);
+        let mut seated = false;
         let mut settled = 0;
         let mut quiet = 0;
         let mut before = fall.place();
@@ -92,10 +94,11 @@ impl<'a> Engine<'a> {
                 return Ok(End { outcome: Outcome::Undecided, error: *error });
             }
             let apart = self.apart(cor, &rotation);
-            let aligned = apart <= self.settings.aligned_within
-                && alignment.turned_by(&rotation) <= self.settings.aligned_within;
-            settled = if aligned { settled + 1 } else { 0 };
-            if settled >= SETTLED {
+            // The way into the seat is looked for once: what is deep enough stays where it is connected.
+            seated = cor.z <= seat.level()
+                && (seated || seat.holds(&self.end(Outcome::Aligned, cor, &rotation).error, cor.z));
+            settled = if seated { settled + 1 } else { 0 };
+            if settled >= SETTLED && !seat.is_limited() {
                 return Ok(self.end(Outcome::Aligned, cor, &rotation));
             }
             if apart > lost {
@@ -108,8 +111,9 @@ impl<'a> Engine<'a> {
                 let rests = moved <= self.settings.rest_speed * time && fall.touches();
                 quiet = if rests { quiet + 1 } else { 0 };
                 if quiet >= WINDOWS {
-                    let outcome = if aligned { Outcome::Aligned } else { Outcome::Jammed };
-                    return Ok(self.end(outcome, cor, &rotation));
+                    let end = self.end(Outcome::Aligned, cor, &rotation);
+                    let docked = seated && seat.allows(&end.error);
+                    return Ok(if docked { end } else { End { outcome: Outcome::Jammed, ..end } });
                 }
                 before = (cor, rotation);
             }

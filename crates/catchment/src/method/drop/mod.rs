@@ -3,7 +3,7 @@
 //! ```text
 //!       │ F      let go above first contact, pushed along the approach through the COR (or falling by gravity)
 //!     ╲_▼_╱      friction with the surroundings −c·(v, ρ²ω) at the COR, Coulomb friction μ and bounce e in contact
-//!     ╲   ╱      aligned   face centres and rotation within a threshold, and it stays there
+//!     ╲   ╱      aligned   in the seat (crate::contact::Seat), and it stays there
 //!      ╲_╱       jammed    at rest in contact elsewhere       missed   the face centres are too far apart
 //!                undecided still moving when the time is up
 //! ```

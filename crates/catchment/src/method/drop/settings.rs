@@ -28,9 +28,6 @@ pub struct Settings {
     pub timestep: f64,
     /// Simulated time after which a trial ends, in s: jammed if it is at rest, else undecided.
     pub timeout: f64,
-    /// Aligned: face centres this close (D) and rotation within this angle (radians) of the mated pose or a declared
-    /// symmetry, for ten steps in a row.
-    pub aligned_within: f64,
     /// Missed: the face centres are farther apart than at first contact by this much, in D.
     pub lost_beyond: f64,
     /// At rest: moving more slowly than this, v at the COR and ρ·ω together, in D/s, averaged over 64 steps, twice in a row.
@@ -85,7 +82,6 @@ impl Default for Settings {
             drop_height: 0.01,
             timestep: 1e-3,
             timeout: 20.0,
-            aligned_within: 0.02,
             lost_beyond: 1.0,
             rest_speed: 5e-4,
             trials: 3,
@@ -152,12 +148,9 @@ impl Settings {
             let advice = "give a share between 0 and 1";
             return Err(SettingError { name: "restitution", value: self.restitution, advice });
         }
-        for (name, value) in [
-            ("timestep", self.timestep),
-            ("timeout", self.timeout),
-            ("aligned_within", self.aligned_within),
-            ("lost_beyond", self.lost_beyond),
-        ] {
+        for (name, value) in
+            [("timestep", self.timestep), ("timeout", self.timeout), ("lost_beyond", self.lost_beyond)]
+        {
             positive(name, value)?;
         }
         if self.timeout / self.timestep > MOST_STEPS {

@@ -1,6 +1,6 @@
 //! Flooding as a method, by either rule: two lines of the registry, one door.
 
-use super::{FloodError, Rule, Settings, bytes, flood};
+use super::{FloodError, Rule, Settings, bytes, docks, flood};
 use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -73,7 +73,8 @@ impl Decide for Settings {
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
         let landscape = Landscape::compute(problem.pair(), grid_of(self.info(), domain)?, exec)
             .map_err(FloodError::from)?;
-        let flooding = flood(&landscape, problem.alignment(), self, exec)?;
+        let flooding =
+            flood(&landscape, problem.alignment(), &docks(problem.pair(), &landscape.grid), self, exec)?;
         let used = Self { depth_tolerance: Some(flooding.hierarchy.tolerance.depth), ..*self };
         let by_products = ByProducts {
             landscape: Some(landscape),

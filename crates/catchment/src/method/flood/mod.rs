@@ -61,6 +61,7 @@ use crate::contact::Pair;
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, LandscapeError, Resolution};
+use crate::method::descent;
 use drain::LABEL_LIMIT;
 use serde::{Deserialize, Serialize};
 use steepest::Metric;
@@ -190,16 +191,26 @@ pub fn accept(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Res
     let cells = grid.checked_len().unwrap_or(usize::MAX) as u64;
     ensure_fits(cells, Landscape::bytes(1), grid.axes.len(), exec)?;
     let landscape = Landscape::compute(pair, grid, exec)?;
-    Ok(flood(&landscape, &pair.alignment, settings, exec)?.acceptance)
+    Ok(flood(&landscape, &pair.alignment, &docks(pair, grid), settings, exec)?.acceptance)
 }
 
-/// Floods a landscape.
+/// Whether a half let down at the centre of a cell docks, by exact motion. A grid may have no cell in a narrow hole: those around the
+/// mated pose lie on its rim then, and their basin is not that of the mated pose.
+pub fn docks<'a>(pair: &'a Pair, grid: &'a Grid) -> impl Fn(usize) -> bool + 'a {
+    |cell| {
+        let end = descent::outcome(pair, &grid.pose(cell), &descent::Settings::default());
+        end.outcome == Outcome::Aligned
+    }
+}
+
+/// Floods a landscape; `docks` says of the lowest cell around the mated pose whether it leads there, see [`docks`].
 ///
 /// # Errors
 /// When the tolerance is no depth, the landscape is too large, or the computation is cancelled.
 pub fn flood(
     landscape: &Landscape,
     alignment: &Alignment,
+    docks: &dyn Fn(usize) -> bool,
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Flooding, FloodError> {
@@ -220,7 +231,7 @@ pub fn flood(
         None => tolerance::choose(&tree, &staircase, tolerance::height_step(&grid.shape(), heights)),
     };
     let (mut acceptance, basins) =
-        verdict::verdict(grid, heights, &targets, &labels, &tree, tolerance.depth, exec)?;
+        verdict::verdict(landscape, &targets, docks, &labels, &tree, tolerance.depth, exec)?;
     acceptance.method = settings.rule.method();
     Ok(Flooding { acceptance, hierarchy: Hierarchy { basins, tree, tolerance, staircase } })
 }

@@ -86,7 +86,8 @@ fn line(heights: &[f32]) -> (Landscape, Alignment) {
 fn outcomes(heights: &[f32], depth_tolerance: f64) -> String {
     let (landscape, alignment) = line(heights);
     let flooding =
-        flood(&landscape, &alignment, &Settings::with_tolerance(depth_tolerance), &Exec::new()).unwrap();
+        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(depth_tolerance), &Exec::new())
+            .unwrap();
     flooding.acceptance.outcomes.iter().map(|o| o.name().chars().next().unwrap()).collect()
 }
 
@@ -120,7 +121,8 @@ fn with_an_even_number_of_cells_both_cells_around_the_mated_pose_are_its_minimum
         6.0, 7.0, 8.0, 9.0,
     ];
     let landscape = Landscape { grid, heights };
-    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
+    let flooding =
+        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.counts(), [16, 0, 0, 0]);
 }
 
@@ -139,8 +141,9 @@ fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
     let heights = vec![0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 0.0];
     let landscape = Landscape { grid, heights };
     let settings = Settings::with_tolerance(0.5);
-    let aligned =
-        |a: &Alignment| flood(&landscape, a, &settings, &Exec::new()).unwrap().acceptance.counts()[0];
+    let aligned = |a: &Alignment| {
+        flood(&landscape, a, &|_| true, &settings, &Exec::new()).unwrap().acceptance.counts()[0]
+    };
     assert!(aligned(&alignment) < 6);
     alignment.symmetry = 4;
     assert_eq!(aligned(&alignment), 9);
@@ -150,7 +153,7 @@ fn equivalent_poses_of_a_symmetric_pair_are_aligned() {
 fn basins_tell_depth_share_and_outcome() {
     let (landscape, alignment) = line(&[NONE, 3.0, 2.0, 5.0, 1.0, 0.0, 1.0, 4.0, 3.0, 4.0, NONE]);
     let settings = Settings::with_tolerance(0.5);
-    let basins = flood(&landscape, &alignment, &settings, &Exec::new()).unwrap().hierarchy.basins;
+    let basins = flood(&landscape, &alignment, &|_| true, &settings, &Exec::new()).unwrap().hierarchy.basins;
     let mated = basins.iter().find(|b| b.outcome == Outcome::Aligned).unwrap();
     assert_eq!((mated.minimum, mated.height, mated.depth), (5, 0.0, 4.0));
     assert_eq!(basins.iter().map(|b| b.cells).sum::<usize>(), 11);
@@ -160,11 +163,13 @@ fn basins_tell_depth_share_and_outcome() {
 #[test]
 fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
     let (landscape, alignment) = line(&[0.0, 1.0, 2.0, 1.5, 2.0, 1.0, 0.0]);
-    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(0.1), &Exec::new()).unwrap();
+    let flooding =
+        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.1), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.counts(), [1, 0, 6, 0]);
     assert!(flooding.acceptance.warnings.iter().any(|w| matches!(w, Warning::Note { .. })));
     // The mated pose, shallower than the tolerance, joins a basin that gathers far below it.
-    let merged = flood(&landscape, &alignment, &Settings::with_tolerance(0.6), &Exec::new()).unwrap();
+    let merged =
+        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.6), &Exec::new()).unwrap();
     assert_eq!(merged.acceptance.counts()[0], 0);
     assert!(merged.acceptance.warnings.contains(&Warning::MatedPoseNotAccepted));
 }
@@ -172,21 +177,29 @@ fn a_landscape_that_drains_out_of_the_box_is_not_called_aligned_and_says_so() {
 #[test]
 fn what_cannot_be_flooded_is_refused() {
     let (landscape, alignment) = line(&[1.0, 0.0, 1.0]);
-    let bad = flood(&landscape, &alignment, &Settings::with_tolerance(-1.0), &Exec::new()).unwrap_err();
+    let bad =
+        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(-1.0), &Exec::new()).unwrap_err();
     assert_eq!(bad, FloodError::Tolerance { depth: -1.0 });
     let exec = Exec::new().with_memory_budget(10);
     let settings = Settings::with_tolerance(0.0);
-    assert!(matches!(flood(&landscape, &alignment, &settings, &exec), Err(FloodError::OutOfBudget(_))));
+    assert!(matches!(
+        flood(&landscape, &alignment, &|_| true, &settings, &exec),
+        Err(FloodError::OutOfBudget(_))
+    ));
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
     let exec = exec.with_memory_budget(1 << 20);
-    assert_eq!(flood(&landscape, &alignment, &settings, &exec), Err(FloodError::Cancelled(Cancelled)));
+    assert_eq!(
+        flood(&landscape, &alignment, &|_| true, &settings, &exec),
+        Err(FloodError::Cancelled(Cancelled))
+    );
 }
 
 #[test]
 fn an_empty_set_of_free_axes_is_one_cell_at_the_mated_pose() {
     let alignment = Alignment::new(DofSet::EMPTY, Mount::X);
     let landscape = Landscape { grid: Grid { axes: Vec::new() }, heights: vec![0.0] };
-    let flooding = flood(&landscape, &alignment, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
+    let flooding =
+        flood(&landscape, &alignment, &|_| true, &Settings::with_tolerance(0.0), &Exec::new()).unwrap();
     assert_eq!(flooding.acceptance.outcomes, [Outcome::Aligned]);
 }
 
@@ -235,9 +248,10 @@ fn the_difference_from_meyers_flooding_is_what_the_documentation_says() {
         let pair = pair(family, aspect_ratio, cor, 1);
         let grid = Grid::over(&pair.alignment, |_| 100);
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
-        let flooding = flood(&landscape, &pair.alignment, &Settings::default(), &Exec::new()).unwrap();
+        let flooding =
+            flood(&landscape, &pair.alignment, &|_| true, &Settings::default(), &Exec::new()).unwrap();
         let settings = meyer::Settings::default();
-        let meyer = meyer::accept(&landscape, &pair.alignment, &settings, &Exec::new()).unwrap();
+        let meyer = meyer::accept(&landscape, &pair.alignment, &|_| true, &settings, &Exec::new()).unwrap();
         assert_eq!(meyer.tolerance, flooding.hierarchy.tolerance);
         let accepted = || flooding.acceptance.accepted().zip(meyer.acceptance.accepted());
         let different = accepted().filter(|(a, b)| a != b).count();
@@ -259,7 +273,7 @@ fn meyers_flooding_has_the_bias_that_the_documentation_says() {
         let grid = Grid::over(&pair.alignment, |_| 100);
         let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
         let tenth = meyer::Settings::with_tolerance(meyer::Settings::DEPTH_PER_FACE_HEIGHT * aspect_ratio);
-        let found = meyer::accept(&landscape, &pair.alignment, &tenth, &Exec::new()).unwrap();
+        let found = meyer::accept(&landscape, &pair.alignment, &|_| true, &tenth, &Exec::new()).unwrap();
         assert_eq!(found.acceptance.method, "meyer");
         let bias = 100.0 * (found.acceptance.counts()[0] as f64 * grid.cell_measure() / exact - 1.0);
         assert!((bias - expected).abs() < 1.0, "{family:?} {aspect_ratio} {cor}: {bias:.2} %");
@@ -312,7 +326,7 @@ fn threads_do_not_change_a_bit() {
         let landscape = Landscape::compute(&pair, &grid, &exec).unwrap();
         [Rule::Lowest, Rule::Steepest].map(|rule| {
             let settings = Settings { rule, ..Settings::default() };
-            flood(&landscape, &pair.alignment, &settings, &exec).unwrap()
+            flood(&landscape, &pair.alignment, &|_| true, &settings, &exec).unwrap()
         })
     };
     assert!(with(1) == with(3) && with(1) == with(8));

@@ -4,7 +4,7 @@ use super::Basin;
 use super::tree::{MergeTree, explains};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::{Cancelled, Exec};
-use crate::landscape::Grid;
+use crate::landscape::{Grid, Landscape};
 use rayon::prelude::*;
 
 /// How many cells are worked on between two looks at the cancel flag.
@@ -12,16 +12,17 @@ const CELLS_PER_CHECK: usize = 1 << 16;
 
 /// Outcomes and basins at a tolerance. `targets` are the cells around the mated pose.
 pub(super) fn verdict(
-    grid: &Grid,
-    heights: &[f32],
+    landscape: &Landscape,
     targets: &[usize],
+    docks: &dyn Fn(usize) -> bool,
     labels: &[u32],
     tree: &MergeTree,
     tolerance: f64,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<Basin>), Cancelled> {
+    let Landscape { grid, heights } = landscape;
     let into = tree.merged(tolerance);
-    let target = target_basin(heights, targets, labels, tree, &into, tolerance);
+    let target = target_basin(heights, targets, docks, labels, tree, &into, tolerance);
     let outside = tree.outside.map(|basin| into[basin as usize]);
     let mut border_cells = 0;
     let mut found: Vec<Option<Basin>> = vec![None; into.len()];
@@ -68,18 +69,19 @@ pub(super) fn verdict(
     Ok((Acceptance { method: "flood", domain: Domain::Grid(grid.clone()), outcomes, warnings }, basins))
 }
 
-/// The number of the basin that gathers at the mated pose: the one that holds the lowest cell around it, unless that
+/// The number of the basin that gathers at the mated pose: the one that holds the lowest cell around it, unless that does not dock, or
 /// has joined a basin which gathers lower than the tolerance can explain.
 fn target_basin(
     heights: &[f32],
     targets: &[usize],
+    docks: &dyn Fn(usize) -> bool,
     labels: &[u32],
     tree: &MergeTree,
     into: &[u32],
     tolerance: f64,
 ) -> Option<u32> {
     let lower = |a: usize, b: usize| if heights[b] < heights[a] { b } else { a };
-    let cell = targets.iter().copied().reduce(lower)?;
+    let cell = targets.iter().copied().reduce(lower).filter(|cell| docks(*cell))?;
     let basin = into[labels[cell] as usize];
     let gathers_at = tree.minima[basin as usize].height;
     explains(tolerance, f64::from(heights[cell]) - gathers_at).then_some(basin)

@@ -28,6 +28,7 @@ mod space;
 mod tests;
 mod watershed;
 
+use super::descent;
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
@@ -35,14 +36,12 @@ use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
 use crate::polytope::{MAX_DIMENSION, Point, Polytope};
-use crate::pose::{Dof, PoseError, rotation_angle};
+use crate::pose::{Dof, PoseError, face_from_cor};
 use cells::Cells;
 use compose::Compartment;
-use glam::DMat3;
 pub use outline::Corner;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 use watershed::{Parts, Watersheds};
 
 /// What changes the answer.
@@ -223,7 +222,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
     for (cell, gates) in cells.all.iter_mut().zip(gates) {
         cell.gates = gates;
     }
-    let watersheds = watershed::drain(&cells, |rest| is_aligned(alignment, rest), exec)?;
+    let watersheds = watershed::drain(&cells, |rest| docks(pair, rest), exec)?;
     let parts = watersheds.parts.iter().map(|parts| match parts {
         Parts::Whole(_) => 1,
         Parts::Cut(parts) => parts.len(),
@@ -350,18 +349,16 @@ impl Partition {
     }
 }
 
-/// Whether a place of rest is the mated pose, or one that a declared symmetry makes equal to it.
-fn is_aligned(alignment: &Alignment, rest: &Point) -> bool {
-    /// As close as an exact descent must come, in D and radians.
-    const WITHIN: f64 = 0.02;
+/// Whether a half that is put down at a place of rest is docked: slices move it a little, so an exact motion from there decides.
+fn docks(pair: &Pair, rest: &Point) -> bool {
+    let alignment = &pair.alignment;
     let mut error = [0.0; 5];
     for (k, dof) in alignment.free.iter().enumerate() {
         error[dof.index()] = rest[k];
     }
-    let fold = alignment.symmetry.max(1);
-    let equal = (0..fold).any(|k| {
-        let back = DMat3::from_rotation_z(-TAU * f64::from(k) / f64::from(fold));
-        rotation_angle(&(back * PoseError::from_array(error).rotation())) <= WITHIN
-    });
-    error[0].hypot(error[1]) <= WITHIN && equal
+    let mut error = PoseError::from_array(error);
+    // The place is that of the COR.
+    let face = face_from_cor(&error.rotation(), alignment.center_of_rotation);
+    (error.x, error.y) = (error.x + face.x, error.y + face.y);
+    descent::outcome(pair, &error, &descent::Settings::default()).outcome == Outcome::Aligned
 }

@@ -128,7 +128,7 @@ fn on_slices_the_height_is_that_of_first_contact() {
 }
 
 /// Every part against the motion of single points: the definition of a watershed.
-fn judged(partition: &Partition, stream: Stream, count: u64) -> [usize; 2] {
+fn judged(pair: &Pair, partition: &Partition, stream: Stream, count: u64) -> [usize; 2] {
     let translations = partition.alignment.free.len() - partition.alignment.free.rotations();
     let (mut same, mut tried) = (0, 0);
     for k in 0..count {
@@ -143,7 +143,7 @@ fn judged(partition: &Partition, stream: Stream, count: u64) -> [usize; 2] {
         // Places of rest along a level ravine are many for points and one for parts.
         let fate = match fall::fate(&partition.cells, &q) {
             Fate::Lost => Outcome::Missed,
-            Fate::Rest(place) if is_aligned(&partition.alignment, &place) => Outcome::Aligned,
+            Fate::Rest(place) if docks(pair, &place) => Outcome::Aligned,
             Fate::Rest(_) | Fate::Left => Outcome::Jammed,
         };
         tried += 1;
@@ -157,7 +157,7 @@ fn parts_end_where_their_points_end() {
     for (case, (family, ratio, cor)) in FIVE.into_iter().enumerate() {
         let pair = pair(family, ratio, cor, 1.0, &[]);
         let partition = run(&pair, &Settings { slices: 12, strips: 3 }, &Exec::new()).unwrap();
-        let [same, tried] = judged(&partition, Stream::new(case as u64), 1000);
+        let [same, tried] = judged(&pair, &partition, Stream::new(case as u64), 1000);
         println!("{} AR {ratio} COR {cor}: {same} of {tried}, {:?}", family.name(), partition.counts());
         assert!(tried > 500 && same == tried, "{} AR {ratio} COR {cor}: {same} of {tried}", family.name());
     }
@@ -207,7 +207,7 @@ fn spatial_sets_of_three_errors_agree_with_the_judge() {
     {
         let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, &free);
         let partition = run(&pair, &Settings { slices, strips: 1 }, &Exec::new()).unwrap();
-        let [same, tried] = judged(&partition, Stream::new(3), 500);
+        let [same, tried] = judged(&pair, &partition, Stream::new(3), 500);
         println!("{free:?}: {same} of {tried}, {:?}", partition.counts());
         assert!(tried > 250 && same as f64 >= least * tried as f64, "{free:?}: {same} of {tried}");
     }

@@ -22,7 +22,7 @@ use glam::DVec2;
 /// Longest chain of cells and valleys: far more than a path has, and it stops a cycle that rounding made.
 const MAX_DEPTH: usize = 4096;
 
-/// A strip of a cell: positions between two values of [`Flow::across`], and whether it reaches the mated pose.
+/// A strip of a cell: positions between two values of [`Flow::across`], and whether it reaches the seat.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Strip {
     pub(super) from: f64,
@@ -39,12 +39,13 @@ enum Stretch {
 }
 
 /// The flow over all cells.
-pub(super) struct Flow<'a> {
+pub(super) struct Flow<'a, D> {
     sheets: &'a [Sheet],
     cells: &'a [Cell],
     borders: &'a [Vec<Border>],
     seam: f64,
-    mated_height: f64,
+    /// Whether a half at a position and height is in the seat.
+    docked: D,
     /// Per cell and border.
     stretches: Vec<Vec<Stretch>>,
     /// Whether some path was too long or came round to itself.
@@ -69,16 +70,16 @@ enum Onward {
     Along(usize, DVec2),
 }
 
-impl<'a> Flow<'a> {
+impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
     pub(super) fn new(
         sheets: &'a [Sheet],
         cells: &'a [Cell],
         borders: &'a [Vec<Border>],
         seam: f64,
-        mated_height: f64,
+        docked: D,
     ) -> Self {
         let stretches = borders.iter().map(|b| vec![Stretch::Unknown; b.len()]).collect();
-        Self { sheets, cells, borders, seam, mated_height, stretches, tangled: false }
+        Self { sheets, cells, borders, seam, docked, stretches, tangled: false }
     }
 
     fn sheet(&self, cell: usize) -> &'a Sheet {
@@ -109,9 +110,11 @@ impl<'a> Flow<'a> {
     /// The strips of a cell that lie in part between two values of [`Flow::across`], in order.
     fn strips_between(&mut self, cell: usize, low: f64, high: f64, depth: usize) -> Vec<Strip> {
         if self.direction(cell) == DVec2::ZERO {
-            // A level cell: at rest, and mated if it is the floor of the mated pose.
-            let accepted = self.touches(cell, DVec2::ZERO)
-                && (self.sheet(cell).height(DVec2::ZERO) - self.mated_height).abs() <= self.near();
+            // A level cell: at rest, all of it in the seat or none.
+            let polygon = &self.cells[cell].polygon;
+            let middle = polygon.iter().sum::<DVec2>() / polygon.len() as f64;
+            let height = self.sheet(cell).height(middle);
+            let accepted = (self.docked)(middle, height);
             return vec![Strip { from: f64::NEG_INFINITY, to: f64::INFINITY, accepted }];
         }
         let mut strips: Vec<Strip> = Vec::new();
@@ -220,9 +223,9 @@ impl<'a> Flow<'a> {
     }
 
     /// Whether a motion that arrives at a point where borders meet, sliding in direction `on`, reaches the
-    /// mated pose.
+    /// seat.
     fn ends_well(&mut self, at: DVec2, height: f64, on: DVec2, depth: usize) -> bool {
-        if at.length() <= self.near() && (height - self.mated_height).abs() <= self.near() {
+        if (self.docked)(at, height) {
             return true;
         }
         if depth > MAX_DEPTH {
@@ -291,7 +294,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Whether the point `at` of a cell reaches the mated pose.
+    /// Whether the point `at` of a cell reaches the seat.
     fn follow(&mut self, cell: usize, at: DVec2, depth: usize) -> bool {
         if depth > MAX_DEPTH {
             self.tangled = true;

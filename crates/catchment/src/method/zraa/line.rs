@@ -19,11 +19,11 @@ impl Segment {
 
 /// The interval around the mated pose, along `axis`, from which the motion leads back to it.
 ///
-/// The height over the line is cut where two planes cross or one ends; outward from 0 every stretch must fall
-/// towards 0, and no step may block the way.
-pub(super) fn interval(sheets: &[Sheet], axis: DVec2, seam: f64) -> [f64; 2] {
+/// The height over the line is cut where two planes cross or one ends; outward from 0 every stretch must lie in the seat, at most
+/// `depth` above the height at 0, or fall towards 0, and no step may block the way.
+pub(super) fn interval(sheets: &[Sheet], axis: DVec2, depth: f64, seam: f64) -> [f64; 2] {
     let segments: Vec<Segment> = sheets.iter().filter_map(|p| along(p, axis, seam)).collect();
-    [-1.0, 1.0].map(|sign| sign * reach(&segments, sign, seam)).map(|s| s + 0.0)
+    [-1.0, 1.0].map(|sign| sign * reach(&segments, sign, depth, seam)).map(|s| s + 0.0)
 }
 
 /// The part of a sheet over the line.
@@ -54,7 +54,7 @@ fn along(sheet: &Sheet, axis: DVec2, seam: f64) -> Option<Segment> {
 }
 
 /// How far from 0, in the direction of `sign`, the motion still leads back.
-fn reach(segments: &[Segment], sign: f64, seam: f64) -> f64 {
+fn reach(segments: &[Segment], sign: f64, depth: f64, seam: f64) -> f64 {
     let near = 10.0 * seam;
     let mut cuts: Vec<f64> = segments.iter().flat_map(|s| [s.from, s.to]).collect();
     for (k, a) in segments.iter().enumerate() {
@@ -67,6 +67,9 @@ fn reach(segments: &[Segment], sign: f64, seam: f64) -> f64 {
     }
     let mut cuts: Vec<f64> = cuts.into_iter().map(|s| s * sign).filter(|s| *s > near).collect();
     cuts.sort_by(f64::total_cmp);
+    let mated = segments.iter().filter(|s| s.from <= 0.0 && 0.0 <= s.to).map(|s| s.offset);
+    let level = mated.fold(f64::NEG_INFINITY, f64::max) + depth;
+    let mut seated = true;
     let mut reached = 0.0;
     let mut below: Option<f64> = None;
     for cut in cuts {
@@ -81,7 +84,8 @@ fn reach(segments: &[Segment], sign: f64, seam: f64) -> f64 {
         let Some(top) = top else { break };
         // Up a step outward is a drop on the way home; down a step outward is a wall.
         let walled = below.is_some_and(|z| top.height(reached * sign) < z - near);
-        if top.slope * sign <= seam || walled {
+        seated &= [reached, cut].into_iter().all(|s| top.height(s * sign) <= level + near);
+        if !seated && (top.slope * sign <= seam || walled) {
             break;
         }
         reached = cut;

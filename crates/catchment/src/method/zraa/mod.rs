@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   h(x, y)  is piecewise linear at R = 1: the upper envelope of the contact sheets
-//!   accepted = { (x, y) : the steepest descent of h from there ends at the mated pose }
+//!   accepted = { (x, y) : the steepest descent of h from there ends in the seat }       (crate::contact::Seat)
 //! ```
 //!
 //! Nothing is sampled: the envelope is cut into convex cells, every cell into the strips of its flow that
@@ -22,9 +22,10 @@ mod sheet;
 
 pub use circle::circle_bounds;
 
-use crate::contact::Pair;
+use crate::contact::{Pair, Play, Seat, play};
+use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec};
-use crate::pose::Dof;
+use crate::pose::{Dof, PoseError};
 use flow::Flow;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -73,6 +74,15 @@ pub enum ZraaError {
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// Some of what rests in the seat does not count.
+    #[error(
+        "docked.{name} is less than the play of the seat: which offsets end within it is not decided exactly here; \
+         use run --free x,y"
+    )]
+    Limited {
+        /// x or y.
+        name: &'static str,
+    },
     /// Neither x nor y is free.
     #[error("neither x nor y is free: name at least one of them in [alignment] free")]
     NoTranslation,
@@ -101,36 +111,38 @@ pub enum ZraaError {
 
 /// The zero-rotation area of acceptance of a pair, over those of x and y that are free.
 pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaError> {
-    let free = pair.alignment.free;
+    let Alignment { free, docked, .. } = &pair.alignment;
+    let cut =
+        play(pair).into_iter().find(|play| docked.limit(play.axis).is_some_and(|limit| play.most() > limit));
+    if let Some(Play { axis, .. }) = cut.filter(|play| !play.axis.is_rotation()) {
+        return Err(ZraaError::Limited { name: axis.name() });
+    }
     let sheets = sheet::sheets(&pair.fixed, &pair.moving);
     if sheets.len() > MAX_SHEETS {
         return Err(ZraaError::TooManySheets { count: sheets.len() });
     }
     exec.check()?;
     let (axis, direction) = match (free.contains(Dof::X), free.contains(Dof::Y)) {
-        (true, true) => return region(&sheets, settings.seam, exec),
+        (true, true) => return region(pair, &sheets, settings.seam, exec),
         (true, false) => (Dof::X, DVec2::X),
         (false, true) => (Dof::Y, DVec2::Y),
         (false, false) => return Err(ZraaError::NoTranslation),
     };
-    let [from, to] = line::interval(&sheets, direction, settings.seam);
+    let [from, to] = line::interval(&sheets, direction, docked.depth, settings.seam);
     Ok(Zraa::Interval { axis, from, to })
 }
 
-fn region(sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
+fn region(pair: &Pair, sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
     let cells = cells::upper_envelope(sheets, seam, exec)?;
     let borders = cells::borders(&cells, seam, exec)?;
-    let inside = |polygon: &[DVec2]| {
-        (0..polygon.len())
-            .all(|k| (polygon[(k + 1) % polygon.len()] - polygon[k]).perp_dot(-polygon[k]) >= -seam)
+    if pair.mated_height() == f64::NEG_INFINITY {
+        return Err(ZraaError::NoMatedPose);
+    }
+    let mut seat = Seat::new(pair);
+    let docked = |at: DVec2, height: f64| {
+        seat.holds(&PoseError { x: at.x, y: at.y, ..PoseError::default() }, height - 20.0 * seam)
     };
-    let mated = cells
-        .iter()
-        .filter(|cell| inside(&cell.polygon))
-        .map(|cell| sheets[cell.sheet].height(DVec2::ZERO))
-        .max_by(f64::total_cmp)
-        .ok_or(ZraaError::NoMatedPose)?;
-    let mut flow = Flow::new(sheets, &cells, &borders, seam, mated);
+    let mut flow = Flow::new(sheets, &cells, &borders, seam, docked);
     let mut polygons = Vec::new();
     for (k, cell) in cells.iter().enumerate() {
         exec.check()?;

@@ -131,7 +131,8 @@ pub(crate) mod tests {
         };
         let heights = (0..grid.len()).map(height).collect();
         let landscape = Landscape { grid, heights };
-        let flooding = flood(&landscape, &design.alignment, &Settings::default(), &Exec::new()).unwrap();
+        let flooding =
+            flood(&landscape, &design.alignment, &|_| true, &Settings::default(), &Exec::new()).unwrap();
         (design, flooding)
     }
 

@@ -18,7 +18,7 @@ use super::pieces::{Part, parts};
 use super::settings::{Push, SettingError, Settings};
 use super::turning::Turning;
 use crate::connector::{Half, Surface};
-use crate::contact::Pair;
+use crate::contact::{Pair, Seat};
 use crate::pose::{CorPose, PoseError};
 use glam::{DMat3, DVec3};
 
@@ -118,8 +118,8 @@ impl<'a> Scene<'a> {
              Start: x {} y {} D, roll {} pitch {} yaw {} rad of the face centre, {} D above first contact, at rest.\n  \
              Driven by {push}.\n  \
              Damping: force -{} v at the COR, torque -{} ω. Friction {}, restitution {}.\n  \
-             Aligned: face centres within {} D and rotation within {} rad; missed: farther apart than at first contact by\n  \
-             {} D; jammed: at rest elsewhere; give up after {} s.\n",
+             Docked: the COR at z <= {:.6} D, and connected with the mated pose below that; missed: farther apart than at first\n  \
+             contact by {} D; jammed: at rest elsewhere; give up after {} s.\n",
             comment(self.name),
             env!("CARGO_PKG_VERSION"),
             alignment.center_of_rotation,
@@ -135,8 +135,7 @@ impl<'a> Scene<'a> {
             self.turning_damping(),
             s.friction,
             s.restitution,
-            s.aligned_within,
-            s.aligned_within,
+            Seat::new(self.pair).level(),
             s.lost_beyond,
             s.timeout,
         )

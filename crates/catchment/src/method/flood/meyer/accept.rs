@@ -72,7 +72,7 @@ pub const fn bytes(cells: u64) -> u64 {
     cells.saturating_mul(BYTES_PER_CELL + Landscape::bytes(1))
 }
 
-/// Floods a landscape by Meyer's queue.
+/// Floods a landscape by Meyer's queue; `docks` as for [`flood`](super::super::flood).
 ///
 /// The mated pose is where it is for [`flood`](super::super::flood): the minima among the cells around it are one, and where
 /// none of them is a minimum, the target is the basin of the lowest. If that basin gathers deeper below the mated pose than
@@ -83,6 +83,7 @@ pub const fn bytes(cells: u64) -> u64 {
 pub fn accept(
     landscape: &Landscape,
     alignment: &Alignment,
+    docks: &dyn Fn(usize) -> bool,
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Flooding, FloodError> {
@@ -104,7 +105,7 @@ pub fn accept(
     let mut division = divide(&shape, heights, &targets, tolerance.depth, settings.rules, exec)?;
     division.give_dams(heights);
     let count = division.merged.into.len();
-    let mated = mated_basin(&division, heights, &targets, tolerance.depth);
+    let mated = mated_basin(&division, heights, &targets, docks, tolerance.depth);
     // The lowest cell of every basin, the first in memory among equals, and how many cells it has.
     let mut basins: Vec<Option<(usize, usize)>> = vec![None; count];
     for cell in 0..heights.len() {
@@ -138,9 +139,15 @@ pub fn accept(
 }
 
 /// The basin that gathers at the mated pose.
-fn mated_basin(division: &Division, heights: &[f32], targets: &[usize], tolerance: f64) -> Option<u32> {
+fn mated_basin(
+    division: &Division,
+    heights: &[f32],
+    targets: &[usize],
+    docks: &dyn Fn(usize) -> bool,
+    tolerance: f64,
+) -> Option<u32> {
     let lower = |a: usize, b: usize| if heights[b] < heights[a] { b } else { a };
-    let cell = targets.iter().copied().reduce(lower)?;
+    let cell = targets.iter().copied().reduce(lower).filter(|cell| docks(*cell))?;
     let basin = division.basin(cell)?;
     explains(tolerance, f64::from(heights[cell]) - division.bottom(basin)).then_some(basin)
 }

@@ -6,7 +6,7 @@ use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Entry, Info, grid_of};
-use crate::method::flood::FloodError;
+use crate::method::flood::{FloodError, docks};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -69,7 +69,13 @@ impl Decide for Settings {
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
         let landscape =
             Landscape::compute(problem.pair(), grid_of(&INFO, domain)?, exec).map_err(FloodError::from)?;
-        let flooding = accept(&landscape, problem.alignment(), &self.for_problem(problem), exec)?;
+        let flooding = accept(
+            &landscape,
+            problem.alignment(),
+            &docks(problem.pair(), &landscape.grid),
+            &self.for_problem(problem),
+            exec,
+        )?;
         let used = Self { depth_tolerance: Some(flooding.tolerance.depth), ..*self };
         let by_products = ByProducts { landscape: Some(landscape), ..ByProducts::default() };
         Ok(Decided { by_products, ..Decided::plain(flooding.acceptance, used.settings()) })

@@ -77,7 +77,7 @@ proptest! {
         let single: Vec<f32> = heights.iter().map(|h| *h as f32).collect();
         let landscape = Landscape { grid: grid.clone(), heights: single };
         let settings = Settings { depth_tolerance: Some(tolerance), rules };
-        let found = accept(&landscape, &alignment, &settings, &Exec::new()).unwrap();
+        let found = accept(&landscape, &alignment, &|_| true, &settings, &Exec::new()).unwrap();
         let basins = brute::divide(&shape, &heights, &targets, tolerance, rules);
         let judged = brute::outcomes(&grid, &heights, &targets, &basins, tolerance);
         prop_assert_eq!(found.acceptance.outcomes, judged);
@@ -127,7 +127,7 @@ fn what_cannot_be_flooded_is_refused() {
     let alignment = Alignment::new([Dof::X].into_iter().collect(), Mount::X);
     let grid = Grid::over(&alignment, |_| 3);
     let landscape = Landscape { grid, heights: vec![1.0, 0.0, 1.0] };
-    let with = |settings, exec: &Exec| accept(&landscape, &alignment, &settings, exec);
+    let with = |settings, exec: &Exec| accept(&landscape, &alignment, &|_| true, &settings, exec);
     let bad = with(Settings::with_tolerance(f64::NAN), &Exec::new());
     assert!(matches!(bad, Err(FloodError::Tolerance { .. })));
     let little = Exec::new().with_memory_budget(10);

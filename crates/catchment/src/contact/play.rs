@@ -1,0 +1,103 @@
+//! The play of the seat: how far off a half may rest and lie as deep as the mated one.
+//!
+//! ```text
+//!      h │ ╲             ╱      along a direction d of pose errors:   largest t with h(s·d) ≤ h₀ for all s ≤ t
+//!        │  ╲_____●_____╱       per error: the largest |t·d| of all directions
+//!        └────├──play──┤── q    sharp seats have none
+//! ```
+//!
+//! Directions are the combinations of signs of the free errors, one radian counting as ρ. A seat that is free in a direction far
+//! from all of these is not found here; the residual misalignment of docked poses shows it. Lengths in D, angles in radians.
+
+use super::Pair;
+use super::seat::PATH_STEP;
+use crate::pose::{CorPose, Dof, PoseError};
+use serde::{Deserialize, Serialize};
+
+/// How far one error may be off at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Play {
+    /// Which error.
+    pub axis: Dof,
+    /// Below zero; not negative. D or radians.
+    pub minus: f64,
+    /// Above zero; not negative. D or radians.
+    pub plus: f64,
+}
+
+impl Play {
+    /// The larger of both.
+    pub const fn most(&self) -> f64 {
+        self.minus.max(self.plus)
+    }
+}
+
+/// Heights this near are equal, in D: a slope of 10⁻³ over the first look is play.
+const LEVEL: f64 = 1e-7;
+/// Length of the first look along a direction, and how well its end is known, in the ρ-metric.
+const FIRST: f64 = 1e-4;
+const FOUND: f64 = 1e-5;
+/// Looks grow with the length by this share.
+const GROWTH: f64 = 0.125;
+/// A play beyond this many times what is allowed is not measured any further.
+const BEYOND: f64 = 2.0;
+
+/// The play of every free error that matters, in their order.
+pub fn play(pair: &Pair) -> Vec<Play> {
+    let alignment = &pair.alignment;
+    let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
+    let mut play: Vec<Play> = free.iter().map(|dof| Play { axis: *dof, minus: 0.0, plus: 0.0 }).collect();
+    for signs in directions(free.len()) {
+        let count = signs.iter().filter(|sign| **sign != 0.0).count() as f64;
+        let mut way = [0.0; Dof::ALL.len()];
+        for (dof, sign) in free.iter().zip(&signs) {
+            way[dof.index()] = sign / (count.sqrt() * unit(pair, *dof));
+        }
+        let farthest = free
+            .iter()
+            .zip(&signs)
+            .filter(|(_, sign)| **sign != 0.0)
+            .map(|(dof, _)| BEYOND * alignment.docked.most_play(*dof) / way[dof.index()].abs())
+            .fold(f64::INFINITY, f64::min);
+        let length = reach(pair, &way, farthest);
+        for (dof, play) in free.iter().zip(&mut play) {
+            let off = length * way[dof.index()];
+            (play.minus, play.plus) = (play.minus.max(-off), play.plus.max(off));
+        }
+    }
+    play
+}
+
+/// All combinations of −1, 0 and 1 but that of zeros.
+pub(super) fn directions(count: usize) -> impl Iterator<Item = Vec<f64>> {
+    (1..3usize.pow(count as u32))
+        .map(move |code| (0..count).map(|k| [0.0, 1.0, -1.0][code / 3usize.pow(k as u32) % 3]).collect())
+}
+
+/// How much an error of 1 counts in the ρ-metric.
+pub(super) fn unit(pair: &Pair, dof: Dof) -> f64 {
+    if dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 }
+}
+
+/// How far the seat stays level along a direction, up to `farthest`.
+fn reach(pair: &Pair, way: &[f64; 5], farthest: f64) -> f64 {
+    let is_level = |length: f64| {
+        let error = PoseError::from_array(way.map(|part| length * part));
+        let pose = CorPose::from_error(&error, pair.alignment.center_of_rotation, pair.alignment.free);
+        pair.height(&pose).is_some_and(|height| height <= pair.mated_height() + LEVEL)
+    };
+    let (mut level, mut look) = (0.0, FIRST);
+    while level < farthest {
+        if !is_level(look) {
+            // Between the last that was level and this one.
+            while look - level > FOUND {
+                let middle = 0.5 * (level + look);
+                if is_level(middle) { level = middle } else { look = middle }
+            }
+            break;
+        }
+        level = look;
+        look = (look + (GROWTH * look).max(FIRST).min(PATH_STEP.max(GROWTH * look))).min(farthest);
+    }
+    if level <= FOUND { 0.0 } else { level }
+}

@@ -1,0 +1,119 @@
+//! The seat: where a half counts as docked.
+//!
+//! ```text
+//!     h │╲   rim    ╱‾‾‾‾    S = { q : h(q) ≤ h₀ + depth }, of that the part connected with the mated pose.
+//!       │ ╲___    __╱         A half that came down to h₀ + depth in S stays in it as long as the force lasts.
+//!       │     ╲__╱            On the rim it lies deeper than it began, and is not docked; in a hole beside the
+//!       │      S ╎            mated one it is as deep, and not docked either.
+//!       └──────┴─┴───── q
+//! ```
+//!
+//! h₀ is the height of first contact without any error. Whether a pose is connected with the mated one is tried along three paths in
+//! the pose error: straight, its translation first, its rotation first; along each h must stay at or below h₀ + depth. Poses nearer
+//! than [`CORE`] count as connected.
+//!
+//! Not promised: walls between two places of rest that are thinner than [`PATH_STEP`] are stepped over, and a seat that bends more than
+//! its three paths do is not recognised to its end: what rests there counts as jammed. Lengths in D, angles in radians.
+
+use super::{Nearby, Pair};
+use crate::pose::{CorPose, Dof, PoseError};
+
+/// Poses this near the mated one, in the ρ-metric, are connected with it: finer structure than that is not told apart.
+pub(super) const CORE: f64 = 5e-3;
+/// How densely a path is looked at, in the ρ-metric.
+pub(super) const PATH_STEP: f64 = 5e-3;
+/// Looks along one path at most.
+const MOST_LOOKS: f64 = 2000.0;
+/// What heights along a path may exceed the seat by, in D: curvature of a turn over rounded drawings.
+const ROUNDING: f64 = 1e-6;
+
+/// Answers for one pair whether a half is docked; keeps its buffers.
+#[derive(Debug, Clone)]
+pub struct Seat<'a> {
+    pair: &'a Pair,
+    nearby: Nearby<'a>,
+}
+
+impl<'a> Seat<'a> {
+    /// The seat of a pair.
+    pub fn new(pair: &'a Pair) -> Self {
+        let reach = 4.0 * PATH_STEP;
+        Self { pair, nearby: pair.nearby(reach / pair.alignment.rotation_length, reach) }
+    }
+
+    /// The greatest height of the COR at which a half is seated, in D.
+    pub fn level(&self) -> f64 {
+        self.pair.mated_height() + self.pair.alignment.docked.depth
+    }
+
+    /// Whether a half with this error, its COR at `height`, is in the seat: deep enough, and connected with the mated pose.
+    pub fn holds(&mut self, error: &PoseError, height: f64) -> bool {
+        height <= self.level() && self.is_connected(error)
+    }
+
+    /// Whether a half that rests with this error counts as docked by the limits of the design.
+    pub fn allows(&self, error: &PoseError) -> bool {
+        let alignment = &self.pair.alignment;
+        let off = self.off(error).to_array();
+        alignment.free.iter().all(|dof| {
+            alignment.docked.limit(dof).is_none_or(|limit| off[dof.index()].abs() <= limit + ROUNDING)
+        })
+    }
+
+    /// Whether some rests in the seat may not count, so that a motion must be followed to its end.
+    pub fn is_limited(&self) -> bool {
+        self.pair.alignment.free.iter().any(|dof| self.pair.alignment.docked.limit(dof).is_some())
+    }
+
+    /// The error against the nearest mated pose, which differs from the error itself where the pair is symmetric.
+    pub fn off(&self, error: &PoseError) -> PoseError {
+        PoseError { yaw: error.yaw - self.pair.alignment.nearest_yaw(error.yaw), ..*error }
+    }
+
+    fn is_connected(&mut self, error: &PoseError) -> bool {
+        let alignment = &self.pair.alignment;
+        let off = self.off(error);
+        let length = off.x.hypot(off.y).hypot(alignment.rotation_length * turn(&off));
+        if length <= CORE {
+            return true;
+        }
+        let mated = PoseError { yaw: error.yaw - off.yaw, ..PoseError::default() };
+        let slid = PoseError { x: 0.0, y: 0.0, ..*error };
+        let turned = PoseError { x: error.x, y: error.y, ..mated };
+        self.is_level(&[*error, mated])
+            || self.is_level(&[*error, slid, mated])
+            || self.is_level(&[*error, turned, mated])
+    }
+
+    /// Whether the seat holds all along a path, straight in the pose error from point to point.
+    fn is_level(&mut self, path: &[PoseError]) -> bool {
+        path.windows(2).all(|ends| {
+            let (from, to) = (ends[0].to_array(), ends[1].to_array());
+            let mut way = [0.0; Dof::ALL.len()];
+            for dof in Dof::ALL {
+                let unit = if dof.is_rotation() { self.pair.alignment.rotation_length } else { 1.0 };
+                way[dof.index()] = unit * (to[dof.index()] - from[dof.index()]);
+            }
+            let length = way.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let looks = (length / PATH_STEP).ceil().clamp(1.0, MOST_LOOKS);
+            (1..=looks as usize).all(|k| {
+                let share = k as f64 / looks;
+                let at = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
+                self.height(&PoseError::from_array(at)) <= self.level() + ROUNDING
+            })
+        })
+    }
+
+    /// Height of first contact; −∞ where there is none.
+    fn height(&mut self, error: &PoseError) -> f64 {
+        let alignment = &self.pair.alignment;
+        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        self.nearby.turn(&pose.rotation, pose.lateral, 0.0, 0.0);
+        self.nearby.height_below(pose.lateral, f64::INFINITY).0.unwrap_or(f64::NEG_INFINITY)
+    }
+}
+
+/// Angle of the rotation of an error, for small ones: in radians.
+fn turn(error: &PoseError) -> f64 {
+    error.roll.hypot(error.pitch).hypot(error.yaw)
+}

@@ -1,0 +1,43 @@
+//! What counts as docked: how deep, and how far off a half may rest.
+//!
+//! ```text
+//!   [docked]
+//!   depth = "0.1 mm"      the seat: poses at most this much above the mated height, connected with the mated pose
+//!   x = "0.3 mm"          the largest offset at rest that still counts: what pins or latches behind the face need
+//! ```
+
+use crate::pose::Dof;
+use serde::{Deserialize, Serialize};
+
+/// What counts as docked. What it means for a pair of halves is [`crate::contact::Seat`]'s.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Docked {
+    /// How far above the mated height a half may lie and be seated, in D.
+    pub depth: f64,
+    /// The largest error at rest that counts, in the order of [`Dof::ALL`]: D and radians; none: whatever the seat allows.
+    pub limits: [Option<f64>; 5],
+}
+
+impl Default for Docked {
+    fn default() -> Self {
+        Self { depth: Self::DEFAULT_DEPTH, limits: [None; 5] }
+    }
+}
+
+impl Docked {
+    /// Above what drawings are rounded to, below any chamfer.
+    pub const DEFAULT_DEPTH: f64 = 2e-3;
+    /// Without a limit a seat may leave a half this much play before the problem counts as ill posed, in D and radians (5°).
+    pub const MOST_PLAY: [f64; 2] = [0.05, 5.0 / 180.0 * std::f64::consts::PI];
+
+    /// The limit of one error, if it has one: D or radians.
+    pub const fn limit(&self, dof: Dof) -> Option<f64> {
+        self.limits[dof.index()]
+    }
+
+    /// How much play an error may have: its limit, or what goes without one.
+    pub fn most_play(&self, dof: Dof) -> f64 {
+        self.limit(dof).unwrap_or(Self::MOST_PLAY[usize::from(dof.is_rotation())])
+    }
+}

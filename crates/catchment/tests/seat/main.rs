@@ -1,0 +1,209 @@
+//! What counts as docked, against closed forms: pegs in holes with play and chamfers, rests on the rim, flats.
+
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
+mod peg;
+
+use catchment::acceptance::Domain;
+use catchment::contact::mated::MatedProblem;
+use catchment::contact::play;
+use catchment::method::descent::{self, Follower};
+use catchment::method::drop;
+use catchment::method::zraa::{self, Zraa};
+use catchment::prelude::*;
+use peg::Peg;
+
+const LATERAL: [Dof; 2] = [Dof::X, Dof::Y];
+
+fn at(x: f64, y: f64) -> PoseError {
+    PoseError { x, y, ..PoseError::default() }
+}
+
+/// Accepts any play: what these tests are about.
+fn loose(alignment: &mut Alignment) {
+    alignment.docked.limits = [Some(0.3), Some(0.3), None, None, Some(0.6)];
+}
+
+/// Pegs of some shapes, plays and chamfers, on the floor and through.
+fn pegs() -> impl Iterator<Item = Peg> {
+    let shapes = [(4, 0.0), (6, 0.05), (8, 0.02), (32, 0.05), (4, 0.1), (32, 0.01)];
+    shapes.into_iter().zip([0.05, 0.0, 0.2, 0.1, 0.05, 0.0]).flat_map(|((sides, play), chamfer)| {
+        // Walls that coincide are a peg that does not go in: a play of rounding is none.
+        let peg = Peg::new(sides, 0.3, f64::max(play, 1e-6), chamfer);
+        [peg, Peg { blind: false, ..peg }]
+    })
+}
+
+#[test]
+fn exact_motion_and_the_exact_region_have_the_area_of_the_mouth() {
+    for peg in pegs() {
+        let range = 0.05 + 1.2 * (peg.hole + peg.chamfer - peg.peg);
+        let problem = peg.problem(&LATERAL, range, loose).unwrap_or_else(|e| panic!("{peg:?}: {e}"));
+        let Zraa::Region { area, .. } =
+            zraa::run(problem.pair(), &zraa::Settings::default(), &Exec::new()).unwrap()
+        else {
+            panic!("two translations are free")
+        };
+        assert!((area - peg.area()).abs() <= 0.01 * peg.area() + 1e-9, "{peg:?}: {area} for {}", peg.area());
+        let poses = Domain::random(problem.alignment(), 600, 3);
+        let (found, _) =
+            descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+        let share = found.counts()[0] as f64 / 600.0;
+        let expected = peg.area() / (4.0 * range * range);
+        // Four standard deviations of a share of 600.
+        let doubt = 4.0 * (expected * (1.0 - expected) / 600.0).sqrt() + 1e-9;
+        assert!((share - expected).abs() <= doubt, "{peg:?}: {share} for {expected} ± {doubt}");
+    }
+}
+
+#[test]
+fn the_corrected_sum_holds_the_area_in_its_interval() {
+    for peg in pegs().filter(|peg| peg.area() > 1e-6).step_by(3) {
+        let range = 0.05 + 1.2 * (peg.hole + peg.chamfer - peg.peg);
+        let problem = peg.problem(&LATERAL, range, loose).unwrap();
+        let answer = Run::default().on(&problem, &Exec::new()).unwrap();
+        let [lo, hi] = answer.sum_ci95().unwrap();
+        // 95 % of intervals hold it; twice their width does unless something is wrong.
+        let (middle, half) = (0.5 * (lo + hi), hi - lo);
+        assert!((peg.area() - middle).abs() <= half, "{peg:?}: {lo} … {hi} for {}", peg.area());
+    }
+}
+
+#[test]
+fn a_square_peg_that_may_turn_has_the_volume_of_its_mouth() {
+    let peg = Peg::new(4, 0.3, 0.04, 0.08);
+    let (range, count) = (0.2, 1500);
+    let problem = peg.problem(&[Dof::X, Dof::Y, Dof::Yaw], range, loose).unwrap();
+    // The tip lies over the mouth: along the diagonals, a square of half side (R + c − r (cos ψ + |sin ψ|))/√2 of offsets.
+    let area = |yaw: f64| {
+        let side = peg.hole + peg.chamfer - peg.peg * (yaw.cos() + yaw.sin().abs());
+        2.0 * side.max(0.0).powi(2)
+    };
+    let steps = 2000;
+    let mean = (0..steps).map(|k| area(0.6 * (f64::from(k) + 0.5) / f64::from(steps))).sum::<f64>()
+        / f64::from(steps);
+    let expected = mean / (4.0 * range * range);
+    let poses = Domain::random(problem.alignment(), count, 3);
+    let (found, _) =
+        descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+    let share = found.counts()[0] as f64 / count as f64;
+    let doubt = 4.0 * (expected * (1.0 - expected) / count as f64).sqrt();
+    assert!((share - expected).abs() <= doubt, "{share} for {expected} ± {doubt}");
+}
+
+#[test]
+fn the_play_is_that_of_the_walls() {
+    let peg = Peg::new(4, 0.3, 0.03, 0.05);
+    let problem = peg.problem(&LATERAL, 0.2, |_| ()).unwrap();
+    for play in play(problem.pair()) {
+        // Corners on the axes: the offset along one is the play of the corners.
+        assert!((play.minus - 0.03).abs() < 1e-4 && (play.plus - 0.03).abs() < 1e-4, "{play:?}");
+    }
+}
+
+#[test]
+fn on_the_rim_is_not_docked_and_seated_with_play_is() {
+    let peg = Peg { deep: 0.4, ..Peg::new(32, 0.505 / 3.0, 0.005 / 3.0, 0.0) };
+    let problem = peg.problem(&LATERAL, 0.1, |_| ()).unwrap();
+    // 0.3 mm off at D = 30 mm, on the rim 12 mm above the seat.
+    assert_eq!(problem.follow(&at(0.01, 0.0)).outcome, Outcome::Jammed);
+    assert_eq!(problem.follow(&at(0.0016, 0.0)).outcome, Outcome::Aligned);
+    // Half a millimetre of play in a blind hole, at rest against its wall.
+    let peg = Peg::new(32, 0.3, 0.5 / 12.0, 0.1);
+    let problem = peg.problem(&LATERAL, 0.2, |_| ()).unwrap();
+    let end = Follower::new(problem.pair(), &descent::Settings::default()).rest(&at(0.1, 0.0));
+    assert_eq!(end.outcome, Outcome::Aligned);
+    assert!((end.error.x - 0.5 / 12.0).abs() < 1e-3, "{end:?}");
+}
+
+#[test]
+fn a_hole_beside_the_mated_one_is_not_the_seat() {
+    // Two equal slots beside each other: as deep, and not connected.
+    let block = |x: [f64; 2], z: [f64; 2]| -> Vec<DVec3> {
+        (0..8).map(|k| DVec3::new(x[k & 1], [-0.5, 0.5][k >> 1 & 1], z[k >> 2])).collect()
+    };
+    let fixed = [[-0.5, -0.11], [0.11, 0.2], [0.42, 0.9]].map(|x| block(x, [-0.4, 0.0]));
+    let fixed = fixed.into_iter().chain([block([-0.5, 0.9], [-0.5, -0.4])]).collect();
+    let moving = vec![block([-0.1, 0.1], [-0.2, 0.4])];
+    let alignment = Alignment::new([Dof::X].into_iter().collect(), Mount::X);
+    let problem = Problem::new(Source::Pieces(fixed), Source::Pieces(moving), alignment).unwrap();
+    assert_eq!(problem.follow(&at(0.005, 0.0)).outcome, Outcome::Aligned);
+    assert_eq!(problem.follow(&at(0.31, 0.0)).outcome, Outcome::Jammed);
+    assert_eq!(problem.follow(&at(0.15, 0.0)).outcome, Outcome::Jammed);
+}
+
+#[test]
+fn limits_decide_where_the_seat_leaves_play() {
+    let peg = Peg::new(4, 0.3, 0.04, 0.05);
+    let limit = |x: f64| peg.problem(&[Dof::X], 0.2, |a| a.docked.limits[0] = Some(x)).unwrap();
+    // It rests where it comes down: 0.03 off.
+    assert_eq!(limit(0.035).follow(&at(0.03, 0.0)).outcome, Outcome::Aligned);
+    assert_eq!(limit(0.02).follow(&at(0.03, 0.0)).outcome, Outcome::Jammed);
+    assert!(matches!(limit(0.02).doubts(), [MatedProblem::LimitCutsPlay { dof: Dof::X, .. }]));
+    assert_eq!(limit(0.05).doubts(), []);
+}
+
+/// What keeps a problem from being built, as text.
+fn refused(problem: Result<Problem, ProblemError>) -> String {
+    match problem {
+        Err(ProblemError::Findings(found)) => found
+            .list
+            .iter()
+            .map(|f| format!("{} ({})", f.message, f.help.clone().unwrap_or_default()))
+            .collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_seat_that_leaves_an_error_free_is_refused_with_advice() {
+    let slab = || {
+        let corner =
+            |k: u8| DVec3::new(f64::from(k & 1) - 0.5, f64::from(k >> 1 & 1) - 0.5, -0.2 * f64::from(k >> 2));
+        Source::Pieces(vec![(0..8).map(corner).collect()])
+    };
+    let flat =
+        |free: &[Dof]| Problem::new(slab(), slab(), Alignment::new(free.iter().copied().collect(), Mount::X));
+    let text = refused(flat(&[Dof::X]));
+    assert!(text.contains("leaves x free") && text.contains("[docked] x = "), "{text}");
+    let text = refused(flat(&[Dof::Yaw]));
+    assert!(text.contains("leaves yaw free") && text.contains("dont_care"), "{text}");
+    // Round, found: a polygon of 18 sides in its hole.
+    let text = refused(Peg::new(18, 0.3, 0.01, 0.05).problem(&[Dof::X, Dof::Y, Dof::Yaw], 0.2, |_| ()));
+    assert!(
+        text.contains("rotation about z changes nothing") && text.contains("dont_care = [\"yaw\"]"),
+        "{text}"
+    );
+    // A hexagon turns by 3.6° in this hole.
+    assert!(Peg::new(6, 0.3, 0.01, 0.05).problem(&[Dof::X, Dof::Y, Dof::Yaw], 0.2, |_| ()).is_ok());
+}
+
+#[test]
+fn drops_agree_with_motions() {
+    let mut same = [0, 0];
+    for peg in [Peg::new(4, 0.3, 0.02, 0.08), Peg::new(6, 0.3, 0.04, 0.0)] {
+        let range = 0.03 + 1.1 * (peg.hole + peg.chamfer - peg.peg);
+        let problem = peg.problem(&LATERAL, range, |_| ()).unwrap();
+        let poses = Domain::random(problem.alignment(), 60, 5);
+        let (dropped, _) =
+            drop::run(problem.pair(), poses.clone(), &drop::Settings::default(), &Exec::new()).unwrap();
+        let (moved, _) =
+            descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+        let docks = |o: &Outcome| *o == Outcome::Aligned;
+        same[0] += dropped.outcomes.iter().zip(&moved.outcomes).filter(|(a, b)| docks(a) == docks(b)).count();
+        same[1] += dropped.outcomes.len();
+    }
+    assert!(same[0] * 100 >= same[1] * 97, "{same:?}");
+}
+
+#[test]
+fn debug() {
+    let peg = Peg::new(4, 0.3, 0.02, 0.08);
+    let problem = peg.problem(&LATERAL, 0.2, loose).unwrap();
+    let t = descent::trace(problem.pair(), &at(0.0107, 0.0308), &descent::Settings::default());
+    for w in &t.waypoints {
+        eprintln!("{:?} {} h {} travelled {}", w.error.x, w.error.y, w.height, w.travelled);
+        for t in &w.touches { eprintln!("      {:?} n {:?}", t.point, t.normal); }
+    }
+    eprintln!("{:?}", t.outcome);
+}
