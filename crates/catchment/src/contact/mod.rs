@@ -15,6 +15,7 @@ pub mod brute;
 mod candidates;
 mod element;
 mod envelope;
+mod hold;
 pub mod mated;
 mod mirror;
 mod nearby;
@@ -24,9 +25,11 @@ mod shape;
 #[cfg(test)]
 mod tests;
 mod turned;
+mod walls;
 
 pub use element::Meeting;
 pub use envelope::Envelope;
+pub use hold::Hold;
 pub use mirror::Mirror;
 pub use nearby::Nearby;
 
@@ -48,6 +51,7 @@ pub struct Pair {
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
     mirrors: Vec<Mirror>,
+    tight: bool,
 }
 
 impl Pair {
@@ -56,15 +60,22 @@ impl Pair {
         let face_from_cor = DVec3::new(0.0, 0.0, alignment.center_of_rotation);
         let fixed = connector.fixed.clone();
         let moving = connector.moving.mapped(|p| p + face_from_cor);
-        let shapes = |half: &Half| half.surfaces.iter().map(Shape::new).collect();
+        let shapes = |half: &Half| -> Vec<Shape> { half.surfaces.iter().map(Shape::new).collect() };
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
         let mirrors = mirror::of(&fixed, &moving);
-        Self { fixed, moving, alignment: alignment.clone(), fixed_shapes, moving_shapes, mirrors }
+        let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
+        Self { fixed, moving, alignment: alignment.clone(), fixed_shapes, moving_shapes, mirrors, tight }
     }
 
     /// The reflections that map the pair onto itself: poses that are images of each other have the same fate.
     pub fn mirrors(&self) -> &[Mirror] {
         &self.mirrors
+    }
+
+    /// Whether steep walls of the two halves face each other closely when mated, as a peg's and its hole's do: what is
+    /// inside can only move as its contacts let it, one after another.
+    pub fn is_tight(&self) -> bool {
+        self.tight
     }
 
     /// z of the COR at first contact, in D; `None` where the halves pass each other by.

@@ -1,5 +1,6 @@
 //! The pair at one rotation, as a list of elements: where a lowered half is stopped, and what touches there.
 
+use super::brute::SEAM;
 use super::candidates::Candidates;
 use super::element::{Element, Meeting};
 use super::shape::Shape;
@@ -41,7 +42,7 @@ impl<'a> Turned<'a> {
             }
             let z = element.height(lateral);
             let counts = if z > ceiling { !covered } else { z > highest };
-            if counts && self.foot(element, lateral.extend(z)).is_some() {
+            if counts && self.foot(element, lateral.extend(z), SEAM).is_some() {
                 if z > ceiling {
                     covered = true;
                 } else {
@@ -52,11 +53,13 @@ impl<'a> Turned<'a> {
         (highest.is_finite().then_some(highest), covered)
     }
 
-    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.
+    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`; a foot may lie
+    /// beyond the border of its feature by `seam`.
     pub(super) fn contacts(
         &self,
         position: DVec3,
         reach: f64,
+        seam: f64,
     ) -> impl Iterator<Item = (Contact, Meeting)> + '_ {
         self.elements.iter().filter_map(move |element| {
             let gap = element.gap(position);
@@ -64,7 +67,7 @@ impl<'a> Turned<'a> {
             if gap.abs() > reach {
                 return None;
             }
-            let point = self.foot(element, position)?;
+            let point = self.foot(element, position, seam)?;
             self.is_exposed(element, point, position)
                 .then_some((Contact { gap, normal: element.normal, point }, element.meeting))
         })
@@ -83,9 +86,9 @@ impl<'a> Turned<'a> {
         })
     }
 
-    fn foot(&self, element: &Element, position: DVec3) -> Option<DVec3> {
+    fn foot(&self, element: &Element, position: DVec3, seam: f64) -> Option<DVec3> {
         let [f, m] = element.meeting.shapes.map(|s| s as usize);
-        element.foot(&self.pair.fixed_shapes[f], &self.pair.moving_shapes[m], &self.rotation, position)
+        element.foot(&self.pair.fixed_shapes[f], &self.pair.moving_shapes[m], &self.rotation, position, seam)
     }
 
     /// Whether the contact lies on the surface of both solids, not on a wall between two pieces of one.

@@ -1,0 +1,202 @@
+//! The first event on the way of a step.
+//!
+//! ```text
+//!   f(s)   gap of what is met, or hold of what carries
+//!     │╲
+//!     │  ╲            clear        false position (Illinois) between the last clear share of the step and
+//!   0 ┼────╲×──────── s            the first that is not, until the event is landed on
+//!     │      ╲        not clear
+//! ```
+//!
+//! What is met is landed on within its tolerance, from either side; what is lost is left on the far side of its border, so that
+//! it is not felt again.
+
+use super::super::motion::{Motion, State};
+use super::super::projection::Vector;
+use super::{BORDER, LANDING, SUPPORT};
+use crate::contact::{Contact, Meeting};
+
+/// How far beyond the border a lost contact is left, at most, in D or radians: below what a landing tells apart.
+const FAR_SIDE: f64 = 1e-9;
+/// Most trials of a step; bisection alone takes some 30 to [`NOWHERE`].
+const MOST_TRIALS: usize = 60;
+/// A step shorter than this leads nowhere, in D.
+const NOWHERE: f64 = 1e-12;
+/// A correction may move a body by this share of its step, and by this much in D, before it is not trusted.
+const TRUSTED_SHARE: f64 = 0.1;
+const TRUSTED: f64 = 1e-7;
+/// What blocks a step at its start is one more contact if it is this close, in D.
+const CLOSE: f64 = 1e-6;
+
+/// Where a step ended.
+pub(super) enum Reached {
+    /// Here, after this length.
+    At(State, f64),
+    /// Not anywhere: something is met at once.
+    Blocked(Option<(Contact, Meeting)>),
+}
+
+/// What came of a step of some length.
+enum Trial {
+    /// Nothing met, nothing lost.
+    Clear(State),
+    /// A contact overlaps.
+    Met(State, Watched),
+    /// A contact that carries is lost.
+    Lost(State, Watched),
+    /// The contacts that carry cannot be kept.
+    Failed,
+}
+
+/// The function of a step's length whose zero is an event.
+#[derive(Clone, Copy)]
+struct Watched {
+    contact: Contact,
+    meeting: Meeting,
+    what: What,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum What {
+    Gap,
+    Hold,
+}
+
+impl Motion<'_> {
+    /// Moves along `u` by `step`, or to the first event before.
+    pub(super) fn until_event(&mut self, state: &State, u: &Vector, step: f64) -> Reached {
+        let carrying = self.sliding.as_mut().map(|s| std::mem::take(&mut s.carrying)).unwrap_or_default();
+        let reached = self.search(state, u, step, &carrying);
+        if let Some(sliding) = &mut self.sliding {
+            sliding.carrying = carrying;
+        }
+        reached
+    }
+
+    fn search(&mut self, state: &State, u: &Vector, step: f64, carrying: &[usize]) -> Reached {
+        let (mut low, mut clear) = (0.0, *state);
+        let mut high = step;
+        let mut at = step;
+        // What is watched, with its values at the clear end and at the other.
+        let mut watched: Option<(Watched, f64, f64)> = None;
+        for _ in 0..MOST_TRIALS {
+            let mut side = 0;
+            match self.attempt(state, u, at, carrying) {
+                Trial::Clear(next) => {
+                    let landed = match &watched {
+                        None => at >= high,
+                        Some((event, ..)) => {
+                            event.what == What::Gap && self.value(event, &next) <= 1.5 * LANDING
+                        }
+                    };
+                    if landed || at >= step {
+                        return Reached::At(next, at);
+                    }
+                    (low, clear) = (at, next);
+                    if let Some((event, _, _)) = &watched {
+                        let value = self.value(event, &next);
+                        if let Some((_, a, b)) = &mut watched {
+                            *a = value;
+                            *b *= 0.5;
+                        }
+                    }
+                    side = 1;
+                }
+                Trial::Met(next, event) => {
+                    high = at;
+                    let value = self.value(&event, &next);
+                    watched = Some((event, self.value(&event, &clear), value));
+                }
+                Trial::Lost(next, event) => {
+                    let value = self.value(&event, &next);
+                    if value >= -0.5 * FAR_SIDE {
+                        return Reached::At(next, at);
+                    }
+                    high = at;
+                    watched = Some((event, self.value(&event, &clear), value));
+                }
+                Trial::Failed => {
+                    high = at;
+                    watched = None;
+                }
+            }
+            let _ = side;
+            if high - low < NOWHERE {
+                break;
+            }
+            let share = match watched {
+                Some((_, a, b)) if a > 0.0 && b < 0.0 => (a / (a - b)).clamp(1e-3, 1.0 - 1e-3),
+                _ => 0.5,
+            };
+            at = low + share * (high - low);
+        }
+        if low > NOWHERE {
+            return Reached::At(clear, low);
+        }
+        Reached::Blocked(watched.and_then(|(event, ..)| {
+            let contact =
+                self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
+            (event.what == What::Gap && contact.gap.abs() <= CLOSE).then_some((contact, event.meeting))
+        }))
+    }
+
+    /// Value of what is watched at `state`, below 0 behind the event.
+    fn value(&self, watched: &Watched, state: &State) -> f64 {
+        let contact =
+            self.pair.contact(&watched.contact, &watched.meeting, &state.rotation, state.cor);
+        match watched.what {
+            What::Gap => contact.gap + 0.5 * LANDING,
+            What::Hold => self.hold(&contact, &watched.meeting, state) + 0.5 * FAR_SIDE,
+        }
+    }
+
+    fn hold(&self, contact: &Contact, meeting: &Meeting, state: &State) -> f64 {
+        let hold = self.pair.hold(contact, meeting, &state.rotation, state.cor);
+        (hold.foot + BORDER).min(hold.support + SUPPORT)
+    }
+
+    /// A step of length `at` along `u`, and what comes of it.
+    fn attempt(&mut self, state: &State, u: &Vector, at: f64, carrying: &[usize]) -> Trial {
+        let next = self.moved(state, &u.map(|x| at * x));
+        let trusted = TRUSTED_SHARE * at + TRUSTED;
+        let Some(next) =
+            self.corrected(&next, carrying, trusted).or_else(|| self.corrected(&next, &[], trusted))
+        else {
+            return Trial::Failed;
+        };
+        let (_, near) = self.horizon(self.settings.step);
+        let (_, closed) = self.horizon(at);
+        self.nearby.turn(&next.rotation, next.cor.truncate(), SUPPORT, near);
+        let mut touched = self.sliding.as_mut().map(|s| std::mem::take(&mut s.touched)).unwrap_or_default();
+        self.nearby.contacts_within(next.cor, closed + LANDING, BORDER, &mut touched);
+        // What is met first if gaps close evenly.
+        let mut first: Option<(f64, Watched)> = None;
+        for (contact, meeting) in touched.iter().filter(|(c, _)| c.gap < -LANDING) {
+            let before = self.pair.contact(contact, meeting, &state.rotation, state.cor).gap;
+            // What was as deep before is another way through the same wall.
+            if before < 0.25 * contact.gap {
+                continue;
+            }
+            let when = before / (before - contact.gap);
+            if first.is_none_or(|(earliest, _)| when < earliest) {
+                first = Some((when, Watched { contact: *contact, meeting: *meeting, what: What::Gap }));
+            }
+        }
+        if let Some(sliding) = &mut self.sliding {
+            sliding.touched = touched;
+        }
+        if let Some((_, met)) = first {
+            return Trial::Met(next, met);
+        }
+        let mut lost: Option<(f64, Watched)> = None;
+        for &k in carrying {
+            let (before, meeting) = self.contacts[k];
+            let contact = self.pair.contact(&before, &meeting, &next.rotation, next.cor);
+            let hold = self.hold(&contact, &meeting, &next);
+            if hold < 0.0 && lost.is_none_or(|(least, _)| hold < least) {
+                lost = Some((hold, Watched { contact: before, meeting, what: What::Hold }));
+            }
+        }
+        lost.map_or(Trial::Clear(next), |(_, event)| Trial::Lost(next, event))
+    }
+}
