@@ -19,6 +19,7 @@ mod hold;
 pub mod mated;
 mod mirror;
 mod nearby;
+mod overlap;
 mod plan;
 mod raster;
 mod shape;

@@ -24,9 +24,12 @@ const MOST_TRIALS: usize = 60;
 const NOWHERE: f64 = 1e-12;
 /// A correction may move a body by this share of its step, and by this much in D, before it is not trusted.
 const TRUSTED_SHARE: f64 = 0.1;
-const TRUSTED: f64 = 1e-7;
+const TRUSTED: f64 = 1e-6;
 /// What blocks a step at its start is one more contact if it is this close, in D.
 const CLOSE: f64 = 1e-6;
+
+/// False position keeps off the ends of its interval by this share of it.
+const EDGE: f64 = 1e-6;
 
 /// Where a step ended.
 pub(super) enum Reached {
@@ -40,10 +43,8 @@ pub(super) enum Reached {
 enum Trial {
     /// Nothing met, nothing lost.
     Clear(State),
-    /// A contact overlaps.
-    Met(State, Watched),
-    /// A contact that carries is lost.
-    Lost(State, Watched),
+    /// A contact overlaps, or one that carries is lost.
+    Passed(State, Watched),
     /// The contacts that carry cannot be kept.
     Failed,
 }
@@ -62,6 +63,52 @@ enum What {
     Hold,
 }
 
+impl Watched {
+    fn is_same(&self, other: &Self) -> bool {
+        self.meeting == other.meeting && self.what == other.what
+    }
+}
+
+/// An event between a clear length and one that passes it, with the values there for false position.
+struct Bracket {
+    watched: Watched,
+    clear: f64,
+    passed: f64,
+    /// Which end was moved last, for the Illinois rule: the value of an end that stays twice is halved.
+    last_clear: Option<bool>,
+}
+
+impl Bracket {
+    const fn new(watched: Watched, clear: f64, passed: f64) -> Self {
+        Self { watched, clear, passed, last_clear: None }
+    }
+
+    fn is_clear_at(&mut self, value: f64) {
+        if self.last_clear == Some(true) {
+            self.passed *= 0.5;
+        }
+        self.clear = value;
+        self.last_clear = Some(true);
+    }
+
+    fn is_passed_at(&mut self, value: f64) {
+        if self.last_clear == Some(false) {
+            self.clear *= 0.5;
+        }
+        self.passed = value;
+        self.last_clear = Some(false);
+    }
+
+    /// Where the event is expected, as a share of the way from the clear length to the other.
+    fn share(&self) -> f64 {
+        if self.clear > 0.0 && self.passed < 0.0 {
+            (self.clear / (self.clear - self.passed)).clamp(EDGE, 1.0 - EDGE)
+        } else {
+            0.5
+        }
+    }
+}
+
 impl Motion<'_> {
     /// Moves along `u` by `step`, or to the first event before.
     pub(super) fn until_event(&mut self, state: &State, u: &Vector, step: f64) -> Reached {
@@ -75,65 +122,53 @@ impl Motion<'_> {
 
     fn search(&mut self, state: &State, u: &Vector, step: f64, carrying: &[usize]) -> Reached {
         let (mut low, mut clear) = (0.0, *state);
-        let mut high = step;
-        let mut at = step;
-        // What is watched, with its values at the clear end and at the other.
-        let mut watched: Option<(Watched, f64, f64)> = None;
+        let (mut high, mut at) = (step, step);
+        let mut bracket: Option<Bracket> = None;
         for _ in 0..MOST_TRIALS {
-            let mut side = 0;
             match self.attempt(state, u, at, carrying) {
                 Trial::Clear(next) => {
-                    let landed = match &watched {
-                        None => at >= high,
-                        Some((event, ..)) => {
-                            event.what == What::Gap && self.value(event, &next) <= 1.5 * LANDING
-                        }
+                    let value = bracket.as_ref().map(|b| self.value(&b.watched, &next));
+                    let landed = match (&bracket, value) {
+                        (Some(b), Some(value)) => b.watched.what == What::Gap && value.abs() <= LANDING,
+                        _ => at >= high,
                     };
-                    if landed || at >= step {
+                    if landed {
                         return Reached::At(next, at);
                     }
                     (low, clear) = (at, next);
-                    if let Some((event, _, _)) = &watched {
-                        let value = self.value(event, &next);
-                        if let Some((_, a, b)) = &mut watched {
-                            *a = value;
-                            *b *= 0.5;
-                        }
+                    if let (Some(b), Some(value)) = (&mut bracket, value) {
+                        b.is_clear_at(value);
                     }
-                    side = 1;
                 }
-                Trial::Met(next, event) => {
-                    high = at;
-                    let value = self.value(&event, &next);
-                    watched = Some((event, self.value(&event, &clear), value));
-                }
-                Trial::Lost(next, event) => {
-                    let value = self.value(&event, &next);
-                    if value >= -0.5 * FAR_SIDE {
+                Trial::Passed(next, watched) => {
+                    let value = self.value(&watched, &next);
+                    if watched.what == What::Hold && value >= -0.5 * FAR_SIDE {
                         return Reached::At(next, at);
                     }
                     high = at;
-                    watched = Some((event, self.value(&event, &clear), value));
+                    match &mut bracket {
+                        Some(b) if b.watched.is_same(&watched) => b.is_passed_at(value),
+                        _ => bracket = Some(Bracket::new(watched, self.value(&watched, &clear), value)),
+                    }
                 }
                 Trial::Failed => {
                     high = at;
-                    watched = None;
+                    bracket = None;
                 }
             }
-            let _ = side;
+            if std::env::var("DBG").is_ok() {
+                let n = bracket.as_ref().map(|b| (b.watched.what == What::Gap, b.watched.meeting, b.watched.contact.normal, b.clear, b.passed));
+                eprintln!("   at {at:.3e} low {low:.3e} high {high:.3e} {n:?}");
+            }
             if high - low < NOWHERE {
                 break;
             }
-            let share = match watched {
-                Some((_, a, b)) if a > 0.0 && b < 0.0 => (a / (a - b)).clamp(1e-3, 1.0 - 1e-3),
-                _ => 0.5,
-            };
-            at = low + share * (high - low);
+            at = low + bracket.as_ref().map_or(0.5, Bracket::share) * (high - low);
         }
         if low > NOWHERE {
             return Reached::At(clear, low);
         }
-        Reached::Blocked(watched.and_then(|(event, ..)| {
+        Reached::Blocked(bracket.and_then(|Bracket { watched: event, .. }| {
             let contact =
                 self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
             (event.what == What::Gap && contact.gap.abs() <= CLOSE).then_some((contact, event.meeting))
@@ -170,14 +205,15 @@ impl Motion<'_> {
         let mut touched = self.sliding.as_mut().map(|s| std::mem::take(&mut s.touched)).unwrap_or_default();
         self.nearby.contacts_within(next.cor, closed + LANDING, BORDER, &mut touched);
         // What is met first if gaps close evenly.
-        let mut first: Option<(f64, Watched)> = None;
+        let mut first: Option<((bool, f64), Watched)> = None;
         for (contact, meeting) in touched.iter().filter(|(c, _)| c.gap < -LANDING) {
             let before = self.pair.contact(contact, meeting, &state.rotation, state.cor).gap;
             // What was as deep before is another way through the same wall.
             if before < 0.25 * contact.gap {
                 continue;
             }
-            let when = before / (before - contact.gap);
+            // A gap that was not open before is that of a feature which has only now come near.
+            let when = (before < -LANDING, before / (before - contact.gap));
             if first.is_none_or(|(earliest, _)| when < earliest) {
                 first = Some((when, Watched { contact: *contact, meeting: *meeting, what: What::Gap }));
             }
@@ -186,7 +222,7 @@ impl Motion<'_> {
             sliding.touched = touched;
         }
         if let Some((_, met)) = first {
-            return Trial::Met(next, met);
+            return Trial::Passed(next, met);
         }
         let mut lost: Option<(f64, Watched)> = None;
         for &k in carrying {
@@ -197,6 +233,14 @@ impl Motion<'_> {
                 lost = Some((hold, Watched { contact: before, meeting, what: What::Hold }));
             }
         }
-        lost.map_or(Trial::Clear(next), |(_, event)| Trial::Lost(next, event))
+        if let Some((_, event)) = lost {
+            return Trial::Passed(next, event);
+        }
+        let mut placed = self.sliding.as_mut().map(|s| std::mem::take(&mut s.placed)).unwrap_or_default();
+        let overlaps = self.pair.overlaps(&next.rotation, next.cor, &mut placed);
+        if let Some(sliding) = &mut self.sliding {
+            sliding.placed = placed;
+        }
+        if overlaps { Trial::Failed } else { Trial::Clear(next) }
     }
 }

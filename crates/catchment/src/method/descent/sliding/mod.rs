@@ -30,6 +30,7 @@ use super::projection::Vector;
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting};
 use event::Reached;
+use glam::DVec3;
 
 /// A gap below this touches, in D: above what the correction leaves (rounding, 1e-15, over slopes), and above [`LANDING`].
 const ACTIVE: f64 = 2e-9;
@@ -59,6 +60,8 @@ pub(super) struct Sliding {
     carrying: Vec<usize>,
     /// What is touched at the end of a step that is tried.
     touched: Vec<(Contact, Meeting)>,
+    /// The moving half's vertices there.
+    placed: Vec<DVec3>,
     rows: Vec<Vector>,
     gaps: Vec<f64>,
 }
@@ -78,8 +81,11 @@ impl Motion<'_> {
         if self.contacts.is_empty() {
             return self.drop_down(state);
         }
+        let state = &mut state.clone();
         for _ in 0..=MOST_BLOCKERS {
             let Some(start) = self.direction(state) else { return Advance::Ended(Outcome::Jammed, *state) };
+            let carrying = self.sliding.as_ref().map(|s| s.carrying.clone()).unwrap_or_default();
+            if let Some(touching) = self.corrected(state, &carrying, 1e-6) { *state = touching; }
             let mut step = pace.step.min(self.settings.step);
             let mut u = start;
             while step > self.settings.step * LEAST_SHARE {
