@@ -42,6 +42,7 @@ impl Motion<'_> {
                     sliding.gaps.push(-contact.gap);
                 }
             }
+            if std::env::var("DBG").is_ok() && held.len() > 0 { eprintln!("         pass {pass} worst {worst:.3e} moved {moved:.3e}"); }
             if worst <= EXACT || pass == PASSES {
                 break;
             }

@@ -112,20 +112,11 @@ impl Bracket {
 impl Motion<'_> {
     /// Moves along `u` by `step`, or to the first event before.
     pub(super) fn until_event(&mut self, state: &State, u: &Vector, step: f64) -> Reached {
-        let carrying = self.sliding.as_mut().map(|s| std::mem::take(&mut s.carrying)).unwrap_or_default();
-        let reached = self.search(state, u, step, &carrying);
-        if let Some(sliding) = &mut self.sliding {
-            sliding.carrying = carrying;
-        }
-        reached
-    }
-
-    fn search(&mut self, state: &State, u: &Vector, step: f64, carrying: &[usize]) -> Reached {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
         let mut bracket: Option<Bracket> = None;
         for _ in 0..MOST_TRIALS {
-            match self.attempt(state, u, at, carrying) {
+            match self.attempt(state, u, at) {
                 Trial::Clear(next) => {
                     let value = bracket.as_ref().map(|b| self.value(&b.watched, &next));
                     let landed = match (&bracket, value) {
@@ -191,14 +182,22 @@ impl Motion<'_> {
     }
 
     /// A step of length `at` along `u`, and what comes of it.
-    fn attempt(&mut self, state: &State, u: &Vector, at: f64, carrying: &[usize]) -> Trial {
+    fn attempt(&mut self, state: &State, start: &Vector, at: f64) -> Trial {
+        let middle = self.moved(state, &start.map(|x| 0.5 * at * x));
+        let u = self.direction(&middle).unwrap_or(*start);
         let next = self.moved(state, &u.map(|x| at * x));
         let trusted = TRUSTED_SHARE * at + TRUSTED;
-        let Some(next) =
-            self.corrected(&next, carrying, trusted).or_else(|| self.corrected(&next, &[], trusted))
-        else {
-            return Trial::Failed;
-        };
+        let carrying = self.sliding.as_mut().map(|s| std::mem::take(&mut s.carrying)).unwrap_or_default();
+        let corrected = self.corrected(&next, &carrying, trusted).or_else(|| { if std::env::var("DBG").is_ok() { eprintln!("      uncorrected at {at:.3e} {carrying:?}"); } self.corrected(&next, &[], trusted) });
+        let trial = corrected.map_or(Trial::Failed, |next| self.judge(state, next, at, &carrying));
+        if let Some(sliding) = &mut self.sliding {
+            sliding.carrying = carrying;
+        }
+        trial
+    }
+
+    /// What comes of a step of length `at` that ends at `next`.
+    fn judge(&mut self, state: &State, next: State, at: f64, carrying: &[usize]) -> Trial {
         let (_, near) = self.horizon(self.settings.step);
         let (_, closed) = self.horizon(at);
         self.nearby.turn(&next.rotation, next.cor.truncate(), SUPPORT, near);

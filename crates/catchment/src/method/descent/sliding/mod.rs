@@ -99,10 +99,10 @@ impl Motion<'_> {
                 }
                 step *= 0.5;
             }
-            match self.until_event(state, &u, step) {
+            match self.until_event(state, &start, step) {
                 Reached::At(next, share) => {
                     pace.step = 2.0 * step;
-                    return Advance::Moved(next, share * lateral(&u));
+                    return Advance::Moved(next, share * lateral(&start));
                 }
                 Reached::Blocked(Some(blocker)) => self.contacts.push(blocker),
                 Reached::Blocked(None) => break,
