@@ -11,7 +11,6 @@
 
 use super::Contact;
 use super::shape::Shape;
-use crate::contact::brute::SEAM;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Which features meet; indices into the fixed and the moving shape.
@@ -95,19 +94,26 @@ impl Element {
     }
 
     /// The point of the fixed half where this element touches (or would, across its gap) with the COR at `c` and the
-    /// moving half at `rotation`; `None` when the foot misses one of the features.
-    pub(super) fn foot(&self, fixed: &Shape, moving: &Shape, rotation: &DMat3, c: DVec3) -> Option<DVec3> {
+    /// moving half at `rotation`; `None` when the foot misses one of the features by more than `seam`.
+    pub(super) fn foot(
+        &self,
+        fixed: &Shape,
+        moving: &Shape,
+        rotation: &DMat3,
+        c: DVec3,
+        seam: f64,
+    ) -> Option<DVec3> {
         match self.meeting.features {
             Features::FacetCorner { facet, vertex } => {
                 let point = c + *rotation * moving.at(vertex);
                 let foot = point - self.normal * self.gap(c);
-                on_facet(fixed, facet, foot).then_some(foot)
+                on_facet(fixed, facet, foot, seam).then_some(foot)
             }
             Features::CornerFacet { vertex, facet } => {
                 let foot = fixed.at(vertex);
                 // Seen from the COR, across the gap.
                 let seen = foot + self.normal * self.gap(c) - c;
-                on_facet(moving, facet, rotation.transpose() * seen).then_some(foot)
+                on_facet(moving, facet, rotation.transpose() * seen, seam).then_some(foot)
             }
             Features::EdgeEdge { fixed: [a, b], moving: [p, q] } => {
                 let (a, p) = (fixed.at(a), *rotation * moving.at(p));
@@ -119,7 +125,7 @@ impl Element {
                 let t = d.cross(u).dot(across) * scale;
                 let on = |k: f64, edge: DVec3| {
                     let beyond = (k - 1.0).max(-k);
-                    beyond <= 0.0 || beyond * beyond * edge.length_squared() <= SEAM * SEAM
+                    beyond <= 0.0 || beyond * beyond * edge.length_squared() <= seam * seam
                 };
                 (on(s, u) && on(t, w)).then(|| a + u * s)
             }
@@ -167,7 +173,7 @@ impl Element {
 }
 
 /// Whether a point of a facet's plane lies on the facet, within the seam.
-fn on_facet(shape: &Shape, facet: u32, point: DVec3) -> bool {
+fn on_facet(shape: &Shape, facet: u32, point: DVec3, seam: f64) -> bool {
     let facet = &shape.facets[facet as usize];
     let n = facet.corners.len();
     let mut a = shape.at(facet.corners[n - 1]);
@@ -175,7 +181,7 @@ fn on_facet(shape: &Shape, facet: u32, point: DVec3) -> bool {
         let b = shape.at(k);
         let along = b - a;
         let left = facet.normal.dot(along.cross(point - a));
-        let inside = left >= 0.0 || left * left <= SEAM * SEAM * along.length_squared();
+        let inside = left >= 0.0 || left * left <= seam * seam * along.length_squared();
         a = b;
         inside
     })

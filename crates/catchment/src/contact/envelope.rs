@@ -1,5 +1,6 @@
 //! The upper envelope of all elements at one rotation: heights wherever the moving half is.
 
+use super::brute::SEAM;
 use super::candidates::{Candidates, ROUNDING, Sieve};
 use super::turned::{Turned, VERTICAL};
 use super::{Contact, Lattice, Pair};
@@ -47,7 +48,7 @@ impl<'a> Envelope<'a> {
     /// Everything that carries the moving half, or is closer than `reach` along its normal, with the COR at `position`.
     pub fn contacts(&self, position: DVec3, reach: f64, out: &mut Vec<Contact>) {
         out.clear();
-        out.extend(self.turned.contacts(position, reach).map(|(contact, _)| contact));
+        out.extend(self.turned.contacts(position, reach, SEAM).map(|(contact, _)| contact));
     }
 
     /// Heights over a lattice of *COR* positions, x fastest; −∞ where the halves pass each other by.

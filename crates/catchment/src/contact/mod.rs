@@ -15,9 +15,11 @@ pub mod brute;
 mod candidates;
 mod element;
 mod envelope;
+mod hold;
 pub mod mated;
 mod mirror;
 mod nearby;
+mod overlap;
 mod plan;
 mod play;
 mod raster;
@@ -26,9 +28,11 @@ mod shape;
 #[cfg(test)]
 mod tests;
 mod turned;
+mod walls;
 
 pub use element::Meeting;
 pub use envelope::Envelope;
+pub use hold::Hold;
 pub use mirror::Mirror;
 pub use nearby::Nearby;
 pub use play::{Play, play};
@@ -52,6 +56,7 @@ pub struct Pair {
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
     mirrors: Vec<Mirror>,
+    tight: bool,
     mated_height: f64,
 }
 
@@ -61,12 +66,13 @@ impl Pair {
         let face_from_cor = DVec3::new(0.0, 0.0, alignment.center_of_rotation);
         let fixed = connector.fixed.clone();
         let moving = connector.moving.mapped(|p| p + face_from_cor);
-        let shapes = |half: &Half| half.surfaces.iter().map(Shape::new).collect();
+        let shapes = |half: &Half| -> Vec<Shape> { half.surfaces.iter().map(Shape::new).collect() };
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
         let mirrors = mirror::of(&fixed, &moving);
-        let alignment = alignment.clone();
+        let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
+        let (alignment, mated_height) = (alignment.clone(), f64::NEG_INFINITY);
         let mut pair =
-            Self { fixed, moving, alignment, fixed_shapes, moving_shapes, mirrors, mated_height: 0.0 };
+            Self { fixed, moving, alignment, fixed_shapes, moving_shapes, mirrors, tight, mated_height };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
         pair
@@ -80,6 +86,12 @@ impl Pair {
     /// The reflections that map the pair onto itself: poses that are images of each other have the same fate.
     pub fn mirrors(&self) -> &[Mirror] {
         &self.mirrors
+    }
+
+    /// Whether steep walls of the two halves face each other closely when mated, as a peg's and its hole's do: what is
+    /// inside can only move as its contacts let it, one after another.
+    pub fn is_tight(&self) -> bool {
+        self.tight
     }
 
     /// z of the COR at first contact, in D; `None` where the halves pass each other by.

@@ -91,7 +91,19 @@ impl<'a> Nearby<'a> {
     /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.
     pub fn contacts(&self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
         out.clear();
-        out.extend(self.turned.contacts(position, reach));
+        out.extend(self.turned.contacts(position, reach, SEAM));
+    }
+
+    /// As [`Nearby::contacts`], counting also what touches beyond the border of its feature by up to `seam`, in D.
+    pub fn contacts_within(
+        &self,
+        position: DVec3,
+        reach: f64,
+        seam: f64,
+        out: &mut Vec<(Contact, Meeting)>,
+    ) {
+        out.clear();
+        out.extend(self.turned.contacts(position, reach, seam));
     }
 
     /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than

@@ -1,5 +1,6 @@
 //! The pair at one rotation, as a list of elements: where a lowered half is stopped, and what touches there.
 
+use super::brute::SEAM;
 use super::candidates::Candidates;
 use super::element::{Element, Meeting};
 use super::shape::Shape;
@@ -41,7 +42,7 @@ impl<'a> Turned<'a> {
             }
             let z = element.height(lateral);
             let counts = if z > ceiling { !covered } else { z > highest };
-            if counts && self.foot(element, lateral.extend(z)).is_some() {
+            if counts && self.foot(element, lateral.extend(z), SEAM).is_some() {
                 if z > ceiling {
                     covered = true;
                 } else {
@@ -52,11 +53,13 @@ impl<'a> Turned<'a> {
         (highest.is_finite().then_some(highest), covered)
     }
 
-    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.
+    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`; a foot may lie
+    /// beyond the border of its feature by `seam`.
     pub(super) fn contacts(
         &self,
         position: DVec3,
         reach: f64,
+        seam: f64,
     ) -> impl Iterator<Item = (Contact, Meeting)> + '_ {
         self.elements.iter().filter_map(move |element| {
             let gap = element.gap(position);
@@ -64,7 +67,7 @@ impl<'a> Turned<'a> {
             if gap.abs() > reach {
                 return None;
             }
-            let point = self.foot(element, position)?;
+            let point = self.foot(element, position, seam)?;
             self.is_exposed(element, point, position)
                 .then_some((Contact { gap, normal: element.normal, point }, element.meeting))
         })
@@ -83,29 +86,59 @@ impl<'a> Turned<'a> {
         })
     }
 
-    fn foot(&self, element: &Element, position: DVec3) -> Option<DVec3> {
+    fn foot(&self, element: &Element, position: DVec3, seam: f64) -> Option<DVec3> {
         let [f, m] = element.meeting.shapes.map(|s| s as usize);
-        element.foot(&self.pair.fixed_shapes[f], &self.pair.moving_shapes[m], &self.rotation, position)
+        element.foot(&self.pair.fixed_shapes[f], &self.pair.moving_shapes[m], &self.rotation, position, seam)
     }
 
     /// Whether the contact lies on the surface of both solids, not on a wall between two pieces of one.
     fn is_exposed(&self, element: &Element, point: DVec3, position: DVec3) -> bool {
-        /// How far outside its own surface a contact looks for another piece of the same solid, in D.
-        const LOOK: f64 = 1e-7;
-        let hidden = |shapes: &[Shape], own: u32, point: DVec3| {
-            shapes.len() > 1
-                && shapes
-                    .iter()
-                    .enumerate()
-                    .any(|(s, shape)| s as u32 != own && shape.contains(point, LOOK * 1e-3))
-        };
-        let outward = element.normal * LOOK;
+        let [fixed, moving] = element.meeting.shapes;
+        let back = self.rotation.transpose();
         let seen = point + element.normal * element.gap(position) - position;
-        !hidden(&self.pair.fixed_shapes, element.meeting.shapes[0], point + outward)
-            && !hidden(
-                &self.pair.moving_shapes,
-                element.meeting.shapes[1],
-                self.rotation.transpose() * (seen - outward),
-            )
+        !is_covered(&self.pair.fixed_shapes, fixed, point, element.normal)
+            && !is_covered(&self.pair.moving_shapes, moving, back * seen, back * -element.normal)
     }
+}
+
+/// How far outside its own surface a contact looks for another piece of the same solid, in D.
+const LOOK: f64 = 1e-7;
+/// How far around a contact the surface of its piece is looked at, and how far above and below, in D: above the distance by which a foot
+/// may overshoot its feature, and flat enough for walls that flare.
+const AROUND: f64 = 1e-6;
+const BESIDE: f64 = 5e-8;
+/// By how much a point must be inside a piece, in D.
+const WITHIN: f64 = 1e-10;
+
+/// Whether a point of the surface of one convex piece, `normal` its tangent plane there, is inside the solid that the pieces make.
+///
+/// ```text
+///        ╱ upper piece          ×  just above: within another piece, so covered;
+///    ──·╱──────────── ×         ·  at the rim where a piece ends that is covered up to there: above it is nothing,
+///      │ lower piece               but all of its surface around is covered, so it is no ledge
+/// ```
+fn is_covered(shapes: &[Shape], own: u32, point: DVec3, normal: DVec3) -> bool {
+    if shapes.len() < 2 {
+        return false;
+    }
+    let others = || shapes.iter().enumerate().filter(|(s, _)| *s as u32 != own).map(|(_, shape)| shape);
+    if others().any(|shape| shape.contains(point + normal * LOOK, WITHIN)) {
+        return true;
+    }
+    if !others().any(|shape| shape.contains(point, -AROUND)) {
+        return false;
+    }
+    let (side, across) = normal.any_orthonormal_pair();
+    let mut any = false;
+    for k in 0..8 {
+        let (sine, cosine) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+        let near = point + (side * cosine + across * sine) * AROUND;
+        if shapes[own as usize].contains(near - normal * BESIDE, WITHIN) {
+            if !others().any(|shape| shape.contains(near + normal * BESIDE, WITHIN)) {
+                return false;
+            }
+            any = true;
+        }
+    }
+    any
 }

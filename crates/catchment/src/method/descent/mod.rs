@@ -13,6 +13,7 @@
 pub(super) mod door;
 mod motion;
 mod projection;
+mod sliding;
 #[cfg(test)]
 mod tests;
 mod trajectory;

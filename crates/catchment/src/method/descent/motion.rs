@@ -6,6 +6,7 @@
 //! is halved.
 
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
+use super::sliding::Sliding;
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair, Seat};
@@ -14,14 +15,14 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// Position of the moving half.
 #[derive(Debug, Clone, Copy)]
-struct State {
+pub(super) struct State {
     /// COR in the world frame.
-    cor: DVec3,
-    rotation: DMat3,
+    pub(super) cor: DVec3,
+    pub(super) rotation: DMat3,
     /// The same rotation where all three are free.
-    spin: DQuat,
+    pub(super) spin: DQuat,
     /// (roll, pitch, yaw) where some rotation is locked; unused when all three are free.
-    angles: [f64; 3],
+    pub(super) angles: [f64; 3],
 }
 
 /// How long a motion is followed.
@@ -34,7 +35,7 @@ pub(super) enum Until {
 }
 
 /// How a motion goes on.
-enum Advance {
+pub(super) enum Advance {
     /// To here, by this length in the ρ-metric.
     Moved(State, f64),
     /// No further than here.
@@ -42,9 +43,9 @@ enum Advance {
 }
 
 /// How boldly a motion steps; kept from step to step.
-struct Pace {
+pub(super) struct Pace {
     /// Length of the next step in the ρ-metric, in D.
-    step: f64,
+    pub(super) step: f64,
     /// How hard the force pushes, in steps.
     reach: f64,
     /// How far it reached: the length of the last displacement before it was cut to a step, in steps.
@@ -93,20 +94,29 @@ const SAME: f64 = 1e-12;
 
 /// A mover of poses for one pair: owns the buffers.
 pub(super) struct Motion<'a> {
-    pair: &'a Pair,
-    settings: &'a Settings,
+    pub(super) pair: &'a Pair,
+    pub(super) settings: &'a Settings,
     seat: Seat<'a>,
-    nearby: Nearby<'a>,
-    contacts: Vec<(Contact, Meeting)>,
+    pub(super) nearby: Nearby<'a>,
+    pub(super) contacts: Vec<(Contact, Meeting)>,
     /// Scratch for [`Motion::cut`].
     carrying: Vec<(Contact, Meeting)>,
     rows: Vec<Vector>,
     gaps: Vec<f64>,
-    projection: Projection,
+    pub(super) projection: Projection,
+    /// Where fits are tight: what follows the contacts from event to event.
+    pub(super) sliding: Option<Sliding>,
     /// Largest distance of a moving corner from the COR.
     radius: f64,
     /// All three rotations free: they live on SO(3), not in Euler angles.
     spherical: bool,
+}
+
+impl Pace {
+    /// For a first step of this length.
+    pub(super) const fn new(step: f64) -> Self {
+        Self { step, reach: 1.0, share: 1.0 }
+    }
 }
 
 impl<'a> Motion<'a> {
@@ -124,6 +134,7 @@ impl<'a> Motion<'a> {
             rows: Vec::new(),
             gaps: Vec::new(),
             projection: Projection::default(),
+            sliding: pair.is_tight().then(Sliding::default),
             radius,
             spherical: pair.alignment.free.rotations() == 3,
         }
@@ -139,7 +150,7 @@ impl<'a> Motion<'a> {
     ) -> (Outcome, PoseError) {
         let alignment = &self.pair.alignment;
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
-        let mut pace = Pace { step: self.settings.step, reach: 1.0, share: 1.0 };
+        let mut pace = Pace::new(self.settings.step);
         self.nearby.leave();
         self.turn(&start.rotation, start.lateral, pace.step);
         let (Some(z), _) = self.nearby.height_below(start.lateral, f64::INFINITY) else {
@@ -157,7 +168,11 @@ impl<'a> Motion<'a> {
         let mut seated = false;
         let called = until == Until::Known && !self.seat.is_limited();
         for count in 0..self.settings.max_steps {
-            self.gather(&state, pace.step);
+            if self.sliding.is_some() {
+                state = self.feel(&state);
+            } else {
+                self.gather(&state, pace.step);
+            }
             if let Some(waypoints) = record.as_deref_mut() {
                 waypoints.push(self.waypoint(&state, travelled));
             }
@@ -171,7 +186,12 @@ impl<'a> Motion<'a> {
                 }
                 mark = (count, travelled, state.cor.z);
             }
-            match self.advance(&state, &mut pace) {
+            let advance = if self.sliding.is_some() {
+                self.slide(&state, &mut pace)
+            } else {
+                self.advance(&state, &mut pace)
+            };
+            match advance {
                 Advance::Moved(next, length) => {
                     state = next;
                     travelled += length;
@@ -191,7 +211,7 @@ impl<'a> Motion<'a> {
     }
 
     /// One step from `state`, whose contacts have been gathered: halved until the height agrees with it.
-    fn advance(&mut self, state: &State, pace: &mut Pace) -> Advance {
+    pub(super) fn advance(&mut self, state: &State, pace: &mut Pace) -> Advance {
         let longest = self.settings.step;
         let (mut u, mut length) = self.displacement(pace);
         let mut fresh = true;
@@ -289,18 +309,18 @@ impl<'a> Motion<'a> {
         self.contacts = contacts;
     }
 
-    fn horizon(&self, step: f64) -> (f64, f64) {
+    pub(super) fn horizon(&self, step: f64) -> (f64, f64) {
         horizon(step, self.radius, self.pair.alignment.rotation_length)
     }
 
     /// Prepares for questions at `lateral`, for a step of length `step`.
-    fn turn(&mut self, rotation: &DMat3, lateral: DVec2, step: f64) {
+    pub(super) fn turn(&mut self, rotation: &DMat3, lateral: DVec2, step: f64) {
         let (slack, near) = self.horizon(step);
         self.nearby.turn(rotation, lateral, slack, near);
     }
 
     /// Finds all contacts that a step may close, as rows of the projection.
-    fn gather(&mut self, state: &State, step: f64) {
+    pub(super) fn gather(&mut self, state: &State, step: f64) {
         let (_, near) = self.horizon(step);
         self.nearby.contacts(state.cor, near, &mut self.contacts);
         self.contacts.retain(|(c, _)| c.gap > -OVERLAP);
@@ -332,7 +352,7 @@ impl<'a> Motion<'a> {
     }
 
     /// What a displacement does to the gap of a contact.
-    fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
+    pub(super) fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
         let free = self.pair.alignment.free;
         let n = contact.normal;
         let arm = contact.point + n * contact.gap - state.cor;
@@ -388,7 +408,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Axes of the free rotations in the world frame, unit; zero for locked ones.
-    fn axes(&self, state: &State) -> [DVec3; 3] {
+    pub(super) fn axes(&self, state: &State) -> [DVec3; 3] {
         if self.spherical {
             return [DVec3::X, DVec3::Y, DVec3::Z];
         }
@@ -446,7 +466,7 @@ impl<'a> Motion<'a> {
         (u, length)
     }
 
-    fn moved(&self, state: &State, u: &Vector) -> State {
+    pub(super) fn moved(&self, state: &State, u: &Vector) -> State {
         let cor = state.cor + DVec3::new(u[0], u[1], u[2]);
         let turn = [u[3], u[4], u[5]].map(|x| x / self.pair.alignment.rotation_length);
         if self.spherical {

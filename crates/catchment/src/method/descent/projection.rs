@@ -56,6 +56,7 @@ impl Projection {
         scale: f64,
     ) -> Option<Vector> {
         self.columns.clear();
+        self.passive.count = 0;
         let mut free = true;
         for (row, gap) in rows.iter().zip(gaps) {
             // In v = (u − push)/scale:  row·v ≥ −(gap + row·push)/scale.
@@ -75,10 +76,14 @@ impl Projection {
             .then(|| std::array::from_fn(|k| push[k] - scale * residual[k] / residual[GAPS]))
     }
 
+    /// The rows that the last displacement presses against: those with a multiplier above 0.
+    pub(super) fn pressed(&self) -> &[usize] {
+        &self.passive.columns[..self.passive.count]
+    }
+
     /// Residual `E λ − f` of non-negative least squares `min |E λ − f|, λ ≥ 0` with f = 1 in the row of the gaps.
     fn non_negative_residual(&mut self) -> Column {
         let Self { columns, passive } = self;
-        passive.count = 0;
         let mut residual = TARGET.map(|t| -t);
         let limit = 3 * columns.len() + 20;
         for _ in 0..limit {

@@ -1,0 +1,87 @@
+//! How firmly a contact is held: how far it is from ending at the border of one of its features.
+//!
+//! ```text
+//!       foot                      support
+//!    ┌────────────┐                ╲  n ↑  ╱
+//!    │      ×←d─→│                 ╲   │ ╱  s      a corner or an edge holds as long as its spokes s
+//!    └────────────┘                  ╲ │╱          keep to one side of the plane across n
+//!    d: distance to the border        ╲╱           (n·s of the spoke that comes closest)
+//! ```
+//!
+//! Both fall through zero continuously where the contact ends, so that the moment can be found by interpolation.
+//! Whether another piece of the same solid covers the contact is not asked.
+
+use super::element::{Features, Meeting};
+use super::shape::{Ridge, Shape};
+use super::{Contact, Pair};
+use glam::{DMat3, DVec3};
+
+/// How far a contact is from ending; negative beyond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hold {
+    /// Distance of the foot from the border of the features, in D.
+    pub foot: f64,
+    /// Sine of the angle by which the features support the normal.
+    pub support: f64,
+}
+
+impl Pair {
+    /// How firmly the two features of `meeting` hold `contact`, which is theirs with the COR at `position` and the moving
+    /// half at `rotation`.
+    pub fn hold(&self, contact: &Contact, meeting: &Meeting, rotation: &DMat3, position: DVec3) -> Hold {
+        let [f, m] = meeting.shapes.map(|s| s as usize);
+        let (fixed, moving) = (&self.fixed_shapes[f], &self.moving_shapes[m]);
+        let back = rotation.transpose();
+        let n = contact.normal;
+        // The same contact as the moving half sees it.
+        let seen = back * (contact.point + n * contact.gap - position);
+        match meeting.features {
+            Features::FacetCorner { facet, vertex } => Hold {
+                foot: inside(fixed, facet, contact.point),
+                support: supported(moving, vertex, back * n),
+            },
+            Features::CornerFacet { vertex, facet } => {
+                Hold { foot: inside(moving, facet, seen), support: supported(fixed, vertex, -n) }
+            }
+            Features::EdgeEdge { fixed: f, moving: m } => {
+                let foot = between(fixed, f, contact.point).min(between(moving, m, seen));
+                let support = spread(fixed, f, -n).min(spread(moving, m, back * n));
+                Hold { foot, support }
+            }
+        }
+    }
+}
+
+/// Distance of a point of a facet's plane from the facet's border; negative outside.
+fn inside(shape: &Shape, facet: u32, point: DVec3) -> f64 {
+    let facet = &shape.facets[facet as usize];
+    let corners = facet.corners.iter().map(|&k| shape.at(k));
+    let next = corners.clone().cycle().skip(1);
+    corners
+        .zip(next)
+        .map(|(a, b)| facet.normal.dot((b - a).normalize_or_zero().cross(point - a)))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Distance of a point of an edge's line from the nearer end; negative beyond.
+fn between(shape: &Shape, ends: [u32; 2], point: DVec3) -> f64 {
+    let [a, b] = ends.map(|k| shape.at(k));
+    let along = (b - a).normalize_or_zero();
+    (point - a).dot(along).min((b - point).dot(along))
+}
+
+/// Smallest sine by which the neighbours of a corner lie along `toward`.
+fn supported(shape: &Shape, vertex: u32, toward: DVec3) -> f64 {
+    shape.corners.iter().find(|c| c.vertex == vertex).map_or(f64::INFINITY, |corner| {
+        let spokes = &shape.spokes[corner.spokes.start as usize..corner.spokes.end as usize];
+        spokes.iter().map(|s| toward.dot(*s)).fold(f64::INFINITY, f64::min)
+    })
+}
+
+/// Smaller sine by which the two facets beside an edge lie along `toward`.
+fn spread(shape: &Shape, ends: [u32; 2], toward: DVec3) -> f64 {
+    shape.ridges.iter().find(|r| r.ends == ends).map_or(f64::INFINITY, |ridge: &Ridge| {
+        let [left, right] = ridge.normals;
+        toward.dot(left.cross(ridge.along)).min(toward.dot(ridge.along.cross(right)))
+    })
+}

@@ -1,0 +1,85 @@
+//! Whether the halves overlap, found near by near.
+//!
+//! ```text
+//!         moving ridge ╲                 an edge of one passes through a facet of the other by more than THROUGH,
+//!      ─────────────────╳───── fixed     at both of its ends and to all sides of the point where it does
+//!                        ╲
+//! ```
+//!
+//! Between non-convex halves an overlap need not show as a contact with a negative gap: where two rims cross at the foot
+//! of both edges, neither edge supports the normal any more. Only convex edges are tried: a reflex one lies at the bottom of
+//! a valley, where convex edges of the other half have passed before.
+//!
+//! The same answer as [`Nearby::is_pierced`](super::Nearby::is_pierced) where facets are larger than the overlap, at the cost of
+//! what is near in plan view.
+
+use super::Pair;
+use super::plan::Plan;
+use super::shape::Shape;
+use glam::{DMat3, DVec3};
+
+/// What counts as through rather than touching, in D.
+const THROUGH: f64 = 1e-6;
+
+impl Pair {
+    /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`; `placed` is scratch for the
+    /// moving vertices.
+    pub fn overlaps(&self, rotation: &DMat3, position: DVec3, placed: &mut Vec<DVec3>) -> bool {
+        self.moving_shapes.iter().any(|moving| {
+            placed.clear();
+            placed.extend(moving.vertices.iter().map(|v| *rotation * *v + position));
+            let whole = Plan::around(placed.iter().map(|p| p.truncate()));
+            self.fixed_shapes
+                .iter()
+                .filter(|fixed| fixed.plans.facets.bounds().meets(&whole))
+                .any(|fixed| pierce(fixed, moving, placed, rotation))
+        })
+    }
+}
+
+fn pierce(fixed: &Shape, moving: &Shape, placed: &[DVec3], rotation: &DMat3) -> bool {
+    let at = |k: u32| placed[k as usize];
+    let plan = |ids: &[u32]| Plan::around(ids.iter().map(|&k| at(k).truncate()));
+    let mut found = false;
+    for ridge in &moving.ridges {
+        let ends = ridge.ends.map(at);
+        fixed.plans.facets.visit(&plan(&ridge.ends), |k| {
+            let facet = &fixed.facets[k as usize];
+            let corners = || facet.corners.iter().map(|&c| fixed.at(c));
+            found = found || passes(ends, facet.normal, corners);
+        });
+        if found {
+            return true;
+        }
+    }
+    for facet in &moving.facets {
+        let normal = *rotation * facet.normal;
+        fixed.plans.ridges.visit(&plan(&facet.corners), |k| {
+            let ends = fixed.ridges[k as usize].ends.map(|c| fixed.at(c));
+            let corners = || facet.corners.iter().map(|&c| at(c));
+            found = found || passes(ends, normal, corners);
+        });
+        if found {
+            return true;
+        }
+    }
+    false
+}
+
+/// Whether the segment between `ends` passes through a convex polygon of this unit normal.
+fn passes<I: Iterator<Item = DVec3> + Clone>(
+    ends: [DVec3; 2],
+    normal: DVec3,
+    corners: impl Fn() -> I,
+) -> bool {
+    let Some(origin) = corners().next() else { return false };
+    let [above, below] = ends.map(|p| normal.dot(p - origin));
+    if above.min(below) > -THROUGH || above.max(below) < THROUGH {
+        return false;
+    }
+    let point = ends[0] + (ends[1] - ends[0]) * (above / (above - below));
+    let next = corners().cycle().skip(1);
+    corners()
+        .zip(next)
+        .all(|(p, q)| normal.dot((q - p).normalize_or_zero().cross(point - p)) > THROUGH)
+}

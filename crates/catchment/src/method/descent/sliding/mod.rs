@@ -1,0 +1,155 @@
+//! Motion from event to event, where fits are tight.
+//!
+//! ```text
+//!     q₀ ──── s·u ────▶ q₁      the contacts that carry the body are kept, all others stay open
+//!             │
+//!             ├ met     a contact closes: its gap falls through 0
+//!             └ lost    a foot leaves its feature, or the feature stops supporting the normal
+//! ```
+//!
+//! A step between walls that ignores what happens within it lets go of contacts that carry the body, and what it meets
+//! later compensates in height, not in the other errors. So each step ends at the first event:
+//!
+//! 1. Active contacts are those that touch and are truly supported. None: straight down to the next one.
+//! 2. The direction is the closest one to straight down that no active contact forbids (the minimum-norm point of
+//!    the gradients, see [`super::projection`]), taken again at the middle of the step; the step is halved until the two agree.
+//! 3. Newton's method brings the contacts that carry back to touching ([`correction`]).
+//! 4. If anything was met or lost on the way, the step ends there ([`event`]).
+//!
+//! Heights are not reset and walls keep no margin: positions are exact to rounding, and outcomes do not depend on the step
+//! up to the midpoint rule's error.
+//!
+//! Not promised: a way on through states that this cannot follow (contacts that appear already deep). There one step is
+//! taken as where nothing is tight.
+
+mod correction;
+mod event;
+
+use super::motion::{Advance, Motion, Pace, State};
+use super::projection::Vector;
+use crate::acceptance::Outcome;
+use crate::contact::{Contact, Meeting};
+use event::Reached;
+use glam::DVec3;
+
+/// A gap below this touches, in D: above what the correction leaves (rounding, 1e-15, over slopes), and above [`LANDING`].
+const ACTIVE: f64 = 2e-9;
+/// Overlap up to which a contact still counts, in D: what a height rounded on a steep slope leaves. Deeper ones were passed.
+const DEEPEST: f64 = 1e-7;
+/// A contact is landed on when its gap is this close to 0, in D.
+const LANDING: f64 = 1e-9;
+/// A foot counts as on its feature up to this far beyond the border, in D: above [`ACTIVE`], so that the facets on both
+/// sides of a valley are felt together; below the distance at which walls between pieces are looked for (1e-7).
+const BORDER: f64 = 1e-8;
+/// Sine by which a feature may fail to support a normal: faces that lie flush after a correction.
+const SUPPORT: f64 = 1e-7;
+
+/// Rest: where the force alone would push the body by 1, it moves by less than this.
+const STILL: f64 = 1e-7;
+/// Largest change of the direction, a unit in its largest part, from the start of a step to its middle.
+const BEND: f64 = 0.05;
+/// Steps are not halved below this share for the sake of the direction: edges that are nearly parallel turn at any scale.
+const LEAST_SHARE: f64 = 1e-6;
+/// What was met at the very start of a step is one more contact, at most so often: the corners of two faces.
+const MOST_BLOCKERS: usize = 8;
+
+/// Buffers of a sliding motion.
+#[derive(Debug, Default)]
+pub(super) struct Sliding {
+    /// Which of the active contacts carry the body.
+    carrying: Vec<usize>,
+    /// What is touched at the end of a step that is tried.
+    touched: Vec<(Contact, Meeting)>,
+    /// The moving half's vertices there.
+    placed: Vec<DVec3>,
+    rows: Vec<Vector>,
+    gaps: Vec<f64>,
+}
+
+impl Motion<'_> {
+    /// Finds the active contacts and brings them to touch.
+    pub(super) fn feel(&mut self, state: &State) -> State {
+        let (_, near) = self.horizon(self.settings.step);
+        self.nearby.turn(&state.rotation, state.cor.truncate(), SUPPORT, near);
+        self.nearby.contacts_within(state.cor, DEEPEST, BORDER, &mut self.contacts);
+        self.contacts.retain(|(contact, _)| contact.gap <= ACTIVE);
+        self.corrected(state, &[], LANDING).unwrap_or(*state)
+    }
+
+    /// One step from `state`, whose active contacts have been felt, to its first event.
+    pub(super) fn slide(&mut self, state: &State, pace: &mut Pace) -> Advance {
+        if self.contacts.is_empty() {
+            return self.drop_down(state);
+        }
+        let state = &mut state.clone();
+        for _ in 0..=MOST_BLOCKERS {
+            let Some(start) = self.direction(state) else { return Advance::Ended(Outcome::Jammed, *state) };
+            let carrying = self.sliding.as_ref().map(|s| s.carrying.clone()).unwrap_or_default();
+            if let Some(touching) = self.corrected(state, &carrying, 1e-6) { *state = touching; }
+            let mut step = pace.step.min(self.settings.step);
+            let mut u = start;
+            while step > self.settings.step * LEAST_SHARE {
+                let Some(middle) = self.direction(&self.moved(state, &start.map(|x| 0.5 * step * x))) else {
+                    step *= 0.5;
+                    continue;
+                };
+                u = middle;
+                if difference(&u, &start) <= BEND {
+                    break;
+                }
+                step *= 0.5;
+            }
+            match self.until_event(state, &start, step) {
+                Reached::At(next, share) => {
+                    pace.step = 2.0 * step;
+                    return Advance::Moved(next, share * lateral(&start));
+                }
+                Reached::Blocked(Some(blocker)) => self.contacts.push(blocker),
+                Reached::Blocked(None) => break,
+            }
+        }
+        // What cannot be followed from event to event is passed by one plain step.
+        let mut plain = Pace::new(self.settings.step);
+        self.turn(&state.rotation, state.cor.truncate(), plain.step);
+        self.gather(state, plain.step);
+        self.advance(state, &mut plain)
+    }
+
+    /// Lowers the body to what is next below it.
+    fn drop_down(&mut self, state: &State) -> Advance {
+        match self.nearby.height_below(state.cor.truncate(), state.cor.z).0 {
+            Some(z) => Advance::Moved(State { cor: state.cor.truncate().extend(z), ..*state }, 0.0),
+            None => Advance::Ended(Outcome::Missed, *state),
+        }
+    }
+
+    /// Where the body goes at `state` by the active contacts, with 1 as its largest part in x, y and turns together or in
+    /// z; and which contacts carry it. `None` at rest.
+    fn direction(&mut self, state: &State) -> Option<Vector> {
+        let axes = self.axes(state);
+        let mut sliding = self.sliding.take().unwrap_or_default();
+        sliding.rows.clear();
+        for (before, meeting) in &self.contacts {
+            let contact = self.pair.contact(before, meeting, &state.rotation, state.cor);
+            sliding.rows.push(self.row(&contact, state, &axes));
+        }
+        let down = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
+        let gaps = std::iter::repeat(0.0);
+        let u = self.projection.closest_allowed(&down, &sliding.rows, gaps, 1.0).unwrap_or_default();
+        sliding.carrying.clear();
+        sliding.carrying.extend_from_slice(self.projection.pressed());
+        self.sliding = Some(sliding);
+        let size = lateral(&u).max(u[2].abs());
+        (size > STILL).then(|| u.map(|x| x / size))
+    }
+}
+
+/// Length of a displacement in the ρ-metric.
+fn lateral(u: &Vector) -> f64 {
+    u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>().sqrt()
+}
+
+/// How far two directions are apart.
+fn difference(a: &Vector, b: &Vector) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
