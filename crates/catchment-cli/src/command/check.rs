@@ -4,7 +4,7 @@ use crate::args::DesignArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
-use catchment::problem::{Draft, ProblemError};
+use catchment::problem::{Draft, Problem, ProblemError};
 use catchment::report::CheckReport;
 use clap::Args;
 
@@ -22,7 +22,7 @@ pub(crate) struct CheckArgs {
 }
 
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
-    let checked = args.design.draft().and_then(Draft::check);
+    let checked = args.design.draft().and_then(Draft::build).and_then(Problem::checked);
     if !args.json {
         to_stdout(&CheckReport::good(&checked?).table())?;
         return Ok(ExitStatus::Done);

@@ -68,7 +68,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     save_files(&args.output, KIND, &files, &exec)?;
     written(&args.output);
     let file = |name: &str| args.output.join(name).display().to_string();
-    let said: Vec<String> = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
+    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
     let body = ExportBody {
         design: design.clone(),
         settings: serde_json::to_value(&settings)?,
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
         sdf: file(SDF),
         meshes,
     };
-    let report = ExportReport::new(body, problem.doubts().iter().map(WarningReport::note).collect());
+    let report = ExportReport::new(body, problem.objections().iter().map(WarningReport::note).collect());
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
     to_stderr(&said);
     Ok(ExitStatus::Done)

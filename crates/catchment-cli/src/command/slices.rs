@@ -74,7 +74,8 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let design = problem.design();
     let report = SlicesReport::new(design, &found, settings, Some(timing));
     let json = report.to_json()?;
-    let mut notes: Vec<String> = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
+    let mut notes: Vec<String> =
+        problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
     if let Some(folder) = &folder {
         let picture = figure::slice_matrix(design, problem.connector(), &found)?;
         let pictures = encode(&[(folder.name, picture)], exec)?;

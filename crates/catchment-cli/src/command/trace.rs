@@ -44,8 +44,8 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
         .map_err(|findings| Failure::of_option("--pose", &args.pose, findings))?;
     let settings = Settings::default();
     let path = descent::trace(pair, &error, &settings);
-    let said: Vec<String> = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
-    let doubts = problem.doubts().iter().map(WarningReport::note).collect();
+    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
     let report = TraceReport::new(design, settings, error, &path, doubts);
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,

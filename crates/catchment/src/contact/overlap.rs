@@ -79,7 +79,5 @@ fn passes<I: Iterator<Item = DVec3> + Clone>(
     }
     let point = ends[0] + (ends[1] - ends[0]) * (above / (above - below));
     let next = corners().cycle().skip(1);
-    corners()
-        .zip(next)
-        .all(|(p, q)| normal.dot((q - p).normalize_or_zero().cross(point - p)) > THROUGH)
+    corners().zip(next).all(|(p, q)| normal.dot((q - p).normalize_or_zero().cross(point - p)) > THROUGH)
 }

@@ -100,25 +100,8 @@ impl Draft {
     /// Everything that is wrong with the geometry; halves that do not meet in the aligned pose. That the aligned pose
     /// meets but does not hold is a doubt ([`Problem::doubts`]).
     pub fn build(self) -> Result<Problem, ProblemError> {
-        self.built(Self::is_apart)
-    }
-
-    /// The same, and a mated pose that does not hold is an error too: what a check of a design asks.
-    ///
-    /// # Errors
-    /// Everything that is wrong with the geometry or the mated pose.
-    pub fn check(self) -> Result<Problem, ProblemError> {
-        self.built(|problem| !matches!(problem, MatedProblem::LimitCutsPlay { .. }))
-    }
-
-    /// Whether there is no mated pose to decide about: the halves do not meet in it, or the seat leaves an error free.
-    pub(super) const fn is_apart(problem: &MatedProblem) -> bool {
-        !matches!(problem, MatedProblem::NotMinimum { .. } | MatedProblem::LimitCutsPlay { .. })
-    }
-
-    fn built(self, refuses: impl Fn(&MatedProblem) -> bool) -> Result<Problem, ProblemError> {
         match Connector::build(&self.design) {
-            Ok(connector) => self.with_halves(connector, refuses),
+            Ok(connector) => self.with_halves(connector),
             Err(problems) => {
                 let list = places::of_geometry(&problems)
                     .into_iter()
@@ -129,15 +112,16 @@ impl Draft {
         }
     }
 
-    /// The problem of halves that were built, unless `refuses` says that their mated pose is none.
-    pub(super) fn with_halves(
-        mut self,
-        connector: Connector,
-        refuses: impl Fn(&MatedProblem) -> bool,
-    ) -> Result<Problem, ProblemError> {
+    /// Whether there is no mated pose to decide about: the halves do not meet in it, or the seat leaves an error free.
+    const fn is_apart(problem: &MatedProblem) -> bool {
+        !matches!(problem, MatedProblem::NotMinimum { .. } | MatedProblem::LimitCutsPlay { .. })
+    }
+
+    /// The problem of halves that were built, unless their mated pose is none.
+    pub(super) fn with_halves(mut self, connector: Connector) -> Result<Problem, ProblemError> {
         self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
-        let (apart, doubts): (Vec<_>, Vec<_>) = mated::problems(&pair).into_iter().partition(refuses);
+        let (apart, doubts): (Vec<_>, Vec<_>) = mated::problems(&pair).into_iter().partition(Self::is_apart);
         if !apart.is_empty() {
             let list = apart
                 .iter()

@@ -80,7 +80,7 @@ impl Problem {
     pub fn with(&self, design: Design) -> Result<Self, ProblemError> {
         let own = self.design();
         if design.connector == own.connector && design.alignment.mount == own.alignment.mount {
-            return Draft::from(design).with_halves(self.connector().clone(), Draft::is_apart);
+            return Draft::from(design).with_halves(self.connector().clone());
         }
         Self::of(design)
     }

@@ -9,7 +9,7 @@ use crate::merit::Merits;
 use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
 use crate::problem::Problem;
-use crate::run::{Answer, Corrected, Requirement, RequirementError, Run, RunError, Verdict};
+use crate::run::{Answer, Corrected, Requirement, RequirementError, Run, RunError, Seating, Verdict};
 use serde_json::Value;
 
 impl Answer {
@@ -31,6 +31,7 @@ impl Answer {
         if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
+        report.seat = Some(self.seating.clone());
         report.warnings = self.warnings().into_iter().map(WarningReport::from).collect();
         report
     }
@@ -109,6 +110,7 @@ impl Run {
             let settings = Value::Null;
             report = report.with_sample(&Corrected { found, seed: sample.seed, method, settings });
         }
+        report.seat = Some(Seating::form(problem));
         let by_products = self.method.by_products();
         if let (true, Some(grid)) = (by_products.contains(&"basins"), acceptance.grid()) {
             // So few cells are flooded in no time.

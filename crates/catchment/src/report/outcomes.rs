@@ -68,7 +68,8 @@ impl<'a> OutcomesReport<'a> {
         acceptance: &'a Acceptance,
         ends: &'a [End],
     ) -> Self {
-        let doubts = problem.doubts().iter().map(WarningReport::note);
+        let objections = problem.objections();
+        let doubts = objections.iter().map(WarningReport::note);
         let warnings = doubts.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
         Self { design: problem.design(), table, settings: method.settings(), acceptance, ends, warnings }
     }

@@ -12,6 +12,7 @@ use crate::merit::sum::Sum;
 use crate::merit::tolerance::Tolerance;
 use crate::merit::{MeritError, Merits};
 use crate::pose::Dof;
+use crate::run::Seating;
 use serde::{Deserialize, Serialize};
 
 /// Everything one run has to say, with its head.
@@ -42,6 +43,9 @@ pub struct RunBody {
     pub basins: Option<BasinsReport>,
     /// The polytopes behind the outcomes; null for all methods but `partition`.
     pub partition: Option<PartitionReport>,
+    /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
+    #[serde(default)]
+    pub seat: Option<Seating>,
 }
 
 impl Body for RunBody {
@@ -254,6 +258,7 @@ impl Report {
             success: None,
             basins: None,
             partition: None,
+            seat: None,
         };
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
     }

@@ -1,6 +1,7 @@
 //! The report as aligned text, 80 columns wide, without colour.
 
 mod basins;
+mod seat;
 
 use super::schema::{AcceptanceReport, OnaaReport, Report, ToleranceReport};
 use super::text::{COLUMNS, grouped, line, percent, rounded, row, significant, with_error, wrapped};
@@ -37,6 +38,10 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     if !report.tolerances.is_empty() {
         text.push('\n');
         tolerances(&mut text, report);
+    }
+    if let Some(found) = &report.seat {
+        text.push('\n');
+        seat::lines(&mut text, found, &report.design);
     }
     if let Some(found) = &report.basins {
         text.push('\n');

@@ -1,6 +1,6 @@
 //! Everything that a run found.
 
-use super::Run;
+use super::{Run, Seating};
 use crate::acceptance::{Acceptance, Warning};
 use crate::landscape::Grid;
 use crate::merit::Merits;
@@ -30,6 +30,8 @@ pub struct Answer {
     pub merits: Merits,
     /// The success probability for the errors asked about.
     pub success: Option<Success>,
+    /// What the seat is like, and how far off accepted poses rest in it.
+    pub seating: Seating,
     /// Wall-clock time, in seconds.
     pub seconds: f64,
     /// Worker threads.
@@ -89,7 +91,8 @@ impl Answer {
             None if !descended && self.grid().is_some() => warnings.push(Warning::NoInterval),
             None => {}
         }
-        warnings.extend(self.problem.doubts().iter().map(|doubt| Warning::Note { text: doubt.to_string() }));
+        warnings.extend(self.seating.warnings(&self.problem));
+        warnings.extend(self.problem.objections().into_iter().map(|text| Warning::Note { text }));
         warnings
     }
 }

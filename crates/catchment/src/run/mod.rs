@@ -24,6 +24,7 @@ mod follow;
 pub mod part;
 mod plan;
 mod requirement;
+mod seat;
 mod stages;
 pub(crate) use stages::correct;
 
@@ -31,6 +32,7 @@ pub use answer::{Answer, Corrected};
 pub use part::{Part, PartAnswer, PartError};
 pub use plan::Plan;
 pub use requirement::{Requirement, RequirementError, Verdict};
+pub use seat::{Residual, Seating};
 
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{LandscapeError, Resolution, ResolutionError};

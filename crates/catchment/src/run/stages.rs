@@ -1,6 +1,6 @@
 //! The stages of a run, each once.
 
-use super::{Answer, Corrected, Plan, Run, RunError};
+use super::{Answer, Corrected, Plan, Run, RunError, Seating};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
@@ -63,6 +63,7 @@ pub(super) fn finish(
         Some(distribution) => Some(success(&acceptance, distribution, exec)?),
         None => None,
     };
+    let seating = Seating::of(problem, &acceptance, run.seed, exec)?;
     Ok(Answer {
         problem: problem.clone(),
         run: run.clone(),
@@ -72,6 +73,7 @@ pub(super) fn finish(
         by_products,
         merits,
         success,
+        seating,
         seconds: started.seconds(),
         threads: exec.threads(),
     })

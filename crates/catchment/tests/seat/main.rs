@@ -203,7 +203,9 @@ fn debug() {
     let t = descent::trace(problem.pair(), &at(0.0107, 0.0308), &descent::Settings::default());
     for w in &t.waypoints {
         eprintln!("{:?} {} h {} travelled {}", w.error.x, w.error.y, w.height, w.travelled);
-        for t in &w.touches { eprintln!("      {:?} n {:?}", t.point, t.normal); }
+        for t in &w.touches {
+            eprintln!("      {:?} n {:?}", t.point, t.normal);
+        }
     }
     eprintln!("{:?}", t.outcome);
 }

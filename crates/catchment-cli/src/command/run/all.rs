@@ -31,7 +31,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     let report = AgreementReport::new(problem.design(), &found, settings.time_limit, Some(timing));
     let json = report.to_json()?;
-    let mut notes = problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect::<Vec<_>>();
+    let mut notes = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect::<Vec<_>>();
     if let Some(folder) = folder {
         let pictures =
             catchment::report::folder::encode(&[(folder.name, figure::agreement(&report))], &running.exec)?;

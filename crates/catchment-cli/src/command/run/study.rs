@@ -104,7 +104,7 @@ impl Told {
         running: Running,
     ) -> Result<ExitStatus, Failure> {
         let mut notes: Vec<String> =
-            problem.doubts().iter().map(|doubt| format!("warning: {doubt}")).collect();
+            problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
         if let Some(folder) = folder {
             let pictures = encode(&[(folder.name, self.picture)], &running.exec)?;
             notes.push(folder.write(&self.json, &self.records, pictures, &running.exec, |_| Ok(()))?);

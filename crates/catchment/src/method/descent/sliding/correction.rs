@@ -42,7 +42,9 @@ impl Motion<'_> {
                     sliding.gaps.push(-contact.gap);
                 }
             }
-            if std::env::var("DBG").is_ok() && held.len() > 0 { eprintln!("         pass {pass} worst {worst:.3e} moved {moved:.3e}"); }
+            if std::env::var("DBG").is_ok() && held.len() > 0 {
+                eprintln!("         pass {pass} worst {worst:.3e} moved {moved:.3e}");
+            }
             if worst <= EXACT || pass == PASSES {
                 break;
             }

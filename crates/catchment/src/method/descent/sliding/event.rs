@@ -148,7 +148,15 @@ impl Motion<'_> {
                 }
             }
             if std::env::var("DBG").is_ok() {
-                let n = bracket.as_ref().map(|b| (b.watched.what == What::Gap, b.watched.meeting, b.watched.contact.normal, b.clear, b.passed));
+                let n = bracket.as_ref().map(|b| {
+                    (
+                        b.watched.what == What::Gap,
+                        b.watched.meeting,
+                        b.watched.contact.normal,
+                        b.clear,
+                        b.passed,
+                    )
+                });
                 eprintln!("   at {at:.3e} low {low:.3e} high {high:.3e} {n:?}");
             }
             if high - low < NOWHERE {
@@ -160,16 +168,14 @@ impl Motion<'_> {
             return Reached::At(clear, low);
         }
         Reached::Blocked(bracket.and_then(|Bracket { watched: event, .. }| {
-            let contact =
-                self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
+            let contact = self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
             (event.what == What::Gap && contact.gap.abs() <= CLOSE).then_some((contact, event.meeting))
         }))
     }
 
     /// Value of what is watched at `state`, below 0 behind the event.
     fn value(&self, watched: &Watched, state: &State) -> f64 {
-        let contact =
-            self.pair.contact(&watched.contact, &watched.meeting, &state.rotation, state.cor);
+        let contact = self.pair.contact(&watched.contact, &watched.meeting, &state.rotation, state.cor);
         match watched.what {
             What::Gap => contact.gap + 0.5 * LANDING,
             What::Hold => self.hold(&contact, &watched.meeting, state) + 0.5 * FAR_SIDE,
@@ -188,7 +194,12 @@ impl Motion<'_> {
         let next = self.moved(state, &u.map(|x| at * x));
         let trusted = TRUSTED_SHARE * at + TRUSTED;
         let carrying = self.sliding.as_mut().map(|s| std::mem::take(&mut s.carrying)).unwrap_or_default();
-        let corrected = self.corrected(&next, &carrying, trusted).or_else(|| { if std::env::var("DBG").is_ok() { eprintln!("      uncorrected at {at:.3e} {carrying:?}"); } self.corrected(&next, &[], trusted) });
+        let corrected = self.corrected(&next, &carrying, trusted).or_else(|| {
+            if std::env::var("DBG").is_ok() {
+                eprintln!("      uncorrected at {at:.3e} {carrying:?}");
+            }
+            self.corrected(&next, &[], trusted)
+        });
         let trial = corrected.map_or(Trial::Failed, |next| self.judge(state, next, at, &carrying));
         if let Some(sliding) = &mut self.sliding {
             sliding.carrying = carrying;

@@ -85,7 +85,9 @@ impl Motion<'_> {
         for _ in 0..=MOST_BLOCKERS {
             let Some(start) = self.direction(state) else { return Advance::Ended(Outcome::Jammed, *state) };
             let carrying = self.sliding.as_ref().map(|s| s.carrying.clone()).unwrap_or_default();
-            if let Some(touching) = self.corrected(state, &carrying, 1e-6) { *state = touching; }
+            if let Some(touching) = self.corrected(state, &carrying, 1e-6) {
+                *state = touching;
+            }
             let mut step = pace.step.min(self.settings.step);
             let mut u = start;
             while step > self.settings.step * LEAST_SHARE {

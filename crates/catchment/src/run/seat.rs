@@ -1,0 +1,175 @@
+//! What the seat is like, and how far off docked halves come to rest: the repeatability that engineers ask for.
+//!
+//! ```text
+//!   play       how far off a half may rest and lie as deep, per error      [`crate::contact::play`]
+//!   residual   how far off accepted poses do come to rest, per error       random accepted poses, followed to their end
+//! ```
+//!
+//! Not promised: the poses are drawn evenly from the accepted set, not from the errors that a robot makes. Lengths in D, angles in radians.
+
+use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
+use crate::contact::mated::MatedProblem;
+use crate::contact::{Play, Seat, play};
+use crate::exec::{Cancelled, Exec};
+use crate::method::Decide;
+use crate::method::descent::{self, End, Follower};
+use crate::pose::{Dof, PoseError};
+use crate::problem::{Problem, ProblemError};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// The seat, and what comes to rest in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Seating {
+    /// How far above its mated height a half may lie and be seated, in D.
+    pub depth: f64,
+    /// How far off it may rest and lie as deep, per free error that matters.
+    pub play: Vec<Play>,
+    /// Accepted poses that were followed until they had come to rest.
+    pub poses: usize,
+    /// How far off they rested, per free error that matters; empty if there were none.
+    pub residual: Vec<Residual>,
+}
+
+/// How far off docked poses rest along one error, whichever way. D or radians.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// Which error.
+    pub axis: Dof,
+    /// Mean.
+    pub mean: f64,
+    /// 95 % of the poses rest nearer.
+    pub p95: f64,
+    /// The farthest.
+    pub most: f64,
+}
+
+/// Of so many random descents that a Sum takes, one is followed to its rest.
+const SHARE: usize = 20;
+/// Cells looked at for every accepted one that is wanted.
+const LOOKS: u64 = 50;
+/// The poses have random numbers of their own.
+const BRANCH: u64 = 0x5ea7;
+
+impl Seating {
+    /// The seat of a problem, and where accepted poses come to rest in it.
+    pub(super) fn of(
+        problem: &Problem,
+        acceptance: &Acceptance,
+        seed: u64,
+        exec: &Exec,
+    ) -> Result<Self, Cancelled> {
+        let (pair, settings) = (problem.pair(), descent::Settings::default());
+        let poses = accepted(acceptance, (settings.default_samples(pair) / SHARE) as u64, seed);
+        let ends: Vec<End> = exec.install(|| {
+            let follow = |follower: &mut Follower<'_>, pose: &PoseError| {
+                exec.check()?;
+                Ok(follower.rest(pose))
+            };
+            poses.par_iter().map_init(|| Follower::new(pair, &settings), follow).collect::<Result<_, _>>()
+        })?;
+        let seat = Seat::new(pair);
+        let docked = ends.iter().filter(|end| end.outcome == Outcome::Aligned);
+        let offs: Vec<[f64; 5]> = docked.map(|end| seat.off(&end.error).to_array()).collect();
+        let play = play(pair);
+        let residual = match offs.len() {
+            0 => Vec::new(),
+            _ => play.iter().map(|play| Residual::of(play.axis, &offs)).collect(),
+        };
+        Ok(Self { depth: pair.alignment.docked.depth, play, poses: offs.len(), residual })
+    }
+
+    /// With every place that the seating of a problem has, and numbers that mean nothing.
+    pub(crate) fn form(problem: &Problem) -> Self {
+        let play = play(problem.pair());
+        let residual = play.iter().map(|play| Residual { axis: play.axis, mean: 0.0, p95: 0.0, most: 0.0 });
+        Self { depth: 0.0, poses: 0, residual: residual.collect(), play }
+    }
+
+    /// The doubts that it raises: halves that rest farther off than the seat was found to allow.
+    pub fn warnings(&self, problem: &Problem) -> Vec<Warning> {
+        let docked = &problem.alignment().docked;
+        let far =
+            self.residual.iter().filter(|residual| residual.most > 1.01 * docked.most_play(residual.axis));
+        far.map(|residual| {
+            let (name, unit) = (residual.axis.name(), if residual.axis.is_rotation() { "rad" } else { "D" });
+            Warning::Note {
+                text: format!(
+                    "docked halves rest up to {:.3} {unit} off in {name}: say in [docked] how much of that counts",
+                    residual.most
+                ),
+            }
+        })
+        .collect()
+    }
+}
+
+impl Residual {
+    fn of(axis: Dof, offs: &[[f64; 5]]) -> Self {
+        let mut off: Vec<f64> = offs.iter().map(|off| off[axis.index()].abs()).collect();
+        off.sort_by(f64::total_cmp);
+        let rank = (0.95 * off.len() as f64).ceil() as usize;
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        Self { axis, mean, p95: off[rank.saturating_sub(1)], most: off[off.len() - 1] }
+    }
+}
+
+/// Up to `count` random poses from accepted cells, or from accepted poses.
+fn accepted(acceptance: &Acceptance, count: u64, seed: u64) -> Vec<PoseError> {
+    let stream = Stream::new(seed).branch(BRANCH);
+    let of = acceptance.outcomes.len();
+    let pick = |k: u64| {
+        let number = |j: u64| stream.uniform(6 * k + j);
+        let cell = ((number(0) * of as f64) as usize).min(of.saturating_sub(1));
+        if acceptance.outcomes.get(cell) != Some(&Outcome::Aligned) {
+            return None;
+        }
+        let Domain::Grid(grid) = &acceptance.domain else { return Some(acceptance.domain.pose(cell)) };
+        let mut error = grid.pose(cell).to_array();
+        for (axis, j) in grid.axes.iter().zip(1..) {
+            error[axis.dof.index()] += axis.step() * (number(j) - 0.5);
+        }
+        Some(PoseError::from_array(error))
+    };
+    (0..LOOKS * count).filter_map(pick).take(count as usize).collect()
+}
+
+impl Problem {
+    /// Where a half let go without any error comes to rest: where it began, if the mated pose is one.
+    pub fn settled(&self) -> End {
+        Follower::new(self.pair(), &descent::Settings::default()).rest(&PoseError::default())
+    }
+
+    /// This problem, unless its mated pose does not hold: what a check of a design asks.
+    ///
+    /// # Errors
+    /// It does not hold, with where the half would settle.
+    pub fn checked(self) -> Result<Self, ProblemError> {
+        let unstable = |doubt: &MatedProblem| matches!(doubt, MatedProblem::NotMinimum { .. });
+        match self.doubts().iter().position(unstable) {
+            None => Ok(self),
+            Some(number) => {
+                let message = self.objections().swap_remove(number);
+                Err(self.refused("alignment.free", message, None).into())
+            }
+        }
+    }
+
+    /// What speaks against the mated pose, as sentences: with where the half settles instead, if it does not hold.
+    pub fn objections(&self) -> Vec<String> {
+        let sentence = |doubt: &MatedProblem| match doubt {
+            MatedProblem::NotMinimum { .. } => {
+                let End { outcome, error } = self.settled();
+                let [x, y, roll, pitch, yaw] = error.to_array();
+                let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::to_degrees);
+                format!(
+                    "{doubt}. Let go without any error it settles at x {x:.4} D, y {y:.4} D, roll {roll:.2}°, pitch {pitch:.2}°, yaw \
+                     {yaw:.2}° ({}): draw the halves so that this is the mated pose",
+                    outcome.name()
+                )
+            }
+            _ => doubt.to_string(),
+        };
+        self.doubts().iter().map(sentence).collect()
+    }
+}
