@@ -232,14 +232,21 @@ impl Motion<'_> {
                 lost = Some((hold, Watched { contact: before, meeting, what: What::Hold }));
             }
         }
-        if let Some((_, event)) = lost {
-            return Trial::Passed(next, event);
+        match lost {
+            Some((hold, event)) if hold < -FAR_SIDE => Trial::Passed(next, event),
+            _ if self.overlaps(&next) => Trial::Failed,
+            Some((_, event)) => Trial::Passed(next, event),
+            None => Trial::Clear(next),
         }
+    }
+
+    /// Whether the halves overlap at `state`.
+    pub(super) fn overlaps(&mut self, state: &State) -> bool {
         let mut placed = self.sliding.as_mut().map(|s| std::mem::take(&mut s.placed)).unwrap_or_default();
-        let overlaps = self.pair.overlaps(&next.rotation, next.cor, &mut placed);
+        let overlaps = self.pair.overlaps(&state.rotation, state.cor, &mut placed);
         if let Some(sliding) = &mut self.sliding {
             sliding.placed = placed;
         }
-        if overlaps { Trial::Failed } else { Trial::Clear(next) }
+        overlaps
     }
 }

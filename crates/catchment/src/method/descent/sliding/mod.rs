@@ -53,6 +53,9 @@ const LEAST_SHARE: f64 = 1e-6;
 /// What was met at the very start of a step is one more contact, at most so often: the corners of two faces.
 const MOST_BLOCKERS: usize = 8;
 
+/// Where the force pushes.
+const DOWN: Vector = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
+
 /// Buffers of a sliding motion.
 #[derive(Debug, Default)]
 pub(super) struct Sliding {
@@ -117,9 +120,17 @@ impl Motion<'_> {
 
     /// Lowers the body to what is next below it.
     fn drop_down(&mut self, state: &State) -> Advance {
-        match self.nearby.height_below(state.cor.truncate(), state.cor.z).0 {
-            Some(z) => Advance::Moved(State { cor: state.cor.truncate().extend(z), ..*state }, 0.0),
-            None => Advance::Ended(Outcome::Missed, *state),
+        let Some(z) = self.nearby.height_below(state.cor.truncate(), state.cor.z).0 else {
+            return Advance::Ended(Outcome::Missed, *state);
+        };
+        let landed = State { cor: state.cor.truncate().extend(z), ..*state };
+        if !self.overlaps(&landed) {
+            return Advance::Moved(landed, 0.0);
+        }
+        // Rims have crossed on the way without a contact that says so.
+        match self.until_event(state, &DOWN, state.cor.z - z) {
+            Reached::At(next, _) => Advance::Moved(next, 0.0),
+            Reached::Blocked(_) => Advance::Ended(Outcome::Undecided, *state),
         }
     }
 
@@ -133,9 +144,8 @@ impl Motion<'_> {
             let contact = self.pair.contact(before, meeting, &state.rotation, state.cor);
             sliding.rows.push(self.row(&contact, state, &axes));
         }
-        let down = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
         let gaps = std::iter::repeat(0.0);
-        let u = self.projection.closest_allowed(&down, &sliding.rows, gaps, 1.0).unwrap_or_default();
+        let u = self.projection.closest_allowed(&DOWN, &sliding.rows, gaps, 1.0).unwrap_or_default();
         sliding.carrying.clear();
         sliding.carrying.extend_from_slice(self.projection.pressed());
         self.sliding = Some(sliding);
