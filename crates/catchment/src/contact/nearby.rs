@@ -95,13 +95,7 @@ impl<'a> Nearby<'a> {
     }
 
     /// As [`Nearby::contacts`], counting also what touches beyond the border of its feature by up to `seam`, in D.
-    pub fn contacts_within(
-        &self,
-        position: DVec3,
-        reach: f64,
-        seam: f64,
-        out: &mut Vec<(Contact, Meeting)>,
-    ) {
+    pub fn contacts_within(&self, position: DVec3, reach: f64, seam: f64, out: &mut Vec<(Contact, Meeting)>) {
         out.clear();
         out.extend(self.turned.contacts(position, reach, seam));
     }
