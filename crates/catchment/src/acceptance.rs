@@ -142,6 +142,15 @@ pub enum Warning {
         /// Of how many.
         of: usize,
     },
+    /// Some of the motions that the result rests on end otherwise when their steps are halved.
+    StepDependence {
+        /// Random poses whose outcome changed.
+        changed: usize,
+        /// Of how many.
+        of: usize,
+        /// 95 % interval of the share that changes.
+        ci95: [f64; 2],
+    },
     /// Numbers of the dissertation's own conventions, fitted to its tables; not physics.
     DissertationConventions,
     /// The mated pose is not inside the accepted set.
@@ -200,6 +209,13 @@ impl fmt::Display for Warning {
                 f,
                 "{cells} of {of} cells are ambiguous, too many to follow each exactly: ONAA, centred edge and \
                  tolerances rest on the method's guess there, the Sum with its interval does not"
+            ),
+            Self::StepDependence { changed, of, ci95: [lo, hi] } => write!(
+                f,
+                "{changed} of {of} random poses end otherwise when the steps of their motion are halved ({:.1} … {:.1} % of all \
+                 poses, 95 %): the fit is tight, and the numbers are no better than that",
+                100.0 * lo,
+                100.0 * hi
             ),
             Self::DissertationConventions => {
                 write!(

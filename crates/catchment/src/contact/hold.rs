@@ -1,11 +1,11 @@
 //! How firmly a contact is held: how far it is from ending at the border of one of its features.
 //!
 //! ```text
-//!       foot                      support
-//!    ┌────────────┐                ╲  n ↑  ╱
-//!    │      ×←d─→│                 ╲   │ ╱  s      a corner or an edge holds as long as its spokes s
-//!    └────────────┘                  ╲ │╱          keep to one side of the plane across n
-//!    d: distance to the border        ╲╱           (n·s of the spoke that comes closest)
+//!       foot                       support
+//!    ┌───────────┐                   ↑ n
+//!    │      ×←d─→│              ─────×─────       a corner or an edge holds as long as its spokes s
+//!    └───────────┘                  ╱ ╲           keep to one side of the plane across n:
+//!    d: distance to the border     ╱   ╲ s        −n·s of the spoke that comes closest
 //! ```
 //!
 //! Both fall through zero continuously where the contact ends, so that the moment can be found by interpolation.

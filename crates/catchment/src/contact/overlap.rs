@@ -39,11 +39,17 @@ impl Pair {
 
 fn pierce(fixed: &Shape, moving: &Shape, placed: &[DVec3], rotation: &DMat3) -> bool {
     let at = |k: u32| placed[k as usize];
-    let plan = |ids: &[u32]| Plan::around(ids.iter().map(|&k| at(k).truncate()));
+    let top = fixed.vertices.iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max);
+    // What is above the fixed shape, or beside it, cannot reach into it.
+    let near = |ids: &[u32], bounds: &Plan| {
+        let plan = Plan::around(ids.iter().map(|&k| at(k).truncate()));
+        (ids.iter().any(|&k| at(k).z <= top) && bounds.meets(&plan)).then_some(plan)
+    };
     let mut found = false;
     for ridge in &moving.ridges {
+        let Some(plan) = near(&ridge.ends, fixed.plans.facets.bounds()) else { continue };
         let ends = ridge.ends.map(at);
-        fixed.plans.facets.visit(&plan(&ridge.ends), |k| {
+        fixed.plans.facets.visit(&plan, |k| {
             let facet = &fixed.facets[k as usize];
             let corners = || facet.corners.iter().map(|&c| fixed.at(c));
             found = found || passes(ends, facet.normal, corners);
@@ -53,8 +59,9 @@ fn pierce(fixed: &Shape, moving: &Shape, placed: &[DVec3], rotation: &DMat3) -> 
         }
     }
     for facet in &moving.facets {
+        let Some(plan) = near(&facet.corners, fixed.plans.ridges.bounds()) else { continue };
         let normal = *rotation * facet.normal;
-        fixed.plans.ridges.visit(&plan(&facet.corners), |k| {
+        fixed.plans.ridges.visit(&plan, |k| {
             let ends = fixed.ridges[k as usize].ends.map(|c| fixed.at(c));
             let corners = || facet.corners.iter().map(|&c| at(c));
             found = found || passes(ends, normal, corners);

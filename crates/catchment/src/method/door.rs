@@ -15,7 +15,7 @@
 //! What decides translation alone ([`zraa`](super::zraa)) is not forced in.
 
 use super::descent::End;
-use crate::acceptance::{Acceptance, Domain};
+use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::design::{Design, nearest};
@@ -126,6 +126,14 @@ pub trait Follow: Decide {
         domain: Domain,
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError>;
+
+    /// What the method itself doubts about its motions on this problem, tried on random poses.
+    ///
+    /// # Errors
+    /// See [`DecideError`].
+    fn doubt(&self, _problem: &Problem, _seed: u64, _exec: &Exec) -> Result<Option<Warning>, DecideError> {
+        Ok(None)
+    }
 }
 
 /// How sure a method is of the cells of a grid.

@@ -58,6 +58,10 @@ pub(super) fn finish(
             settle(&plan.method, problem, grid, &**doubts, &mut acceptance, most, exec)?;
         }
     }
+    let judge = judge(&plan.method);
+    if judge.own.is_some() || corrected.is_some() || doubts.is_some() {
+        acceptance.warnings.extend(judge.as_follow().doubt(problem, run.seed, exec)?);
+    }
     let merits = Merits::of(&acceptance, problem.alignment(), exec)?;
     let success = match &run.errors {
         Some(distribution) => Some(success(&acceptance, distribution, exec)?),

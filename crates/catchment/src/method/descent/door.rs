@@ -1,7 +1,7 @@
 //! Exact descent as a method: every pose by itself.
 
-use super::{End, Settings, run};
-use crate::acceptance::{Acceptance, Domain};
+use super::{End, Settings, run, step_dependence};
+use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
@@ -73,6 +73,10 @@ impl Follow for Settings {
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         Ok(run(problem.pair(), domain, self, exec)?)
+    }
+
+    fn doubt(&self, problem: &Problem, seed: u64, exec: &Exec) -> Result<Option<Warning>, DecideError> {
+        Ok(step_dependence(problem.pair(), self, seed, exec)?)
     }
 }
 

@@ -104,8 +104,8 @@ pub(super) struct Motion<'a> {
     rows: Vec<Vector>,
     gaps: Vec<f64>,
     pub(super) projection: Projection,
-    /// Where fits are tight: what follows the contacts from event to event.
-    pub(super) sliding: Option<Sliding>,
+    /// Buffers of [`super::sliding`], for pairs with tight fits.
+    pub(super) sliding: Sliding,
     /// Largest distance of a moving corner from the COR.
     radius: f64,
     /// All three rotations free: they live on SO(3), not in Euler angles.
@@ -134,7 +134,7 @@ impl<'a> Motion<'a> {
             rows: Vec::new(),
             gaps: Vec::new(),
             projection: Projection::default(),
-            sliding: pair.is_tight().then(Sliding::default),
+            sliding: Sliding::default(),
             radius,
             spherical: pair.alignment.free.rotations() == 3,
         }
@@ -152,6 +152,7 @@ impl<'a> Motion<'a> {
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
         let mut pace = Pace::new(self.settings.step);
         self.nearby.leave();
+        self.sliding.forget();
         self.turn(&start.rotation, start.lateral, pace.step);
         let (Some(z), _) = self.nearby.height_below(start.lateral, f64::INFINITY) else {
             return (Outcome::Missed, *error);
@@ -168,7 +169,7 @@ impl<'a> Motion<'a> {
         let mut seated = false;
         let called = until == Until::Known && !self.seat.is_limited();
         for count in 0..self.settings.max_steps {
-            if self.sliding.is_some() {
+            if self.pair.is_tight() {
                 state = self.feel(&state);
             } else {
                 self.gather(&state, pace.step);
@@ -186,7 +187,7 @@ impl<'a> Motion<'a> {
                 }
                 mark = (count, travelled, state.cor.z);
             }
-            let advance = if self.sliding.is_some() {
+            let advance = if self.pair.is_tight() {
                 self.slide(&state, &mut pace)
             } else {
                 self.advance(&state, &mut pace)

@@ -9,12 +9,13 @@
 //! gaps of some 1e-5 D, the third pass some 1e-13.
 
 use super::super::motion::{Motion, State};
+use super::super::projection::MAX_COORDINATES;
 
 /// Gaps below this are 0, in D: rounding of a product of numbers near 1.
 const EXACT: f64 = 1e-13;
-/// Most passes: see above, and one more.
+/// Most passes: those above, and two for contacts that bend sharply.
 const PASSES: usize = 5;
-/// What is left after the last pass may be as large as this, in D: below a landing.
+/// What is left after the last pass may be as large as this, in D: well below a landing.
 const GOOD: f64 = 1e-10;
 
 impl Motion<'_> {
@@ -23,44 +24,45 @@ impl Motion<'_> {
     pub(super) fn corrected(&mut self, state: &State, held: &[usize], farthest: f64) -> Option<State> {
         let mut state = *state;
         let mut moved = 0.0;
-        let mut sliding = self.sliding.take()?;
-        let mut worst = f64::INFINITY;
-        for pass in 0..=PASSES {
-            let axes = self.axes(&state);
-            sliding.rows.clear();
-            sliding.gaps.clear();
-            worst = 0.0;
-            for (k, (before, meeting)) in self.contacts.iter().enumerate() {
-                let contact = self.pair.contact(before, meeting, &state.rotation, state.cor);
-                let row = self.row(&contact, &state, &axes);
-                worst = f64::max(worst, -contact.gap);
-                sliding.rows.push(row);
-                sliding.gaps.push(contact.gap);
-                if held.contains(&k) {
-                    worst = worst.max(contact.gap);
-                    sliding.rows.push(row.map(|x| -x));
-                    sliding.gaps.push(-contact.gap);
-                }
+        for _ in 0..PASSES {
+            let worst = self.linearise(&state, held);
+            if worst <= EXACT {
+                return Some(state);
             }
-            if std::env::var("DBG").is_ok() && held.len() > 0 {
-                eprintln!("         pass {pass} worst {worst:.3e} moved {moved:.3e}");
-            }
-            if worst <= EXACT || pass == PASSES {
-                break;
-            }
-            let gaps = sliding.gaps.iter().copied();
-            let Some(delta) = self.projection.closest_allowed(&[0.0; 6], &sliding.rows, gaps, worst) else {
-                worst = f64::INFINITY;
-                break;
-            };
+            let gaps = self.sliding.gaps.iter().copied();
+            let still = [0.0; MAX_COORDINATES];
+            let delta = self.projection.closest_allowed(&still, &self.sliding.rows, gaps, worst)?;
             moved += delta.iter().map(|x| x * x).sum::<f64>().sqrt();
             if moved > farthest {
-                worst = f64::INFINITY;
-                break;
+                return None;
             }
             state = self.moved(&state, &delta);
         }
-        self.sliding = Some(sliding);
-        (worst <= GOOD).then_some(state)
+        (self.linearise(&state, held) <= GOOD).then_some(state)
+    }
+
+    /// Rows and gaps of the active contacts at `state`, those held both ways; returns the largest gap that must close or
+    /// open.
+    fn linearise(&mut self, state: &State, held: &[usize]) -> f64 {
+        let axes = self.axes(state);
+        let mut rows = std::mem::take(&mut self.sliding.rows);
+        let mut gaps = std::mem::take(&mut self.sliding.gaps);
+        rows.clear();
+        gaps.clear();
+        let mut worst = 0.0f64;
+        for (k, (before, meeting)) in self.contacts.iter().enumerate() {
+            let contact = self.pair.contact(before, meeting, &state.rotation, state.cor);
+            let row = self.row(&contact, state, &axes);
+            worst = worst.max(-contact.gap);
+            rows.push(row);
+            gaps.push(contact.gap);
+            if held.contains(&k) {
+                worst = worst.max(contact.gap);
+                rows.push(row.map(|x| -x));
+                gaps.push(-contact.gap);
+            }
+        }
+        (self.sliding.rows, self.sliding.gaps) = (rows, gaps);
+        worst
     }
 }

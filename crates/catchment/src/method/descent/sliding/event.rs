@@ -3,22 +3,22 @@
 //! ```text
 //!   f(s)   gap of what is met, or hold of what carries
 //!     │╲
-//!     │  ╲            clear        false position (Illinois) between the last clear share of the step and
-//!   0 ┼────╲×──────── s            the first that is not, until the event is landed on
-//!     │      ╲        not clear
+//!     │  ╲            clear        false position between the last clear length and the first that
+//!   0 ┼────╲×──────── s            passes an event, until the event is landed on
+//!     │      ╲        passed
 //! ```
 //!
-//! What is met is landed on within its tolerance, from either side; what is lost is left on the far side of its border, so that
-//! it is not felt again.
+//! What is met is landed on within its tolerance, from either side. What is lost is left on the far side of its border, so
+//! that it is not felt again. At every length the step is made anew: direction at its own middle, then corrected.
 
 use super::super::motion::{Motion, State};
 use super::super::projection::Vector;
 use super::{BORDER, LANDING, SUPPORT};
 use crate::contact::{Contact, Meeting};
 
-/// How far beyond the border a lost contact is left, at most, in D or radians: below what a landing tells apart.
+/// How far beyond the border a lost contact is left at most, in D or as a sine: below what a landing tells apart.
 const FAR_SIDE: f64 = 1e-9;
-/// Most trials of a step; bisection alone takes some 30 to [`NOWHERE`].
+/// Most trials of a step: bisection alone takes some 35 to [`NOWHERE`].
 const MOST_TRIALS: usize = 60;
 /// A step shorter than this leads nowhere, in D.
 const NOWHERE: f64 = 1e-12;
@@ -27,7 +27,8 @@ const TRUSTED_SHARE: f64 = 0.1;
 const TRUSTED: f64 = 1e-6;
 /// What blocks a step at its start is one more contact if it is this close, in D.
 const CLOSE: f64 = 1e-6;
-
+/// What was open by less than this share of its overlap before a step had been passed earlier, behind a wall.
+const PASSED_BEFORE: f64 = 0.25;
 /// False position keeps off the ends of its interval by this share of it.
 const EDGE: f64 = 1e-6;
 
@@ -35,7 +36,7 @@ const EDGE: f64 = 1e-6;
 pub(super) enum Reached {
     /// Here, after this length.
     At(State, f64),
-    /// Not anywhere: something is met at once.
+    /// Nowhere: this is met at once, if it is known.
     Blocked(Option<(Contact, Meeting)>),
 }
 
@@ -44,59 +45,56 @@ enum Trial {
     /// Nothing met, nothing lost.
     Clear(State),
     /// A contact overlaps, or one that carries is lost.
-    Passed(State, Watched),
-    /// The contacts that carry cannot be kept.
+    Passed(State, Event),
+    /// The contacts that carry cannot be kept, or the halves overlap and no contact says so.
     Failed,
 }
 
-/// The function of a step's length whose zero is an event.
+/// What may happen to two features.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// They meet: the gap falls through 0.
+    Met,
+    /// They part: the hold falls through 0.
+    Lost,
+}
+
+/// A function of a step's length that falls through 0.
 #[derive(Clone, Copy)]
-struct Watched {
+struct Event {
     contact: Contact,
     meeting: Meeting,
-    what: What,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum What {
-    Gap,
-    Hold,
-}
-
-impl Watched {
-    fn is_same(&self, other: &Self) -> bool {
-        self.meeting == other.meeting && self.what == other.what
-    }
+    kind: Kind,
 }
 
 /// An event between a clear length and one that passes it, with the values there for false position.
 struct Bracket {
-    watched: Watched,
+    event: Event,
     clear: f64,
     passed: f64,
-    /// Which end was moved last, for the Illinois rule: the value of an end that stays twice is halved.
-    last_clear: Option<bool>,
+    /// Which end moved last. The value of an end that stays twice is halved (Illinois), lest it stay forever.
+    last: Option<End>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    Clear,
+    Passed,
 }
 
 impl Bracket {
-    const fn new(watched: Watched, clear: f64, passed: f64) -> Self {
-        Self { watched, clear, passed, last_clear: None }
-    }
-
-    fn is_clear_at(&mut self, value: f64) {
-        if self.last_clear == Some(true) {
+    fn clear_at(&mut self, value: f64) {
+        if self.last == Some(End::Clear) {
             self.passed *= 0.5;
         }
-        self.clear = value;
-        self.last_clear = Some(true);
+        (self.clear, self.last) = (value, Some(End::Clear));
     }
 
-    fn is_passed_at(&mut self, value: f64) {
-        if self.last_clear == Some(false) {
+    fn passed_at(&mut self, value: f64) {
+        if self.last == Some(End::Passed) {
             self.clear *= 0.5;
         }
-        self.passed = value;
-        self.last_clear = Some(false);
+        (self.passed, self.last) = (value, Some(End::Passed));
     }
 
     /// Where the event is expected, as a share of the way from the clear length to the other.
@@ -110,54 +108,47 @@ impl Bracket {
 }
 
 impl Motion<'_> {
-    /// Moves along `u` by `step`, or to the first event before.
-    pub(super) fn until_event(&mut self, state: &State, u: &Vector, step: f64) -> Reached {
+    /// Moves from `state`, where the direction is `start`, by `step`, or to the first event before.
+    pub(super) fn until_event(&mut self, state: &State, start: &Vector, step: f64) -> Reached {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
         let mut bracket: Option<Bracket> = None;
         for _ in 0..MOST_TRIALS {
-            match self.attempt(state, u, at) {
+            match self.attempt(state, start, at) {
                 Trial::Clear(next) => {
-                    let value = bracket.as_ref().map(|b| self.value(&b.watched, &next));
-                    let landed = match (&bracket, value) {
-                        (Some(b), Some(value)) => b.watched.what == What::Gap && value.abs() <= LANDING,
-                        _ => at >= high,
+                    let value = bracket.as_ref().map(|b| (b.event.kind, self.value(&b.event, &next)));
+                    let landed = match value {
+                        Some((kind, value)) => kind == Kind::Met && value.abs() <= LANDING,
+                        None => at >= high,
                     };
                     if landed {
                         return Reached::At(next, at);
                     }
                     (low, clear) = (at, next);
-                    if let (Some(b), Some(value)) = (&mut bracket, value) {
-                        b.is_clear_at(value);
+                    if let (Some(bracket), Some((_, value))) = (&mut bracket, value) {
+                        bracket.clear_at(value);
                     }
                 }
-                Trial::Passed(next, watched) => {
-                    let value = self.value(&watched, &next);
-                    if watched.what == What::Hold && value >= -0.5 * FAR_SIDE {
+                Trial::Passed(next, event) => {
+                    let value = self.value(&event, &next);
+                    if event.kind == Kind::Lost && value >= -0.5 * FAR_SIDE {
                         return Reached::At(next, at);
                     }
                     high = at;
                     match &mut bracket {
-                        Some(b) if b.watched.is_same(&watched) => b.is_passed_at(value),
-                        _ => bracket = Some(Bracket::new(watched, self.value(&watched, &clear), value)),
+                        Some(b) if b.event.meeting == event.meeting && b.event.kind == event.kind => {
+                            b.passed_at(value);
+                        }
+                        _ => {
+                            let clear = self.value(&event, &clear);
+                            bracket = Some(Bracket { event, clear, passed: value, last: None });
+                        }
                     }
                 }
                 Trial::Failed => {
                     high = at;
                     bracket = None;
                 }
-            }
-            if std::env::var("DBG").is_ok() {
-                let n = bracket.as_ref().map(|b| {
-                    (
-                        b.watched.what == What::Gap,
-                        b.watched.meeting,
-                        b.watched.contact.normal,
-                        b.clear,
-                        b.passed,
-                    )
-                });
-                eprintln!("   at {at:.3e} low {low:.3e} high {high:.3e} {n:?}");
             }
             if high - low < NOWHERE {
                 break;
@@ -167,90 +158,87 @@ impl Motion<'_> {
         if low > NOWHERE {
             return Reached::At(clear, low);
         }
-        Reached::Blocked(bracket.and_then(|Bracket { watched: event, .. }| {
-            let contact = self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
-            (event.what == What::Gap && contact.gap.abs() <= CLOSE).then_some((contact, event.meeting))
-        }))
+        Reached::Blocked(bracket.filter(|b| b.event.kind == Kind::Met).and_then(
+            |Bracket { event, .. }| {
+                let contact = self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
+                (contact.gap.abs() <= CLOSE).then_some((contact, event.meeting))
+            },
+        ))
     }
 
-    /// Value of what is watched at `state`, below 0 behind the event.
-    fn value(&self, watched: &Watched, state: &State) -> f64 {
-        let contact = self.pair.contact(&watched.contact, &watched.meeting, &state.rotation, state.cor);
-        match watched.what {
-            What::Gap => contact.gap + 0.5 * LANDING,
-            What::Hold => self.hold(&contact, &watched.meeting, state) + 0.5 * FAR_SIDE,
+    /// Value of an event's function at `state`: 0 within half of its tolerance.
+    fn value(&self, event: &Event, state: &State) -> f64 {
+        let contact = self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
+        match event.kind {
+            Kind::Met => contact.gap + 0.5 * LANDING,
+            Kind::Lost => self.hold(&contact, &event.meeting, state) + 0.5 * FAR_SIDE,
         }
     }
 
+    /// How far a contact is from being lost, in D or as a sine, whichever is less.
     fn hold(&self, contact: &Contact, meeting: &Meeting, state: &State) -> f64 {
         let hold = self.pair.hold(contact, meeting, &state.rotation, state.cor);
         (hold.foot + BORDER).min(hold.support + SUPPORT)
     }
 
-    /// A step of length `at` along `u`, and what comes of it.
+    /// A step of length `at`, and what comes of it.
     fn attempt(&mut self, state: &State, start: &Vector, at: f64) -> Trial {
         let middle = self.moved(state, &start.map(|x| 0.5 * at * x));
         let u = self.direction(&middle).unwrap_or(*start);
         let next = self.moved(state, &u.map(|x| at * x));
         let trusted = TRUSTED_SHARE * at + TRUSTED;
-        let carrying = self.sliding.as_mut().map(|s| std::mem::take(&mut s.carrying)).unwrap_or_default();
-        let corrected = self.corrected(&next, &carrying, trusted).or_else(|| {
-            if std::env::var("DBG").is_ok() {
-                eprintln!("      uncorrected at {at:.3e} {carrying:?}");
-            }
-            self.corrected(&next, &[], trusted)
-        });
-        let trial = corrected.map_or(Trial::Failed, |next| self.judge(state, next, at, &carrying));
-        if let Some(sliding) = &mut self.sliding {
-            sliding.carrying = carrying;
-        }
+        let carrying = std::mem::take(&mut self.sliding.carrying);
+        let trial = self
+            .corrected(&next, &carrying, trusted)
+            // Contacts that hold a body fast cannot all be kept; that none overlaps is enough.
+            .or_else(|| self.corrected(&next, &[], trusted))
+            .map_or(Trial::Failed, |next| self.judge(state, next, at, &carrying));
+        self.sliding.carrying = carrying;
         trial
     }
 
-    /// What comes of a step of length `at` that ends at `next`.
+    /// What comes of a step of length `at` from `state` that ends at `next`.
     fn judge(&mut self, state: &State, next: State, at: f64, carrying: &[usize]) -> Trial {
-        let (_, near) = self.horizon(self.settings.step);
-        let (_, closed) = self.horizon(at);
-        self.nearby.turn(&next.rotation, next.cor.truncate(), SUPPORT, near);
-        let mut touched = self.sliding.as_mut().map(|s| std::mem::take(&mut s.touched)).unwrap_or_default();
-        self.nearby.contacts_within(next.cor, closed + LANDING, BORDER, &mut touched);
-        // What is met first if gaps close evenly.
-        let mut first: Option<((bool, f64), Watched)> = None;
-        for (contact, meeting) in touched.iter().filter(|(c, _)| c.gap < -LANDING) {
-            let before = self.pair.contact(contact, meeting, &state.rotation, state.cor).gap;
-            // What was as deep before is another way through the same wall.
-            if before < 0.25 * contact.gap {
-                continue;
-            }
-            // A gap that was not open before is that of a feature which has only now come near.
-            let when = (before < -LANDING, before / (before - contact.gap));
-            if first.is_none_or(|(earliest, _)| when < earliest) {
-                first = Some((when, Watched { contact: *contact, meeting: *meeting, what: What::Gap }));
-            }
-        }
-        if let Some(sliding) = &mut self.sliding {
-            sliding.touched = touched;
-        }
-        if let Some((_, met)) = first {
-            return Trial::Passed(next, met);
-        }
-        let mut lost: Option<(f64, Watched)> = None;
-        for &k in carrying {
-            let (before, meeting) = self.contacts[k];
-            let contact = self.pair.contact(&before, &meeting, &next.rotation, next.cor);
-            let hold = self.hold(&contact, &meeting, &next);
-            if hold < 0.0 && lost.is_none_or(|(least, _)| hold < least) {
-                lost = Some((hold, Watched { contact: before, meeting, what: What::Hold }));
-            }
-        }
-        if let Some((_, event)) = lost {
+        if let Some(event) = self.first_met(state, &next, at) {
             return Trial::Passed(next, event);
         }
-        let mut placed = self.sliding.as_mut().map(|s| std::mem::take(&mut s.placed)).unwrap_or_default();
-        let overlaps = self.pair.overlaps(&next.rotation, next.cor, &mut placed);
-        if let Some(sliding) = &mut self.sliding {
-            sliding.placed = placed;
+        let holds = carrying.iter().map(|&k| {
+            let (before, meeting) = self.contacts[k];
+            let contact = self.pair.contact(&before, &meeting, &next.rotation, next.cor);
+            let event = Event { contact: before, meeting, kind: Kind::Lost };
+            (self.hold(&contact, &meeting, &next), event)
+        });
+        match holds.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(hold, _)| *hold < 0.0) {
+            Some((hold, event)) if hold < -FAR_SIDE => Trial::Passed(next, event),
+            _ if self.overlaps(&next) => Trial::Failed,
+            Some((_, event)) => Trial::Passed(next, event),
+            None => Trial::Clear(next),
         }
-        if overlaps { Trial::Failed } else { Trial::Clear(next) }
+    }
+
+    /// Of what overlaps at `next`, `at` from `state`, what was met first if gaps close evenly.
+    fn first_met(&mut self, state: &State, next: &State, at: f64) -> Option<Event> {
+        let (_, closed) = self.horizon(at);
+        self.look(next);
+        let mut touched = std::mem::take(&mut self.sliding.touched);
+        self.nearby.contacts_within(next.cor, closed + LANDING, BORDER, &mut touched);
+        let first = touched
+            .iter()
+            .filter(|(contact, _)| contact.gap < -LANDING)
+            .filter_map(|&(contact, meeting)| {
+                let before = self.pair.contact(&contact, &meeting, &state.rotation, state.cor).gap;
+                // A gap that was not open before is that of a feature which has only now come near: others first.
+                let order = (before < -LANDING, before / (before - contact.gap));
+                (before >= PASSED_BEFORE * contact.gap).then_some((order, (contact, meeting)))
+            })
+            .min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
+            .map(|(_, (contact, meeting))| Event { contact, meeting, kind: Kind::Met });
+        self.sliding.touched = touched;
+        first
+    }
+
+    /// Whether the halves overlap at `state`.
+    pub(super) fn overlaps(&mut self, state: &State) -> bool {
+        self.pair.overlaps(&state.rotation, state.cor, &mut self.sliding.placed)
     }
 }

@@ -12,15 +12,15 @@
 //!
 //! 1. Active contacts are those that touch and are truly supported. None: straight down to the next one.
 //! 2. The direction is the closest one to straight down that no active contact forbids (the minimum-norm point of
-//!    the gradients, see [`super::projection`]), taken again at the middle of the step; the step is halved until the two agree.
+//!    the gradients, see [`super::projection`]), taken at the middle of the step; a step that bends is halved.
 //! 3. Newton's method brings the contacts that carry back to touching ([`correction`]).
 //! 4. If anything was met or lost on the way, the step ends there ([`event`]).
 //!
-//! Heights are not reset and walls keep no margin: positions are exact to rounding, and outcomes do not depend on the step
-//! up to the midpoint rule's error.
+//! Heights are not reset and walls keep no margin: contacts touch to rounding, and between events the error is the midpoint
+//! rule's, third order in the step.
 //!
-//! Not promised: a way on through states that this cannot follow (contacts that appear already deep). There one step is
-//! taken as where nothing is tight.
+//! Not promised: a way on where the halves are caught in an overlap that no contact explains. There one step is taken as
+//! where nothing is tight.
 
 mod correction;
 mod event;
@@ -30,14 +30,14 @@ use super::projection::Vector;
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting};
 use event::Reached;
-use glam::DVec3;
+use glam::{DMat3, DVec2, DVec3};
 
-/// A gap below this touches, in D: above what the correction leaves (rounding, 1e-15, over slopes), and above [`LANDING`].
-const ACTIVE: f64 = 2e-9;
+/// A gap below this touches, in D: above what a landing leaves, far below what turns a direction.
+const ACTIVE: f64 = 2.0 * LANDING;
+/// A contact is landed on when its gap is this close to 0, in D: above what is inexact in coplanar facets of drawn pieces.
+const LANDING: f64 = 1e-9;
 /// Overlap up to which a contact still counts, in D: what a height rounded on a steep slope leaves. Deeper ones were passed.
 const DEEPEST: f64 = 1e-7;
-/// A contact is landed on when its gap is this close to 0, in D.
-const LANDING: f64 = 1e-9;
 /// A foot counts as on its feature up to this far beyond the border, in D: above [`ACTIVE`], so that the facets on both
 /// sides of a valley are felt together; below the distance at which walls between pieces are looked for (1e-7).
 const BORDER: f64 = 1e-8;
@@ -46,16 +46,24 @@ const SUPPORT: f64 = 1e-7;
 
 /// Rest: where the force alone would push the body by 1, it moves by less than this.
 const STILL: f64 = 1e-7;
-/// Largest change of the direction, a unit in its largest part, from the start of a step to its middle.
+/// Largest change of the direction, 1 in its largest part, from the start of a step to its middle.
 const BEND: f64 = 0.05;
 /// Steps are not halved below this share for the sake of the direction: edges that are nearly parallel turn at any scale.
 const LEAST_SHARE: f64 = 1e-6;
 /// What was met at the very start of a step is one more contact, at most so often: the corners of two faces.
 const MOST_BLOCKERS: usize = 8;
+/// The contacts that will carry are brought to touch within this before a step, in D: landings on contacts close
+/// together, whose correction is longer than their gap.
+const SETTLED: f64 = 1e-6;
+
+/// Where the force pushes.
+const DOWN: Vector = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
 
 /// Buffers of a sliding motion.
 #[derive(Debug, Default)]
 pub(super) struct Sliding {
+    /// Where the elements are those that [`SUPPORT`] asks for.
+    looked: Option<(DMat3, DVec2)>,
     /// Which of the active contacts carry the body.
     carrying: Vec<usize>,
     /// What is touched at the end of a step that is tried.
@@ -66,14 +74,20 @@ pub(super) struct Sliding {
     gaps: Vec<f64>,
 }
 
+impl Sliding {
+    /// What was seen last is gone: the pose is another, or the elements are others.
+    pub(super) const fn forget(&mut self) {
+        self.looked = None;
+    }
+}
+
 impl Motion<'_> {
-    /// Finds the active contacts and brings them to touch.
+    /// Finds the active contacts and takes the body out of what they overlap.
     pub(super) fn feel(&mut self, state: &State) -> State {
-        let (_, near) = self.horizon(self.settings.step);
-        self.nearby.turn(&state.rotation, state.cor.truncate(), SUPPORT, near);
+        self.look(state);
         self.nearby.contacts_within(state.cor, DEEPEST, BORDER, &mut self.contacts);
         self.contacts.retain(|(contact, _)| contact.gap <= ACTIVE);
-        self.corrected(state, &[], LANDING).unwrap_or(*state)
+        self.corrected(state, &[], DEEPEST).unwrap_or(*state)
     }
 
     /// One step from `state`, whose active contacts have been felt, to its first event.
@@ -81,30 +95,17 @@ impl Motion<'_> {
         if self.contacts.is_empty() {
             return self.drop_down(state);
         }
-        let state = &mut state.clone();
+        let mut state = *state;
         for _ in 0..=MOST_BLOCKERS {
-            let Some(start) = self.direction(state) else { return Advance::Ended(Outcome::Jammed, *state) };
-            let carrying = self.sliding.as_ref().map(|s| s.carrying.clone()).unwrap_or_default();
-            if let Some(touching) = self.corrected(state, &carrying, 1e-6) {
-                *state = touching;
-            }
-            let mut step = pace.step.min(self.settings.step);
-            let mut u = start;
-            while step > self.settings.step * LEAST_SHARE {
-                let Some(middle) = self.direction(&self.moved(state, &start.map(|x| 0.5 * step * x))) else {
-                    step *= 0.5;
-                    continue;
-                };
-                u = middle;
-                if difference(&u, &start) <= BEND {
-                    break;
-                }
-                step *= 0.5;
-            }
-            match self.until_event(state, &start, step) {
-                Reached::At(next, share) => {
+            let Some(start) = self.direction(&state) else { return Advance::Ended(Outcome::Jammed, state) };
+            let carrying = std::mem::take(&mut self.sliding.carrying);
+            state = self.corrected(&state, &carrying, SETTLED).unwrap_or(state);
+            self.sliding.carrying = carrying;
+            let step = self.straight(&state, &start, pace.step.min(self.settings.step));
+            match self.until_event(&state, &start, step) {
+                Reached::At(next, length) => {
                     pace.step = 2.0 * step;
-                    return Advance::Moved(next, share * lateral(&start));
+                    return Advance::Moved(next, length * lateral(&start));
                 }
                 Reached::Blocked(Some(blocker)) => self.contacts.push(blocker),
                 Reached::Blocked(None) => break,
@@ -112,35 +113,65 @@ impl Motion<'_> {
         }
         // What cannot be followed from event to event is passed by one plain step.
         let mut plain = Pace::new(self.settings.step);
+        self.sliding.forget();
         self.turn(&state.rotation, state.cor.truncate(), plain.step);
-        self.gather(state, plain.step);
-        self.advance(state, &mut plain)
+        self.gather(&state, plain.step);
+        self.advance(&state, &mut plain)
+    }
+
+    /// Turns to `state`, unless that is where the last look was.
+    fn look(&mut self, state: &State) {
+        let here = (state.rotation, state.cor.truncate());
+        if self.sliding.looked != Some(here) {
+            self.sliding.looked = Some(here);
+            let (_, near) = self.horizon(self.settings.step);
+            self.nearby.turn(&here.0, here.1, SUPPORT, near);
+        }
     }
 
     /// Lowers the body to what is next below it.
     fn drop_down(&mut self, state: &State) -> Advance {
-        match self.nearby.height_below(state.cor.truncate(), state.cor.z).0 {
-            Some(z) => Advance::Moved(State { cor: state.cor.truncate().extend(z), ..*state }, 0.0),
-            None => Advance::Ended(Outcome::Missed, *state),
+        let Some(z) = self.nearby.height_below(state.cor.truncate(), state.cor.z).0 else {
+            return Advance::Ended(Outcome::Missed, *state);
+        };
+        let landed = State { cor: state.cor.truncate().extend(z), ..*state };
+        if !self.overlaps(&landed) {
+            return Advance::Moved(landed, 0.0);
+        }
+        // Rims have crossed on the way without a contact that says so.
+        match self.until_event(state, &DOWN, state.cor.z - z) {
+            Reached::At(next, _) => Advance::Moved(next, 0.0),
+            Reached::Blocked(_) => Advance::Ended(Outcome::Undecided, *state),
         }
     }
 
-    /// Where the body goes at `state` by the active contacts, with 1 as its largest part in x, y and turns together or in
-    /// z; and which contacts carry it. `None` at rest.
+    /// The longest of `step`, its half, its quarter … to whose middle the direction hardly turns from `start`.
+    fn straight(&mut self, state: &State, start: &Vector, mut step: f64) -> f64 {
+        while step > self.settings.step * LEAST_SHARE {
+            let middle = self.moved(state, &start.map(|x| 0.5 * step * x));
+            if self.direction(&middle).is_some_and(|u| difference(&u, start) <= BEND) {
+                break;
+            }
+            step *= 0.5;
+        }
+        step
+    }
+
+    /// Where the body goes at `state` by the active contacts, borders aside, with 1 for what is longer: its lateral part
+    /// (ρ-metric) or its fall. Keeps which contacts carry it. `None` at rest.
     fn direction(&mut self, state: &State) -> Option<Vector> {
         let axes = self.axes(state);
-        let mut sliding = self.sliding.take().unwrap_or_default();
-        sliding.rows.clear();
-        for (before, meeting) in &self.contacts {
+        let mut rows = std::mem::take(&mut self.sliding.rows);
+        rows.clear();
+        rows.extend(self.contacts.iter().map(|(before, meeting)| {
             let contact = self.pair.contact(before, meeting, &state.rotation, state.cor);
-            sliding.rows.push(self.row(&contact, state, &axes));
-        }
-        let down = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
+            self.row(&contact, state, &axes)
+        }));
         let gaps = std::iter::repeat(0.0);
-        let u = self.projection.closest_allowed(&down, &sliding.rows, gaps, 1.0).unwrap_or_default();
-        sliding.carrying.clear();
-        sliding.carrying.extend_from_slice(self.projection.pressed());
-        self.sliding = Some(sliding);
+        let u = self.projection.closest_allowed(&DOWN, &rows, gaps, 1.0).unwrap_or_default();
+        self.sliding.rows = rows;
+        self.sliding.carrying.clear();
+        self.sliding.carrying.extend_from_slice(self.projection.pressed());
         let size = lateral(&u).max(u[2].abs());
         (size > STILL).then(|| u.map(|x| x / size))
     }

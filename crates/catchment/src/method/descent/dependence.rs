@@ -1,0 +1,85 @@
+//! Whether outcomes still depend on the step: random poses followed twice, at the step and at half of it.
+//!
+//! ```text
+//!   share = changed / of          with Wilson's 95 % interval
+//! ```
+//!
+//! Asked where fits are tight ([`Pair::is_tight`]); elsewhere small errors of the motion heal.
+//!
+//! Not seen: errors that both steps share.
+
+use super::{Settings, run};
+use crate::acceptance::{Domain, Warning};
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec};
+use crate::method::correction::wilson95;
+use crate::method::door::affordable;
+
+/// Poses of simple halves: one change among them is 0.3 %, the interval of none ends at 1.3 %. A second or less.
+const SIMPLE: f64 = 300.0;
+/// Poses of any halves: the interval of no change ends at 4 %.
+const LEAST: f64 = 100.0;
+
+/// The doubt that outcomes of a tight pair depend on the step, if any of the poses drawn by `seed` ends otherwise at half
+/// the step; `None` if none does, or nothing is tight.
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop.
+pub fn step_dependence(
+    pair: &Pair,
+    settings: &Settings,
+    seed: u64,
+    exec: &Exec,
+) -> Result<Option<Warning>, Cancelled> {
+    if !pair.is_tight() {
+        return Ok(None);
+    }
+    let of = (SIMPLE * affordable(pair)).max(LEAST) as usize;
+    let poses = || Domain::random(&pair.alignment, of, seed);
+    let half =
+        Settings { step: settings.step / 2.0, max_steps: settings.max_steps.saturating_mul(2), ..*settings };
+    let (whole, _) = run(pair, poses(), settings, exec)?;
+    let (halved, _) = run(pair, poses(), &half, exec)?;
+    let changed = whole.outcomes.iter().zip(&halved.outcomes).filter(|(a, b)| a != b).count();
+    let ci95 = wilson95(changed as f64 / of as f64, of as f64);
+    Ok((changed > 0).then_some(Warning::StepDependence { changed, of, ci95 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+
+    fn pair(family: Family) -> Pair {
+        let alignment = Alignment::default_for(Some(family));
+        let connector = ConnectorSpec::Family(FamilySpec::new(family));
+        let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+        Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+    }
+
+    #[test]
+    fn nothing_is_followed_where_nothing_is_tight() {
+        // Steps of the size of the halves would change something.
+        let coarse = Settings { step: 1.0, ..Settings::default() };
+        let none = step_dependence(&pair(Family::Pyramid), &coarse, 1, &Exec::new());
+        assert_eq!(none, Ok(None));
+    }
+
+    #[test]
+    fn a_dependence_is_told_with_its_interval() {
+        // A budget that suffices for the step but not for its half: 2·7 steps of half the length, and events beside them.
+        let pair = pair(Family::XFace3dLocking);
+        let short = Settings { max_steps: 7, ..Settings::default() };
+        let Ok(Some(Warning::StepDependence { changed, of, ci95 })) =
+            step_dependence(&pair, &short, 1, &Exec::new())
+        else {
+            panic!("some motion must need more")
+        };
+        let share = changed as f64 / of as f64;
+        assert!(
+            changed <= of && of >= 100 && ci95[0] < share && share < ci95[1],
+            "{changed} of {of}: {ci95:?}"
+        );
+    }
+}
