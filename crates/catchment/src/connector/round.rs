@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn polygons_of_many_sides_about_the_axis_are_round() {
         for (sides, center, round) in
-            [(4, 0.0, false), (8, 0.0, false), (16, 0.0, true), (64, 0.0, true), (64, 0.1, false)]
+            [(4, 0.0, false), (8, 0.0, false), (16, 0.0, true), (32, 0.0, true), (32, 0.1, false)]
         {
             assert_eq!(prism(sides, center).is_round(ALL), round, "{sides} sides at {center}");
         }

@@ -195,17 +195,3 @@ fn drops_agree_with_motions() {
     }
     assert!(same[0] * 100 >= same[1] * 97, "{same:?}");
 }
-
-#[test]
-fn debug() {
-    let peg = Peg::new(4, 0.3, 0.02, 0.08);
-    let problem = peg.problem(&LATERAL, 0.2, loose).unwrap();
-    let t = descent::trace(problem.pair(), &at(0.0107, 0.0308), &descent::Settings::default());
-    for w in &t.waypoints {
-        eprintln!("{:?} {} h {} travelled {}", w.error.x, w.error.y, w.height, w.travelled);
-        for t in &w.touches {
-            eprintln!("      {:?} n {:?}", t.point, t.normal);
-        }
-    }
-    eprintln!("{:?}", t.outcome);
-}

@@ -25,27 +25,27 @@ fn ring(sides: u32, radius: f64, z: f64) -> Vec<DVec3> {
 
 /// A peg in its hole; lengths in D. Radii are those of the corners.
 #[derive(Debug, Clone, Copy)]
-pub struct Peg {
-    pub sides: u32,
+pub(crate) struct Peg {
+    pub(crate) sides: u32,
     /// Radius of the hole.
-    pub hole: f64,
+    pub(crate) hole: f64,
     /// Radius of the peg.
-    pub peg: f64,
+    pub(crate) peg: f64,
     /// Width and depth of the chamfer of the hole.
-    pub chamfer: f64,
+    pub(crate) chamfer: f64,
     /// Depth of the hole.
-    pub deep: f64,
+    pub(crate) deep: f64,
     /// Whether the peg stands on the floor of its hole, or hangs by a flange.
-    pub blind: bool,
+    pub(crate) blind: bool,
 }
 
 impl Peg {
-    pub const fn new(sides: u32, hole: f64, play: f64, chamfer: f64) -> Self {
+    pub(crate) const fn new(sides: u32, hole: f64, play: f64, chamfer: f64) -> Self {
         Self { sides, hole, peg: hole - play, chamfer, deep: 0.3, blind: true }
     }
 
     /// Area of the offsets from which the peg slides into its hole: its tip lies over the mouth.
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         let reach = self.hole + self.chamfer - self.peg;
         let n = f64::from(self.sides);
         0.5 * n * (TAU / n).sin() * reach * reach
@@ -88,7 +88,7 @@ impl Peg {
     }
 
     /// The problem with these errors free, half ranges of `range` D and 0.6 rad.
-    pub fn problem(
+    pub(crate) fn problem(
         &self,
         free: &[Dof],
         range: f64,
