@@ -30,7 +30,6 @@ mod walls;
 
 pub use element::Meeting;
 pub use envelope::Envelope;
-pub use hold::Hold;
 pub use mirror::Mirror;
 pub use nearby::Nearby;
 
