@@ -18,17 +18,17 @@ use glam::{DMat3, DVec3};
 
 /// How far a contact is from ending; negative beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hold {
+pub(crate) struct Hold {
     /// Distance of the foot from the border of the features, in D.
-    pub foot: f64,
+    pub(crate) foot: f64,
     /// Sine of the angle by which the features support the normal.
-    pub support: f64,
+    pub(crate) support: f64,
 }
 
 impl Pair {
     /// How firmly the two features of `meeting` hold `contact`, which is theirs with the COR at `position` and the moving
     /// half at `rotation`.
-    pub fn hold(&self, contact: &Contact, meeting: &Meeting, rotation: &DMat3, position: DVec3) -> Hold {
+    pub(crate) fn hold(&self, contact: &Contact, meeting: &Meeting, rotation: &DMat3, position: DVec3) -> Hold {
         let [f, m] = meeting.shapes.map(|s| s as usize);
         let (fixed, moving) = (&self.fixed_shapes[f], &self.moving_shapes[m]);
         let back = rotation.transpose();

@@ -32,7 +32,6 @@ mod walls;
 
 pub use element::Meeting;
 pub use envelope::Envelope;
-pub use hold::Hold;
 pub use mirror::Mirror;
 pub use nearby::Nearby;
 pub use play::{Play, play};

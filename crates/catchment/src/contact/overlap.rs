@@ -24,7 +24,7 @@ const THROUGH: f64 = 1e-6;
 impl Pair {
     /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`; `placed` is scratch for the
     /// moving vertices.
-    pub fn overlaps(&self, rotation: &DMat3, position: DVec3, placed: &mut Vec<DVec3>) -> bool {
+    pub(crate) fn overlaps(&self, rotation: &DMat3, position: DVec3, placed: &mut Vec<DVec3>) -> bool {
         self.moving_shapes.iter().any(|moving| {
             placed.clear();
             placed.extend(moving.vertices.iter().map(|v| *rotation * *v + position));

@@ -3,7 +3,7 @@
 //! Per step: everything that touches or may be met is found exactly at the current position; the closest allowed
 //! displacement to the push of the force is taken ([`super::projection`]); the height is then set to that of
 //! first contact, so that errors of the linearisation never build up. A step that the height contradicts
-//! is halved.
+//! is halved. Pairs with tight fits go by [`super::sliding`] instead.
 
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::sliding::Sliding;
