@@ -15,6 +15,7 @@ mod meshes;
 mod new;
 mod plumbing;
 mod poses;
+mod seat;
 mod studies;
 mod tables;
 mod wire;

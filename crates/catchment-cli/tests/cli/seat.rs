@@ -1,0 +1,121 @@
+//! Docked is about depth: the designs on which the program was wrong, through the real binary.
+
+use super::{catchment, json, run};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+/// A round peg on the floor of its chamfered hole, as polygons of 32 sides; lengths in mm, `deep` below the rim.
+fn peg(width: f64, hole: f64, peg: f64, chamfer: f64, deep: f64) -> String {
+    const SIDES: usize = 32;
+    let point = |radius: f64, k: usize, z: f64| {
+        let a = std::f64::consts::TAU * (k % SIDES) as f64 / SIDES as f64;
+        format!("[{:.9}, {:.9}, {z}]", radius * a.cos(), radius * a.sin())
+    };
+    let ring = |radius, z| (0..SIDES).map(|k| point(radius, k, z)).collect::<Vec<_>>();
+    let list = |points: Vec<String>| format!("  [{}],\n", points.join(", "));
+    let mut fixed = list([ring(width, -deep - 1.0), ring(width, -deep)].concat());
+    for [low, high] in [[(hole, -deep), (hole, -chamfer)], [(hole, -chamfer), (hole + chamfer, 0.0)]] {
+        for k in (0..SIDES).filter(|_| high.1 > low.1) {
+            let corners = [low, high].into_iter().flat_map(|(radius, z)| [(radius, z), (width, z)]);
+            fixed += &list(
+                corners.flat_map(|(radius, z)| [point(radius, k, z), point(radius, k + 1, z)]).collect(),
+            );
+        }
+    }
+    let moving = list([ring(peg, -5.0), ring(peg, deep)].concat());
+    let mut text = format!(
+        "schema = 1\nname = \"a peg\"\n[connector]\nwidth = {width}\nunit = \"mm\"\nface_height = 0.0\n"
+    );
+    let _ =
+        write!(text, "[connector.fixed]\npieces = [\n{fixed}]\n[connector.moving]\npieces = [\n{moving}]\n");
+    text + "[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = \"4 mm\"\ny = \"4 mm\"\n"
+}
+
+fn home(text: &str) -> tempfile::TempDir {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("peg.toml"), text).unwrap();
+    home
+}
+
+/// Area of the offsets from which the tip of a peg lies over the mouth, in D².
+fn mouth(reach: f64, width: f64) -> f64 {
+    16.0 * (std::f64::consts::TAU / 32.0).sin() * (reach / width).powi(2)
+}
+
+fn holds(report: &serde_json::Value, sum: f64) {
+    let [lo, hi] = [0, 1].map(|k| report["acceptance"]["sum_ci95"][k].as_f64().unwrap());
+    // Twice the width of the 95 % interval.
+    assert!((0.5 * (lo + hi) - sum).abs() <= hi - lo, "{lo} … {hi} for {sum}");
+}
+
+#[test]
+fn a_peg_on_the_rim_of_its_hole_is_not_docked() {
+    // Ø10 in Ø10.1, 12 mm deep, D = 30 mm: ±0.05 mm and no more.
+    let home = home(&peg(30.0, 5.05, 5.0, 0.0, 12.0).replace("4 mm", "0.6 mm"));
+    let outcome = |x: &str| {
+        fs::write(home.path().join("poses.csv"), format!("x_mm,y_mm\n{x},0\n")).unwrap();
+        run(home.path(), &["outcome", "peg.toml", "--poses", "poses.csv"])
+    };
+    assert!(outcome("0.3").contains(",jammed,"), "{}", outcome("0.3"));
+    assert!(outcome("0.04").contains(",aligned,"), "{}", outcome("0.04"));
+    let sigma = ["--error-sigma", "x=0.2 mm,y=0.2 mm", "--require", "success.probability>=0.98"];
+    let args = ["run", "peg.toml", "--resolution", "41", "--method", "descent", "--json"];
+    let output = catchment(home.path()).args(args).args(sigma).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // 1 − exp(−0.05²/(2·0.2²)) = 3.1 %, on cells of 0.03 mm.
+    let success = report["success"]["probability"].as_f64().unwrap();
+    assert!((success - 0.031).abs() < 0.015, "{success}");
+}
+
+#[test]
+fn a_seated_peg_with_play_is_docked_and_says_how_far_off_it_rests() {
+    // 0.5 mm of play, 1.47 mm of chamfer: what the tip finds is 1.97 mm around the axis.
+    let home = home(&peg(12.0, 6.0, 5.5, 1.47, 5.0).replace("4 mm", "2.5 mm"));
+    let report = json(home.path(), &["run", "peg.toml", "--json"]);
+    holds(&report, mouth(1.97, 12.0));
+    let seat = &report["seat"];
+    // Corners on the axes: 0.5 mm.
+    assert!((seat["play"][0]["plus"].as_f64().unwrap() - 0.5 / 12.0).abs() < 1e-3, "{seat}");
+    let most = seat["residual"][0]["most"].as_f64().unwrap();
+    assert!(most > 0.03 && most < 0.5 / 12.0 + 1e-3, "{seat}");
+    let require = ["run", "peg.toml", "--require", "seat.residual.x.p95<=0.01"];
+    let output = catchment(home.path()).args(require).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.contains("off at rest") && table.contains("±0.500 mm"), "{table}");
+}
+
+fn refused(folder: &Path) -> String {
+    let text = run(folder, &["check", "peg.toml"]);
+    assert!(text.starts_with("exit 2"), "{text}");
+    text
+}
+
+#[test]
+fn a_seat_that_leaves_an_error_free_says_what_to_write() {
+    let text = peg(12.0, 6.0, 5.9, 1.0, 5.0);
+    let with = |free: &str| refused(home(&text.replace("\"x\", \"y\"]", free)).path());
+    insta::assert_snapshot!(
+        "round_peg_with_yaw",
+        with("\"x\", \"y\", \"yaw\"]").lines().take(6).collect::<Vec<_>>().join("\n")
+    );
+    let slab = "pieces = [[[-1,-1,-1],[1,-1,-1],[1,1,-1],[-1,1,-1],[-1,-1,0],[1,-1,0],[1,1,0],[-1,1,0]]]\n";
+    let flat = format!(
+        "[connector]\nwidth = 2.0\nface_height = 0.0\n[connector.fixed]\n{slab}[connector.moving]\n{slab}\
+         [alignment]\nfree = [\"x\", \"yaw\"]\n"
+    );
+    insta::assert_snapshot!("flat_on_flat", refused(home(&flat).path()));
+}
+
+#[test]
+fn a_limit_below_the_play_is_a_warning_and_one_above_is_none() {
+    let text = peg(12.0, 6.0, 5.5, 1.0, 5.0);
+    let said = |limit: &str| {
+        let home = home(&format!("{text}[docked]\nx = \"{limit}\"\n"));
+        run(home.path(), &["run", "peg.toml", "--resolution", "20", "--samples", "100"])
+    };
+    assert!(said("0.2 mm").contains("is less than the play of the seat"), "{}", said("0.2 mm"));
+    assert!(!said("0.6 mm").contains("is less than the play"));
+}
