@@ -44,8 +44,9 @@ pub struct Residual {
     pub most: f64,
 }
 
-/// Of so many random descents that a Sum takes, one is followed to its rest.
+/// Of so many random descents that a Sum takes, one is followed to its rest; but no fewer than show a 95 % quantile.
 const SHARE: usize = 20;
+const FEWEST: usize = 40;
 /// Cells looked at for every accepted one that is wanted.
 const LOOKS: u64 = 50;
 /// The poses have random numbers of their own.
@@ -60,7 +61,8 @@ impl Seating {
         exec: &Exec,
     ) -> Result<Self, Cancelled> {
         let (pair, settings) = (problem.pair(), descent::Settings::default());
-        let poses = accepted(acceptance, (settings.default_samples(pair) / SHARE) as u64, seed);
+        let count = (settings.default_samples(pair) / SHARE).max(FEWEST);
+        let poses = accepted(acceptance, count as u64, seed);
         let ends: Vec<End> = exec.install(|| {
             let follow = |follower: &mut Follower<'_>, pose: &PoseError| {
                 exec.check()?;
