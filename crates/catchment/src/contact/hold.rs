@@ -28,7 +28,13 @@ pub(crate) struct Hold {
 impl Pair {
     /// How firmly the two features of `meeting` hold `contact`, which is theirs with the COR at `position` and the moving
     /// half at `rotation`.
-    pub(crate) fn hold(&self, contact: &Contact, meeting: &Meeting, rotation: &DMat3, position: DVec3) -> Hold {
+    pub(crate) fn hold(
+        &self,
+        contact: &Contact,
+        meeting: &Meeting,
+        rotation: &DMat3,
+        position: DVec3,
+    ) -> Hold {
         let [f, m] = meeting.shapes.map(|s| s as usize);
         let (fixed, moving) = (&self.fixed_shapes[f], &self.moving_shapes[m]);
         let back = rotation.transpose();
