@@ -175,6 +175,19 @@ pub(super) fn open_up(folder: &Path) {
     let _ = folder;
 }
 
+/// Whether something else than what lies around it is mounted here. Where the system does not say, it is not.
+#[cfg(target_os = "linux")]
+pub(super) fn is_mount_point(path: &Path) -> bool {
+    use rustix::fs::{AtFlags, CWD, StatxAttributes, StatxFlags, statx};
+    statx(CWD, path, AtFlags::empty(), StatxFlags::empty())
+        .is_ok_and(|found| found.stx_attributes.contains(StatxAttributes::MOUNT_ROOT))
+}
+
+#[cfg(not(target_os = "linux"))]
+pub(super) fn is_mount_point(_: &Path) -> bool {
+    false
+}
+
 /// How to rename.
 #[derive(Clone, Copy)]
 enum Manner {
