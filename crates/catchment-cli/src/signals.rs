@@ -2,16 +2,20 @@
 //!
 //! ```text
 //!   SIGINT            130 ──┐
-//!   SIGTERM, SIGHUP   143 ──┴─▶ first: cancel, whole or nothing · again: remove what is unfinished, end at once
+//!   SIGTERM, SIGHUP   143 ──┴─▶ first: cancel, whole or nothing · again, or after GRACE: remove what is unfinished, end at once
 //! ```
+//!
+//! Most work looks after the cancel flag many times a second. A single step that does not (a hull in six dimensions) is not waited for.
 //!
 //! A signal that whoever started the program had it ignore (`nohup`, a script's background) stays ignored.
 
 use crate::exit::ExitStatus;
+use crate::output::to_stderr;
 use catchment::report::write;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::time::Duration;
 
 /// Nothing was received.
 const NONE: u8 = 0;
@@ -25,12 +29,21 @@ pub(crate) fn received() -> Option<ExitStatus> {
         .find(|status| status.code() == RECEIVED.load(Ordering::Relaxed))
 }
 
+/// As long as a step may take to its end after a signal.
+const GRACE: Duration = Duration::from_secs(5);
+
 /// A signal came. Whoever sends two does not want to wait for the end of a step.
 fn receive(status: ExitStatus, cancel: &AtomicBool) {
     cancel.store(true, Ordering::Relaxed);
     if RECEIVED.swap(status.code(), Ordering::Relaxed) != NONE {
         leave(status);
     }
+    // Where the system gives no thread for it, a second signal does the same.
+    let _ = std::thread::Builder::new().name("grace".to_owned()).spawn(move || {
+        std::thread::sleep(GRACE);
+        to_stderr(&["interrupted; what was unfinished is removed".to_owned()]);
+        leave(status);
+    });
 }
 
 #[expect(clippy::exit, reason = "the computation does not listen, and the person insists")]
