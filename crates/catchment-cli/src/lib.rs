@@ -27,6 +27,7 @@ use std::ffi::OsString;
 
 /// Does what the command line of this process says.
 pub fn run() -> ExitStatus {
+    signals::outlive_file_limits();
     bug::caught(|| match Cli::try_parse() {
         Ok(cli) => cli.command.run().unwrap_or_else(failure::Failure::show),
         Err(usage) => usage::tell(usage),

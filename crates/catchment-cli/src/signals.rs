@@ -70,6 +70,17 @@ pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
     std::thread::Builder::new().name("signals".to_owned()).spawn(hear).map(drop)
 }
 
+/// A limit on the size of files (`ulimit -f`) makes a write fail, as a full disk does, and does not end the process.
+#[cfg(unix)]
+pub(crate) fn outlive_file_limits() {
+    // Where it cannot be had, the process ends, and the next one removes what it left.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
+/// There are no such limits.
+#[cfg(not(unix))]
+pub(crate) fn outlive_file_limits() {}
+
 /// The signals that are ignored from the start, the lowest bit for the first; none where the system does not say.
 #[cfg(unix)]
 fn ignored() -> u64 {

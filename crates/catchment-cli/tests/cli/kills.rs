@@ -95,7 +95,10 @@ const WRITERS: [Writer; 13] = [
     },
     Writer {
         name: "reproduce -o",
-        versions: [&["reproduce", "2.1", "-o", TARGET], &["reproduce", "2.1", "--threads", "1", "-o", TARGET]],
+        versions: [
+            &["reproduce", "2.1", "-o", TARGET],
+            &["reproduce", "2.1", "--threads", "1", "-o", TARGET],
+        ],
     },
     Writer {
         name: "trace -o --force",
@@ -158,7 +161,8 @@ fn killed_at_any_moment_old_or_new_is_there() {
         let home = home();
         fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
         fs::write(home.path().join(POSES), "x,pitch\n0.1,0\n0.2,0.1\n9,0\n").unwrap();
-        let target = home.path().join(writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap());
+        let target =
+            home.path().join(writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap());
         let finish = |version: usize| {
             let output = catchment(home.path()).args(writer.versions[version]).output().unwrap();
             assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));

@@ -26,8 +26,8 @@ mod temporary;
 mod tests;
 
 pub use disk::abandon;
-pub(crate) use disk::permit;
 use disk::is_mount_point;
+pub(crate) use disk::permit;
 pub use manifest::MANIFEST;
 
 use manifest::Manifest;

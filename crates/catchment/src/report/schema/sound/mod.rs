@@ -117,10 +117,10 @@ impl RunBody {
 
 #[cfg(test)]
 mod tests {
-    use crate::report::schema::testing::{blob, design};
-    use crate::report::schema::{Report, RunBody};
     use crate::exec::Exec;
     use crate::pose::Dof;
+    use crate::report::schema::testing::{blob, design};
+    use crate::report::schema::{Report, RunBody};
 
     type Spoil = fn(&mut RunBody);
 

@@ -47,7 +47,11 @@ fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError>
     let sorted = basins.largest.is_sorted_by(|a, b| a.cells >= b.cells);
     hold(sorted, "basins.largest", "must be in order, the largest first")?;
     let all = basins.largest.iter().try_fold(0usize, |sum, basin| sum.checked_add(basin.cells));
-    hold(all.is_some_and(|all| all <= cells), "basins.largest.cells", "must add up to no more than there are")?;
+    hold(
+        all.is_some_and(|all| all <= cells),
+        "basins.largest.cells",
+        "must add up to no more than there are",
+    )?;
     for basin in &basins.largest {
         share(basin.fraction, "basins.largest.fraction")?;
         let finite = basin.minimum.to_array().iter().all(|v| v.is_finite());
@@ -92,8 +96,13 @@ mod tests {
             accepted: 0.4,
         };
         let strata = vec![stratum(0.25), stratum(0.75)];
-        body.acceptance.sample =
-            Some(SampleReport { method: "descent".to_owned(), settings: null, seed: 1, descents: 20, strata });
+        body.acceptance.sample = Some(SampleReport {
+            method: "descent".to_owned(),
+            settings: null,
+            seed: 1,
+            descents: 20,
+            strata,
+        });
         body
     }
 
