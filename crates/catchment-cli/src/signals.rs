@@ -10,27 +10,37 @@
 //! A signal that whoever started the program had it ignore (`nohup`, a script's background) stays ignored.
 
 use crate::exit::ExitStatus;
+#[cfg(unix)]
 use crate::output::to_stderr;
 use catchment::report::write;
 use std::io;
 use std::sync::Arc;
+#[cfg(unix)]
+use std::sync::LazyLock;
+#[cfg(unix)]
+use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
-use std::time::Duration;
+#[cfg(unix)]
+use std::time::{Duration, Instant};
 
 /// Nothing was received.
 const NONE: u8 = 0;
 
 static RECEIVED: AtomicU8 = AtomicU8::new(NONE);
 
+/// The same where the system gave no thread to listen.
+#[cfg(unix)]
+static NOTED: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+
 /// How the command ends because of a signal, if there was one.
 pub(crate) fn received() -> Option<ExitStatus> {
+    let received = usize::from(RECEIVED.load(Ordering::Relaxed));
+    #[cfg(unix)]
+    let received = received.max(NOTED.load(Ordering::Relaxed));
     [ExitStatus::Interrupted, ExitStatus::Terminated]
         .into_iter()
-        .find(|status| status.code() == RECEIVED.load(Ordering::Relaxed))
+        .find(|status| usize::from(status.code()) == received)
 }
-
-/// As long as a step may take to its end after a signal.
-const GRACE: Duration = Duration::from_secs(5);
 
 /// A signal came. Whoever sends two does not want to wait for the end of a step.
 fn receive(status: ExitStatus, cancel: &AtomicBool) {
@@ -38,12 +48,6 @@ fn receive(status: ExitStatus, cancel: &AtomicBool) {
     if RECEIVED.swap(status.code(), Ordering::Relaxed) != NONE {
         leave(status);
     }
-    // Where the system gives no thread for it, a second signal does the same.
-    let _ = std::thread::Builder::new().name("grace".to_owned()).spawn(move || {
-        std::thread::sleep(GRACE);
-        to_stderr(&["interrupted; what was unfinished is removed".to_owned()]);
-        leave(status);
-    });
 }
 
 #[expect(clippy::exit, reason = "the computation does not listen, and the person insists")]
@@ -51,6 +55,12 @@ fn leave(status: ExitStatus) {
     write::abandon();
     std::process::exit(i32::from(status.code()));
 }
+
+/// As long as a step may take to its end after a signal, and how often a second signal is looked for.
+#[cfg(unix)]
+const GRACE: Duration = Duration::from_secs(5);
+#[cfg(unix)]
+const BETWEEN: Duration = Duration::from_millis(20);
 
 /// From now on signals set `cancel`.
 #[cfg(unix)]
@@ -60,14 +70,37 @@ pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
     let ignored = ignored();
     let heard: Vec<i32> =
         [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0).collect();
-    let mut signals = Signals::new(heard)?;
+    let status = |signal| if signal == SIGINT { ExitStatus::Interrupted } else { ExitStatus::Terminated };
+    let mut signals = Signals::new(&heard)?;
+    let flag = Arc::clone(&cancel);
     let hear = move || {
-        for signal in signals.forever() {
-            let status = if signal == SIGINT { ExitStatus::Interrupted } else { ExitStatus::Terminated };
-            receive(status, &cancel);
+        while received().is_none() {
+            signals.wait().for_each(|signal| receive(status(signal), &flag));
         }
+        let started = Instant::now();
+        while started.elapsed() < GRACE {
+            signals.pending().for_each(|signal| receive(status(signal), &flag));
+            std::thread::sleep(BETWEEN);
+        }
+        // Said last: whoever reads it may not be reading any more.
+        write::abandon();
+        to_stderr(&["interrupted; what was unfinished is removed".to_owned()]);
+        leave(received().unwrap_or(ExitStatus::Terminated));
     };
-    std::thread::Builder::new().name("signals".to_owned()).spawn(hear).map(drop)
+    match std::thread::Builder::new().name("signals".to_owned()).spawn(hear) {
+        Ok(_) => Ok(()),
+        Err(_) => heard.iter().try_for_each(|signal| note(*signal, status(*signal), &cancel)),
+    }
+}
+
+/// The same without a thread: the first signal sets `cancel`, a second one ends the process at once, and what is unfinished then
+/// is removed by the next start.
+#[cfg(unix)]
+fn note(signal: i32, status: ExitStatus, cancel: &Arc<AtomicBool>) -> io::Result<()> {
+    use signal_hook::flag;
+    flag::register_conditional_shutdown(signal, status.code().into(), Arc::clone(cancel))?;
+    flag::register_usize(signal, Arc::clone(&NOTED), status.code().into())?;
+    flag::register(signal, Arc::clone(cancel)).map(drop)
 }
 
 /// A limit on the size of files (`ulimit -f`) makes a write fail, as a full disk does, and does not end the process.

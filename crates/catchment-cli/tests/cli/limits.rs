@@ -87,7 +87,7 @@ fn the_budget_counts_pictures() {
     for args in [
         "run v.toml --method flood --resolution 2000 --memory 100MB -o out",
         "run v.toml --method flood --resolution 2000 --memory 100MB --figures out",
-        "slices v.toml --resolution 2000 --memory 30MB -o out",
+        "slices v.toml --resolution 100 --memory 30MB -o out",
         "zraa v.toml --memory 1MB -o out.svg",
     ] {
         let output = limited(home.path(), "true", args);
@@ -129,8 +129,8 @@ fn a_process_limit_takes_threads_and_changes_no_result() {
         let said = told(&bound);
         match bound.status.code() {
             Some(0) => assert_eq!(body(&bound), body(&free)),
-            // Nothing can listen to Ctrl-C without a thread; and nobody may be forbidden to run what lies here.
-            Some(2 | 126) => assert!(!said.is_empty() && !said.contains("a bug of the program"), "{said}"),
+            // Nobody may be forbidden to run what lies here.
+            Some(126) => assert!(!said.is_empty(), "{said}"),
             _ => panic!("{processes} processes: {}: {said}", bound.status),
         }
     }
