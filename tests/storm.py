@@ -226,6 +226,9 @@ class Storm:
             if pid == 0:
                 try:
                     os.chdir(folder)
+                    # Whoever starts a storm in the background has it ignore Ctrl-C, and the program would do so, too.
+                    for number in (signal.SIGINT, signal.SIGPIPE, signal.SIGXFSZ):
+                        signal.signal(number, signal.SIG_DFL)
                     for to, stream in enumerate((null, out, err)):
                         os.dup2(stream.fileno(), to)
                     os.execve(self.program, [self.program, *args], {"PATH": "/usr/bin:/bin", "HOME": str(self.home)})

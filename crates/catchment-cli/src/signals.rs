@@ -2,16 +2,12 @@
 //!
 //! ```text
 //!   SIGINT            130 ──┐
-//!   SIGTERM, SIGHUP   143 ──┴─▶ first: cancel, whole or nothing · again, or after GRACE: remove what is unfinished, end at once
+//!   SIGTERM, SIGHUP   143 ──┴─▶ first: cancel, whole or nothing · again: remove what is unfinished, end at once
 //! ```
-//!
-//! Most work looks after the cancel flag many times a second. A single step that does not (a hull in six dimensions) is not waited for.
 //!
 //! A signal that whoever started the program had it ignore (`nohup`, a script's background) stays ignored.
 
 use crate::exit::ExitStatus;
-#[cfg(unix)]
-use crate::output::to_stderr;
 use catchment::report::write;
 use std::io;
 use std::sync::Arc;
@@ -20,8 +16,6 @@ use std::sync::LazyLock;
 #[cfg(unix)]
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
-#[cfg(unix)]
-use std::time::{Duration, Instant};
 
 /// Nothing was received.
 const NONE: u8 = 0;
@@ -56,12 +50,6 @@ fn leave(status: ExitStatus) {
     std::process::exit(i32::from(status.code()));
 }
 
-/// As long as a step may take to its end after a signal, and how often a second signal is looked for.
-#[cfg(unix)]
-const GRACE: Duration = Duration::from_secs(5);
-#[cfg(unix)]
-const BETWEEN: Duration = Duration::from_millis(20);
-
 /// From now on signals set `cancel`.
 #[cfg(unix)]
 pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
@@ -74,18 +62,9 @@ pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
     let mut signals = Signals::new(&heard)?;
     let flag = Arc::clone(&cancel);
     let hear = move || {
-        while received().is_none() {
-            signals.wait().for_each(|signal| receive(status(signal), &flag));
+        for signal in signals.forever() {
+            receive(status(signal), &flag);
         }
-        let started = Instant::now();
-        while started.elapsed() < GRACE {
-            signals.pending().for_each(|signal| receive(status(signal), &flag));
-            std::thread::sleep(BETWEEN);
-        }
-        // Said last: whoever reads it may not be reading any more.
-        write::abandon();
-        to_stderr(&["interrupted; what was unfinished is removed".to_owned()]);
-        leave(received().unwrap_or(ExitStatus::Terminated));
     };
     match std::thread::Builder::new().name("signals".to_owned()).spawn(hear) {
         Ok(_) => Ok(()),

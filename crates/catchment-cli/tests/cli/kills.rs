@@ -268,10 +268,10 @@ fn every_request_to_end_is_heard_and_told() {
     }
 }
 
-/// A hull in six dimensions takes minutes and looks at nothing.
+/// Hulls in six dimensions: minutes, if nobody looked.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_step_that_does_not_listen_is_not_waited_for() {
+fn the_dearest_steps_listen() {
     let home = home();
     fs::copy(super::designs().join("pyramid-pieces.toml"), home.path().join("p.toml")).unwrap();
     let child = catchment(home.path())
