@@ -229,32 +229,24 @@ class Storm:
                     # Whoever starts a storm in the background has it ignore Ctrl-C, and the program would do so, too.
                     for number in (signal.SIGINT, signal.SIGPIPE, signal.SIGXFSZ):
                         signal.signal(number, signal.SIG_DFL)
+                    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
                     for to, stream in enumerate((null, out, err)):
                         os.dup2(stream.fileno(), to)
                     os.execve(self.program, [self.program, *args], {"PATH": "/usr/bin:/bin", "HOME": str(self.home)})
                 finally:
                     os._exit(99)
-            status, usage, asked = None, None, None
-
-            def late(*_):
-                raise TimeoutError
-
-            signal.signal(signal.SIGALRM, late)
-            wait = LONGEST
-            while status is None:
-                try:
-                    signal.setitimer(signal.ITIMER_REAL, wait)
-                    _, status, usage = os.wait4(pid, 0)
-                    signal.setitimer(signal.ITIMER_REAL, 0)
-                except TimeoutError:
-                    wait = 1.0
-                    if asked or self.used(pid) >= LONGEST:
-                        asked, wait = (signal.SIGKILL if asked else signal.SIGINT), DEAF
-                        os.kill(pid, asked)
-        code = os.WEXITSTATUS(status) if os.WIFEXITED(status) else -os.WTERMSIG(status)
+            asked, until = None, 0.0
+            while True:
+                ended, status, usage = os.wait4(pid, os.WNOHANG)
+                if ended:
+                    break
+                if time.monotonic() > until if asked else self.used(pid) >= LONGEST:
+                    asked, until = (signal.SIGKILL if asked else signal.SIGINT), time.monotonic() + DEAF
+                    os.kill(pid, asked)
+                signal.sigtimedwait({signal.SIGCHLD}, 1.0)
+        code, took = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
         if asked == signal.SIGINT and code == 130:
             self.slow.append((took, args))
-        took = usage.ru_utime + usage.ru_stime
         return code, usage.ru_maxrss, took, (self.home / "stderr").read_bytes()
 
     @staticmethod
@@ -342,6 +334,8 @@ def main():
     options = parser.parse_args()
     resource.setrlimit(resource.RLIMIT_AS, (options.mib << 20, options.mib << 20))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    # Waited for, not handled.
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})
     storm, began = Storm(options.program, options.keep), time.monotonic()
     try:
         for count in range(options.first, options.first + options.count):

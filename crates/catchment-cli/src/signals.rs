@@ -52,7 +52,7 @@ fn leave(status: ExitStatus) {
 
 /// From now on signals set `cancel`.
 #[cfg(unix)]
-pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
+pub(crate) fn listen(cancel: &Arc<AtomicBool>) -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
     let ignored = ignored();
@@ -60,7 +60,7 @@ pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
         [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0).collect();
     let status = |signal| if signal == SIGINT { ExitStatus::Interrupted } else { ExitStatus::Terminated };
     let mut signals = Signals::new(&heard)?;
-    let flag = Arc::clone(&cancel);
+    let flag = Arc::clone(cancel);
     let hear = move || {
         for signal in signals.forever() {
             receive(status(signal), &flag);
@@ -68,7 +68,7 @@ pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
     };
     match std::thread::Builder::new().name("signals".to_owned()).spawn(hear) {
         Ok(_) => Ok(()),
-        Err(_) => heard.iter().try_for_each(|signal| note(*signal, status(*signal), &cancel)),
+        Err(_) => heard.iter().try_for_each(|signal| note(*signal, status(*signal), cancel)),
     }
 }
 
@@ -103,6 +103,7 @@ fn ignored() -> u64 {
 
 /// From now on Ctrl-C sets `cancel`.
 #[cfg(not(unix))]
-pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
+pub(crate) fn listen(cancel: &Arc<AtomicBool>) -> io::Result<()> {
+    let cancel = Arc::clone(cancel);
     ctrlc::set_handler(move || receive(ExitStatus::Interrupted, &cancel)).map_err(io::Error::other)
 }

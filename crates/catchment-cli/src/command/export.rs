@@ -51,7 +51,7 @@ const KIND: &str = "export";
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     let exec = Exec::new();
-    signals::listen(exec.cancel_flag())?;
+    signals::listen(&exec.cancel_flag())?;
     write::check_folder(&args.output, KIND)?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
