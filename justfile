@@ -25,10 +25,27 @@ run *arguments:
 docs:
     cargo doc --locked --workspace --no-deps --all-features --open
 
-# fuzz a reader: design, stl, poses, lines, report, zarr, requirement or resolution: just fuzz stl 600 (needs nightly and cargo-fuzz)
+# fuzz a reader: arguments, design, stl, poses, lines, report, zarr, requirement or resolution: just fuzz stl 600
 fuzz target='design' seconds='60':
-    mkdir -p fuzz/findings/{{ target }}
-    cargo +nightly fuzz run {{ target }} fuzz/findings/{{ target }} fuzz/corpus/{{ target }} -- -max_total_time={{ seconds }} -rss_limit_mb=2048 -malloc_limit_mb=256 {{ if target == 'design' { '-dict=fuzz/design.dict' } else { '' } }}
+    fuzz/run {{ seconds }} {{ target }}
+
+# spoilt designs, tables, results and command lines through the optimised program, under a limit of 1 GiB: just storm 50000 --seed 7
+storm count='3000' *options:
+    cargo build --locked --release
+    python3 tests/storm.py target/release/catchment {{ count }} {{ options }}
+
+# what every command takes of the memory on every design, beside what it expects
+memory *designs:
+    cargo build --locked --release
+    python3 tests/memory.py target/release/catchment {{ designs }}
+
+# builds the release in two other folders and compares them, byte for byte
+reproducible:
+    tests/reproducible
+
+# a list of what the program is made of (CycloneDX), beside it (needs cargo-cyclonedx)
+sbom:
+    cargo cyclonedx --manifest-path crates/catchment-cli/Cargo.toml --all-features --format json --describe binaries
 
 # kill the program at random moments while it writes; what is there must be old or new, complete
 kills count='300':

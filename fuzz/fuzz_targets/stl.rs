@@ -1,12 +1,13 @@
 //! Any bytes as an STL mesh. What must hold is said beside the function.
 //!
-//! `cargo +nightly fuzz run stl -- -rss_limit_mb=1024 -malloc_limit_mb=256`
+//! `just fuzz stl 600`
 
 #![no_main]
 
 #[path = "../../crates/catchment/tests/readers/targets.rs"]
 mod targets;
 
+use catchment_fuzz as _; // its allocator
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| targets::stl_file(bytes));

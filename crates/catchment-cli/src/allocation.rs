@@ -4,7 +4,7 @@
 
 #![expect(unsafe_code, reason = "an allocator has no safe form; all calls go to the system's unchanged")]
 
-use crate::exit::ExitStatus;
+use catchment_cli::ExitStatus;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::{self, Write};
 

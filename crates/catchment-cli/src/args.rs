@@ -134,14 +134,12 @@ mod tests {
             let line = if number < seeds.len() { seed } else { mutate::spoilt(&mut dice, &seed, &seeds) };
             let text = String::from_utf8_lossy(&line);
             let words = std::iter::once("catchment").chain(text.lines());
-            if let Err(mut usage) = Cli::try_parse_from(words) {
-                assert!(number >= seeds.len() || !usage.use_stderr(), "{text}: {usage}");
+            if let Some(said) = crate::complaint(words) {
+                assert!(number >= seeds.len(), "{text}: {said}");
                 refused += 1;
-                crate::usage::silence(&mut usage);
-                let shown = crate::usage::still_steering(&usage).unwrap_or_else(|| usage.to_string());
                 assert!(
-                    !shown.chars().any(|c| c.is_control() && c != '\n' && c != '\t'),
-                    "{text:?}: {shown:?}"
+                    !said.chars().any(|c| c.is_control() && c != '\n' && c != '\t'),
+                    "{text:?}: {said:?}"
                 );
             }
         }

@@ -56,7 +56,7 @@ impl ExecArgs {
             }));
             bar
         };
-        signals::listen(exec.cancel_flag())?;
+        signals::listen(&exec.cancel_flag())?;
         Ok(Running { exec, bar })
     }
 }

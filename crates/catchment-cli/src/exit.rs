@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 /// How a command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ExitStatus {
+pub enum ExitStatus {
     /// Done; every stated requirement is met.
     Done,
     /// Done, but a stated requirement is not met.
@@ -19,7 +19,7 @@ pub(crate) enum ExitStatus {
 
 impl ExitStatus {
     /// The number that the system is told.
-    pub(crate) const fn code(self) -> u8 {
+    pub const fn code(self) -> u8 {
         match self {
             Self::Done => 0,
             Self::RequirementNotMet => 1,

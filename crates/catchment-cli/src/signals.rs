@@ -11,6 +11,10 @@ use crate::exit::ExitStatus;
 use catchment::report::write;
 use std::io;
 use std::sync::Arc;
+#[cfg(unix)]
+use std::sync::LazyLock;
+#[cfg(unix)]
+use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 /// Nothing was received.
@@ -18,11 +22,18 @@ const NONE: u8 = 0;
 
 static RECEIVED: AtomicU8 = AtomicU8::new(NONE);
 
+/// The same where the system gave no thread to listen.
+#[cfg(unix)]
+static NOTED: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+
 /// How the command ends because of a signal, if there was one.
 pub(crate) fn received() -> Option<ExitStatus> {
+    let received = usize::from(RECEIVED.load(Ordering::Relaxed));
+    #[cfg(unix)]
+    let received = received.max(NOTED.load(Ordering::Relaxed));
     [ExitStatus::Interrupted, ExitStatus::Terminated]
         .into_iter()
-        .find(|status| status.code() == RECEIVED.load(Ordering::Relaxed))
+        .find(|status| usize::from(status.code()) == received)
 }
 
 /// A signal came. Whoever sends two does not want to wait for the end of a step.
@@ -41,21 +52,46 @@ fn leave(status: ExitStatus) {
 
 /// From now on signals set `cancel`.
 #[cfg(unix)]
-pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
+pub(crate) fn listen(cancel: &Arc<AtomicBool>) -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
     let ignored = ignored();
     let heard: Vec<i32> =
         [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0).collect();
-    let mut signals = Signals::new(heard)?;
+    let status = |signal| if signal == SIGINT { ExitStatus::Interrupted } else { ExitStatus::Terminated };
+    let mut signals = Signals::new(&heard)?;
+    let flag = Arc::clone(cancel);
     let hear = move || {
         for signal in signals.forever() {
-            let status = if signal == SIGINT { ExitStatus::Interrupted } else { ExitStatus::Terminated };
-            receive(status, &cancel);
+            receive(status(signal), &flag);
         }
     };
-    std::thread::Builder::new().name("signals".to_owned()).spawn(hear).map(drop)
+    match std::thread::Builder::new().name("signals".to_owned()).spawn(hear) {
+        Ok(_) => Ok(()),
+        Err(_) => heard.iter().try_for_each(|signal| note(*signal, status(*signal), cancel)),
+    }
 }
+
+/// The same without a thread: the first signal sets `cancel`, a second one ends the process at once, and what is unfinished then
+/// is removed by the next start.
+#[cfg(unix)]
+fn note(signal: i32, status: ExitStatus, cancel: &Arc<AtomicBool>) -> io::Result<()> {
+    use signal_hook::flag;
+    flag::register_conditional_shutdown(signal, status.code().into(), Arc::clone(cancel))?;
+    flag::register_usize(signal, Arc::clone(&NOTED), status.code().into())?;
+    flag::register(signal, Arc::clone(cancel)).map(drop)
+}
+
+/// A limit on the size of files (`ulimit -f`) makes a write fail, as a full disk does, and does not end the process.
+#[cfg(unix)]
+pub(crate) fn outlive_file_limits() {
+    // Where it cannot be had, the process ends, and the next one removes what it left.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
+/// There are no such limits.
+#[cfg(not(unix))]
+pub(crate) fn outlive_file_limits() {}
 
 /// The signals that are ignored from the start, the lowest bit for the first; none where the system does not say.
 #[cfg(unix)]
@@ -67,6 +103,7 @@ fn ignored() -> u64 {
 
 /// From now on Ctrl-C sets `cancel`.
 #[cfg(not(unix))]
-pub(crate) fn listen(cancel: Arc<AtomicBool>) -> io::Result<()> {
+pub(crate) fn listen(cancel: &Arc<AtomicBool>) -> io::Result<()> {
+    let cancel = Arc::clone(cancel);
     ctrlc::set_handler(move || receive(ExitStatus::Interrupted, &cancel)).map_err(io::Error::other)
 }

@@ -66,16 +66,20 @@ fn is_too_wide_around(source: &SourceText, byte: usize) -> bool {
     source.text.lines().skip(line.saturating_sub(2)).take(3).any(|line| line.len() > WIDEST)
 }
 
-/// The text with control characters replaced, byte for byte: a file must not steer the terminal.
+/// The text with control characters replaced, byte for byte: a file must not steer the terminal. A return to the start of the
+/// line is left at the end of a line only, as it is in files of Windows.
 fn printable(text: &str) -> String {
-    text.chars().fold(String::with_capacity(text.len()), |mut shown, c| {
-        if !matches!(c, '\n' | '\r' | '\t') && catchment::report::steers(c) {
-            shown.extend(std::iter::repeat_n('?', c.len_utf8()));
-        } else {
-            shown.push(c);
+    let mut shown = String::with_capacity(text.len());
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        match c {
+            '\n' | '\t' => shown.push(c),
+            '\r' if rest.peek() == Some(&'\n') => shown.push(c),
+            _ if catchment::report::steers(c) => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
+            _ => shown.push(c),
         }
-        shown
-    })
+    }
+    shown
 }
 
 impl Failure {
@@ -125,6 +129,7 @@ mod tests {
     #[test]
     fn control_characters_keep_their_width_but_not_their_power() {
         assert_eq!(printable("a\x1b[2J\u{9b}\tµ\r\n"), "a?[2J??\tµ\r\n");
+        assert_eq!(printable("mine\r\ryours\r\n"), "mine??yours\r\n");
     }
 
     #[test]

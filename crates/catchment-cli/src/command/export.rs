@@ -50,6 +50,8 @@ const SDF: &str = "trial.sdf";
 const KIND: &str = "export";
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
+    let exec = Exec::new();
+    signals::listen(&exec.cancel_flag())?;
     write::check_folder(&args.output, KIND)?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
@@ -63,8 +65,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     let mut files: Files = world.meshes.into_iter().map(inside).collect();
     files.push((SDF.to_owned(), world.text.into_bytes()));
     files.push((MJCF.to_owned(), mjcf::write(&scene).into_bytes()));
-    let exec = Exec::new();
-    signals::listen(exec.cancel_flag())?;
     save_files(&args.output, KIND, &files, &exec)?;
     written(&args.output);
     let file = |name: &str| args.output.join(name).display().to_string();

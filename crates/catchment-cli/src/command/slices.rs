@@ -12,7 +12,7 @@ use catchment::pose::Dof;
 use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
 use catchment::report::{SlicesReport, figure};
-use catchment::study::slices::{Settings, SlicesError, run as compute};
+use catchment::study::slices::{Settings, SlicesError, ensure_fits, run as compute};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -66,10 +66,15 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
         Settings { resolution: args.resolution, pairs: args.axes.clone(), method: args.method.of()? };
     let running = args.exec.start()?;
     let exec = &running.exec;
-    let found = compute(&problem, &settings, exec).map_err(|error| match error {
+    let refused = |error| match error {
         SlicesError::Resolution(error) => Failure::with_help(format!("--resolution: {error}"), None),
         error => error.into(),
-    })?;
+    };
+    let cells = ensure_fits(&problem, &settings, exec).map_err(refused)?;
+    if folder.is_some() {
+        figure::ensure_fits(cells, exec)?;
+    }
+    let found = compute(&problem, &settings, exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let design = problem.design();
     let report = SlicesReport::new(design, &found, settings, Some(timing));

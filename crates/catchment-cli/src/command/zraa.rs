@@ -41,6 +41,9 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
     let running = args.exec.start()?;
+    if matches!(kind, Some("svg" | "png")) {
+        figure::ensure_fits(0, &running.exec)?;
+    }
     let zraa = accepted_offsets(pair, &Settings::default(), &running.exec)?;
     drop(running);
     let report = ZraaReport::new(design, &zraa);

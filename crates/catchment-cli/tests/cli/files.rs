@@ -116,6 +116,21 @@ fn a_place_that_cannot_work_is_refused_before_anything_is_read() {
     assert!(entries(&home.path().join("q")).is_empty());
 }
 
+/// Nothing can be exchanged with it, and this is said before anything is computed.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_mount_point_is_no_place_for_a_result() {
+    let home = home();
+    for args in [
+        &["run", "nowhere.toml", "-o", "/dev/shm"][..],
+        &["run", "nowhere.toml", "--figures", "/dev/shm"],
+        &["slices", "nowhere.toml", "-o", "/proc"],
+        &["export", "nowhere.toml", "--pose", "x=0", "-o", "/proc"],
+    ] {
+        refuses(home.path(), args, "it is a mount point");
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_name_that_is_not_utf8_is_refused_where_grids_are_stored() {

@@ -25,6 +25,9 @@ fn home() -> tempfile::TempDir {
     fs::write(path(".toml"), format!("{name}\n{V_FACE}")).unwrap();
     fs::write(path(".csv"), "x,pitch_deg\n0.1,5\n").unwrap();
     fs::write(path(".bad"), format!("{V_FACE}{NAME} = 1\n")).unwrap();
+    // A return to the start of a line would write over it; at the end of a line it is one of Windows.
+    fs::write(path(".back"), format!("{}width = 1\rowned = 1\r\n", V_FACE.replace('\n', "\r\n"))).unwrap();
+    fs::write(path("back.csv"), "x,pitch\r\n0,1\r9\r\n0,a\r\r\n1,b\r\n").unwrap();
     fs::write(path("bad.csv"), format!("x,{NAME}\n0,{NAME}\nx{NAME},1\n")).unwrap();
     fs::create_dir(path(".empty")).unwrap();
     home
@@ -67,7 +70,9 @@ fn names_that_steer_a_terminal_reach_none() {
         assert_eq!(code, Some(0), "{args:?}: {text}");
         assert!(!steers(&text), "{args:?}: {text:?}");
     }
-    let bad: [&[&str]; 17] = [
+    let bad: [&[&str]; 19] = [
+        &["check", "@.back"],
+        &["outcome", "@.toml", "--poses", "@back.csv"],
         &["check", "@.none"],
         &["check", "@.bad"],
         &["check", "@.bad", "--json"],

@@ -22,7 +22,7 @@ struct Writer {
     versions: [&'static [&'static str]; 2],
 }
 
-const WRITERS: [Writer; 5] = [
+const WRITERS: [Writer; 13] = [
     Writer {
         name: "run -o",
         versions: [
@@ -57,6 +57,59 @@ const WRITERS: [Writer; 5] = [
             &["export", "pyramid.toml", "--pose", "x=0.1", "-o", TARGET],
             &["export", "pyramid.toml", "--pose", "x=0.2", "-o", TARGET],
         ],
+    },
+    Writer {
+        name: "run --figures",
+        versions: [
+            &["run", "v.toml", "--resolution", "6", "--samples", "0", "--figures", TARGET],
+            &["run", "v.toml", "--resolution", "7", "--samples", "0", "--figures", TARGET],
+        ],
+    },
+    Writer {
+        name: "run --method all -o",
+        versions: [
+            &["run", "v.toml", "--free", "x", "--method", "all", "--resolution", "6", "-o", TARGET],
+            &["run", "v.toml", "--free", "x", "--method", "all", "--resolution", "7", "-o", TARGET],
+        ],
+    },
+    Writer {
+        name: "run --sensitivity -o",
+        versions: [
+            &["run", "v.toml", "--sensitivity", "--samples", "20", "-o", TARGET],
+            &["run", "v.toml", "--sensitivity", "--samples", "30", "-o", TARGET],
+        ],
+    },
+    Writer {
+        name: "run --converge -o",
+        versions: [
+            &["run", "v.toml", "--free", "x", "--converge", "--time-limit", "100ms", "-o", TARGET],
+            &["run", "v.toml", "--free", "x", "--converge", "--time-limit", "150ms", "-o", TARGET],
+        ],
+    },
+    Writer {
+        name: "compare -o",
+        versions: [
+            &["compare", "v.toml", "--methods", "flood,meyer", "--resolution", "6", "-o", TARGET],
+            &["compare", "v.toml", "--methods", "flood,meyer", "--resolution", "8", "-o", TARGET],
+        ],
+    },
+    Writer {
+        name: "reproduce -o",
+        versions: [
+            &["reproduce", "2.1", "-o", TARGET],
+            &["reproduce", "2.1", "--threads", "1", "-o", TARGET],
+        ],
+    },
+    Writer {
+        name: "trace -o --force",
+        versions: [
+            &["trace", "v.toml", "--pose", "x=0.1", "-o", "target.svg", "--force"],
+            &["trace", "v.toml", "--pose", "x=0.2", "-o", "target.svg", "--force"],
+        ],
+    },
+    Writer {
+        name: "new -o --force",
+        versions: [&["new", "cone", "-o", TARGET, "--force"], &["new", "pyramid", "-o", TARGET, "--force"]],
     },
 ];
 
@@ -108,7 +161,8 @@ fn killed_at_any_moment_old_or_new_is_there() {
         let home = home();
         fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
         fs::write(home.path().join(POSES), "x,pitch\n0.1,0\n0.2,0.1\n9,0\n").unwrap();
-        let target = home.path().join(if writer.name.contains("zarr") { "target.zarr" } else { TARGET });
+        let target =
+            home.path().join(writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap());
         let finish = |version: usize| {
             let output = catchment(home.path()).args(writer.versions[version]).output().unwrap();
             assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
@@ -212,6 +266,27 @@ fn every_request_to_end_is_heard_and_told() {
         );
         assert_eq!(entries(home.path()), ["v.toml"], "{signal}");
     }
+}
+
+/// Hulls in six dimensions: minutes, if nobody looked.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_dearest_steps_listen() {
+    let home = home();
+    fs::copy(super::designs().join("pyramid-pieces.toml"), home.path().join("p.toml")).unwrap();
+    let child = catchment(home.path())
+        .args(["run", "p.toml", "--free", "roll,pitch,yaw", "--method", "partition", "-o", "out"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_secs(2));
+    let asked = Instant::now();
+    let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(143), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(asked.elapsed() < Duration::from_secs(20), "{:?}", asked.elapsed());
+    assert_eq!(entries(home.path()), ["p.toml", "v.toml"]);
 }
 
 /// `nohup` keeps it alive.

@@ -70,6 +70,9 @@ pub enum CompareError {
     /// The accepted sets cannot be compared.
     #[error(transparent)]
     Comparison(#[from] ComparisonError),
+    /// The picture would not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] crate::exec::OutOfBudget),
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] crate::exec::Cancelled),
@@ -126,6 +129,9 @@ pub fn compare(
         error,
     })?;
     let comparison = Comparison::of(&paired, &first.report.design.alignment, exec)?;
+    if let (true, Some(grid)) = (picture, paired.first.grid()) {
+        figure::ensure_grid_fits(grid, exec)?;
+    }
     let picture = picture.then(|| {
         let names = names([first, second]);
         let names = names.each_ref().map(String::as_str);

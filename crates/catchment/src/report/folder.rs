@@ -8,7 +8,7 @@
 //! Each holds a manifest of its files beside them; see [`write`](mod@super::write).
 
 use super::write::{self, WriteError};
-use crate::exec::{Cancelled, Exec};
+use crate::exec::{Cancelled, Exec, OutOfBudget};
 use std::path::Path;
 
 /// The name of the JSON report in such a folder.
@@ -43,6 +43,9 @@ pub enum SaveError {
     /// What the pictures show could not be computed.
     #[error(transparent)]
     Slices(#[from] crate::run::RunError),
+    /// The pictures would not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -59,6 +62,7 @@ pub fn encode<N: std::fmt::Display>(
 ) -> Result<Files, SaveError> {
     /// Pixels per unit of the drawing: sharp on screens and slides.
     const PNG_SCALE: f32 = 2.0;
+    super::figure::ensure_fits(0, exec)?;
     let mut files = Vec::with_capacity(2 * drawn.len());
     for (name, picture) in drawn {
         exec.check()?;

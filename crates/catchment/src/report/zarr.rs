@@ -108,7 +108,14 @@ pub fn write(
     {
         return Err(ZarrError::Shape { heights: heights.len(), cells: grid.len() });
     }
-    write::folder(path, KIND, |folder| exec.install(|| fill(folder, report, acceptance, grid, heights, exec)))
+    let filled = write::folder(path, KIND, |folder| {
+        exec.install(|| fill(folder, report, acceptance, grid, heights, exec))
+    });
+    filled.map_err(|error| match error {
+        // The storage library does not say where.
+        ZarrError::Storage { reason } => WriteError::at(path, std::io::Error::other(reason)).into(),
+        error => error,
+    })
 }
 
 fn fill(

@@ -133,14 +133,12 @@ pub enum SlicesError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Computes slices through zero.
+/// Refuses slices that do not fit into memory, before they are computed; says how many cells they have.
 ///
 /// # Errors
-/// A pair that the design does not free, a grid that does not fit into memory, a cancelled run.
-pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices, SlicesError> {
+/// They do not fit, or a pair is not free in the design.
+pub fn ensure_fits(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<u64, SlicesError> {
     let planes = planes(problem, settings)?;
-    let method = settings.method.name();
-    let judge = settings.method.follows().ok_or(SlicesError::NotByPose { method })?;
     let cells = |grid: &Grid| grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let largest = planes.iter().map(|(_, grid)| cells(grid)).max().unwrap_or(0);
     let kept = planes.iter().map(|(_, grid)| cells(grid)).fold(0, u64::saturating_add);
@@ -149,6 +147,18 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices
         let fits = Resolution::largest_that_fits(budget, pose_bytes() + planes.len() as u64, 2);
         vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
     })?;
+    Ok(kept)
+}
+
+/// Computes slices through zero.
+///
+/// # Errors
+/// A pair that the design does not free, a grid that does not fit into memory, a cancelled run.
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Slices, SlicesError> {
+    let planes = planes(problem, settings)?;
+    let method = settings.method.name();
+    let judge = settings.method.follows().ok_or(SlicesError::NotByPose { method })?;
+    ensure_fits(problem, settings, exec)?;
     let total = planes.len() as f64;
     let slices = planes
         .into_iter()

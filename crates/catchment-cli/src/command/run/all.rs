@@ -3,7 +3,7 @@
 use super::RunArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::tell;
+use crate::output::{tell, written};
 use catchment::report::schema::Timing;
 use catchment::report::{AgreementReport, figure};
 use catchment::study::agreement::{AgreementError, Settings, run as decide_by_all};
@@ -36,6 +36,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         let pictures =
             catchment::report::folder::encode(&[(folder.name, figure::agreement(&report))], &running.exec)?;
         notes.push(folder.write(&json, &report.records(), pictures, &running.exec, |_| Ok(()))?);
+        written(folder.path);
     }
     drop(running);
     tell(&if args.json { json } else { report.table() }, &notes)

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::method_args::{Choice, MethodArgs};
 use crate::output::{to_stderr, to_stdout};
 use catchment::landscape::Resolution;
-use catchment::report::{UnanswerableError, table_with};
+use catchment::report::{UnanswerableError, figure, table_with};
 use catchment::run::{Over, Requirement, Run, RunError};
 use clap::Args;
 
@@ -102,6 +102,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         }
     })?;
     let running = args.exec.start()?;
+    if targets.draw() {
+        let plan = run.plan(&problem).map_err(|error| refused(&problem, error))?;
+        plan.ensure_fits(&running.exec)?;
+        figure::ensure_run_fits(&plan, &running.exec)?;
+    }
     let answer = run.on(&problem, &running.exec).map_err(|error| refused(&problem, error))?;
     let report = answer.report();
     let mut notes = targets.write(&answer, &running.exec)?;

@@ -69,6 +69,11 @@ impl PlaceArgs {
 }
 
 impl Targets<'_> {
+    /// Whether pictures are drawn.
+    pub(super) fn draw(&self) -> bool {
+        self.0.iter().any(|target| !matches!(target, Target::Group(_)))
+    }
+
     /// Whether the heights over the grid are written.
     pub(super) fn want_heights(&self) -> bool {
         self.0.iter().any(|target| !matches!(target, Target::Pictures(_)))
@@ -76,8 +81,7 @@ impl Targets<'_> {
 
     /// Writes everything and says what was written.
     pub(super) fn write(&self, answer: &Answer, exec: &Exec) -> Result<Vec<String>, Failure> {
-        let draws = self.0.iter().any(|target| !matches!(target, Target::Group(_)));
-        let drawn = if draws { answer.draw(exec)? } else { Drawn::default() };
+        let drawn = if self.draw() { answer.draw(exec)? } else { Drawn::default() };
         let mut notes = drawn.left_out.clone();
         for target in &self.0 {
             notes.push(match target {

@@ -97,6 +97,10 @@ pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory 
     Trajectory { waypoints, outcome }
 }
 
+/// How often progress is reported at least, and the most descents in between.
+const REPORTS: usize = 100;
+const MOST_BETWEEN: usize = 256;
+
 /// Follows every pose of a domain, in parallel; the ends are in the order of the domain.
 ///
 /// # Errors
@@ -109,6 +113,8 @@ pub fn run(
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
     let count = domain.len();
     let done = AtomicUsize::new(0);
+    // Descents between two reports: some take seconds each.
+    let between = count.div_ceil(REPORTS).min(MOST_BETWEEN);
     let ends: Vec<End> = exec.install(|| {
         (0..count)
             .into_par_iter()
@@ -118,7 +124,7 @@ pub fn run(
                     exec.check()?;
                     let (outcome, error) = motion.follow(&domain.pose(k), Until::Known, None);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    if done.is_multiple_of(256) {
+                    if done.is_multiple_of(between) {
                         exec.report(done as f64 / count as f64, "descents");
                     }
                     Ok(End { outcome, error })

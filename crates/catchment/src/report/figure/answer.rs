@@ -45,6 +45,7 @@ impl Answer {
     /// # Errors
     /// A picture cannot be drawn, or it was asked to stop.
     pub fn draw(&self, exec: &Exec) -> Result<Drawn, SaveError> {
+        super::memory::ensure_domain_fits(&self.acceptance.domain, exec)?;
         let mut drawn = Drawn::default();
         let (design, acceptance, report) = (self.problem.design(), &self.acceptance, self.report());
         let (connector, pair) = (self.problem.connector(), self.problem.pair());

@@ -26,6 +26,7 @@ mod temporary;
 mod tests;
 
 pub use disk::abandon;
+use disk::is_mount_point;
 pub(crate) use disk::permit;
 pub use manifest::MANIFEST;
 
@@ -112,6 +113,12 @@ pub enum WriteError {
     /// A device, a pipe or a socket is there.
     #[error("cannot write {}: it is not an ordinary file", path.display())]
     NotAFile {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// A disk of its own is there, which cannot be exchanged with what lies beside it.
+    #[error("cannot write {}: it is a mount point, which cannot be replaced; name something inside it", path.display())]
+    MountPoint {
         /// What was to be written.
         path: PathBuf,
     },
@@ -204,6 +211,9 @@ fn look_for_file(path: &Path, replace: bool) -> Result<(PathBuf, Option<Permissi
         if !meta.is_file() {
             return Err(WriteError::NotAFile { path });
         }
+        if is_mount_point(&path) {
+            return Err(WriteError::MountPoint { path });
+        }
     }
     // Also a link that leads nowhere.
     if !replace && fs::symlink_metadata(path).is_ok() {
@@ -276,6 +286,7 @@ fn look(place: &Path, kind: &str) -> Result<There, WriteError> {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(There::Nothing),
         Err(error) => return Err(WriteError::at(place, error)),
         Ok(meta) if !meta.is_dir() => return Err(WriteError::NotAResult { path: path() }),
+        Ok(_) if is_mount_point(place) => return Err(WriteError::MountPoint { path: path() }),
         Ok(_) => {}
     }
     let mut entries = fs::read_dir(place).map_err(|error| WriteError::at(place, error))?;

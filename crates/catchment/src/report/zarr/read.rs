@@ -28,11 +28,13 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     exec.ensure_fits("the report of a stored result", needed, |_| vec![Advice::MoreMemory])?;
     let mut root: Value =
         serde_json::from_slice(&text).map_err(|error| bad(format!("zarr.json: {error}")))?;
-    let attributes = &mut root["attributes"];
+    let foreign = || bad("it was not written by this program".to_owned());
+    // Whatever is not an object has none.
+    let attributes = root.get_mut("attributes").ok_or_else(foreign)?;
     match attributes["catchment"].as_u64() {
         Some(layout) if layout == u64::from(LAYOUT) => {}
         Some(layout) => return Err(bad(format!("its layout is {layout}, this program reads {LAYOUT}"))),
-        None => return Err(bad("it was not written by this program".to_owned())),
+        None => return Err(foreign()),
     }
     let report: Report = serde_json::from_value(attributes["report"].take())
         .map_err(|error| bad(format!("its report cannot be read: {error}")))?;

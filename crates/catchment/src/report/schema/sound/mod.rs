@@ -1,5 +1,7 @@
 //! What must hold of a report that is read back, beyond its form: numbers in their ranges and intervals in their order.
 
+mod parts;
+
 use super::{Interval, RunBody, Unit};
 use crate::pose::Dof;
 
@@ -19,6 +21,10 @@ fn hold(holds: bool, field: impl Into<String>, rule: &'static str) -> Result<(),
 
 fn above_zero(value: f64, field: &str) -> Result<(), UnsoundError> {
     hold(value > 0.0 && value.is_finite(), field, "must be above 0")
+}
+
+fn not_negative(value: f64, field: &str) -> Result<(), UnsoundError> {
+    hold(value >= 0.0 && value.is_finite(), field, "must not be negative")
 }
 
 fn share(value: f64, field: &str) -> Result<(), UnsoundError> {
@@ -60,8 +66,9 @@ impl RunBody {
             share(success.probability, "success.probability")?;
             ordered(Some(success.bracket), "success.bracket")?;
             ordered(success.ci95, "success.ci95")?;
+            share(success.outside, "success.outside")?;
         }
-        Ok(())
+        self.check_parts()
     }
 
     fn check_design(&self) -> Result<(), UnsoundError> {
@@ -96,7 +103,9 @@ impl RunBody {
 
     fn check_acceptance(&self) -> Result<(), UnsoundError> {
         let found = &self.acceptance;
-        hold(found.sum_grid >= 0.0, "acceptance.sum_grid", "must not be negative")?;
+        not_negative(found.sum, "acceptance.sum")?;
+        not_negative(found.sum_grid, "acceptance.sum_grid")?;
+        share(found.fraction, "acceptance.fraction")?;
         ordered(found.sum_bracket, "acceptance.sum_bracket")?;
         ordered(found.sum_ci95, "acceptance.sum_ci95")?;
         let counts = found.outcomes;
@@ -108,10 +117,10 @@ impl RunBody {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{blob, design};
-    use super::super::{Report, RunBody};
     use crate::exec::Exec;
     use crate::pose::Dof;
+    use crate::report::schema::testing::{blob, design};
+    use crate::report::schema::{Report, RunBody};
 
     type Spoil = fn(&mut RunBody);
 

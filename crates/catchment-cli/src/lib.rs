@@ -1,0 +1,43 @@
+//! The `catchment` command: typed arguments → meaning → library → print.
+//!
+//! Data goes to stdout, everything else to stderr. Exit codes: see [`ExitStatus`]. It is a library so that the fuzzer reads
+//! command lines as the program does; nothing here is promised to others.
+
+mod advice;
+mod args;
+mod bug;
+mod command;
+mod drop_args;
+mod error_args;
+mod exec_args;
+mod exit;
+mod failure;
+mod method_args;
+mod output;
+mod setting;
+mod signals;
+mod source;
+mod usage;
+
+pub use exit::ExitStatus;
+
+use args::Cli;
+use clap::Parser;
+use std::ffi::OsString;
+
+/// Does what the command line of this process says.
+pub fn run() -> ExitStatus {
+    signals::outlive_file_limits();
+    bug::caught(|| match Cli::try_parse() {
+        Ok(cli) => cli.command.run().unwrap_or_else(failure::Failure::show),
+        Err(usage) => usage::tell(usage),
+    })
+}
+
+/// What is said of a command line that cannot be read, as it reaches a terminal; nothing of one that can, or that asks for help.
+/// The first word is the name of the program.
+pub fn complaint(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Option<String> {
+    let mut usage = Cli::try_parse_from(words).err().filter(clap::Error::use_stderr)?;
+    usage::silence(&mut usage);
+    Some(usage::still_steering(&usage).unwrap_or_else(|| usage.to_string()))
+}

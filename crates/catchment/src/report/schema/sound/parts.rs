@@ -1,0 +1,144 @@
+//! The same of the parts that only some methods have: basins, a partition, a sample.
+
+use super::{UnsoundError, hold, not_negative, share};
+use crate::method::flood::Reason;
+use crate::report::schema::{BasinsReport, RunBody};
+
+impl RunBody {
+    /// What must hold of the parts that are there.
+    pub(super) fn check_parts(&self) -> Result<(), UnsoundError> {
+        if let Some(basins) = &self.basins {
+            check_basins(basins, self.acceptance.cells)?;
+        }
+        if let Some(partition) = &self.partition {
+            not_negative(partition.sum, "partition.sum")?;
+        }
+        self.check_sample()
+    }
+
+    fn check_sample(&self) -> Result<(), UnsoundError> {
+        let Some(sample) = &self.acceptance.sample else { return Ok(()) };
+        let name = |what: &str| format!("acceptance.sample.{what}");
+        let mut descents = 0usize;
+        for stratum in &sample.strata {
+            share(stratum.share, &name("strata.share"))?;
+            share(stratum.accepted, &name("strata.accepted"))?;
+            let told = stratum.aligned.checked_add(stratum.undecided);
+            let sound = told.is_some_and(|told| told <= stratum.descents);
+            hold(sound, name("strata.descents"), "must be at least those that aligned and those undecided")?;
+            descents = descents.saturating_add(stratum.descents);
+        }
+        let whole: f64 = sample.strata.iter().map(|stratum| stratum.share).sum();
+        // Shares are counts of cells over all cells: their sum is 1 but for rounding.
+        let is_whole = sample.strata.is_empty() || (whole - 1.0).abs() <= 1e-9;
+        hold(is_whole, name("strata.share"), "must add up to 1")?;
+        hold(descents == sample.descents, name("descents"), "must be those of the strata")
+    }
+}
+
+fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError> {
+    not_negative(basins.tolerance.depth, "basins.tolerance.depth")?;
+    if let Reason::WidestGap { between: [lo, hi], height_step } = basins.tolerance.reason {
+        hold(lo <= hi, "basins.tolerance.between", "must be in order")?;
+        not_negative(height_step, "basins.tolerance.height_step")?;
+    }
+    hold(basins.merged <= basins.minima, "basins.merged", "must be at most basins.minima")?;
+    hold(basins.largest.len() <= basins.merged, "basins.largest", "must be at most basins.merged")?;
+    let sorted = basins.largest.is_sorted_by(|a, b| a.cells >= b.cells);
+    hold(sorted, "basins.largest", "must be in order, the largest first")?;
+    let all = basins.largest.iter().try_fold(0usize, |sum, basin| sum.checked_add(basin.cells));
+    hold(
+        all.is_some_and(|all| all <= cells),
+        "basins.largest.cells",
+        "must add up to no more than there are",
+    )?;
+    for basin in &basins.largest {
+        share(basin.fraction, "basins.largest.fraction")?;
+        let finite = basin.minimum.to_array().iter().all(|v| v.is_finite());
+        hold(finite, "basins.largest.minimum", "must be finite")?;
+        for (value, name) in [(basin.depth, "depth"), (basin.escape, "escape")] {
+            not_negative(value.unwrap_or(0.0), &format!("basins.largest.{name}"))?;
+        }
+    }
+    let rising = basins.staircase.is_sorted_by(|a, b| a.above <= b.above);
+    hold(rising, "basins.staircase.above", "must be in order")?;
+    for step in &basins.staircase {
+        not_negative(step.above, "basins.staircase.above")?;
+        not_negative(step.sum, "basins.staircase.sum")?;
+        share(step.fraction, "basins.staircase.fraction")?;
+        hold(step.cells <= cells, "basins.staircase.cells", "must be no more than there are")?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::exec::Exec;
+    use crate::method::correction::Stratum;
+    use crate::report::Report;
+    use crate::report::schema::{PartitionReport, RunBody, SampleReport, basins};
+
+    type Spoil = fn(&mut RunBody);
+
+    /// A run with every part that a report may have.
+    fn body() -> RunBody {
+        let (design, found) = basins::tests::flooded();
+        let null = serde_json::Value::Null;
+        let report = Report::new(&design, &found.acceptance, null.clone(), None, &Exec::new()).unwrap();
+        let mut body = report.with_basins(&found.acceptance, &found.hierarchy).body;
+        body.partition = Some(PartitionReport::default());
+        let stratum = |share| Stratum {
+            name: "all".to_owned(),
+            share,
+            descents: 10,
+            aligned: 4,
+            undecided: 1,
+            accepted: 0.4,
+        };
+        let strata = vec![stratum(0.25), stratum(0.75)];
+        body.acceptance.sample = Some(SampleReport {
+            method: "descent".to_owned(),
+            settings: null,
+            seed: 1,
+            descents: 20,
+            strata,
+        });
+        body
+    }
+
+    #[test]
+    fn parts_that_cannot_be_are_named() {
+        body().check().unwrap();
+        let spoils: [(&str, Spoil); 14] = [
+            ("basins.tolerance.depth must", |b| b.basins.as_mut().unwrap().tolerance.depth = -1.0),
+            ("basins.merged must", |b| b.basins.as_mut().unwrap().minima = 0),
+            ("basins.largest must be at most", |b| {
+                let basins = b.basins.as_mut().unwrap();
+                (basins.merged, basins.minima) = (0, 0);
+            }),
+            ("basins.largest must be in order", |b| b.basins.as_mut().unwrap().largest.reverse()),
+            ("basins.largest.cells must", |b| b.basins.as_mut().unwrap().largest[0].cells = usize::MAX),
+            ("basins.largest.fraction must", |b| b.basins.as_mut().unwrap().largest[0].fraction = 1.5),
+            ("basins.largest.depth must", |b| b.basins.as_mut().unwrap().largest[0].depth = Some(-0.1)),
+            ("basins.staircase.above must", |b| b.basins.as_mut().unwrap().staircase[0].above = 1e300),
+            ("basins.staircase.cells must", |b| {
+                b.basins.as_mut().unwrap().staircase[0].cells = usize::MAX;
+            }),
+            ("partition.sum must", |b| b.partition.as_mut().unwrap().sum = f64::NAN),
+            ("acceptance.sample.strata.share must lie", |b| sample(b).strata[0].share = -0.25),
+            ("acceptance.sample.strata.share must add", |b| sample(b).strata[0].share = 0.5),
+            ("acceptance.sample.strata.descents must", |b| sample(b).strata[1].aligned = usize::MAX),
+            ("acceptance.sample.descents must", |b| sample(b).descents = 7),
+        ];
+        for (message, spoil) in spoils {
+            let mut body = body();
+            spoil(&mut body);
+            let told = body.check().unwrap_err().to_string();
+            assert!(told.starts_with(message), "{told} instead of {message}");
+        }
+    }
+
+    fn sample(body: &mut RunBody) -> &mut SampleReport {
+        body.acceptance.sample.as_mut().unwrap()
+    }
+}

@@ -1,0 +1,94 @@
+"""Measures what every command takes of the memory, on every design, beside what the program itself expects.
+
+    python3 tests/memory.py PROGRAM [DESIGN…]
+
+The program is asked twice: with `--memory 1B` it refuses and says what it needs; without, it runs, and the system says what it took
+at most. What the same design takes to be checked is taken off. Fails where a command takes more than BESIDE more than it expected:
+threads, tables of the report and the allocator's own are in no estimate. Unix, Python's own library alone.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BESIDE = 48  # MiB
+UNITS = {"B": 1, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30, "TiB": 1 << 40}
+COMMANDS = [
+    "run --method transport",
+    "run --method descent",
+    "run --method flood --resolution 24",
+    "run --method steepest --resolution 24",
+    "run --method meyer --resolution 16",
+    "run --method partition --free x,pitch",
+    "run --method kinematic --resolution 300",
+    "run --method drop --resolution 4 --trials 1",
+    "run --free x,pitch --method flood --resolution 3000",
+    "run --free x,pitch --method flood --resolution 2000 -o out",
+    "run --free x,pitch --method flood --resolution 2000 --figures out",
+    "run --method flood --resolution 24 -o out.zarr",
+    "run --sensitivity --samples 200",
+    "slices --resolution 60",
+    "slices --resolution 60 -o out",
+    "compare --methods flood,meyer --resolution 12",
+    "compare --methods flood,meyer --resolution 12 -o out",
+    "outcome --poses poses.csv",
+    "outcome --poses poses.csv --json",
+    "zraa",
+    "zraa -o out.png",
+    "check",
+]
+
+
+def measured(program, args, folder):
+    """Exit code, MiB at most, and what was said."""
+    with tempfile.TemporaryFile() as said, open(os.devnull, "w") as null:
+        child = subprocess.Popen([program, *args], cwd=folder, stdout=null, stderr=said)
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        said.seek(0)
+        return child.returncode, usage.ru_maxrss / 1024, re.sub(r"\s*\n\s*│?\s*", " ", said.read().decode())
+
+
+def expected(program, args, folder):
+    """MiB that the program says it needs; nothing where it asks for none."""
+    code, _, said = measured(program, [*args, "--memory", "1B"], folder)
+    found = re.search(r"needs ([\d.]+) (\w+) of memory", said)
+    return float(found[1]) * UNITS[found[2]] / (1 << 20) if code == 2 and found else None
+
+
+def main():
+    program = str(Path(sys.argv[1]).resolve())
+    designs = [Path(path) for path in sys.argv[2:]] or sorted((ROOT / "designs").glob("*.toml"))
+    worst, failed, ran = {}, [], 0
+    for design in designs:
+        _, base, _ = measured(program, ["check", str(design.resolve())], ".")
+        for command in COMMANDS:
+            name, *options = command.split()
+            with tempfile.TemporaryDirectory() as folder:
+                (Path(folder) / "poses.csv").write_text("x\n" + "0.01\n" * 20_000)
+                args = [name, str(design.resolve()), *options]
+                needs = expected(program, args, folder) if name != "check" else None
+                code, most, said = measured(program, args, folder)
+            if code != 0:
+                print(f"{design.stem:20} {command:62} not for this design", flush=True)
+                continue
+            ran += 1
+            took = max(most - base, 0.0)
+            shown = "-" if needs is None else f"{needs:.1f}"
+            print(f"{design.stem:20} {command:62} expected {shown:>8} MiB, took {took:7.1f} MiB", flush=True)
+            beside = took - (needs or 0.0)
+            worst[command] = max(worst.get(command, (float("-inf"),)), (beside, took, needs or 0.0, design.stem))
+            if beside > BESIDE:
+                failed.append(f"{design.stem}: {command}: {took:.0f} MiB, expected {shown}")
+    print("\n| command | most beside what was expected | expected | took | design |\n|---|---|---|---|---|")
+    for command, (beside, took, needs, stem) in worst.items():
+        print(f"| `{command}` | {beside:+.0f} MiB | {needs:.1f} MiB | {took:.1f} MiB | {stem} |")
+    sys.exit("\n".join(["too much memory:", *failed]) if failed else f"{ran} runs within {BESIDE} MiB" if not ran else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,352 @@
+"""Spoilt designs, tables, stored results and command lines through the real program, under a limit of its memory.
+
+    python3 tests/storm.py PROGRAM [COUNT] [--seed SEED] [--from NUMBER] [--mib 1024] [--keep FOLDER]
+
+Every run must end with exit code 0, 1, 2, 130 or 143, say something where it is 2, steer no terminal, call nothing a bug and leave
+nothing unfinished. A run that takes more than LONGEST of the processor is interrupted, must hear that, and is counted. The same seed and number
+give the same run; what failed is named with both, and kept with --keep. Unix, Python's own library alone.
+"""
+
+import argparse
+import collections
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+ALLOWED = {0, 1, 2, 130, 143}
+LONGEST = 20.0  # seconds of the processor
+DEAF = 30.0  # seconds from an interrupt to the end, on a busy machine
+NUMBERS = "0 -0 -1 1 2 3 0.5 1e308 -1e308 1e-320 1e999 nan inf 0.1 255 65536 4294967295 18446744073709551616 1e-9 100 -100".split()
+PIECES = [b"\0", b"\x1b[2J", b"\xff\xfe", b"\xef\xbb\xbf", b"\n", b"\r", b",", b'"', b"[", b"{", b"}", b"=", b" mm", b" deg",
+          b"null", b"\xe2\x80\xae", b"\xc2\x9b", b"////////", b"true", b"[[", b"#", b";"]
+METHODS = "transport descent flood steepest meyer partition kinematic drop all".split()
+AXES = "x y roll pitch yaw".split()
+
+
+def corpus(name):
+    return [path.read_bytes() for path in sorted((ROOT / "fuzz/corpus" / name).iterdir())]
+
+
+def spoilt(dice, seed, others):
+    """A copy with one to four faults."""
+    data = bytearray(seed)
+    for _ in range(dice.randint(1, 4)):
+        at = dice.randint(0, len(data))
+        end = min(at + dice.randint(0, 60), len(data))
+        kind = dice.randint(0, 9)
+        if kind == 0 and data:
+            data[min(at, len(data) - 1)] ^= 1 << dice.randint(0, 7)
+        elif kind == 1 and data:
+            data[min(at, len(data) - 1)] = dice.randint(0, 255)
+        elif kind == 2:
+            del data[at:end]
+        elif kind == 3:
+            data[at:at] = data[at:end]
+        elif kind == 4:
+            data[at:at] = dice.choice(PIECES)
+        elif kind == 5:
+            other = dice.choice(others)
+            start = dice.randint(0, len(other))
+            data[at:end] = other[start : start + dice.randint(0, 60)]
+        elif kind == 6:
+            del data[at:]
+        else:
+            found = list(re.finditer(rb"-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?", bytes(data)))
+            if found:
+                number = dice.choice(found)
+                data[number.start() : number.end()] = dice.choice(NUMBERS).encode()
+    return bytes(data[: 1 << 20])
+
+
+def number(dice):
+    return dice.choice(NUMBERS) if dice.random() < 0.15 else f"{dice.uniform(-0.2, 1):.3g}"
+
+
+def length(dice):
+    return number(dice) + dice.choice(["", "", "", "", " D", " deg", " mm", " parsec"])
+
+
+def resolution(dice):
+    kind = dice.random()
+    if kind < 0.7:
+        return str(dice.randint(1, 6))
+    if kind < 0.85:
+        return f"{dice.randint(1, 6)},{dice.choice(AXES)}={dice.randint(1, 9)}"
+    return dice.choice([f"{dice.choice(AXES)}={number(dice)}", number(dice), "", "=", "1e3", "x=,y"])
+
+
+def pose(dice):
+    return ",".join(f"{dice.choice(AXES)}={length(dice)}" for _ in range(dice.randint(0, 4)))
+
+
+def design_options(dice):
+    args = []
+    if dice.random() < 0.5:
+        args += ["--free", ",".join(dice.sample(AXES, dice.randint(1, 3)))]
+    if dice.random() < 0.2:
+        args += ["--cor", length(dice)]
+    if dice.random() < 0.2:
+        args += ["--rotation-length", length(dice)]
+    if dice.random() < 0.1:
+        args += ["--aspect-ratio", number(dice)]
+    return args
+
+
+def drop_options(dice):
+    keys = "push gravity mass gyration density damping angular-damping friction restitution drop-height timestep timeout".split()
+    args = ["--trials", dice.choice(["1", "1", "3", number(dice)])]
+    for key in dice.sample(keys, dice.randint(0, 3)):
+        args += [f"--{key}", number(dice)]
+    return args
+
+
+def exec_options(dice):
+    args = []
+    if dice.random() < 0.2:
+        args += ["--threads", dice.choice(["0", "1", "2", "9", number(dice)])]
+    if dice.random() < 0.2:
+        args += ["--memory", dice.choice(["1 MiB", "10 MB", "1GiB", "900 GiB", length(dice)])]
+    return args + (["-q"] if dice.random() < 0.1 else [])
+
+
+def run(dice):
+    method = dice.choice(METHODS)
+    args = ["run", "d.toml", "--resolution", resolution(dice), "--method", method]
+    args += design_options(dice) + exec_options(dice)
+    if method == "drop":
+        args += drop_options(dice)
+    if method in ("transport", "descent", "all") and dice.random() < 0.9:
+        args += ["--samples", dice.choice(["0", "10", "100", number(dice)])]
+    for option, values in {
+        "--slices": ["1", "4", number(dice)],
+        "--strips": ["1", "3", number(dice)],
+        "--depth-tolerance": [number(dice)],
+        "--require": ["onaa.edge>=0.1", "sum<=" + number(dice), pose(dice)],
+        "--error-sigma": [pose(dice)],
+        "--error-uniform": [pose(dice)],
+        "--figures": ["pics", "out", "new/pics"],
+        "--seed": [number(dice)],
+        "--tolerance": ["50%", number(dice)],
+        "--budget": ["1s", length(dice)],
+        "--time-limit": ["1s", length(dice)],
+    }.items():
+        if dice.random() < 0.06:
+            args += [option, dice.choice(values)]
+    if dice.random() < 0.06:
+        args += ["--converge", "--tolerance", "50%", "--time-limit", "1s"]
+    elif dice.random() < 0.06:
+        args += ["--sensitivity", "--samples", "10"]
+    return args + dice.choice([[], ["--json"], ["-o", "out"], ["-o", "out.zarr"], ["-o", "s/out"]])
+
+
+def outcome(dice):
+    args = ["outcome", "d.toml", "--poses", "p.csv"] + design_options(dice) + exec_options(dice)
+    if dice.random() < 0.1:
+        args += ["--method", "drop"] + drop_options(dice)
+    if dice.random() < 0.2:
+        args += ["--offsets-at", dice.choice(["face", "cor"])]
+    return args + dice.choice([[], ["--json"], ["-o", "out.csv"], ["-o", "p.csv", "--force"]])
+
+
+def slices(dice):
+    args = ["slices", "d.toml", "--resolution", resolution(dice)] + design_options(dice) + exec_options(dice)
+    if dice.random() < 0.3:
+        args += ["--axes", ",".join(dice.choices(AXES, k=2))]
+    if dice.random() < 0.1:
+        args += ["--method", "drop"] + drop_options(dice)
+    return args + dice.choice([[], ["--json"], ["-o", "out"]])
+
+
+def compare(dice):
+    one = dice.choice(["s.zarr", "s", "d.toml"])
+    args = ["compare", one] + ([dice.choice(["s.zarr", "s", "d.toml"])] if dice.random() < 0.8 else [])
+    if dice.random() < 0.7:
+        args += ["--methods", ",".join(dice.choices(METHODS[1:-2], k=dice.randint(1, 2)))]
+    if dice.random() < 0.4 or "d.toml" in args:
+        args += ["--resolution", resolution(dice)]
+    return args + exec_options(dice) + dice.choice([[], ["--json"], ["-o", "out"]])
+
+
+def single(dice):
+    command = dice.choice(["trace", "zraa", "export", "check", "check"])
+    args = [command, "d.toml"] + design_options(dice)
+    if command in ("trace", "export"):
+        args += ["--pose", pose(dice)]
+    if command == "export":
+        return args + ["-o", "out"] + (drop_options(dice) if dice.random() < 0.3 else [])
+    if command != "check":
+        args += dice.choice([[], [], ["-o", "out." + dice.choice(["svg", "png", "csv", "json", "xyz", "zarr"])]])
+    return args + dice.choice([[], ["--json"]])
+
+
+def small(dice):
+    families = "v-face s-face x-face pyramid cone x-face-3d x-face-3d-locking pin-hole nonsense".split()
+    return dice.choice([["new", dice.choice(families)], ["new", dice.choice(families), "-o", "d.toml"] + ["--force"] * dice.randint(0, 1),
+                        ["schema"], ["completions", dice.choice(["bash", "zsh", "x"])], ["man", dice.choice(["run", "x"])], ["--help"]])
+
+
+def words(dice):
+    """A spoilt command line of the corpus."""
+    lines = corpus("arguments")
+    data = spoilt(dice, dice.choice(lines), lines)
+    return [word for word in data.replace(b"\0", b"").split(b"\n")]
+
+
+class Storm:
+    def __init__(self, program, keep):
+        self.program, self.keep = str(Path(program).resolve()), keep
+        self.home = Path(tempfile.mkdtemp(prefix="storm-"))
+        self.work = self.home / "work"
+        self.tables, self.meshes = corpus("poses"), corpus("stl")
+        self.designs = corpus("design") + [path.read_bytes() for path in sorted((ROOT / "designs").glob("*.toml"))]
+        self.codes, self.commands = collections.Counter(), collections.Counter()
+        self.largest, self.longest, self.slow, self.faults = (0, ""), (0.0, ""), [], []
+        self.results = self.home / "results"
+        self.results.mkdir()
+        self.design = (ROOT / "designs/v-face.toml").read_bytes()
+        (self.results / "d.toml").write_bytes(self.design)
+        for place in ("s", "s.zarr"):
+            args = ["run", "d.toml", "--method", "flood", "--resolution", "6", "-o", place]
+            code, _, _, said = self.start(args, self.results)
+            assert code == 0, said
+        self.stored = [path.relative_to(self.results) for path in sorted(self.results.rglob("*")) if path.is_file()]
+
+    def start(self, args, folder):
+        """Exit code (minus the signal), kilobytes, seconds of the processor and what it said."""
+        with open(self.home / "stdout", "wb") as out, open(self.home / "stderr", "wb") as err, open(os.devnull) as null:
+            pid = os.fork()
+            if pid == 0:
+                try:
+                    os.chdir(folder)
+                    # Whoever starts a storm in the background has it ignore Ctrl-C, and the program would do so, too.
+                    for number in (signal.SIGINT, signal.SIGPIPE, signal.SIGXFSZ):
+                        signal.signal(number, signal.SIG_DFL)
+                    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
+                    for to, stream in enumerate((null, out, err)):
+                        os.dup2(stream.fileno(), to)
+                    os.execve(self.program, [self.program, *args], {"PATH": "/usr/bin:/bin", "HOME": str(self.home)})
+                finally:
+                    os._exit(99)
+            asked, until = None, 0.0
+            while True:
+                ended, status, usage = os.wait4(pid, os.WNOHANG)
+                if ended:
+                    break
+                if time.monotonic() > until if asked else self.used(pid) >= LONGEST:
+                    asked, until = (signal.SIGKILL if asked else signal.SIGINT), time.monotonic() + DEAF
+                    os.kill(pid, asked)
+                signal.sigtimedwait({signal.SIGCHLD}, 1.0)
+        code, took = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
+        if asked == signal.SIGINT and code == 130:
+            self.slow.append((took, args))
+        return code, usage.ru_maxrss, took, (self.home / "stderr").read_bytes()
+
+    @staticmethod
+    def used(pid):
+        """Seconds of the processor."""
+        fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def prepare(self, dice):
+        """A folder with a design, a table and stored results, some of them spoilt; and the command."""
+        shutil.rmtree(self.work, ignore_errors=True)
+        self.work.mkdir()
+        kind = dice.choices([run, outcome, slices, compare, single, small, words], weights=[6, 4, 2, 5, 4, 1, 3])[0]
+        args = kind(dice)
+        design = dice.choice(self.designs)
+        if dice.random() < 0.35:
+            design = spoilt(dice, design, self.designs)
+        if kind is compare:
+            shutil.copytree(self.results, self.work, dirs_exist_ok=True)
+            if dice.random() < 0.5:
+                design = self.design
+            for name in dice.sample(self.stored, dice.choice([0, 1, 1, 1, 2])):
+                data = (self.work / name).read_bytes()
+                (self.work / name).write_bytes(spoilt(dice, data, [data, self.design]))
+        elif dice.random() < 0.2:
+            shutil.copytree(self.results / "s", self.work / "out")
+        (self.work / "d.toml").write_bytes(design)
+        table = dice.choice(self.tables)
+        (self.work / "p.csv").write_bytes(spoilt(dice, table, self.tables) if dice.random() < 0.5 else table)
+        (self.work / "s").mkdir(exist_ok=True)
+        (self.work / "meshes").mkdir()
+        for name in ("plug.stl", "socket.stl"):
+            mesh = (ROOT / "designs/meshes" / name).read_bytes()
+            mesh = spoilt(dice, dice.choice([mesh, *self.meshes]), self.meshes) if dice.random() < 0.3 else mesh
+            (self.work / "meshes" / name).write_bytes(mesh)
+        return kind, args
+
+    def one(self, seed, count):
+        dice = random.Random(f"{seed}/{count}")
+        kind, args = self.prepare(dice)
+        if dice.random() < 0.05 and kind is not words:
+            args[dice.randrange(len(args))] = dice.choice(["", "-", "--", "\x1b[2J", "x" * 300, "é\u202e", number(dice)])
+        if self.keep:
+            shutil.rmtree(self.keep / "last", ignore_errors=True)
+            shutil.copytree(self.work, self.keep / "last", symlinks=True)
+        code, kilobytes, took, said = self.start(args, self.work)
+        shown = " ".join(map(repr, args))
+        text = said.decode("utf-8", "replace")
+        left = [str(path.relative_to(self.work)) for path in self.work.rglob(".*") if path.name.endswith((".tmp", ".old"))]
+        steers = [c for c in text if (ord(c) < 32 and c != "\n") or 127 <= ord(c) < 160 or c in "\u202e\u2066"]
+        for wrong, what in (
+            (code not in ALLOWED, f"it ended with {code}"),
+            (code in (130, 143) and args not in [args for _, args in self.slow], "it was not interrupted"),
+            (code == 2 and not text.strip() and (self.home / "stdout").stat().st_size == 0, "it said nothing"),
+            ("panicked" in text or "a bug of" in text, "it called something a bug"),
+            (steers, f"control characters came through: {steers}"),
+            (left, f"it left {left}"),
+        ):
+            if wrong:
+                self.faults.append((count, what, shown))
+                print(f"FAULT: seed {seed}, number {count}: {what}: {shown}\n{text}", file=sys.stderr, flush=True)
+                if self.keep:
+                    shutil.copytree(self.keep / "last", self.keep / f"{seed}-{count}", dirs_exist_ok=True)
+                    (self.keep / f"{seed}-{count}" / "ARGS").write_text(shown + "\n" + text)
+        self.codes[code] += 1
+        self.commands[kind.__name__] += 1
+        self.largest = max(self.largest, (kilobytes, f"{count}: {shown}"))
+        self.longest = max(self.longest, (took, f"{count}: {shown}"))
+
+    def tell(self, runs, began):
+        print(f"{runs} runs in {time.monotonic() - began:.0f} s: exit codes {dict(sorted(self.codes.items()))}, {dict(self.commands)}")
+        print(f"largest memory {self.largest[0] / 1024:.0f} MiB (run {self.largest[1]})")
+        print(f"longest time {self.longest[0]:.1f} s of the processor (run {self.longest[1]})")
+        print(f"{len(self.slow)} interrupted after {LONGEST:.0f} s of the processor, {len(self.faults)} faults", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("count", type=int, nargs="?", default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--from", type=int, default=0, dest="first")
+    parser.add_argument("--mib", type=int, default=1024)
+    parser.add_argument("--keep", type=Path)
+    options = parser.parse_args()
+    resource.setrlimit(resource.RLIMIT_AS, (options.mib << 20, options.mib << 20))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    # Waited for, not handled.
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})
+    storm, began = Storm(options.program, options.keep), time.monotonic()
+    try:
+        for count in range(options.first, options.first + options.count):
+            storm.one(options.seed, count)
+            if (count + 1) % 1000 == 0:
+                storm.tell(count + 1 - options.first, began)
+    finally:
+        storm.tell(sum(storm.codes.values()), began)
+        shutil.rmtree(storm.home, ignore_errors=True)
+    sys.exit(bool(storm.faults))
+
+
+if __name__ == "__main__":
+    main()
