@@ -19,8 +19,8 @@
 //! Heights are not reset and walls keep no margin: contacts touch to rounding, and between events the error is the midpoint
 //! rule's, third order in the step.
 //!
-//! Not promised: a way on where the halves are caught in an overlap that no contact explains. There one step is taken as
-//! where nothing is tight.
+//! Not promised: a way on where the halves are caught in an overlap that no contact explains, or where flush contacts
+//! alternate without an end. There one step is taken as where nothing is tight.
 
 mod correction;
 mod event;
@@ -56,6 +56,11 @@ const MOST_BLOCKERS: usize = 8;
 /// together, whose correction is longer than their gap.
 const SETTLED: f64 = 1e-6;
 
+/// A step shorter than this crawls, in D: far below a facet, above what a landing leaves to be closed.
+const CRAWL: f64 = 1e-5;
+/// After so many such steps in a row contacts alternate without an end: more than any two faces have corners.
+const MOST_CRAWLS: usize = 32;
+
 /// Where the force pushes.
 const DOWN: Vector = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
 
@@ -64,6 +69,8 @@ const DOWN: Vector = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
 pub(super) struct Sliding {
     /// Where the elements are those that [`SUPPORT`] asks for.
     looked: Option<(DMat3, DVec2)>,
+    /// How many steps in a row have crawled.
+    crawls: usize,
     /// Which of the active contacts carry the body.
     carrying: Vec<usize>,
     /// What is touched at the end of a step that is tried.
@@ -77,7 +84,7 @@ pub(super) struct Sliding {
 impl Sliding {
     /// What was seen last is gone: the pose is another, or the elements are others.
     pub(super) const fn forget(&mut self) {
-        self.looked = None;
+        (self.looked, self.crawls) = (None, 0);
     }
 }
 
@@ -97,6 +104,9 @@ impl Motion<'_> {
         }
         let mut state = *state;
         for _ in 0..=MOST_BLOCKERS {
+            if self.sliding.crawls > MOST_CRAWLS {
+                break;
+            }
             let Some(start) = self.direction(&state) else { return Advance::Ended(Outcome::Jammed, state) };
             let carrying = std::mem::take(&mut self.sliding.carrying);
             state = self.corrected(&state, &carrying, SETTLED).unwrap_or(state);
@@ -105,6 +115,7 @@ impl Motion<'_> {
             match self.until_event(&state, &start, step) {
                 Reached::At(next, length) => {
                     pace.step = 2.0 * step;
+                    self.sliding.crawls = if length < CRAWL { self.sliding.crawls + 1 } else { 0 };
                     return Advance::Moved(next, length * lateral(&start));
                 }
                 Reached::Blocked(Some(blocker)) => self.contacts.push(blocker),
