@@ -43,6 +43,9 @@ fn a_report_of_the_last_layout_is_read_and_written_in_this_one() {
     family.retain(|key, _| ["family", "aspect_ratio", "base_thickness"].contains(&key.as_str()));
     new.as_object_mut().unwrap().shift_remove("kind");
     new["schema"] = 2.into();
+    // What did not exist then has its default.
+    new.as_object_mut().unwrap().shift_remove("seat");
+    new["design"]["alignment"].as_object_mut().unwrap().shift_remove("docked");
     assert_eq!(new, old);
 }
 

@@ -103,8 +103,8 @@ impl<'a> Turned<'a> {
 
 /// How far outside its own surface a contact looks for another piece of the same solid, in D.
 const LOOK: f64 = 1e-7;
-/// How far around a contact the surface of its piece is looked at, and how far above and below, in D: above the distance by which a foot
-/// may overshoot its feature, and flat enough for walls that flare.
+/// How far around a contact the surface of its piece is looked at, and how far above, in D: above the distance by which a foot may overshoot
+/// its feature, and flat enough for walls that flare.
 const AROUND: f64 = 1e-6;
 const BESIDE: f64 = 5e-8;
 /// By how much a point must be inside a piece, in D.
@@ -133,7 +133,8 @@ fn is_covered(shapes: &[Shape], own: u32, point: DVec3, normal: DVec3) -> bool {
     for k in 0..8 {
         let (sine, cosine) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
         let near = point + (side * cosine + across * sine) * AROUND;
-        if shapes[own as usize].contains(near - normal * BESIDE, WITHIN) {
+        // Along a rim the point itself may overshoot it: only what is well inside counts.
+        if shapes[own as usize].contains(near - normal * AROUND, 0.25 * AROUND) {
             if !others().any(|shape| shape.contains(near + normal * BESIDE, WITHIN)) {
                 return false;
             }

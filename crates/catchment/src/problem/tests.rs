@@ -98,7 +98,7 @@ fn what_is_wrong_keeps_its_place_whichever_room_found_it() {
         }
         format!(
             "[connector]\nwidth = 1\nface_height = {height}\nfixed = {{ pieces = [[{piece}]] }}\nmoving = {{ pieces = [[{piece}]] }}\n\
-             [alignment]\nfree = [\"x\"]\n"
+             [alignment]\nfree = [\"x\"]\n[docked]\nx = 0.5\n"
         )
     };
     assert!(read(&two_cubes(0.3)).is_ok());

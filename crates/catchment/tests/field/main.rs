@@ -50,7 +50,8 @@ fn the_industreal_peg_docks_within_its_mouth() {
     let peg = [(5.99, -5.0), (5.99, 19.502), (5.492, 20.0)].map(|(r, z)| ring(32, [0.0; 2], r, z));
     let problem =
         problem(fixed, body(&peg), D, &LATERAL, |a| a.half_ranges = [2.5 / D, 2.5 / D, 1.0, 1.0, 1.0]);
-    let answer = Run::default().on(&problem, &Exec::new()).unwrap();
+    let run = Run { over: Over::Grid("60".parse().unwrap()), ..Run::default() };
+    let answer = run.on(&problem, &Exec::new()).unwrap();
     let [lo, hi] = answer.sum_ci95().unwrap();
     // The polygon of 32 sides, 0.6 % less than the circle's 0.0880 D².
     let area = 16.0 * (TAU / 32.0).sin() * (2.008 / D).powi(2);

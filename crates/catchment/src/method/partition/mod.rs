@@ -31,14 +31,15 @@ mod watershed;
 use super::descent;
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
-use crate::contact::Pair;
+use crate::contact::{Pair, Seat};
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
 use crate::polytope::{MAX_DIMENSION, Point, Polytope};
-use crate::pose::{Dof, PoseError, face_from_cor};
+use crate::pose::{CorPose, Dof, PoseError, face_from_cor};
 use cells::Cells;
 use compose::Compartment;
+use glam::DVec2;
 pub use outline::Corner;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -222,7 +223,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
     for (cell, gates) in cells.all.iter_mut().zip(gates) {
         cell.gates = gates;
     }
-    let watersheds = watershed::drain(&cells, |rest| docks(pair, rest), exec)?;
+    let watersheds = watershed::drain(&cells, docks(pair), exec)?;
     let parts = watersheds.parts.iter().map(|parts| match parts {
         Parts::Whole(_) => 1,
         Parts::Cut(parts) => parts.len(),
@@ -349,16 +350,29 @@ impl Partition {
     }
 }
 
-/// Whether a half that is put down at a place of rest is docked: slices move it a little, so an exact motion from there decides.
-fn docks(pair: &Pair, rest: &Point) -> bool {
+/// Whether a place of rest is docked. Slices move it a little: what is as near the mated pose as they leave it is followed by an exact
+/// motion, everything else must lie in the seat as it is.
+fn docks(pair: &Pair) -> impl Fn(&Point) -> bool + '_ {
+    /// In D and radians.
+    const NEAR: f64 = 0.02;
     let alignment = &pair.alignment;
-    let mut error = [0.0; 5];
-    for (k, dof) in alignment.free.iter().enumerate() {
-        error[dof.index()] = rest[k];
+    move |rest| {
+        let mut error = [0.0; 5];
+        for (k, dof) in alignment.free.iter().enumerate() {
+            error[dof.index()] = rest[k];
+        }
+        let mut error = PoseError::from_array(error);
+        let pose = CorPose { lateral: DVec2::new(error.x, error.y), rotation: error.rotation() };
+        // The place is that of the COR.
+        let face = face_from_cor(&pose.rotation, alignment.center_of_rotation);
+        let near = error.x.hypot(error.y) <= NEAR && alignment.turned_by(&pose.rotation) <= NEAR;
+        (error.x, error.y) = (error.x + face.x, error.y + face.y);
+        if near {
+            descent::outcome(pair, &error, &descent::Settings::default()).outcome == Outcome::Aligned
+        } else {
+            let mut seat = Seat::new(pair);
+            let height = pair.height(&pose).unwrap_or(f64::INFINITY);
+            seat.holds(&error, height) && seat.allows(&error)
+        }
     }
-    let mut error = PoseError::from_array(error);
-    // The place is that of the COR.
-    let face = face_from_cor(&error.rotation(), alignment.center_of_rotation);
-    (error.x, error.y) = (error.x + face.x, error.y + face.y);
-    descent::outcome(pair, &error, &descent::Settings::default()).outcome == Outcome::Aligned
 }

@@ -143,7 +143,7 @@ fn judged(pair: &Pair, partition: &Partition, stream: Stream, count: u64) -> [us
         // Places of rest along a level ravine are many for points and one for parts.
         let fate = match fall::fate(&partition.cells, &q) {
             Fate::Lost => Outcome::Missed,
-            Fate::Rest(place) if docks(pair, &place) => Outcome::Aligned,
+            Fate::Rest(place) if docks(pair)(&place) => Outcome::Aligned,
             Fate::Rest(_) | Fate::Left => Outcome::Jammed,
         };
         tried += 1;
