@@ -42,6 +42,7 @@ use crate::design::Alignment;
 use crate::pose::CorPose;
 use glam::{DMat3, DVec2, DVec3};
 use shape::Shape;
+use std::sync::OnceLock;
 
 /// A connector whose moving half is given from the COR: ready for heights.
 #[derive(Debug, Clone)]
@@ -57,6 +58,7 @@ pub struct Pair {
     mirrors: Vec<Mirror>,
     tight: bool,
     mated_height: f64,
+    homing: OnceLock<bool>,
 }
 
 impl Pair {
@@ -69,12 +71,26 @@ impl Pair {
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
-        let (alignment, mated_height) = (alignment.clone(), f64::NEG_INFINITY);
-        let mut pair =
-            Self { fixed, moving, alignment, fixed_shapes, moving_shapes, mirrors, tight, mated_height };
+        let (alignment, mated_height, homing) = (alignment.clone(), f64::NEG_INFINITY, OnceLock::new());
+        let mut pair = Self {
+            fixed,
+            moving,
+            alignment,
+            fixed_shapes,
+            moving_shapes,
+            mirrors,
+            tight,
+            mated_height,
+            homing,
+        };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
         pair
+    }
+
+    /// Whether all motion near the mated pose leads to it, as `find` says, which is asked once.
+    pub(crate) fn is_homing(&self, find: impl FnOnce() -> bool) -> bool {
+        *self.homing.get_or_init(find)
     }
 
     /// h₀, the z of the COR at first contact without any error, in D; −∞ where the halves pass each other by.

@@ -80,9 +80,10 @@ impl<'a> Seat<'a> {
         let mated = PoseError { yaw: error.yaw - off.yaw, ..PoseError::default() };
         let slid = PoseError { x: 0.0, y: 0.0, ..*error };
         let turned = PoseError { x: error.x, y: error.y, ..mated };
-        self.is_level(&[*error, mated])
-            || self.is_level(&[*error, slid, mated])
-            || self.is_level(&[*error, turned, mated])
+        // From the mated pose outwards: a sharp seat ends there at once.
+        self.is_level(&[mated, *error])
+            || self.is_level(&[mated, slid, *error])
+            || self.is_level(&[mated, turned, *error])
     }
 
     /// Whether the seat holds all along a path, straight in the pose error from point to point.

@@ -14,6 +14,7 @@
 
 mod dependence;
 pub(super) mod door;
+mod homing;
 mod motion;
 mod projection;
 mod sliding;
@@ -68,7 +69,7 @@ pub struct Follower<'a>(Motion<'a>);
 impl<'a> Follower<'a> {
     /// For the poses of a pair.
     pub fn new(pair: &'a Pair, settings: &'a Settings) -> Self {
-        Self(Motion::new(pair, settings))
+        Self(Motion::new(pair, settings).homing())
     }
 
     /// Follows one pose until it is known what becomes of it: a half in a seat all of which counts is docked before it has come
@@ -119,7 +120,7 @@ pub fn run(
         (0..count)
             .into_par_iter()
             .map_init(
-                || Motion::new(pair, settings),
+                || Motion::new(pair, settings).homing(),
                 |motion, k| {
                     exec.check()?;
                     let (outcome, error) = motion.follow(&domain.pose(k), Until::Known, None);

@@ -5,6 +5,7 @@
 //! first contact, so that errors of the linearisation never build up. A step that the height contradicts
 //! is halved. Pairs with tight fits go by [`super::sliding`] instead.
 
+use super::homing;
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::sliding::Sliding;
 use super::{Settings, Touch, Waypoint};
@@ -97,6 +98,8 @@ pub(super) struct Motion<'a> {
     pub(super) pair: &'a Pair,
     pub(super) settings: &'a Settings,
     seat: Seat<'a>,
+    /// Whether all motion near the mated pose leads to it: [`super::homing`].
+    homing: bool,
     pub(super) nearby: Nearby<'a>,
     pub(super) contacts: Vec<(Contact, Meeting)>,
     /// Scratch for [`Motion::cut`].
@@ -128,6 +131,7 @@ impl<'a> Motion<'a> {
             pair,
             settings,
             seat: Seat::new(pair),
+            homing: false,
             nearby: pair.nearby(slack, near),
             contacts: Vec::new(),
             carrying: Vec::new(),
@@ -138,6 +142,12 @@ impl<'a> Motion<'a> {
             radius,
             spherical: pair.alignment.free.rotations() == 3,
         }
+    }
+
+    /// Calls motions before they have come to rest also where all motion near the mated pose leads to it.
+    pub(super) fn homing(mut self) -> Self {
+        self.homing = homing::all_dock(self.pair, self.settings);
+        self
     }
 
     /// Lowers the moving half at `error` and follows it to its end; returns the outcome and the last pose error.
@@ -166,7 +176,7 @@ impl<'a> Motion<'a> {
         let mut travelled = 0.0;
         let mut mark = (0, travelled, z);
         // A half that is seated stays so.
-        let mut seated = false;
+        let (mut seated, mut asked) = (false, false);
         let called = until == Until::Known && !self.seat.is_limited();
         for count in 0..self.settings.max_steps {
             if self.pair.is_tight() {
@@ -177,8 +187,11 @@ impl<'a> Motion<'a> {
             if let Some(waypoints) = record.as_deref_mut() {
                 waypoints.push(self.waypoint(&state, travelled));
             }
-            seated = seated || self.is_seated(&state);
-            if seated && called {
+            // What is deep enough moves on in its own part of what is: once tells whether that is the seat.
+            let deep = state.cor.z <= self.seat.level();
+            seated = seated || deep && !asked && self.is_seated(&state);
+            asked |= deep;
+            if called && (seated || self.homing && homing::is_near(self.pair, &state.rotation, state.cor)) {
                 return (Outcome::Aligned, self.error_of(&state));
             }
             if travelled - mark.1 > self.settings.step || count - mark.0 > LEVEL_STEPS {

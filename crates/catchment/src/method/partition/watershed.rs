@@ -63,7 +63,7 @@ struct Draining<'a, F> {
     /// Per cell and gate: where it leads, unless into a cell.
     labels: Vec<Vec<Option<Outcome>>>,
     parts: Vec<Option<Parts>>,
-    rests: Vec<Point>,
+    rests: Vec<(Point, Outcome)>,
     cut_off: bool,
 }
 
@@ -122,7 +122,8 @@ pub(super) fn drain(
         }
     }
     let parts = draining.parts.into_iter().map(|parts| parts.unwrap_or(Parts::Cut(Vec::new()))).collect();
-    Ok(Watersheds { parts, rests: draining.rests, cut_off: draining.cut_off })
+    let rests = draining.rests.into_iter().map(|(place, _)| place).collect();
+    Ok(Watersheds { parts, rests, cut_off: draining.cut_off })
 }
 
 /// Where the gates lead that do not lead into a cell.
@@ -155,10 +156,12 @@ impl<F: Fn(&Point) -> bool> Draining<'_, F> {
             Fate::Rest(place) => place,
         };
         let near = |other: &Point| place.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME_PLACE);
-        if !self.rests.iter().any(near) {
-            self.rests.push(place);
+        if let Some((_, outcome)) = self.rests.iter().find(|(other, _)| near(other)) {
+            return *outcome;
         }
-        if (self.is_aligned)(&place) { Outcome::Aligned } else { Outcome::Jammed }
+        let outcome = if (self.is_aligned)(&place) { Outcome::Aligned } else { Outcome::Jammed };
+        self.rests.push((place, outcome));
+        outcome
     }
 
     /// The parts of a cell above those of its gates that are known.
