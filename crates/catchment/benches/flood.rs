@@ -80,7 +80,7 @@ fn main() {
             drop(
                 flood::flood(&landscape, &small.alignment, &|_| true, &settings, &Exec::new())
                     .expect("flooded"),
-            )
+            );
         },
         Some(&mut || {
             drop((brute::tree(&shape, &landscape.heights), brute::basins(&shape, &landscape.heights)));

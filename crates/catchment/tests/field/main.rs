@@ -1,7 +1,7 @@
 //! Docks in the field, rebuilt from the dimensions that are public: what is claimed, what geometry says, what the program says.
 //! `docs/field.md` tells of each.
 
-#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+#![allow(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
 mod solids;
 
@@ -40,7 +40,7 @@ fn residual(answer: &Answer) -> Vec<Residual> {
     answer.seating.residual.clone()
 }
 
-/// IndustReal's round peg of 12 mm: a peg of radius 5.99 with a tip of 5.492 in a hole of 6.499 with a mouth of 7.5 mm.
+/// The round peg of 12 mm of `IndustReal`: a peg of radius 5.99 with a tip of 5.492 in a hole of 6.499 with a mouth of 7.5 mm.
 #[test]
 fn the_industreal_peg_docks_within_its_mouth() {
     const D: f64 = 12.0;

@@ -23,7 +23,7 @@ pub(crate) fn rectangle(half: [f64; 2], z: f64) -> Vec<DVec3> {
 
 /// What lies between outlines from one to the next: a peg, a block, a cone.
 pub(crate) fn body(outlines: &[Vec<DVec3>]) -> Pieces {
-    outlines.windows(2).map(|w| w.concat()).collect()
+    outlines.windows(2).map(<[Vec<DVec3>]>::concat).collect()
 }
 
 /// What lies around a hole with these outlines, out to `outer`, side by side.

@@ -1,12 +1,13 @@
 //! What counts as docked, against closed forms: pegs in holes with play and chamfers, rests on the rim, flats.
 
-#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+#![allow(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
 mod peg;
 
 use catchment::acceptance::Domain;
 use catchment::contact::mated::MatedProblem;
 use catchment::contact::play;
+use catchment::design::Finding;
 use catchment::method::descent::{self, Follower};
 use catchment::method::drop;
 use catchment::method::zraa::{self, Zraa};
@@ -37,7 +38,7 @@ fn pegs() -> impl Iterator<Item = Peg> {
 #[test]
 fn exact_motion_and_the_exact_region_have_the_area_of_the_mouth() {
     for peg in pegs() {
-        let range = 0.05 + 1.2 * (peg.hole + peg.chamfer - peg.peg);
+        let range = 0.05 + 1.2 * (peg.hole + peg.chamfer - peg.body);
         let problem = peg.problem(&LATERAL, range, loose).unwrap_or_else(|e| panic!("{peg:?}: {e}"));
         let Zraa::Region { area, .. } =
             zraa::run(problem.pair(), &zraa::Settings::default(), &Exec::new()).unwrap()
@@ -59,7 +60,7 @@ fn exact_motion_and_the_exact_region_have_the_area_of_the_mouth() {
 #[test]
 fn the_corrected_sum_holds_the_area_in_its_interval() {
     for peg in pegs().filter(|peg| peg.area() > 1e-6).step_by(3) {
-        let range = 0.05 + 1.2 * (peg.hole + peg.chamfer - peg.peg);
+        let range = 0.05 + 1.2 * (peg.hole + peg.chamfer - peg.body);
         let problem = peg.problem(&LATERAL, range, loose).unwrap();
         let run = Run { over: Over::Grid("60".parse().unwrap()), ..Run::default() };
         let answer = run.on(&problem, &Exec::new()).unwrap();
@@ -77,7 +78,7 @@ fn a_square_peg_that_may_turn_has_the_volume_of_its_mouth() {
     let problem = peg.problem(&[Dof::X, Dof::Y, Dof::Yaw], range, loose).unwrap();
     // The tip lies over the mouth: along the diagonals, a square of half side (R + c − r (cos ψ + |sin ψ|))/√2 of offsets.
     let area = |yaw: f64| {
-        let side = peg.hole + peg.chamfer - peg.peg * (yaw.cos() + yaw.sin().abs());
+        let side = peg.hole + peg.chamfer - peg.body * (yaw.cos() + yaw.sin().abs());
         2.0 * side.max(0.0).powi(2)
     };
     let steps = 2000;
@@ -147,11 +148,10 @@ fn limits_decide_where_the_seat_leaves_play() {
 /// What keeps a problem from being built, as text.
 fn refused(problem: Result<Problem, ProblemError>) -> String {
     match problem {
-        Err(ProblemError::Findings(found)) => found
-            .list
-            .iter()
-            .map(|f| format!("{} ({})", f.message, f.help.clone().unwrap_or_default()))
-            .collect(),
+        Err(ProblemError::Findings(found)) => {
+            let said = |f: &Finding| format!("{} ({})", f.message, f.help.clone().unwrap_or_default());
+            found.list.iter().map(said).collect::<Vec<_>>().join("\n")
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -183,7 +183,7 @@ fn a_seat_that_leaves_an_error_free_is_refused_with_advice() {
 fn drops_agree_with_motions() {
     let mut same = [0, 0];
     for peg in [Peg::new(4, 0.3, 0.02, 0.08), Peg::new(6, 0.3, 0.04, 0.0)] {
-        let range = 0.03 + 1.1 * (peg.hole + peg.chamfer - peg.peg);
+        let range = 0.03 + 1.1 * (peg.hole + peg.chamfer - peg.body);
         let problem = peg.problem(&LATERAL, range, |_| ()).unwrap();
         let poses = Domain::random(problem.alignment(), 60, 5);
         let (dropped, _) =

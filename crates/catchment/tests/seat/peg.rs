@@ -30,7 +30,7 @@ pub(crate) struct Peg {
     /// Radius of the hole.
     pub(crate) hole: f64,
     /// Radius of the peg.
-    pub(crate) peg: f64,
+    pub(crate) body: f64,
     /// Width and depth of the chamfer of the hole.
     pub(crate) chamfer: f64,
     /// Depth of the hole.
@@ -41,12 +41,12 @@ pub(crate) struct Peg {
 
 impl Peg {
     pub(crate) const fn new(sides: u32, hole: f64, play: f64, chamfer: f64) -> Self {
-        Self { sides, hole, peg: hole - play, chamfer, deep: 0.3, blind: true }
+        Self { sides, hole, body: hole - play, chamfer, deep: 0.3, blind: true }
     }
 
     /// Area of the offsets from which the peg slides into its hole: its tip lies over the mouth.
     pub(crate) fn area(&self) -> f64 {
-        let reach = self.hole + self.chamfer - self.peg;
+        let reach = self.hole + self.chamfer - self.body;
         let n = f64::from(self.sides);
         0.5 * n * (TAU / n).sin() * reach * reach
     }
@@ -78,9 +78,9 @@ impl Peg {
     }
 
     fn moving(&self) -> Vec<Vec<DVec3>> {
-        let &Self { sides, peg, deep, blind, .. } = self;
+        let &Self { sides, body, deep, blind, .. } = self;
         let tip = if blind { deep } else { 0.7 * deep };
-        let mut pieces = vec![[ring(sides, peg, -0.2), ring(sides, peg, tip)].concat()];
+        let mut pieces = vec![[ring(sides, body, -0.2), ring(sides, body, tip)].concat()];
         if !blind {
             pieces.push([ring(4, 1.2, -0.2), ring(4, 1.2, 0.0)].concat());
         }
