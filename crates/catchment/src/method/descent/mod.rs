@@ -6,8 +6,8 @@
 //!
 //! in the metric `|v|² + ρ²|ω|²` (v at the COR), several simultaneous contacts as a matter of course, until
 //! docked ([`crate::contact::Seat`]), at rest elsewhere, or off. No grid is involved, and no sampling of surfaces. Where walls of
-//! the halves face each other closely (a peg in its hole) motion goes from one change of contacts to the next ([`sliding`]),
-//! elsewhere by plain steps ([`motion`]).
+//! the halves face each other closely (a peg in its hole) motion goes from one change of contacts to the next (`sliding`),
+//! elsewhere by plain steps (`motion`).
 //!
 //! Not promised: friction, speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
 //! the motion could go either way, may be reported as jammed there.
