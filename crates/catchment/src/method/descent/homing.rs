@@ -32,15 +32,15 @@ pub(super) fn is_near(pair: &Pair, rotation: &DMat3, cor: DVec3) -> bool {
     face.truncate().length() <= NEAR && pair.alignment.turned_by(rotation) <= NEAR
 }
 
-/// Whether all poses that are tried near the mated one dock.
-pub(super) fn all_dock(pair: &Pair, settings: &Settings) -> bool {
+/// Whether all poses that are tried near the mated one dock. With the default settings, whoever asks: the answer is kept with the pair, and
+/// must not depend on who asked first.
+pub(super) fn all_dock(pair: &Pair) -> bool {
     if pair.is_tight() || Seat::new(pair).is_limited() {
         return false;
     }
     pair.is_homing(|| {
         let stream = Stream::new(SEED);
-        let (free, settings) =
-            (pair.alignment.free, Settings { step: settings.step.min(NEAR), ..settings.clone() });
+        let (free, settings) = (pair.alignment.free, Settings::default());
         let mut motion = Motion::new(pair, &settings);
         (0..POSES).all(|k| {
             let mut error = [0.0; Dof::ALL.len()];
@@ -53,4 +53,24 @@ pub(super) fn all_dock(pair: &Pair, settings: &Settings) -> bool {
             motion.follow(&PoseError::from_array(error), Until::Known, None).0 == Outcome::Aligned
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+    use crate::method::descent::outcome;
+
+    #[test]
+    fn it_does_not_depend_on_who_asks_first() {
+        let alignment = Alignment::default_for(Some(Family::Pyramid));
+        let connector = ConnectorSpec::Family(FamilySpec::new(Family::Pyramid));
+        let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+        let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
+        // A budget in which nothing docks.
+        let spent = Settings { max_steps: 1, ..Settings::default() };
+        let _ = outcome(&pair, &PoseError { x: 0.3, ..PoseError::default() }, &spent);
+        assert!(pair.is_homing(|| false) && all_dock(&pair));
+    }
 }

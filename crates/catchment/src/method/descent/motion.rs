@@ -146,7 +146,7 @@ impl<'a> Motion<'a> {
 
     /// Calls motions before they have come to rest also where all motion near the mated pose leads to it.
     pub(super) fn homing(mut self) -> Self {
-        self.homing = homing::all_dock(self.pair, self.settings);
+        self.homing = homing::all_dock(self.pair);
         self
     }
 
