@@ -1,9 +1,9 @@
 """Spoilt designs, tables, stored results and command lines through the real program, under a limit of its memory.
 
-    python3 tests/storm.py PROGRAM [COUNT] [--seed SEED] [--from NUMBER] [--mib 1024] [--keep FOLDER]
+    python3 tests/storm.py PROGRAM [COUNT] [--seed SEED] [--from NUMBER] [--mib 1024] [--longest 20] [--keep FOLDER]
 
 Every run must end with exit code 0, 1, 2, 130 or 143, say something where it is 2, steer no terminal, call nothing a bug and leave
-nothing unfinished. A run that takes more than LONGEST of the processor is interrupted, must hear that, and is counted. The same seed and number
+nothing unfinished. A run that takes more than --longest seconds of the processor is interrupted, must hear that, and is counted. The same seed and number
 give the same run; what failed is named with both, and kept with --keep. Unix, Python's own library alone.
 """
 
@@ -22,7 +22,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 ALLOWED = {0, 1, 2, 130, 143}
-LONGEST = 20.0  # seconds of the processor
 DEAF = 30.0  # seconds from an interrupt to the end, on a busy machine
 NUMBERS = "0 -0 -1 1 2 3 0.5 1e308 -1e308 1e-320 1e999 nan inf 0.1 255 65536 4294967295 18446744073709551616 1e-9 100 -100".split()
 PIECES = [b"\0", b"\x1b[2J", b"\xff\xfe", b"\xef\xbb\xbf", b"\n", b"\r", b",", b'"', b"[", b"{", b"}", b"=", b" mm", b" deg",
@@ -201,8 +200,8 @@ def words(dice):
 
 
 class Storm:
-    def __init__(self, program, keep):
-        self.program, self.keep = str(Path(program).resolve()), keep
+    def __init__(self, program, longest, keep):
+        self.program, self.most, self.keep = str(Path(program).resolve()), longest, keep
         self.home = Path(tempfile.mkdtemp(prefix="storm-"))
         self.work = self.home / "work"
         self.tables, self.meshes = corpus("poses"), corpus("stl")
@@ -240,7 +239,7 @@ class Storm:
                 ended, status, usage = os.wait4(pid, os.WNOHANG)
                 if ended:
                     break
-                if time.monotonic() > until if asked else self.used(pid) >= LONGEST:
+                if time.monotonic() > until if asked else self.used(pid) >= self.most:
                     asked, until = (signal.SIGKILL if asked else signal.SIGINT), time.monotonic() + DEAF
                     os.kill(pid, asked)
                 signal.sigtimedwait({signal.SIGCHLD}, 1.0)
@@ -320,7 +319,7 @@ class Storm:
         print(f"{runs} runs in {time.monotonic() - began:.0f} s: exit codes {dict(sorted(self.codes.items()))}, {dict(self.commands)}")
         print(f"largest memory {self.largest[0] / 1024:.0f} MiB (run {self.largest[1]})")
         print(f"longest time {self.longest[0]:.1f} s of the processor (run {self.longest[1]})")
-        print(f"{len(self.slow)} interrupted after {LONGEST:.0f} s of the processor, {len(self.faults)} faults", flush=True)
+        print(f"{len(self.slow)} interrupted after {self.most:.0f} s of the processor, {len(self.faults)} faults", flush=True)
 
 
 def main():
@@ -330,13 +329,14 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--from", type=int, default=0, dest="first")
     parser.add_argument("--mib", type=int, default=1024)
+    parser.add_argument("--longest", type=float, default=20.0)
     parser.add_argument("--keep", type=Path)
     options = parser.parse_args()
     resource.setrlimit(resource.RLIMIT_AS, (options.mib << 20, options.mib << 20))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     # Waited for, not handled.
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})
-    storm, began = Storm(options.program, options.keep), time.monotonic()
+    storm, began = Storm(options.program, options.longest, options.keep), time.monotonic()
     try:
         for count in range(options.first, options.first + options.count):
             storm.one(options.seed, count)

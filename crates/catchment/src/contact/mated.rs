@@ -15,8 +15,7 @@
 use super::Pair;
 use super::play::{Play, directions, play, unit};
 use crate::design::Alignment;
-use crate::pose::{CorPose, Dof, PoseError};
-use glam::DVec2;
+use crate::pose::{Dof, PoseError};
 
 /// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
 /// four digits, below any play that matters.
@@ -186,6 +185,7 @@ fn round_half(pair: &Pair) -> Option<&'static str> {
 fn deepest(pair: &Pair, aligned: f64) -> Option<MatedProblem> {
     let free: Vec<Dof> =
         pair.alignment.free.iter().filter(|dof| !pair.alignment.dont_care.contains(*dof)).collect();
+    let mut nearby = pair.about(PROBE);
     let mut worst: Option<(f64, PoseError)> = None;
     for signs in directions(free.len()) {
         let count = signs.iter().filter(|s| **s != 0.0).count();
@@ -194,9 +194,8 @@ fn deepest(pair: &Pair, aligned: f64) -> Option<MatedProblem> {
             error[dof.index()] = sign * PROBE / (count as f64).sqrt() / unit(pair, *dof);
         }
         let error = PoseError::from_array(error);
-        let pose = CorPose { lateral: DVec2::new(error.x, error.y), rotation: error.rotation() };
         // Passing by altogether is the deepest fall there is.
-        let sinks = pair.height(&pose).map_or(f64::INFINITY, |height| aligned - height);
+        let sinks = nearby.height(&error).map_or(f64::INFINITY, |height| aligned - height);
         if sinks > SLOPE * PROBE && worst.is_none_or(|(most, _)| sinks > most) {
             worst = Some((sinks, error));
         }

@@ -126,6 +126,11 @@ impl Pair {
         Nearby::new(self, slack, reach)
     }
 
+    /// The pair for heights at poses some of which are within `reach` of each other, in the ρ-metric.
+    pub fn about(&self, reach: f64) -> Nearby<'_> {
+        Nearby::new(self, reach / self.alignment.rotation_length, reach)
+    }
+
     /// The pair at one rotation: heights for any lateral position.
     pub fn at_rotation(&self, rotation: DMat3) -> Envelope<'_> {
         Envelope::new(self, &rotation)

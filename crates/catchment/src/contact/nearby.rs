@@ -15,6 +15,7 @@ use super::candidates::{Candidates, ROUNDING, Sieve, Window};
 use super::element::Meeting;
 use super::turned::Turned;
 use super::{Contact, Pair};
+use crate::pose::{CorPose, PoseError};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
@@ -86,6 +87,14 @@ impl<'a> Nearby<'a> {
     /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
     pub fn height_below(&self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
         self.turned.height_below(lateral, ceiling)
+    }
+
+    /// The height of first contact at a pose error, in D; `None` where the halves pass each other by. Cheap where the last one was near.
+    pub fn height(&mut self, error: &PoseError) -> Option<f64> {
+        let alignment = &self.turned.pair.alignment;
+        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        self.turn(&pose.rotation, pose.lateral, 0.0, 0.0);
+        self.height_below(pose.lateral, f64::INFINITY).0
     }
 
     /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.

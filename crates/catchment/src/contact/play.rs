@@ -9,9 +9,9 @@
 //! Directions are the combinations of signs of the free errors, one radian counting as ρ. A seat that is free in a direction far
 //! from all of these is not found here; the residual misalignment of docked poses shows it. Lengths in D, angles in radians.
 
-use super::Pair;
 use super::seat::PATH_STEP;
-use crate::pose::{CorPose, Dof, PoseError};
+use super::{Nearby, Pair};
+use crate::pose::{Dof, PoseError};
 use serde::{Deserialize, Serialize};
 
 /// How far one error may be off at rest.
@@ -47,6 +47,7 @@ pub fn play(pair: &Pair) -> Vec<Play> {
     let alignment = &pair.alignment;
     let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
     let mut play: Vec<Play> = free.iter().map(|dof| Play { axis: *dof, minus: 0.0, plus: 0.0 }).collect();
+    let mut nearby = pair.about(4.0 * PATH_STEP);
     for signs in directions(free.len()) {
         let count = signs.iter().filter(|sign| **sign != 0.0).count() as f64;
         let mut way = [0.0; Dof::ALL.len()];
@@ -59,7 +60,7 @@ pub fn play(pair: &Pair) -> Vec<Play> {
             .filter(|(_, sign)| **sign != 0.0)
             .map(|(dof, _)| BEYOND * alignment.docked.most_play(*dof) / way[dof.index()].abs())
             .fold(f64::INFINITY, f64::min);
-        let length = reach(pair, &way, farthest);
+        let length = reach(&mut nearby, pair.mated_height() + LEVEL, &way, farthest);
         for (dof, play) in free.iter().zip(&mut play) {
             let off = length * way[dof.index()];
             (play.minus, play.plus) = (play.minus.max(-off), play.plus.max(off));
@@ -79,25 +80,24 @@ pub(super) fn unit(pair: &Pair, dof: Dof) -> f64 {
     if dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 }
 }
 
-/// How far the seat stays level along a direction, up to `farthest`.
-fn reach(pair: &Pair, way: &[f64; 5], farthest: f64) -> f64 {
-    let is_level = |length: f64| {
+/// How far the seat stays at or below `level` along a direction, up to `farthest`.
+fn reach(nearby: &mut Nearby, level: f64, way: &[f64; 5], farthest: f64) -> f64 {
+    let mut is_level = |length: f64| {
         let error = PoseError::from_array(way.map(|part| length * part));
-        let pose = CorPose::from_error(&error, pair.alignment.center_of_rotation, pair.alignment.free);
-        pair.height(&pose).is_some_and(|height| height <= pair.mated_height() + LEVEL)
+        nearby.height(&error).is_some_and(|height| height <= level)
     };
-    let (mut level, mut look) = (0.0, FIRST);
-    while level < farthest {
+    let (mut held, mut look) = (0.0, FIRST);
+    while held < farthest {
         if !is_level(look) {
             // Between the last that was level and this one.
-            while look - level > FOUND {
-                let middle = 0.5 * (level + look);
-                if is_level(middle) { level = middle } else { look = middle }
+            while look - held > FOUND {
+                let middle = 0.5 * (held + look);
+                if is_level(middle) { held = middle } else { look = middle }
             }
             break;
         }
-        level = look;
+        held = look;
         look = (look + (GROWTH * look).max(FIRST).min(PATH_STEP.max(GROWTH * look))).min(farthest);
     }
-    if level <= FOUND { 0.0 } else { level }
+    if held <= FOUND { 0.0 } else { held }
 }

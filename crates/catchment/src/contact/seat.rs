@@ -16,7 +16,7 @@
 //! its three paths do is not recognised to its end: what rests there counts as jammed. Lengths in D, angles in radians.
 
 use super::{Nearby, Pair};
-use crate::pose::{CorPose, Dof, PoseError};
+use crate::pose::{Dof, PoseError};
 
 /// Poses this near the mated one, in the ρ-metric, are connected with it: finer structure than that is not told apart.
 pub(super) const CORE: f64 = 5e-3;
@@ -37,8 +37,7 @@ pub struct Seat<'a> {
 impl<'a> Seat<'a> {
     /// The seat of a pair.
     pub fn new(pair: &'a Pair) -> Self {
-        let reach = 4.0 * PATH_STEP;
-        Self { pair, nearby: pair.nearby(reach / pair.alignment.rotation_length, reach) }
+        Self { pair, nearby: pair.about(4.0 * PATH_STEP) }
     }
 
     /// The greatest height of the COR at which a half is seated, in D.
@@ -101,17 +100,9 @@ impl<'a> Seat<'a> {
             (0..looks as usize).all(|k| {
                 let share = k as f64 / looks;
                 let at = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
-                self.height(&PoseError::from_array(at)) <= self.level() + ROUNDING
+                self.nearby.height(&PoseError::from_array(at)).is_none_or(|h| h <= self.level() + ROUNDING)
             })
         })
-    }
-
-    /// Height of first contact; −∞ where there is none.
-    fn height(&mut self, error: &PoseError) -> f64 {
-        let alignment = &self.pair.alignment;
-        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
-        self.nearby.turn(&pose.rotation, pose.lateral, 0.0, 0.0);
-        self.nearby.height_below(pose.lateral, f64::INFINITY).0.unwrap_or(f64::NEG_INFINITY)
     }
 }
 

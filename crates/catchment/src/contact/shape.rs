@@ -150,6 +150,7 @@ impl Shape {
 
     /// Whether a point lies strictly inside a convex shape, by more than `margin`.
     pub(super) fn contains(&self, point: DVec3, margin: f64) -> bool {
-        self.convex && self.facets.iter().all(|f| f.normal.dot(point - self.at(f.corners[0])) < -margin)
+        self.convex
+            && self.facets.iter().zip(&self.levels).all(|(f, level)| f.normal.dot(point) - level < -margin)
     }
 }

@@ -122,11 +122,12 @@ fn is_covered(shapes: &[Shape], own: u32, point: DVec3, normal: DVec3) -> bool {
         return false;
     }
     let others = || shapes.iter().enumerate().filter(|(s, _)| *s as u32 != own).map(|(_, shape)| shape);
-    if others().any(|shape| shape.contains(point + normal * LOOK, WITHIN)) {
-        return true;
-    }
+    // As a rule nothing else is near, and one look tells.
     if !others().any(|shape| shape.contains(point, -AROUND)) {
         return false;
+    }
+    if others().any(|shape| shape.contains(point + normal * LOOK, WITHIN)) {
+        return true;
     }
     let (side, across) = normal.any_orthonormal_pair();
     let mut any = false;

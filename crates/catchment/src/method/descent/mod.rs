@@ -17,6 +17,7 @@ pub(super) mod door;
 mod homing;
 mod motion;
 mod projection;
+mod rows;
 mod sliding;
 #[cfg(test)]
 mod tests;

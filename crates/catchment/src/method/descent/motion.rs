@@ -1,17 +1,18 @@
 //! One motion, step by step.
 //!
-//! Per step: everything that touches or may be met is found exactly at the current position; the closest allowed
+//! Per step: everything that touches or may be met is found exactly at the current position ([`super::rows`]); the closest allowed
 //! displacement to the push of the force is taken ([`super::projection`]); the height is then set to that of
 //! first contact, so that errors of the linearisation never build up. A step that the height contradicts
 //! is halved. Pairs with tight fits go by [`super::sliding`] instead.
 
 use super::homing;
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
+use super::rows::{OVERLAP, horizon};
 use super::sliding::Sliding;
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair, Seat};
-use crate::pose::{CorPose, Dof, PoseError, ROTATIONS, euler_axes, rotation};
+use crate::pose::{CorPose, PoseError, rotation};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// Position of the moving half.
@@ -69,15 +70,6 @@ const GENTLE: f64 = 0.01;
 const MAX_CUTS: usize = 6;
 /// A fall of this many allowed surprises is a fall off an edge.
 const FALL: f64 = 1.0;
-/// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
-const WALL: f64 = 0.05;
-/// Clearance from walls, in D: above the curvature error of the smallest steps, below any fit that is designed.
-const WALL_MARGIN: f64 = 1e-6;
-/// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
-const OVERLAP: f64 = 1e-9;
-
-/// Features that fail to support by more than this angle are not looked for, however long the step: radians.
-const WIDEST: f64 = 0.2;
 
 /// A motion that turns by less than `STRAIGHT` (sine) from the start of a step to its middle is followed by longer
 /// steps, up to `LONG` times; one that turns by more than `BENT` is not.
@@ -90,8 +82,6 @@ const ROUNDING: f64 = 1e-12;
 /// A mean slope below this over a whole step's length, or over so many steps, is rest.
 const LEVEL: f64 = 1e-6;
 const LEVEL_STEPS: usize = 128;
-/// Rows that differ by less are one contact.
-const SAME: f64 = 1e-12;
 
 /// A mover of poses for one pair: owns the buffers.
 pub(super) struct Motion<'a> {
@@ -102,17 +92,18 @@ pub(super) struct Motion<'a> {
     homing: bool,
     pub(super) nearby: Nearby<'a>,
     pub(super) contacts: Vec<(Contact, Meeting)>,
-    /// Scratch for [`Motion::cut`].
-    carrying: Vec<(Contact, Meeting)>,
-    rows: Vec<Vector>,
-    gaps: Vec<f64>,
+    /// Scratch for [`Motion::cut`] and [`Motion::meet`].
+    pub(super) carrying: Vec<(Contact, Meeting)>,
+    /// What holds for the displacement of this step: [`super::rows`].
+    pub(super) rows: Vec<Vector>,
+    pub(super) gaps: Vec<f64>,
     pub(super) projection: Projection,
     /// Buffers of [`super::sliding`], for pairs with tight fits.
     pub(super) sliding: Sliding,
     /// Largest distance of a moving corner from the COR.
-    radius: f64,
+    pub(super) radius: f64,
     /// All three rotations free: they live on SO(3), not in Euler angles.
-    spherical: bool,
+    pub(super) spherical: bool,
 }
 
 impl Pace {
@@ -304,139 +295,6 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Replaces the rows of the contacts at the start of a step by those halfway along `u`, seen from the start: the
-    /// midpoint rule, second order where contacts bend.
-    fn look_ahead(&mut self, state: &State, u: &Vector) {
-        let half = u.map(|x| 0.5 * x);
-        let middle = self.moved(state, &half);
-        let axes = self.axes(&middle);
-        self.rows.clear();
-        self.gaps.clear();
-        let contacts = std::mem::take(&mut self.contacts);
-        for (before, meeting) in &contacts {
-            let contact = self.pair.contact(before, meeting, &middle.rotation, middle.cor);
-            let row = self.row(&contact, &middle, &axes);
-            let gap = contact.gap - dot(&row, &half);
-            let clear = margin(&contact);
-            self.learn(row, if clear > 0.0 { gap - clear } else { gap.max(0.0) });
-        }
-        self.contacts = contacts;
-    }
-
-    pub(super) fn horizon(&self, step: f64) -> (f64, f64) {
-        horizon(step, self.radius, self.pair.alignment.rotation_length)
-    }
-
-    /// Prepares for questions at `lateral`, for a step of length `step`.
-    pub(super) fn turn(&mut self, rotation: &DMat3, lateral: DVec2, step: f64) {
-        let (slack, near) = self.horizon(step);
-        self.nearby.turn(rotation, lateral, slack, near);
-    }
-
-    /// Finds all contacts that a step may close, as rows of the projection.
-    pub(super) fn gather(&mut self, state: &State, step: f64) {
-        let (_, near) = self.horizon(step);
-        self.nearby.contacts(state.cor, near, &mut self.contacts);
-        self.contacts.retain(|(c, _)| c.gap > -OVERLAP);
-        self.rows.clear();
-        self.gaps.clear();
-        let axes = self.axes(state);
-        let contacts = std::mem::take(&mut self.contacts);
-        for (contact, _) in &contacts {
-            let row = self.row(contact, state, &axes);
-            let clear = margin(contact);
-            let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
-            // Corners, edges and facets that meet at one point say the same thing several times.
-            self.learn(row, gap);
-        }
-        self.contacts = contacts;
-    }
-
-    /// Adds a row unless it is known; says whether it was new.
-    fn learn(&mut self, row: Vector, gap: f64) -> bool {
-        let known =
-            self.rows.iter().zip(&self.gaps).any(|(r, g)| {
-                (g - gap).abs() < SAME && r.iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
-            });
-        if !known {
-            self.rows.push(row);
-            self.gaps.push(gap);
-        }
-        !known
-    }
-
-    /// What a displacement does to the gap of a contact.
-    pub(super) fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
-        let free = self.pair.alignment.free;
-        let n = contact.normal;
-        let arm = contact.point + n * contact.gap - state.cor;
-        let turn = arm.cross(n) / self.pair.alignment.rotation_length;
-        let mut row = [0.0; MAX_COORDINATES];
-        row[0] = if free.contains(Dof::X) { n.x } else { 0.0 };
-        row[1] = if free.contains(Dof::Y) { n.y } else { 0.0 };
-        row[2] = n.z;
-        for (k, axis) in axes.iter().enumerate() {
-            row[3 + k] = turn.dot(*axis);
-        }
-        row
-    }
-
-    /// Adds what carries the body at `landed`, `rise` above where the displacement `u` had put it, to the contacts
-    /// of this step. Only what lies below the present position can be added: a valley's other side, not a step up.
-    fn cut(&mut self, landed: &State, rise: f64, u: &Vector) -> bool {
-        let mut carrying = std::mem::take(&mut self.carrying);
-        self.nearby.contacts(landed.cor, OVERLAP, &mut carrying);
-        let axes = self.axes(landed);
-        let mut added = false;
-        for (contact, _) in &carrying {
-            let row = self.row(contact, landed, &axes);
-            let there = -contact.normal.z * rise;
-            let here = there - dot(&row, u);
-            // A contact this step already respects tells nothing new.
-            if there < -OVERLAP && here > 0.25 * there {
-                added |= self.learn(row, here.max(0.0));
-            }
-        }
-        self.carrying = carrying;
-        added
-    }
-
-    /// Adds what the body has run into at `landed` by the displacement `u`.
-    fn meet(&mut self, landed: &State, step: f64, u: &Vector) -> bool {
-        let (_, near) = self.horizon(step);
-        let mut met = std::mem::take(&mut self.carrying);
-        self.nearby.contacts(landed.cor, near, &mut met);
-        let axes = self.axes(landed);
-        let mut added = false;
-        for (contact, _) in met.iter().filter(|(c, _)| c.gap < -OVERLAP) {
-            let row = self.row(contact, landed, &axes);
-            let there = contact.gap - margin(contact);
-            let here = there - dot(&row, u);
-            // A contact that was as deep before is another way through the same wall.
-            if here > 0.25 * there {
-                added |= self.learn(row, here);
-            }
-        }
-        self.carrying = met;
-        added
-    }
-
-    /// Axes of the free rotations in the world frame, unit; zero for locked ones.
-    pub(super) fn axes(&self, state: &State) -> [DVec3; 3] {
-        if self.spherical {
-            return [DVec3::X, DVec3::Y, DVec3::Z];
-        }
-        let [_, pitch, yaw] = state.angles;
-        let free = self.pair.alignment.free;
-        let mut axes = euler_axes(pitch, yaw);
-        for (axis, dof) in axes.iter_mut().zip(ROTATIONS) {
-            if !free.contains(dof) {
-                *axis = DVec3::ZERO;
-            }
-        }
-        axes
-    }
-
     /// The displacement of one step and its length in the ρ-metric, at most `step`.
     ///
     /// The reach of the pace is adapted: raised on gentle slopes.
@@ -522,17 +380,6 @@ impl<'a> Motion<'a> {
             .collect();
         Waypoint { error: self.error_of(state), height: state.cor.z, travelled, touches }
     }
-}
-
-/// What a step may meet: features that support a normal within the angle by which it turns at most, and gaps by as much
-/// as a point of the body moves. What it meets beyond them is cut off or halved.
-fn horizon(step: f64, radius: f64, rotation_length: f64) -> (f64, f64) {
-    ((step / rotation_length).min(WIDEST), step * (1.0 + radius / rotation_length))
-}
-
-/// Clearance to keep from a contact: from walls only.
-fn margin(contact: &Contact) -> f64 {
-    if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 }
 }
 
 /// Sine of the angle between the lateral parts of two displacements, or 1 where it is obtuse or one of them is none.

@@ -113,27 +113,36 @@ impl Motion<'_> {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
         let mut bracket: Option<Bracket> = None;
+        // Overlaps that no contact announces are looked for where the step would end, and once one was found, at every trial.
+        let mut wary = false;
         for _ in 0..MOST_TRIALS {
-            match self.attempt(state, start, at) {
-                Trial::Clear(next) => {
-                    let value = bracket.as_ref().map(|b| (b.event.kind, self.value(&b.event, &next)));
-                    let landed = match value {
-                        Some((kind, value)) => kind == Kind::Met && value.abs() <= LANDING,
-                        None => at >= high,
-                    };
-                    if landed {
+            let trial = self.attempt(state, start, at, wary);
+            let ends = match &trial {
+                Trial::Clear(next) => match &bracket {
+                    Some(b) => b.event.kind == Kind::Met && self.value(&b.event, next).abs() <= LANDING,
+                    None => at >= high,
+                },
+                Trial::Passed(next, event) => {
+                    event.kind == Kind::Lost && self.value(event, next) >= -0.5 * FAR_SIDE
+                }
+                Trial::Failed => false,
+            };
+            match trial {
+                Trial::Clear(next) | Trial::Passed(next, _) if ends => {
+                    if wary || !self.overlaps(&next) {
                         return Reached::At(next, at);
                     }
+                    (low, clear, high, bracket, wary) = (0.0, *state, at, None, true);
+                }
+                Trial::Clear(next) => {
                     (low, clear) = (at, next);
-                    if let (Some(bracket), Some((_, value))) = (&mut bracket, value) {
+                    if let Some(bracket) = &mut bracket {
+                        let value = self.value(&bracket.event, &next);
                         bracket.clear_at(value);
                     }
                 }
                 Trial::Passed(next, event) => {
                     let value = self.value(&event, &next);
-                    if event.kind == Kind::Lost && value >= -0.5 * FAR_SIDE {
-                        return Reached::At(next, at);
-                    }
                     high = at;
                     match &mut bracket {
                         Some(b) if b.event.meeting == event.meeting && b.event.kind == event.kind => {
@@ -155,7 +164,7 @@ impl Motion<'_> {
             }
             at = low + bracket.as_ref().map_or(0.5, Bracket::share) * (high - low);
         }
-        if low > NOWHERE {
+        if low > NOWHERE && (wary || !self.overlaps(&clear)) {
             return Reached::At(clear, low);
         }
         Reached::Blocked(bracket.filter(|b| b.event.kind == Kind::Met).and_then(
@@ -181,8 +190,8 @@ impl Motion<'_> {
         (hold.foot + BORDER).min(hold.support + SUPPORT)
     }
 
-    /// A step of length `at`, and what comes of it.
-    fn attempt(&mut self, state: &State, start: &Vector, at: f64) -> Trial {
+    /// A step of length `at`, and what comes of it; overlaps that no contact announces are seen only if `wary`.
+    fn attempt(&mut self, state: &State, start: &Vector, at: f64, wary: bool) -> Trial {
         let middle = self.moved(state, &start.map(|x| 0.5 * at * x));
         let u = self.direction(&middle).unwrap_or(*start);
         let next = self.moved(state, &u.map(|x| at * x));
@@ -192,13 +201,13 @@ impl Motion<'_> {
             .corrected(&next, &carrying, trusted)
             // Contacts that hold a body fast cannot all be kept; that none overlaps is enough.
             .or_else(|| self.corrected(&next, &[], trusted))
-            .map_or(Trial::Failed, |next| self.judge(state, next, at, &carrying));
+            .map_or(Trial::Failed, |next| self.judge(state, next, at, &carrying, wary));
         self.sliding.carrying = carrying;
         trial
     }
 
     /// What comes of a step of length `at` from `state` that ends at `next`.
-    fn judge(&mut self, state: &State, next: State, at: f64, carrying: &[usize]) -> Trial {
+    fn judge(&mut self, state: &State, next: State, at: f64, carrying: &[usize], wary: bool) -> Trial {
         if let Some(event) = self.first_met(state, &next, at) {
             return Trial::Passed(next, event);
         }
@@ -210,7 +219,7 @@ impl Motion<'_> {
         });
         match holds.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(hold, _)| *hold < 0.0) {
             Some((hold, event)) if hold < -FAR_SIDE => Trial::Passed(next, event),
-            _ if self.overlaps(&next) => Trial::Failed,
+            _ if wary && self.overlaps(&next) => Trial::Failed,
             Some((_, event)) => Trial::Passed(next, event),
             None => Trial::Clear(next),
         }

@@ -1,0 +1,173 @@
+//! What a step may meet, as rows of the projection.
+//!
+//! ```text
+//!   a·u ≥ −g      a   what a displacement u does to the gap: (n, (p − c) × n / ρ)
+//!                 g   the gap, less the clearance that is kept from walls
+//! ```
+//!
+//! with n the normal of a contact, p its point on the moving half and c the COR. Rows are those of the contacts seen now ([`Motion::gather`]),
+//! of the same contacts halfway along a step ([`Motion::look_ahead`]), and of what was met without being announced
+//! ([`Motion::cut`], [`Motion::meet`]).
+
+use super::motion::{Motion, State};
+use super::projection::{MAX_COORDINATES, Vector, dot};
+use crate::contact::Contact;
+use crate::pose::{Dof, ROTATIONS, euler_axes};
+use glam::{DMat3, DVec2, DVec3};
+
+/// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
+const WALL: f64 = 0.05;
+/// Clearance from walls, in D: above the curvature error of the smallest steps, below any fit that is designed.
+const WALL_MARGIN: f64 = 1e-6;
+/// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
+pub(super) const OVERLAP: f64 = 1e-9;
+/// Features that fail to support by more than this angle are not looked for, however long the step: radians.
+const WIDEST: f64 = 0.2;
+/// Rows that differ by less are one contact.
+const SAME: f64 = 1e-12;
+
+impl Motion<'_> {
+    /// Finds all contacts that a step may close, as rows of the projection.
+    pub(super) fn gather(&mut self, state: &State, step: f64) {
+        let (_, near) = self.horizon(step);
+        self.nearby.contacts(state.cor, near, &mut self.contacts);
+        self.contacts.retain(|(c, _)| c.gap > -OVERLAP);
+        self.rows.clear();
+        self.gaps.clear();
+        let axes = self.axes(state);
+        let contacts = std::mem::take(&mut self.contacts);
+        for (contact, _) in &contacts {
+            let row = self.row(contact, state, &axes);
+            let clear = margin(contact);
+            let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
+            // Corners, edges and facets that meet at one point say the same thing several times.
+            self.learn(row, gap);
+        }
+        self.contacts = contacts;
+    }
+
+    /// Adds a row unless it is known; says whether it was new.
+    fn learn(&mut self, row: Vector, gap: f64) -> bool {
+        let known =
+            self.rows.iter().zip(&self.gaps).any(|(r, g)| {
+                (g - gap).abs() < SAME && r.iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
+            });
+        if !known {
+            self.rows.push(row);
+            self.gaps.push(gap);
+        }
+        !known
+    }
+
+    /// What a displacement does to the gap of a contact.
+    pub(super) fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
+        let free = self.pair.alignment.free;
+        let n = contact.normal;
+        let arm = contact.point + n * contact.gap - state.cor;
+        let turn = arm.cross(n) / self.pair.alignment.rotation_length;
+        let mut row = [0.0; MAX_COORDINATES];
+        row[0] = if free.contains(Dof::X) { n.x } else { 0.0 };
+        row[1] = if free.contains(Dof::Y) { n.y } else { 0.0 };
+        row[2] = n.z;
+        for (k, axis) in axes.iter().enumerate() {
+            row[3 + k] = turn.dot(*axis);
+        }
+        row
+    }
+
+    /// Adds what carries the body at `landed`, `rise` above where the displacement `u` had put it, to the contacts
+    /// of this step. Only what lies below the present position can be added: a valley's other side, not a step up.
+    pub(super) fn cut(&mut self, landed: &State, rise: f64, u: &Vector) -> bool {
+        let mut carrying = std::mem::take(&mut self.carrying);
+        self.nearby.contacts(landed.cor, OVERLAP, &mut carrying);
+        let axes = self.axes(landed);
+        let mut added = false;
+        for (contact, _) in &carrying {
+            let row = self.row(contact, landed, &axes);
+            let there = -contact.normal.z * rise;
+            let here = there - dot(&row, u);
+            // A contact this step already respects tells nothing new.
+            if there < -OVERLAP && here > 0.25 * there {
+                added |= self.learn(row, here.max(0.0));
+            }
+        }
+        self.carrying = carrying;
+        added
+    }
+
+    /// Adds what the body has run into at `landed` by the displacement `u`.
+    pub(super) fn meet(&mut self, landed: &State, step: f64, u: &Vector) -> bool {
+        let (_, near) = self.horizon(step);
+        let mut met = std::mem::take(&mut self.carrying);
+        self.nearby.contacts(landed.cor, near, &mut met);
+        let axes = self.axes(landed);
+        let mut added = false;
+        for (contact, _) in met.iter().filter(|(c, _)| c.gap < -OVERLAP) {
+            let row = self.row(contact, landed, &axes);
+            let there = contact.gap - margin(contact);
+            let here = there - dot(&row, u);
+            // A contact that was as deep before is another way through the same wall.
+            if here > 0.25 * there {
+                added |= self.learn(row, here);
+            }
+        }
+        self.carrying = met;
+        added
+    }
+
+    /// Axes of the free rotations in the world frame, unit; zero for locked ones.
+    pub(super) fn axes(&self, state: &State) -> [DVec3; 3] {
+        if self.spherical {
+            return [DVec3::X, DVec3::Y, DVec3::Z];
+        }
+        let [_, pitch, yaw] = state.angles;
+        let free = self.pair.alignment.free;
+        let mut axes = euler_axes(pitch, yaw);
+        for (axis, dof) in axes.iter_mut().zip(ROTATIONS) {
+            if !free.contains(dof) {
+                *axis = DVec3::ZERO;
+            }
+        }
+        axes
+    }
+
+    /// Replaces the rows of the contacts at the start of a step by those halfway along `u`, seen from the start: the
+    /// midpoint rule, second order where contacts bend.
+    pub(super) fn look_ahead(&mut self, state: &State, u: &Vector) {
+        let half = u.map(|x| 0.5 * x);
+        let middle = self.moved(state, &half);
+        let axes = self.axes(&middle);
+        self.rows.clear();
+        self.gaps.clear();
+        let contacts = std::mem::take(&mut self.contacts);
+        for (before, meeting) in &contacts {
+            let contact = self.pair.contact(before, meeting, &middle.rotation, middle.cor);
+            let row = self.row(&contact, &middle, &axes);
+            let gap = contact.gap - dot(&row, &half);
+            let clear = margin(&contact);
+            self.learn(row, if clear > 0.0 { gap - clear } else { gap.max(0.0) });
+        }
+        self.contacts = contacts;
+    }
+
+    /// Prepares for questions at `lateral`, for a step of length `step`.
+    pub(super) fn turn(&mut self, rotation: &DMat3, lateral: DVec2, step: f64) {
+        let (slack, near) = self.horizon(step);
+        self.nearby.turn(rotation, lateral, slack, near);
+    }
+
+    pub(super) fn horizon(&self, step: f64) -> (f64, f64) {
+        horizon(step, self.radius, self.pair.alignment.rotation_length)
+    }
+}
+
+/// What a step may meet: features that support a normal within the angle by which it turns at most, and gaps by as much
+/// as a point of the body moves. What it meets beyond them is cut off or halved.
+pub(super) fn horizon(step: f64, radius: f64, rotation_length: f64) -> (f64, f64) {
+    ((step / rotation_length).min(WIDEST), step * (1.0 + radius / rotation_length))
+}
+
+/// Clearance to keep from a contact: from walls only.
+fn margin(contact: &Contact) -> f64 {
+    if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 }
+}
