@@ -13,11 +13,9 @@
 
 use super::super::motion::{Motion, State};
 use super::super::projection::Vector;
-use super::{BORDER, LANDING, SUPPORT};
+use super::{BORDER, FAR_SIDE, LANDING, SUPPORT};
 use crate::contact::{Contact, Meeting};
 
-/// How far beyond the border a lost contact is left at most, in D or as a sine: below what a landing tells apart.
-const FAR_SIDE: f64 = 1e-9;
 /// Most trials of a step: bisection alone takes some 35 to [`NOWHERE`].
 const MOST_TRIALS: usize = 60;
 /// A step shorter than this leads nowhere, in D.
@@ -185,7 +183,7 @@ impl Motion<'_> {
     }
 
     /// How far a contact is from being lost, in D or as a sine, whichever is less.
-    fn hold(&self, contact: &Contact, meeting: &Meeting, state: &State) -> f64 {
+    pub(super) fn hold(&self, contact: &Contact, meeting: &Meeting, state: &State) -> f64 {
         let hold = self.pair.hold(contact, meeting, &state.rotation, state.cor);
         (hold.foot + BORDER).min(hold.support + SUPPORT)
     }

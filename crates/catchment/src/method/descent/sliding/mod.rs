@@ -50,6 +50,8 @@ const STILL: f64 = 1e-7;
 const BEND: f64 = 0.05;
 /// Steps are not halved below this share for the sake of the direction: edges that are nearly parallel turn at any scale.
 const LEAST_SHARE: f64 = 1e-6;
+/// How far beyond the border a lost contact is left at most, in D or as a sine: below what a landing tells apart.
+const FAR_SIDE: f64 = 1e-9;
 /// What was met at the very start of a step is one more contact, at most so often: the corners of two faces.
 const MOST_BLOCKERS: usize = 8;
 /// The contacts that will carry are brought to touch within this before a step, in D: landings on contacts close
@@ -99,18 +101,21 @@ impl Motion<'_> {
 
     /// One step from `state`, whose active contacts have been felt, to its first event.
     pub(super) fn slide(&mut self, state: &State, pace: &mut Pace) -> Advance {
-        if self.contacts.is_empty() {
-            return self.drop_down(state);
-        }
         let mut state = *state;
         for _ in 0..=MOST_BLOCKERS {
             if self.sliding.crawls > MOST_CRAWLS {
                 break;
             }
+            if self.contacts.is_empty() {
+                return self.drop_down(&state);
+            }
             let Some(start) = self.direction(&state) else { return Advance::Ended(Outcome::Jammed, state) };
             let carrying = std::mem::take(&mut self.sliding.carrying);
             state = self.corrected(&state, &carrying, SETTLED).unwrap_or(state);
             self.sliding.carrying = carrying;
+            if self.lets_go(&state) {
+                continue;
+            }
             let step = self.straight(&state, &start, pace.step.min(self.settings.step));
             match self.until_event(&state, &start, step) {
                 Reached::At(next, length) => {
@@ -128,6 +133,22 @@ impl Motion<'_> {
         self.turn(&state.rotation, state.cor.truncate(), plain.step);
         self.gather(&state, plain.step);
         self.advance(&state, &mut plain)
+    }
+
+    /// Forgets the contacts that are no longer on their features at `state`, to which a correction has brought the body; says whether
+    /// one of them carried it.
+    fn lets_go(&mut self, state: &State) -> bool {
+        let mut contacts = std::mem::take(&mut self.contacts);
+        let lost = |(contact, meeting): &(Contact, Meeting)| {
+            let contact = self.pair.contact(contact, meeting, &state.rotation, state.cor);
+            self.hold(&contact, meeting, state) < -FAR_SIDE
+        };
+        let carried = self.sliding.carrying.iter().any(|&k| lost(&contacts[k]));
+        if carried {
+            contacts.retain(|contact| !lost(contact));
+        }
+        self.contacts = contacts;
+        carried
     }
 
     /// Turns to `state`, unless that is where the last look was.
