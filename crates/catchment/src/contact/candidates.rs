@@ -25,6 +25,9 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Sine of the angle by which a feature may fail to support a normal and still count, at least: rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
+/// The same for heights: above the angle by which facets that count as one plane may differ (1e-6), so that of two halves that lie flush some
+/// feature always counts. What counts too much is above the other half all the same, and no height rises by it.
+pub(crate) const FLUSH: f64 = 4e-6;
 
 /// Below this length of u × w edges count as parallel: they have no normal of their own, their ends speak for them.
 const PARALLEL: f64 = 1e-9;
@@ -262,23 +265,19 @@ impl EdgesAt<'_> {
     /// The unit common normal of the edges in the sense that both support, if either does.
     fn normal(&self, fixed: &Ridge, seen: DVec3, slack: f64) -> Option<DVec3> {
         let (below, above) = self.products(fixed, seen);
-        let up = below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack);
-        let down = below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack);
-        if !(up || down) {
+        // How far the worse of the facets is from supporting, for either sense.
+        let lacks = |sign: f64| {
+            let below = below.iter().map(|b| sign * b).fold(f64::NEG_INFINITY, f64::max);
+            above.iter().map(|a| -sign * a).fold(below, f64::max)
+        };
+        // Edges that are nearly parallel may support both senses within the slack: the better one counts.
+        let (up, down) = (lacks(1.0), lacks(-1.0));
+        let (sign, lacking) = if up <= down { (1.0, up) } else { (-1.0, down) };
+        if lacking > slack {
             return None;
         }
         let across = fixed.along.cross(self.w);
         let length = across.length();
-        if length <= PARALLEL {
-            return None;
-        }
-        let slack = slack * length;
-        if up && below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack) {
-            Some(across / length)
-        } else if down && below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack) {
-            Some(across / -length)
-        } else {
-            None
-        }
+        (length > PARALLEL && lacking <= slack * length).then(|| across / (sign * length))
     }
 }

@@ -1,7 +1,7 @@
 //! The upper envelope of all elements at one rotation: heights wherever the moving half is.
 
 use super::brute::SEAM;
-use super::candidates::{Candidates, ROUNDING, Sieve};
+use super::candidates::{Candidates, FLUSH, Sieve};
 use super::turned::{Turned, VERTICAL};
 use super::{Contact, Lattice, Pair};
 use glam::{DMat3, DVec2, DVec3};
@@ -29,9 +29,9 @@ impl<'a> Envelope<'a> {
 
     /// Moves on to another rotation.
     pub fn turn(&mut self, rotation: &DMat3) {
-        let sieve = Sieve { slack: ROUNDING, lowest: VERTICAL, skin: 0.0, window: None };
+        let sieve = Sieve { slack: FLUSH, lowest: VERTICAL, skin: 0.0, window: None };
         self.candidates.collect(self.turned.pair, rotation, &sieve);
-        self.turned.turn(rotation, &self.candidates, ROUNDING, VERTICAL);
+        self.turned.turn(rotation, &self.candidates, FLUSH, VERTICAL);
         let shapes = &self.turned.pair.moving_shapes;
         self.moving.resize_with(shapes.len(), Vec::new);
         for (turned, shape) in self.moving.iter_mut().zip(shapes) {

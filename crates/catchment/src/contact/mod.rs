@@ -30,6 +30,7 @@ mod tests;
 mod turned;
 mod walls;
 
+pub(crate) use candidates::FLUSH;
 pub use element::Meeting;
 pub use envelope::Envelope;
 pub use mirror::Mirror;

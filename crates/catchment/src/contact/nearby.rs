@@ -11,7 +11,7 @@
 //! The answers are those of a list collected at every pose, bit for bit: see [`super::candidates`].
 
 use super::brute::SEAM;
-use super::candidates::{Candidates, ROUNDING, Sieve, Window};
+use super::candidates::{Candidates, FLUSH, ROUNDING, Sieve, Window};
 use super::element::Meeting;
 use super::turned::Turned;
 use super::{Contact, Pair};
@@ -93,7 +93,7 @@ impl<'a> Nearby<'a> {
     pub fn height(&mut self, error: &PoseError) -> Option<f64> {
         let alignment = &self.turned.pair.alignment;
         let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
-        self.turn(&pose.rotation, pose.lateral, 0.0, 0.0);
+        self.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
         self.height_below(pose.lateral, f64::INFINITY).0
     }
 

@@ -2,8 +2,9 @@
 
 use super::{Lattice, Pair, brute};
 use crate::connector::Connector;
-use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
-use crate::pose::{CorPose, DofSet, rotation};
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
+use crate::method::descent;
+use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError, rotation};
 use glam::{DMat3, DVec2, DVec3};
 use proptest::prelude::*;
 
@@ -50,6 +51,38 @@ fn same(fast: Option<f64>, slow: Option<f64>) -> bool {
     }
 }
 
+/// A peg whose chamfer is that of its hole, as convex pieces whose corners are rounded to so many digits.
+fn flush(sides: u32, digits: i32) -> Pair {
+    let rounded = |x: f64| (x * 10f64.powi(digits)).round() / 10f64.powi(digits);
+    let ring = |radius: f64, z: f64| -> Vec<DVec3> {
+        let corner = |k| {
+            let (sine, cosine) = (std::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
+            DVec3::new(radius * cosine, radius * sine, z).map(rounded)
+        };
+        (0..sides).map(corner).collect()
+    };
+    let hole = [ring(0.30714, -0.31), ring(0.30714, -0.1), ring(0.40714, 0.0)];
+    let outer = ring(0.8, 0.0);
+    let mut fixed = vec![[ring(0.8, -0.4), ring(0.8, -0.31)].concat()];
+    for level in hole.windows(2) {
+        for k in 0..sides as usize {
+            let next = (k + 1) % sides as usize;
+            let corners =
+                |inner: &Vec<DVec3>| [k, next].map(|k| [inner[k], outer[k].with_z(inner[k].z)]).concat();
+            fixed.push(level.iter().flat_map(corners).collect());
+        }
+    }
+    let moving = vec![[ring(0.27143, -0.1), ring(0.27143, 0.26), ring(0.22143, 0.31)].concat()];
+    let alignment = Alignment::new([Dof::X, Dof::Y].into_iter().collect(), Mount::X);
+    let spec = |pieces: Vec<Vec<DVec3>>| {
+        HalfSpec::Pieces(pieces.iter().map(|p| p.iter().map(DVec3::to_array).collect()).collect())
+    };
+    let own = OwnSpec { face_height: 0.0, fixed: spec(fixed), moving: spec(moving) };
+    let connector = ConnectorSpec::Own(own);
+    let design = Design { name: "flush".into(), connector, width: 1.0, unit: None, alignment };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
@@ -60,6 +93,26 @@ proptest! {
         let pair = pair(family, ratio, cor);
         let (fast, slow) = (pair.height(&pose), brute::height(&pair, &pose));
         prop_assert!(same(fast, slow), "{family:?}: {fast:?} against {slow:?}");
+    }
+
+    /// Facets that are parallel but for rounding, where features that count as one plane do not support to the last digit.
+    #[test]
+    fn flush_faces_have_heights(
+        sides in 3..9u32, digits in 3..10i32, x in -0.2..0.2f64, y in -0.2..0.2f64,
+    ) {
+        let pair = flush(sides, digits);
+        let pose = CorPose { lateral: DVec2::new(x, y), rotation: DMat3::IDENTITY };
+        let slow = brute::height(&pair, &pose).unwrap();
+        let off = PoseError { x, y, ..PoseError::default() };
+        let settings = descent::Settings::default();
+        for fast in [
+            pair.height(&pose).unwrap(),
+            pair.about(0.01).height(&off).unwrap(),
+            descent::trace(&pair, &off, &settings).waypoints[0].height,
+        ] {
+            // What is parallel to 1e-6 counts as one plane.
+            prop_assert!((fast - slow).abs() < 1e-6, "{sides} {digits}: {fast} against {slow}");
+        }
     }
 
     #[test]

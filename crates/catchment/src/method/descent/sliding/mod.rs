@@ -28,7 +28,7 @@ mod event;
 use super::motion::{Advance, Motion, Pace, State};
 use super::projection::Vector;
 use crate::acceptance::Outcome;
-use crate::contact::{Contact, Meeting};
+use crate::contact::{Contact, FLUSH, Meeting};
 use event::Reached;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -41,8 +41,8 @@ const DEEPEST: f64 = 1e-7;
 /// A foot counts as on its feature up to this far beyond the border, in D: above [`ACTIVE`], so that the facets on both
 /// sides of a valley are felt together; below the distance at which walls between pieces are looked for (1e-7).
 const BORDER: f64 = 1e-8;
-/// Sine by which a feature may fail to support a normal: faces that lie flush after a correction.
-const SUPPORT: f64 = 1e-7;
+/// Sine by which a feature may fail to support a normal: that of faces that lie flush.
+const SUPPORT: f64 = FLUSH;
 
 /// Rest: where the force alone would push the body by 1, it moves by less than this.
 const STILL: f64 = 1e-7;
@@ -163,9 +163,16 @@ impl Motion<'_> {
 
     /// Lowers the body to what is next below it.
     fn drop_down(&mut self, state: &State) -> Advance {
+        // Faces may land flush: what nearly supports counts too.
+        self.sliding.forget();
+        self.turn(&state.rotation, state.cor.truncate(), self.settings.step);
         let Some(z) = self.nearby.height_below(state.cor.truncate(), state.cor.z).0 else {
             return Advance::Ended(Outcome::Missed, *state);
         };
+        if z >= state.cor.z {
+            // Something stops the body and nothing touches it.
+            return Advance::Ended(Outcome::Undecided, *state);
+        }
         let landed = State { cor: state.cor.truncate().extend(z), ..*state };
         if !self.overlaps(&landed) {
             return Advance::Moved(landed, 0.0);
