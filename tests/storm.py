@@ -244,6 +244,8 @@ class Storm:
                     os.kill(pid, asked)
                 signal.sigtimedwait({signal.SIGCHLD}, 1.0)
         code, took = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
+        if asked == signal.SIGINT and code == -signal.SIGINT:
+            code = 130  # as shells say it: still reading, with nothing begun
         if asked == signal.SIGINT and code == 130:
             self.slow.append((took, args))
         return code, usage.ru_maxrss, took, (self.home / "stderr").read_bytes()
