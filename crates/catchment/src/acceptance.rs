@@ -122,6 +122,13 @@ pub enum Warning {
         /// How many.
         cells: usize,
     },
+    /// Some of the random motions that the Sum comes from were not decided.
+    UndecidedSample {
+        /// How many.
+        motions: usize,
+        /// Of how many.
+        of: usize,
+    },
     /// The method's direction is quantised by the grid, so its border does not converge to the true one.
     FloodingBias,
     /// Motion that leaves the error box was not followed.
@@ -185,6 +192,11 @@ impl fmt::Display for Warning {
             Self::Undecided { cells } => {
                 write!(f, "{cells} poses undecided: their motion could not be followed to its end")
             }
+            Self::UndecidedSample { motions, of } => write!(
+                f,
+                "{motions} of {of} random motions could not be followed to their end: the Sum counts them as not accepted, its \
+                 interval reaches to where they are"
+            ),
             Self::FloodingBias => write!(
                 f,
                 "flooding follows grid directions only: its Sum may be several percent off at any resolution, and \

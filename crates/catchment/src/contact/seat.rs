@@ -87,7 +87,7 @@ impl<'a> Seat<'a> {
 
     /// Whether the seat holds all along a path, straight in the pose error from point to point.
     fn is_level(&mut self, path: &[PoseError]) -> bool {
-        path.windows(2).all(|ends| {
+        path.windows(2).zip([1, 0]).all(|(ends, first)| {
             let (from, to) = (ends[0].to_array(), ends[1].to_array());
             let mut way = [0.0; Dof::ALL.len()];
             for dof in Dof::ALL {
@@ -96,8 +96,9 @@ impl<'a> Seat<'a> {
             }
             let length = way.iter().map(|part| part * part).sum::<f64>().sqrt();
             let looks = (length / PATH_STEP).ceil().clamp(1.0, MOST_LOOKS);
-            // Not the end: a half there touches walls, and rounding may put it on their rim.
-            (0..looks as usize).all(|k| {
+            // Not at the beginning, which is the mated pose. Nor at the end: a half there touches walls, and rounding may put it on
+            // their rim.
+            (first..looks as usize).all(|k| {
                 let share = k as f64 / looks;
                 let at = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
                 self.nearby.height(&PoseError::from_array(at)).is_none_or(|h| h <= self.level() + ROUNDING)

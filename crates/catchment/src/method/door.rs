@@ -127,6 +127,19 @@ pub trait Follow: Decide {
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError>;
 
+    /// The same, each until it has come to rest, also where it is known before what becomes of it.
+    ///
+    /// # Errors
+    /// As for [`Follow::follow`].
+    fn rest(
+        &self,
+        problem: &Problem,
+        domain: Domain,
+        exec: &Exec,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        self.follow(problem, domain, exec)
+    }
+
     /// What the method itself doubts about its motions on this problem, tried on random poses.
     ///
     /// # Errors

@@ -87,6 +87,10 @@ impl Answer {
                 if !(lo..=hi).contains(&sum_grid) {
                     warnings.push(Warning::OutsideSample { sum_grid, ci95: [lo, hi] });
                 }
+                let motions = corrected.found.strata.iter().map(|stratum| stratum.undecided).sum();
+                if motions > 0 {
+                    warnings.push(Warning::UndecidedSample { motions, of: corrected.found.descents });
+                }
             }
             None if !descended && self.grid().is_some() => warnings.push(Warning::NoInterval),
             None => {}

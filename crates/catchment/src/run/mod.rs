@@ -32,7 +32,7 @@ pub use answer::{Answer, Corrected};
 pub use part::{Part, PartAnswer, PartError};
 pub use plan::Plan;
 pub use requirement::{Requirement, RequirementError, Verdict};
-pub use seat::{Residual, Seating};
+pub use seat::{Deeper, Residual, Seating};
 
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{LandscapeError, Resolution, ResolutionError};

@@ -8,8 +8,8 @@
 //! Not promised: the poses are drawn evenly from the accepted set, not from the errors that a robot makes. Lengths in D, angles in radians.
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
-use crate::contact::mated::MatedProblem;
-use crate::contact::{Play, Seat, play};
+use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem};
+use crate::contact::{Pair, Play, Seat, play};
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
 use crate::method::descent::{self, End, Follower};
@@ -29,6 +29,18 @@ pub struct Seating {
     pub poses: usize,
     /// How far off they rested, per free error that matters; empty if there were none.
     pub residual: Vec<Residual>,
+    /// The deepest of them, if it lay deeper than the mated pose, which then is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deeper: Option<Deeper>,
+}
+
+/// A place of rest below the mated pose, in the same seat.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Deeper {
+    /// How much deeper, in D.
+    pub sinks: f64,
+    /// Where.
+    pub error: PoseError,
 }
 
 /// How far off docked poses rest along one error, whichever way. D or radians.
@@ -49,6 +61,8 @@ const SHARE: usize = 20;
 const FEWEST: usize = 40;
 /// Cells looked at for every accepted one that is wanted.
 const LOOKS: u64 = 50;
+/// Rests nearer than this are the mated pose, in D and radians: what the ends of motions leave.
+const NONE: f64 = 1e-4;
 /// The poses have random numbers of their own.
 const BRANCH: u64 = 0x5ea7;
 
@@ -71,21 +85,29 @@ impl Seating {
             poses.par_iter().map_init(|| Follower::new(pair, &settings), follow).collect::<Result<_, _>>()
         })?;
         let seat = Seat::new(pair);
-        let docked = ends.iter().filter(|end| end.outcome == Outcome::Aligned);
-        let offs: Vec<[f64; 5]> = docked.map(|end| seat.off(&end.error).to_array()).collect();
-        let play = play(pair);
+        let docked: Vec<PoseError> =
+            ends.iter().filter(|end| end.outcome == Outcome::Aligned).map(|end| end.error).collect();
+        let offs: Vec<[f64; 5]> = docked.iter().map(|error| seat.off(error).to_array()).collect();
+        let mut play = play(pair);
+        // What rests there is play, wherever it was looked for.
+        for play in &mut play {
+            let rests = offs.iter().map(|off| off[play.axis.index()]).filter(|off| off.abs() > NONE);
+            play.minus = rests.clone().fold(play.minus, |most, off| most.max(-off));
+            play.plus = rests.fold(play.plus, f64::max);
+        }
         let residual = match offs.len() {
             0 => Vec::new(),
             _ => play.iter().map(|play| Residual::of(play.axis, &offs)).collect(),
         };
-        Ok(Self { depth: pair.alignment.docked.depth, play, poses: offs.len(), residual })
+        let deeper = Deeper::of(pair, &docked);
+        Ok(Self { depth: pair.alignment.docked.depth, play, poses: offs.len(), residual, deeper })
     }
 
     /// With every place that the seating of a problem has, and numbers that mean nothing.
     pub(crate) fn form(problem: &Problem) -> Self {
         let play = play(problem.pair());
         let residual = play.iter().map(|play| Residual { axis: play.axis, mean: 0.0, p95: 0.0, most: 0.0 });
-        Self { depth: 0.0, poses: 0, residual: residual.collect(), play }
+        Self { depth: 0.0, poses: 0, residual: residual.collect(), play, deeper: None }
     }
 
     /// The doubts that it raises: halves that rest farther off than the seat was found to allow.
@@ -93,7 +115,7 @@ impl Seating {
         let docked = &problem.alignment().docked;
         let far =
             self.residual.iter().filter(|residual| residual.most > 1.01 * docked.most_play(residual.axis));
-        far.map(|residual| {
+        let far = far.map(|residual| {
             let (name, unit) = (residual.axis.name(), if residual.axis.is_rotation() { "rad" } else { "D" });
             Warning::Note {
                 text: format!(
@@ -101,9 +123,34 @@ impl Seating {
                     residual.most
                 ),
             }
-        })
-        .collect()
+        });
+        let deeper = self.deeper.iter().map(|Deeper { sinks, error }| Warning::Note {
+            text: format!(
+                "the mated pose does not hold: docked halves rest {sinks:.4} D deeper, at {}; draw the halves so that this is the \
+                 mated pose",
+                place(error)
+            ),
+        });
+        far.chain(deeper).collect()
     }
+}
+
+impl Deeper {
+    /// The deepest of these places of rest, if it is below the mated pose by more than drawings are rounded.
+    fn of(pair: &Pair, rests: &[PoseError]) -> Option<Self> {
+        let mut nearby = pair.about(0.01);
+        let sinks = |error: &PoseError| pair.mated_height() - nearby.height(error).unwrap_or(f64::INFINITY);
+        let sinks: Vec<f64> = rests.iter().map(sinks).collect();
+        let (k, most) = sinks.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (most > CONTACT_TOLERANCE).then_some(Self { sinks: most, error: rests[k] })
+    }
+}
+
+/// A pose error for a person.
+fn place(error: &PoseError) -> String {
+    let [x, y, roll, pitch, yaw] = error.to_array();
+    let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::to_degrees);
+    format!("x {x:.4} D, y {y:.4} D, roll {roll:.2}°, pitch {pitch:.2}°, yaw {yaw:.2}°")
 }
 
 impl Residual {
@@ -162,11 +209,9 @@ impl Problem {
         let sentence = |doubt: &MatedProblem| match doubt {
             MatedProblem::NotMinimum { .. } => {
                 let End { outcome, error } = self.settled();
-                let [x, y, roll, pitch, yaw] = error.to_array();
-                let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::to_degrees);
                 format!(
-                    "{doubt}. Let go without any error it settles at x {x:.4} D, y {y:.4} D, roll {roll:.2}°, pitch {pitch:.2}°, yaw \
-                     {yaw:.2}° ({}): draw the halves so that this is the mated pose",
+                    "{doubt}. Let go without any error it settles at {} ({}): draw the halves so that this is the mated pose",
+                    place(&error),
                     outcome.name()
                 )
             }

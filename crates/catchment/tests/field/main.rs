@@ -7,8 +7,8 @@ mod solids;
 
 use catchment::prelude::*;
 use catchment::run::Residual;
-use solids::{Pieces, around, body, rectangle, ring, scaled, turned};
-use std::f64::consts::TAU;
+use solids::{Pieces, arc, around, body, rectangle, ring, scaled, turned};
+use std::f64::consts::{SQRT_2, TAU};
 
 fn problem(
     fixed: Pieces,
@@ -34,6 +34,31 @@ fn reach(problem: &Problem, dof: Dof, most: f64, step: f64) -> f64 {
     };
     let count = (most / step) as u32;
     f64::from((1..=count).take_while(docks).last().unwrap_or(0)) * step
+}
+
+/// How far in a direction of errors a half docks, found by halving; at `most` it must not.
+fn edge(problem: &Problem, direction: [f64; 5], most: f64) -> f64 {
+    let docks = |far: f64| {
+        let error = PoseError::from_array(direction.map(|d| d * far));
+        problem.follow(&error).outcome == Outcome::Aligned
+    };
+    assert!(!docks(most), "docks at {most}");
+    let (mut inside, mut outside) = (0.0, most);
+    for _ in 0..12 {
+        let middle = 0.5 * (inside + outside);
+        *(if docks(middle) { &mut inside } else { &mut outside }) = middle;
+    }
+    inside
+}
+
+/// Poses at a given lateral offset (D) with a given tilt and yaw (degrees), all round: the limit that a standard states.
+fn limit(count: u32, lateral: f64, tilt: f64, yaw: f64) -> impl Iterator<Item = PoseError> {
+    (0..count).map(move |k| {
+        let (a, b) = (TAU * f64::from(k) / f64::from(count), 2.4 * f64::from(k));
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let [tilt, yaw] = [tilt, sign * yaw].map(f64::to_radians);
+        PoseError::from_array([lateral * a.cos(), lateral * a.sin(), tilt * b.cos(), tilt * b.sin(), yaw])
+    })
 }
 
 fn residual(answer: &Answer) -> Vec<Residual> {
@@ -130,4 +155,195 @@ fn three_grooves_leave_one_place_of_rest() {
     // The tip of a key must be over its groove: 4 mm to either side of it.
     let found = reach(&problem, Dof::Y, 0.12, 0.1 / D) * D;
     assert!((found - 4.0).abs() <= 0.2, "{found} mm");
+}
+
+/// A Kelvin coupling on a plate of 60 mm: balls of 8 mm on a circle of 40, in a trihedral and a V of 90°, both 3.6 mm deep, and on a flat.
+fn kelvin() -> [Pieces; 2] {
+    let (ball, deep, at) = (4.0, 3.6, [20.0, 0.0]);
+    let third = |pieces: Pieces, k: f64| turned(&pieces, TAU / 3.0 * k);
+    // How high over the plate the centres of the balls stand: 2.06 mm.
+    let rise = ball * SQRT_2 - deep;
+    let corner = [ring(3, at, 0.3, 0.15 - deep), ring(3, at, 2.0 * deep, 0.0)];
+    let mut fixed = around(&corner, &ring(3, at, 12.0, 0.0));
+    let side = |sign: f64| -> Vec<DVec3> {
+        let corners = [(0.0, -deep), (deep, 0.0), (8.0, 0.0), (8.0, -10.0), (0.0, -10.0)];
+        corners.into_iter().flat_map(|(y, z)| [14.0, 26.0].map(|x| DVec3::new(x, sign * y, z))).collect()
+    };
+    fixed.extend(third(vec![side(1.0), side(-1.0)], 1.0));
+    fixed.extend(third(body(&[ring(12, at, 5.5, -10.0), ring(12, at, 5.5, rise - ball)]), 2.0));
+    let low = ball / SQRT_2;
+    let tip = vec![DVec3::new(at[0], at[1], ball - rise)];
+    let sphere = [ring(12, at, ball, -rise), ring(12, at, low, low - rise), tip].concat();
+    let mut moving: Pieces = (0..3).flat_map(|k| third(vec![sphere.clone()], f64::from(k))).collect();
+    moving.extend(body(&[ring(12, [0.0; 2], 30.0, -rise - 11.6), ring(12, [0.0; 2], 30.0, -rise - 1.6)]));
+    [fixed, moving]
+}
+
+/// A Kelvin coupling has one place of rest in all five errors; a ball must stand over its seat, 3.6 mm to either side.
+#[test]
+fn a_kelvin_coupling_takes_what_lies_over_its_seats() {
+    const D: f64 = 60.0;
+    let [fixed, moving] = kelvin();
+    let lateral =
+        problem(fixed.clone(), moving.clone(), D, &LATERAL, |a| a.half_ranges = [0.1, 0.1, 1.0, 1.0, 1.0]);
+    // The facets of the trihedral look to 0°, 120° and 240°, the walls of the V to 30° and 210°.
+    let slant = 3.6 / (TAU / 12.0).cos();
+    for (direction, expected) in [
+        ([1.0, 0.0], slant), // the V
+        ([-1.0, 0.0], 3.6),  // a facet
+        ([0.0, 1.0], slant), // two facets
+        ([0.0, -1.0], slant),
+    ] {
+        let [x, y] = direction.map(|d| d / D);
+        let found = edge(&lateral, [x, y, 0.0, 0.0, 0.0], 6.0);
+        assert!((found - expected).abs() < 0.02, "{direction:?}: {found} mm");
+    }
+    let problem = problem(fixed, moving, D, &Dof::ALL, |a| a.half_ranges = [0.033, 0.033, 0.05, 0.05, 0.05]);
+    let run = Run {
+        over: Over::Grid("3".parse().unwrap()),
+        sample: Sample::Until(Stop::Samples(300)),
+        ..Run::by("descent".parse().unwrap())
+    };
+    for off in residual(&run.on(&problem, &Exec::new()).unwrap()) {
+        assert!(off.most < 1e-3, "{off:?}");
+    }
+}
+
+/// The probe of Soyuz and Progress: a head in a cone whose mouth is the passage of 800 mm. All else is assumed.
+#[test]
+fn a_probe_finds_its_drogue_from_anywhere_over_the_mouth() {
+    const D: f64 = 800.0;
+    let circle = |radius: f64, z: f64| ring(16, [0.0; 2], radius, z);
+    // A cone of 45° to a socket 90 mm deep, which narrows by 7 mm.
+    let cone = [circle(55.0, -428.0), circle(62.0, -338.0), circle(400.0, 0.0)];
+    let mut fixed = around(&cone, &circle(550.0, 0.0));
+    fixed.extend(body(&[circle(550.0, -448.0), circle(550.0, -428.0)]));
+    // The head touches the floor of the socket where the rings meet: a probe at its retracted length.
+    let mut moving = body(&[circle(30.0, 0.0), circle(30.0, 368.0)]);
+    moving.push([circle(50.0, 368.0), circle(50.0, 408.0), circle(40.0, 428.0)].concat());
+    moving.extend(body(&[circle(550.0, -60.0), circle(550.0, 0.0)]));
+    let lateral =
+        problem(fixed.clone(), moving.clone(), D, &LATERAL, |a| a.half_ranges = [0.5, 0.5, 1.0, 1.0, 1.0]);
+    // Mouth less tip: 360 mm to a corner of the polygon, 353 to its side.
+    let half = TAU / 32.0;
+    for (angle, expected) in [(0.0, 360.0), (half, 360.0 * half.cos()), (0.25 * TAU, 360.0)] {
+        let (sin, cos) = f64::sin_cos(angle);
+        let found = edge(&lateral, [cos / D, sin / D, 0.0, 0.0, 0.0], 420.0);
+        assert!((found - expected).abs() < 0.5, "{angle}: {found} mm");
+    }
+    let tilted = problem(fixed, moving, D, &[Dof::X, Dof::Y, Dof::Roll, Dof::Pitch], |a| {
+        a.dont_care = [Dof::Yaw].into_iter().collect();
+        a.half_ranges = [0.2, 0.2, 0.1, 0.1, 1.0];
+    });
+    // What ATV was to keep, 0.10 m, with 5° of tilt.
+    for error in limit(20, 100.0 / D, 5.0, 0.0) {
+        assert_eq!(tilted.follow(&error).outcome, Outcome::Aligned, "{error:?}");
+    }
+}
+
+/// The Nikon F bayonet: three lugs of 72.21°, 60.78° and 56.39° in slots half a degree wider to either side. `lead`: how much narrower
+/// the ends of the lugs are, degrees to either side.
+fn bayonet(lead: f64) -> [Pieces; 2] {
+    const CLEAR: f64 = 0.5;
+    let (mut fixed, mut moving) = (Vec::new(), Vec::new());
+    let mut start = -0.5 * 72.21;
+    for (lug, gap) in [(72.21, 53.45), (60.78, 58.65), (56.39, 58.52)] {
+        let end = start + lug;
+        // Drawn the other way round: the mount turns y over.
+        let wedge = |less: f64, z: f64| {
+            [arc(23.1, -(start + less), less - end, 6, z), vec![DVec3::new(0.0, 0.0, z)]].concat()
+        };
+        moving.push([wedge(0.0, 3.2), wedge(0.0, 3.55), wedge(lead, 4.6)].concat());
+        let (slot, lip) = ((23.2, start - CLEAR, end + CLEAR, 4), (22.1, end + CLEAR, end + gap - CLEAR, 3));
+        for (radius, from, to, steps) in [slot, lip] {
+            let part = (to - from) / f64::from(steps);
+            // Chords that touch the circle: nothing stands into the hole.
+            let inner = radius / (0.5 * part).to_radians().cos();
+            for k in 0..steps {
+                let from = from + part * f64::from(k);
+                let level =
+                    |z: f64| [arc(inner, from, from + part, 1, z), arc(30.0, from, from + part, 1, z)];
+                fixed.push([level(-3.0), level(0.0)].concat().concat());
+            }
+        }
+        start = end + gap;
+    }
+    let circle = |radius: f64, z: f64| ring(24, [0.0; 2], radius, z);
+    moving.extend(body(&[circle(22.0, 0.0), circle(22.0, 4.6)]));
+    moving.extend(body(&[circle(30.0, -3.0), circle(30.0, 0.0)]));
+    [fixed, moving]
+}
+
+/// The lugs of a bayonet enter their slots as far off in yaw as they are narrower than these: by their clearance, and by their lead-in.
+#[test]
+fn a_bayonet_enters_by_its_clearance_and_its_lead_in() {
+    for lead in [0.0, 3.0_f64] {
+        let [fixed, moving] = bayonet(lead);
+        let problem =
+            problem(fixed, moving, 60.0, &[Dof::Yaw], |a| a.half_ranges = [1.0, 1.0, 1.0, 1.0, 0.2]);
+        for sign in [1.0, -1.0_f64] {
+            let found = edge(&problem, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 8.0);
+            assert!((found - 0.5 - lead).abs() < 0.02, "{lead}°: {found}°");
+            // The widest lug has a slot of its own.
+            let other = PoseError { yaw: sign * TAU / 3.0, ..PoseError::default() };
+            assert_eq!(problem.follow(&other).outcome, Outcome::Jammed);
+        }
+    }
+}
+
+/// A ring of three petals that mates with itself: petals at 90°, 210° and 330°, 160 mm inwards and 160 mm high at 45°, on a bore of 1200.
+fn petals() -> Pieces {
+    let mut half = around(
+        &[ring(12, [0.0; 2], 600.0, -60.0), ring(12, [0.0; 2], 600.0, 0.0)],
+        &ring(12, [0.0; 2], 680.0, 0.0),
+    );
+    // Along a side of the 12-gon, at an angle off its corner.
+    let eighth = TAU / 24.0;
+    let side = |radius: f64, off: f64| radius * eighth.cos() / (eighth - off).cos();
+    for (middle, sign) in [90.0, 210.0, 330.0_f64].into_iter().flat_map(|m| [(m, -1.0), (m, 1.0)]) {
+        let mut corners = Vec::new();
+        // The foot leaves 2 mm of play and half a degree to either side; the tip is 36° wide.
+        for (z, radius, wide) in [(0.0, 598.0, 29.5), (160.0, 440.0, 18.0_f64)] {
+            for off in [0.0, wide] {
+                for radius in [radius, radius - 15.0] {
+                    let [off, middle] = [off, middle].map(f64::to_radians);
+                    let (sin, cos) = (middle + sign * off).sin_cos();
+                    let r = side(radius, off);
+                    corners.push(DVec3::new(r * cos, r * sin, z));
+                }
+            }
+        }
+        half.push(corners);
+    }
+    half
+}
+
+/// Three petals between three others: what turns them back is the gap between the tips. All that IDSS asks for docks.
+#[test]
+fn three_petals_take_the_gap_between_their_tips() {
+    const D: f64 = 1200.0;
+    let flat = problem(petals(), petals(), D, &[Dof::X, Dof::Y, Dof::Yaw], |a| {
+        a.half_ranges = [0.15, 0.15, 1.0, 1.0, 0.5];
+        a.symmetry = 3;
+    });
+    // Tips of 36° on 60°: 24° of yaw to either side, about each of the three mated poses.
+    for sign in [1.0, -1.0_f64] {
+        let found = edge(&flat, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 40.0);
+        assert!((found - 24.0).abs() < 0.05, "{found}°");
+    }
+    let third = PoseError { yaw: 143.0_f64.to_radians(), ..PoseError::default() };
+    assert_eq!(flat.follow(&third).outcome, Outcome::Aligned);
+    // Straight along the gap between two tips, whose inner corners are nearest: 2·411 mm·sin 12°.
+    let inner = 425.0 * 15.0_f64.to_radians().cos() / 3.0_f64.to_radians().cos();
+    let expected = 2.0 * inner * 12.0_f64.to_radians().sin();
+    let found = edge(&flat, [0.0, -1.0 / D, 0.0, 0.0, 0.0], 200.0);
+    assert!((found - expected).abs() < 0.2, "{found} mm for {expected}");
+    // The initial contact of IDSS: 0.10 m, 4° of tilt, 4° about the axis, all at once.
+    let free = problem(petals(), petals(), D, &Dof::ALL, |a| {
+        a.half_ranges = [0.084, 0.084, 0.07, 0.07, 0.07];
+        a.symmetry = 3;
+    });
+    for error in limit(24, 100.0 / D, 4.0, 4.0) {
+        assert_eq!(free.follow(&error).outcome, Outcome::Aligned, "{error:?}");
+    }
 }

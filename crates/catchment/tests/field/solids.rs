@@ -14,6 +14,15 @@ pub(crate) fn ring(sides: u32, center: [f64; 2], radius: f64, z: f64) -> Vec<DVe
     (0..sides).map(corner).collect()
 }
 
+/// Points of an arc about the approach axis, angles in degrees.
+pub(crate) fn arc(radius: f64, from: f64, to: f64, steps: u32, z: f64) -> Vec<DVec3> {
+    let corner = |k| {
+        let a = (from + (to - from) * f64::from(k) / f64::from(steps)).to_radians();
+        DVec3::new(radius * a.cos(), radius * a.sin(), z)
+    };
+    (0..=steps).map(corner).collect()
+}
+
 /// Corners of a rectangle about the approach axis, half as long and wide as this.
 pub(crate) fn rectangle(half: [f64; 2], z: f64) -> Vec<DVec3> {
     [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]

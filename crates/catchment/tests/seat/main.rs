@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
+mod chamfered;
 mod peg;
 
 use catchment::acceptance::Domain;
@@ -12,7 +13,9 @@ use catchment::method::descent::{self, Follower};
 use catchment::method::drop;
 use catchment::method::zraa::{self, Zraa};
 use catchment::prelude::*;
+use chamfered::Chamfered;
 use peg::Peg;
+use std::f64::consts::TAU;
 
 const LATERAL: [Dof; 2] = [Dof::X, Dof::Y];
 
@@ -195,4 +198,64 @@ fn drops_agree_with_motions() {
         same[1] += dropped.outcomes.len();
     }
     assert!(same[0] * 100 >= same[1] * 97, "{same:?}");
+}
+
+/// Face slides on face down to the rim, where walls become flush: what happens there must not hang on the last digit of a drawing.
+#[test]
+fn equal_chamfers_let_in_what_is_over_the_mouth() {
+    let drawn = [(4, 1.0, 3), (4, 2f64.sqrt(), 9), (6, 1.0, 6), (7, 1.0, 6), (16, 1.0, 9), (32, 1.0, 6)];
+    for (sides, slope, digits) in drawn {
+        let peg = Chamfered { sides, slope, digits };
+        for source in [peg.pieces(), peg.triangles()] {
+            let problem = peg.problem(source);
+            let poses = Domain::random(problem.alignment(), 150, 5);
+            let (found, _) =
+                descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+            for (k, outcome) in found.outcomes.iter().enumerate() {
+                let error = found.domain.pose(k);
+                let inside = peg.inside(&error);
+                // The drawing is rounded.
+                if inside.abs() > 1e-3 {
+                    let right = if inside > 0.0 { Outcome::Aligned } else { Outcome::Jammed };
+                    assert_eq!(*outcome, right, "{peg:?}: {error:?}, {inside} D inside");
+                }
+            }
+        }
+        // What rests is 0.02 D off along the corners, less across the sides.
+        let least = 0.02 * (0.5 * TAU / f64::from(sides)).cos();
+        for off in play(peg.problem(peg.pieces()).pair()) {
+            assert!((least - 1e-4..0.02 + 1e-4).contains(&off.most()), "{peg:?}: {off:?}");
+        }
+    }
+}
+
+/// A bar with two corners over a truncated V: the middle of the bar stays as far from the apex, so its height falls either way.
+/// At rest one corner has come to the end of the floor: cos(45° + p) = 0.4 / (0.42 √2).
+#[test]
+fn a_mated_pose_that_runs_off_is_said_to() {
+    let block = |corners: &[(f64, f64)]| -> Vec<DVec3> {
+        corners.iter().flat_map(|&(x, z)| [-0.1, 0.1].map(|y| DVec3::new(x, y, z))).collect()
+    };
+    let side = |s: f64| block(&[(s * 0.4, 0.0), (s * 0.8, 0.4), (s * 0.4, -0.2), (s * 0.8, -0.2)]);
+    let floor = block(&[(-0.4, 0.0), (0.4, 0.0), (-0.4, -0.2), (0.4, -0.2)]);
+    let bar = block(&[(-0.42, 0.0), (0.42, 0.0), (-0.3, -0.1), (0.3, -0.1)]);
+    // Where the corners touch the walls is the face centre.
+    let lifted =
+        |piece: Vec<DVec3>, by: f64| piece.into_iter().map(|p| p + DVec3::Z * by).collect::<Vec<_>>();
+    let fixed = [floor, side(1.0), side(-1.0)].map(|piece| lifted(piece, -0.01)).into();
+    let mut alignment = Alignment::new([Dof::X, Dof::Pitch].into_iter().collect(), Mount::Y);
+    alignment.center_of_rotation = 0.01;
+    alignment.half_ranges = [0.3, 0.3, 0.35, 0.35, 0.35];
+    let problem =
+        Problem::new(Source::Pieces(fixed), Source::Pieces(vec![lifted(bar, -0.01)]), alignment).unwrap();
+    let run = Run { over: Over::Grid("20".parse().unwrap()), ..Run::default() };
+    let answer = run.on(&problem, &Exec::new()).unwrap();
+    let tilt = (0.4 / (0.42 * 2f64.sqrt())).acos() - TAU / 8.0;
+    let play = answer.seating.play.iter().find(|play| play.axis == Dof::Pitch).unwrap();
+    assert!((play.most() - tilt.abs()).abs() < 1e-3, "{play:?} for {tilt}");
+    let said: Vec<String> = answer.warnings().iter().map(ToString::to_string).collect();
+    assert!(
+        said.iter().any(|text| text.contains("does not hold: docked halves rest 0.0004 D deeper")),
+        "{said:?}"
+    );
 }

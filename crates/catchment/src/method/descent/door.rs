@@ -1,6 +1,6 @@
 //! Exact descent as a method: every pose by itself.
 
-use super::{End, Settings, run, step_dependence};
+use super::{End, Settings, rests, run, step_dependence};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
@@ -73,6 +73,15 @@ impl Follow for Settings {
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         Ok(run(problem.pair(), domain, self, exec)?)
+    }
+
+    fn rest(
+        &self,
+        problem: &Problem,
+        domain: Domain,
+        exec: &Exec,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        Ok(rests(problem.pair(), domain, self, exec)?)
     }
 
     fn doubt(&self, problem: &Problem, seed: u64, exec: &Exec) -> Result<Option<Warning>, DecideError> {

@@ -87,15 +87,15 @@ impl<'a> Follower<'a> {
     }
 }
 
-/// Follows one pose to its end.
+/// Follows one pose until it is known what becomes of it.
 pub fn outcome(pair: &Pair, error: &PoseError, settings: &Settings) -> End {
     Follower::new(pair, settings).follow(error)
 }
 
-/// Follows one pose and keeps its path.
+/// Follows one pose until it has come to rest, and keeps its path.
 pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory {
     let mut waypoints = Vec::new();
-    let (outcome, _) = Motion::new(pair, settings).follow(error, Until::Known, Some(&mut waypoints));
+    let (outcome, _) = Motion::new(pair, settings).follow(error, Until::AtRest, Some(&mut waypoints));
     Trajectory { waypoints, outcome }
 }
 
@@ -103,13 +103,36 @@ pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory 
 const REPORTS: usize = 100;
 const MOST_BETWEEN: usize = 256;
 
-/// Follows every pose of a domain, in parallel; the ends are in the order of the domain.
+/// Follows every pose of a domain until it is known what becomes of it, in parallel; the ends are in the order of the domain.
 ///
 /// # Errors
 /// [`Cancelled`] when asked to stop; checked before every pose.
 pub fn run(
     pair: &Pair,
     domain: Domain,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<(Acceptance, Vec<End>), Cancelled> {
+    each(pair, domain, Until::Known, settings, exec)
+}
+
+/// The same until every pose has come to rest: the outcomes of [`run`], and where halves end that dock.
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop; checked before every pose.
+pub fn rests(
+    pair: &Pair,
+    domain: Domain,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<(Acceptance, Vec<End>), Cancelled> {
+    each(pair, domain, Until::AtRest, settings, exec)
+}
+
+fn each(
+    pair: &Pair,
+    domain: Domain,
+    until: Until,
     settings: &Settings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
@@ -124,7 +147,7 @@ pub fn run(
                 || Motion::new(pair, settings).homing(),
                 |motion, k| {
                     exec.check()?;
-                    let (outcome, error) = motion.follow(&domain.pose(k), Until::Known, None);
+                    let (outcome, error) = motion.follow(&domain.pose(k), until, None);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(between) {
                         exec.report(done as f64 / count as f64, "descents");

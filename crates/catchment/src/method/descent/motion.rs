@@ -32,7 +32,7 @@ pub(super) struct State {
 pub(super) enum Until {
     /// Until it is known what becomes of it.
     Known,
-    /// Until it has come to rest.
+    /// Until it has come to rest, whatever is known before.
     AtRest,
 }
 
@@ -166,9 +166,9 @@ impl<'a> Motion<'a> {
         };
         let mut travelled = 0.0;
         let mut mark = (0, travelled, z);
-        // A half that is seated stays so.
-        let (mut seated, mut asked) = (false, false);
-        let called = until == Until::Known && !self.seat.is_limited();
+        // A half that is seated stays so; whether it is docked then is known before it has come to rest, unless some rests do not count.
+        let (mut seated, mut asked, mut docked) = (false, false, false);
+        let all_count = !self.seat.is_limited();
         for count in 0..self.settings.max_steps {
             if self.pair.is_tight() {
                 state = self.feel(&state);
@@ -182,12 +182,14 @@ impl<'a> Motion<'a> {
             let deep = state.cor.z <= self.seat.level();
             seated = seated || deep && !asked && self.is_seated(&state);
             asked |= deep;
-            if called && (seated || self.homing && homing::is_near(self.pair, &state.rotation, state.cor)) {
+            docked |= all_count
+                && (seated || self.homing && homing::is_near(self.pair, &state.rotation, state.cor));
+            if docked && until == Until::Known {
                 return (Outcome::Aligned, self.error_of(&state));
             }
             if travelled - mark.1 > self.settings.step || count - mark.0 > LEVEL_STEPS {
                 if mark.2 - state.cor.z < LEVEL * self.settings.step {
-                    return self.end(Outcome::Jammed, &state, seated);
+                    return self.end(Outcome::Jammed, &state, [seated, docked]);
                 }
                 mark = (count, travelled, state.cor.z);
             }
@@ -201,17 +203,19 @@ impl<'a> Motion<'a> {
                     state = next;
                     travelled += length;
                 }
-                Advance::Ended(outcome, last) => return self.end(outcome, &last, seated),
+                Advance::Ended(outcome, last) => return self.end(outcome, &last, [seated, docked]),
             }
         }
-        self.end(Outcome::Undecided, &state, seated)
+        self.end(Outcome::Undecided, &state, [seated, docked])
     }
 
     /// What an end is called: rest in the seat, within what the design allows, is docked.
-    fn end(&mut self, outcome: Outcome, last: &State, seated: bool) -> (Outcome, PoseError) {
+    fn end(&mut self, outcome: Outcome, last: &State, [seated, docked]: [bool; 2]) -> (Outcome, PoseError) {
         let error = self.error_of(last);
-        let docked =
-            outcome == Outcome::Jammed && (seated || self.is_seated(last)) && self.seat.allows(&error);
+        let rests_well = |motion: &mut Self| {
+            outcome == Outcome::Jammed && (seated || motion.is_seated(last)) && motion.seat.allows(&error)
+        };
+        let docked = docked || rests_well(self);
         (if docked { Outcome::Aligned } else { outcome }, error)
     }
 
