@@ -3,7 +3,6 @@
 use super::{Lattice, Pair, brute};
 use crate::connector::Connector;
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
-use crate::method::descent;
 use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError, rotation};
 use glam::{DMat3, DVec2, DVec3};
 use proptest::prelude::*;
@@ -104,12 +103,12 @@ proptest! {
         let pose = CorPose { lateral: DVec2::new(x, y), rotation: DMat3::IDENTITY };
         let slow = brute::height(&pair, &pose).unwrap();
         let off = PoseError { x, y, ..PoseError::default() };
-        let settings = descent::Settings::default();
-        for fast in [
-            pair.height(&pose).unwrap(),
-            pair.about(0.01).height(&off).unwrap(),
-            descent::trace(&pair, &off, &settings).waypoints[0].height,
-        ] {
+        // As a motion asks, which looks at what a step may turn into.
+        let mut near = pair.nearby(0.04, 0.1);
+        near.turn(&pose.rotation, pose.lateral, 0.04, 0.02);
+        let met = near.height_below(pose.lateral, f64::INFINITY).0;
+        for fast in [pair.height(&pose), pair.about(0.01).height(&off), met] {
+            let fast = fast.unwrap();
             // What is parallel to 1e-6 counts as one plane.
             prop_assert!((fast - slow).abs() < 1e-6, "{sides} {digits}: {fast} against {slow}");
         }

@@ -206,8 +206,9 @@ fn equal_chamfers_let_in_what_is_over_the_mouth() {
     let drawn = [(4, 1.0, 3), (4, 2f64.sqrt(), 9), (6, 1.0, 6), (7, 1.0, 6), (16, 1.0, 9), (32, 1.0, 6)];
     for (sides, slope, digits) in drawn {
         let peg = Chamfered { sides, slope, digits };
-        for source in [peg.pieces(), peg.triangles()] {
-            let problem = peg.problem(source);
+        // A piece has at most 64 corners.
+        let pieces = (sides < 22).then(|| peg.pieces());
+        for problem in pieces.into_iter().chain([peg.triangles()]).map(|source| peg.problem(source)) {
             let poses = Domain::random(problem.alignment(), 150, 5);
             let (found, _) =
                 descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
@@ -220,11 +221,11 @@ fn equal_chamfers_let_in_what_is_over_the_mouth() {
                     assert_eq!(*outcome, right, "{peg:?}: {error:?}, {inside} D inside");
                 }
             }
-        }
-        // What rests is 0.02 D off along the corners, less across the sides.
-        let least = 0.02 * (0.5 * TAU / f64::from(sides)).cos();
-        for off in play(peg.problem(peg.pieces()).pair()) {
-            assert!((least - 1e-4..0.02 + 1e-4).contains(&off.most()), "{peg:?}: {off:?}");
+            // What rests is 0.02 D off along the corners, less across the sides.
+            let least = 0.02 * (0.5 * TAU / f64::from(sides)).cos();
+            for off in play(problem.pair()) {
+                assert!((least - 1e-3..0.02 + 1e-3).contains(&off.most()), "{peg:?}: {off:?}");
+            }
         }
     }
 }
