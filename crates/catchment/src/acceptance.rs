@@ -131,6 +131,13 @@ pub enum Warning {
     },
     /// The method's direction is quantised by the grid, so its border does not converge to the true one.
     FloodingBias,
+    /// Accepted cells lie on level ground, such as the rim of a hole, where nothing slides.
+    LevelGround {
+        /// How many.
+        cells: usize,
+        /// Of so many accepted ones.
+        of: usize,
+    },
     /// Motion that leaves the error box was not followed.
     CutOff,
     /// The measure of the accepted cells lies outside the interval of the Sum from random exact descents.
@@ -174,7 +181,7 @@ impl Warning {
     pub const fn advice(&self) -> Option<Advice> {
         match self {
             Self::TouchesBorder { .. } => Some(Advice::EnlargeErrors),
-            Self::FloodingBias => Some(Advice::Method("descent")),
+            Self::FloodingBias | Self::LevelGround { .. } => Some(Advice::Method("descent")),
             Self::NoInterval => Some(Advice::Samples),
             _ => None,
         }
@@ -201,6 +208,11 @@ impl fmt::Display for Warning {
                 f,
                 "flooding follows grid directions only: its Sum may be several percent off at any resolution, and \
                  far more on a coarse grid; descent is exact at every pose"
+            ),
+            Self::LevelGround { cells, of } => write!(
+                f,
+                "{cells} of {of} accepted cells lie on level ground above the seat, where nothing slides: flooding drains them all \
+                 the same, and its Sum is too large by them at least"
             ),
             Self::CutOff => write!(
                 f,

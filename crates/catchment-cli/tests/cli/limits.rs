@@ -9,6 +9,14 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+/// Runs the program under a limit; it must end with exit code 2 and say all of this.
+fn is_refused(home: &Path, limit: &str, args: &str, says: &[&str]) {
+    let output = limited(home, limit, args);
+    let said = told(&output);
+    assert_eq!(output.status.code(), Some(2), "{args}: {said}");
+    assert!(says.iter().all(|text| said.contains(text)), "{args}: {said}");
+}
+
 /// Runs the program in a shell that first sets limits, such as `ulimit -v 400000`.
 fn limited(folder: &Path, limits: &str, args: &str) -> Output {
     let shell = format!("{limits}; exec \"$0\" {args}");
@@ -55,10 +63,8 @@ fn a_small_address_space_ends_with_an_answer_or_a_message() {
 #[test]
 fn the_budget_knows_the_limit_of_the_address_space() {
     let home = home();
-    let output = limited(home.path(), "ulimit -v 1500000", "run v.toml --resolution 20000 --memory '1 TiB'");
-    let said = told(&output);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("of memory, more than the") && said.contains("iB allowed"), "{said}");
+    let args = "run v.toml --resolution 20000 --memory '1 TiB'";
+    is_refused(home.path(), "ulimit -v 1500000", args, &["of memory, more than the", "iB allowed"]);
 }
 
 #[test]
@@ -70,10 +76,7 @@ fn a_limit_on_files_is_a_failure_that_leaves_nothing() {
         "schema -o s.json",
         "schema > s",
     ] {
-        let output = limited(home.path(), "ulimit -f 1", args);
-        let said = told(&output);
-        assert_eq!(output.status.code(), Some(2), "{args}: {said}");
-        assert!(said.contains("cannot write"), "{args}: {said}");
+        is_refused(home.path(), "ulimit -f 1", args, &["cannot write"]);
     }
     fs::remove_file(home.path().join("s")).unwrap();
     assert_eq!(crate::entries(home.path()), ["v.toml"]);
@@ -90,10 +93,7 @@ fn the_budget_counts_pictures() {
         "slices v.toml --resolution 100 --memory 30MB -o out",
         "zraa v.toml --memory 1MB -o out.svg",
     ] {
-        let output = limited(home.path(), "true", args);
-        let said = told(&output);
-        assert_eq!(output.status.code(), Some(2), "{args}: {said}");
-        assert!(said.contains("drawing the pictures needs"), "{args}: {said}");
+        is_refused(home.path(), "true", args, &["drawing the pictures needs"]);
     }
     assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
     let output = limited(home.path(), "true", "run v.toml --method flood --resolution 2000 --memory 100MB");

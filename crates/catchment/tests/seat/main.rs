@@ -260,3 +260,24 @@ fn a_mated_pose_that_runs_off_is_said_to() {
         "{said:?}"
     );
 }
+
+/// A plate around a hole is level: flooding drains it, and says over how many cells.
+#[test]
+fn flooding_says_that_level_ground_drains() {
+    let peg = Peg::new(8, 0.3, 0.02, 0.05);
+    let problem = peg.problem(&LATERAL, 0.3, loose).unwrap();
+    for method in ["flood", "steepest", "meyer"] {
+        let over = Over::Grid("60".parse().unwrap());
+        let run = Run { over, ..Run::by(method.parse().unwrap()) };
+        let answer = run.on(&problem, &Exec::new()).unwrap();
+        let level = answer.warnings().iter().find_map(|warning| match warning {
+            Warning::LevelGround { cells, of } => Some((*cells, *of)),
+            _ => None,
+        });
+        // Without the level ground, and half a cell all around, it is the mouth.
+        let (cells, of) = level.unwrap_or_else(|| panic!("{method}: {:?}", answer.warnings()));
+        let cell = 0.6 / 60.0;
+        let (rest, ring) = ((of - cells) as f64 * cell * cell, 8.0 * cell * 0.1);
+        assert!((rest - peg.area()).abs() < ring, "{method}: {rest} for {}", peg.area());
+    }
+}

@@ -9,6 +9,10 @@ use rayon::prelude::*;
 
 /// How many cells are worked on between two looks at the cancel flag.
 const CELLS_PER_CHECK: usize = 1 << 16;
+/// Level ground this far above the seat is none of it, in D.
+const ABOVE: f32 = 0.01;
+/// A share of level ground among accepted cells that is worth a word: below it chance makes neighbours equal.
+const LEVEL_SHARE: f64 = 1e-3;
 
 /// Outcomes and basins at a tolerance. `targets` are the cells around the mated pose.
 pub(super) fn verdict(
@@ -63,7 +67,7 @@ pub(super) fn verdict(
             Ok(())
         })
     })?;
-    let warnings = warnings(grid, &outcomes, targets, border_cells);
+    let warnings = warnings(landscape, &outcomes, targets, border_cells, exec)?;
     let mut basins: Vec<Basin> = found.into_iter().flatten().collect();
     basins.sort_by(|a, b| b.cells.cmp(&a.cells).then(a.minimum.cmp(&b.minimum)));
     Ok((Acceptance { method: "flood", domain: Domain::Grid(grid.clone()), outcomes, warnings }, basins))
@@ -131,14 +135,20 @@ fn on_border(grid: &Grid, index: usize) -> (bool, bool) {
 
 /// What a reader must know; `border_cells` drain to a minimum on the border.
 pub(super) fn warnings(
-    grid: &Grid,
+    landscape: &Landscape,
     outcomes: &[Outcome],
     targets: &[usize],
     border_cells: usize,
-) -> Vec<Warning> {
+    exec: &Exec,
+) -> Result<Vec<Warning>, Cancelled> {
+    let grid = &landscape.grid;
     let mut warnings = vec![Warning::FloodingBias];
     if targets.is_empty() || targets.iter().all(|t| outcomes[*t] != Outcome::Aligned) {
         warnings.push(Warning::MatedPoseNotAccepted);
+    }
+    let [cells, of] = level_ground(landscape, outcomes, targets, exec)?;
+    if cells as f64 > LEVEL_SHARE * of as f64 {
+        warnings.push(Warning::LevelGround { cells, of });
     }
     let axes = touched_axes(grid, outcomes);
     if !axes.is_empty() {
@@ -153,7 +163,44 @@ pub(super) fn warnings(
             ),
         });
     }
-    warnings
+    Ok(warnings)
+}
+
+/// Cells that are level with their neighbours along every axis, above the seat and accepted; and how many are accepted.
+fn level_ground(
+    Landscape { grid, heights }: &Landscape,
+    outcomes: &[Outcome],
+    targets: &[usize],
+    exec: &Exec,
+) -> Result<[usize; 2], Cancelled> {
+    let seat = targets.iter().map(|t| heights[*t]).fold(f32::INFINITY, f32::min);
+    let strides: Vec<(usize, usize)> = grid
+        .axes
+        .iter()
+        .scan(1, |stride, axis| {
+            let own = *stride;
+            *stride *= axis.cells;
+            Some((own, axis.cells))
+        })
+        .collect();
+    let level = |cell: usize| {
+        heights[cell] > seat + ABOVE
+            && strides.iter().all(|&(stride, cells)| {
+                let k = cell / stride % cells;
+                (k == 0 || heights[cell - stride] == heights[cell])
+                    && (k + 1 == cells || heights[cell + stride] == heights[cell])
+            })
+    };
+    exec.install(|| {
+        let pieces = outcomes.par_chunks(CELLS_PER_CHECK).enumerate();
+        let count = |(piece, outcomes): (usize, &[Outcome])| {
+            exec.check()?;
+            let first = piece * CELLS_PER_CHECK;
+            let accepted = (first..).zip(outcomes).filter(|(_, outcome)| **outcome == Outcome::Aligned);
+            Ok(accepted.fold([0, 0], |[flat, all], (cell, _)| [flat + usize::from(level(cell)), all + 1]))
+        };
+        pieces.map(count).try_reduce(|| [0, 0], |a, b| Ok([a[0] + b[0], a[1] + b[1]]))
+    })
 }
 
 /// Names of the axes at whose border a cell is accepted.

@@ -133,7 +133,7 @@ pub fn accept(
     // Every cell has a basin once the dams are given: a landscape without NaN leaves none undecided.
     let outcome = |cell| division.basin(cell).map_or(Outcome::Undecided, |basin| of_basin[basin as usize]);
     let outcomes: Vec<Outcome> = (0..heights.len()).map(outcome).collect();
-    let warnings = verdict::warnings(grid, &outcomes, &targets, border_cells);
+    let warnings = verdict::warnings(landscape, &outcomes, &targets, border_cells, exec)?;
     let acceptance = Acceptance { method: "meyer", domain: Domain::Grid(grid.clone()), outcomes, warnings };
     Ok(Flooding { acceptance, tolerance })
 }
