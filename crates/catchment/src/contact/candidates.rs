@@ -265,19 +265,20 @@ impl EdgesAt<'_> {
     /// The unit common normal of the edges in the sense that both support, if either does.
     fn normal(&self, fixed: &Ridge, seen: DVec3, slack: f64) -> Option<DVec3> {
         let (below, above) = self.products(fixed, seen);
-        // How far the worse of the facets is from supporting, for either sense.
-        let lacks = |sign: f64| {
-            let below = below.iter().map(|b| sign * b).fold(f64::NEG_INFINITY, f64::max);
-            above.iter().map(|a| -sign * a).fold(below, f64::max)
-        };
-        // Edges that are nearly parallel may support both senses within the slack: the better one counts.
-        let (up, down) = (lacks(1.0), lacks(-1.0));
-        let (sign, lacking) = if up <= down { (1.0, up) } else { (-1.0, down) };
-        if lacking > slack {
+        let up = below.iter().all(|b| *b <= slack) && above.iter().all(|a| *a >= -slack);
+        let down = below.iter().all(|b| *b >= -slack) && above.iter().all(|a| *a <= slack);
+        if !(up || down) {
             return None;
         }
+        // How far the worse of the facets is from supporting, in either sense: of edges that are nearly parallel both may do within
+        // the slack, and the better one counts.
+        let lacks = |sign: f64| {
+            let below = (sign * below[0]).max(sign * below[1]);
+            below.max(-sign * above[0]).max(-sign * above[1])
+        };
+        let sign = if up && !(down && lacks(-1.0) < lacks(1.0)) { 1.0 } else { -1.0 };
         let across = fixed.along.cross(self.w);
         let length = across.length();
-        (length > PARALLEL && lacking <= slack * length).then(|| across / (sign * length))
+        (length > PARALLEL && lacks(sign) <= slack * length).then(|| across / (sign * length))
     }
 }
