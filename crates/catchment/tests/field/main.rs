@@ -23,6 +23,15 @@ fn problem(
     Problem::new(fixed, moving, alignment).unwrap_or_else(|error| panic!("{error:#?}"))
 }
 
+/// What geometry gives, by `reference/field/docks.csv`.
+fn geometry(dock: &str, quantity: &str) -> f64 {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../reference/field/docks.csv");
+    let mut table = csv::Reader::from_path(path).unwrap();
+    let mut rows = table.records().map(Result::unwrap);
+    let row = rows.find(|row| &row[0] == dock && &row[1] == quantity);
+    row.unwrap_or_else(|| panic!("{dock}: {quantity}"))[3].parse().unwrap()
+}
+
 const LATERAL: [Dof; 2] = [Dof::X, Dof::Y];
 
 /// How far along one error a half docks, in D or radians, found to `step`.
@@ -81,10 +90,12 @@ fn the_industreal_peg_docks_within_its_mouth() {
     // The polygon of 32 sides, 0.6 % less than the circle's 0.0880 D².
     let area = 16.0 * (TAU / 32.0).sin() * (2.008 / D).powi(2);
     assert!((0.5 * (lo + hi) - area).abs() <= hi - lo, "{lo} … {hi} for {area}");
-    assert!((answer.sum() - 0.0880).abs() < 0.01 * 0.0880 + (hi - lo), "{}", answer.sum());
+    let round = geometry("industreal-peg", "accepted area in x and y");
+    assert!((answer.sum() - round).abs() < 0.01 * round + (hi - lo), "{}", answer.sum());
     // It has 0.509 mm of play, and uses it.
     for off in residual(&answer) {
-        assert!(off.most * D > 0.4 && off.most * D < 0.52, "{off:?}");
+        let play = geometry("industreal-peg", "play");
+        assert!(off.most * D > 0.8 * play && off.most * D < 1.02 * play, "{off:?}");
     }
 }
 
@@ -99,7 +110,8 @@ fn the_sigyn_funnel_takes_sixty_and_forty_millimetres() {
     let problem = problem(fixed, block, D, &LATERAL, |_| ());
     let step = 0.5 / D;
     // The edge of the block must be over the mouth: (220 − 100)/2 and (180 − 100)/2, to a step.
-    for (dof, expected) in [(Dof::X, 60.0), (Dof::Y, 40.0)] {
+    for dof in LATERAL {
+        let expected = geometry("sigyn-funnel", dof.name());
         let found = reach(&problem, dof, 85.0 / D, step) * D;
         assert!((found - expected).abs() <= 0.5, "{}: {found} mm", dof.name());
     }
@@ -125,7 +137,7 @@ fn four_cones_take_what_one_takes() {
     legs.extend(body(&[rectangle([62.0, 62.0], -14.0), rectangle([62.0, 62.0], -10.0)]));
     let problem = problem(fixed, legs, D, &LATERAL, |a| a.half_ranges = [0.2, 0.2, 1.0, 1.0, 1.0]);
     let found = reach(&problem, Dof::X, 0.2, 0.1 / D) * D;
-    assert!((found - 17.9).abs() <= 0.15, "{found} mm");
+    assert!((found - geometry("landing-pad", "x")).abs() <= 0.15, "{found} mm");
 }
 
 /// Three keys in three V grooves at 120° (Maxwell): one place of rest, and everything that meets its groove goes there.
@@ -154,7 +166,7 @@ fn three_grooves_leave_one_place_of_rest() {
     }
     // The tip of a key must be over its groove: 4 mm to either side of it.
     let found = reach(&problem, Dof::Y, 0.12, 0.1 / D) * D;
-    assert!((found - 4.0).abs() <= 0.2, "{found} mm");
+    assert!((found - geometry("maxwell-coupling", "y")).abs() <= 0.2, "{found} mm");
 }
 
 /// A Kelvin coupling on a plate of 60 mm: balls of 8 mm on a circle of 40, in a trihedral and a V of 90°, both 3.6 mm deep, and on a flat.
@@ -187,11 +199,11 @@ fn a_kelvin_coupling_takes_what_lies_over_its_seats() {
     let lateral =
         problem(fixed.clone(), moving.clone(), D, &LATERAL, |a| a.half_ranges = [0.1, 0.1, 1.0, 1.0, 1.0]);
     // The facets of the trihedral look to 0°, 120° and 240°, the walls of the V to 30° and 210°.
-    let slant = 3.6 / (TAU / 12.0).cos();
+    let [straight, slant] = ["-x", "+x"].map(|way| geometry("kelvin-coupling", way));
     for (direction, expected) in [
-        ([1.0, 0.0], slant), // the V
-        ([-1.0, 0.0], 3.6),  // a facet
-        ([0.0, 1.0], slant), // two facets
+        ([1.0, 0.0], slant),     // the V
+        ([-1.0, 0.0], straight), // a facet
+        ([0.0, 1.0], slant),     // two facets
         ([0.0, -1.0], slant),
     ] {
         let [x, y] = direction.map(|d| d / D);
@@ -226,7 +238,8 @@ fn a_probe_finds_its_drogue_from_anywhere_over_the_mouth() {
         problem(fixed.clone(), moving.clone(), D, &LATERAL, |a| a.half_ranges = [0.5, 0.5, 1.0, 1.0, 1.0]);
     // Mouth less tip: 360 mm to a corner of the polygon, 353 to its side.
     let half = TAU / 32.0;
-    for (angle, expected) in [(0.0, 360.0), (half, 360.0 * half.cos()), (0.25 * TAU, 360.0)] {
+    let [corner, side] = ["to a corner", "to a side"].map(|way| geometry("probe-and-drogue", way));
+    for (angle, expected) in [(0.0, corner), (half, side), (0.25 * TAU, corner)] {
         let (sin, cos) = f64::sin_cos(angle);
         let found = edge(&lateral, [cos / D, sin / D, 0.0, 0.0, 0.0], 420.0);
         assert!((found - expected).abs() < 0.5, "{angle}: {found} mm");
@@ -236,7 +249,8 @@ fn a_probe_finds_its_drogue_from_anywhere_over_the_mouth() {
         a.half_ranges = [0.2, 0.2, 0.1, 0.1, 1.0];
     });
     // What ATV was to keep, 0.10 m, with 5° of tilt.
-    for error in limit(20, 100.0 / D, 5.0, 0.0) {
+    let lateral = geometry("probe-and-drogue", "lateral at 5° of tilt");
+    for error in limit(20, lateral / D, 5.0, 0.0) {
         assert_eq!(tilted.follow(&error).outcome, Outcome::Aligned, "{error:?}");
     }
 }
@@ -277,13 +291,14 @@ fn bayonet(lead: f64) -> [Pieces; 2] {
 /// The lugs of a bayonet enter their slots as far off in yaw as they are narrower than these: by their clearance, and by their lead-in.
 #[test]
 fn a_bayonet_enters_by_its_clearance_and_its_lead_in() {
-    for lead in [0.0, 3.0_f64] {
+    for (lead, quantity) in [(0.0, "yaw without a lead-in"), (3.0, "yaw with a lead-in of 3°")] {
+        let expected = geometry("bayonet-nikon-f", quantity);
         let [fixed, moving] = bayonet(lead);
         let problem =
             problem(fixed, moving, 60.0, &[Dof::Yaw], |a| a.half_ranges = [1.0, 1.0, 1.0, 1.0, 0.2]);
         for sign in [1.0, -1.0_f64] {
             let found = edge(&problem, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 8.0);
-            assert!((found - 0.5 - lead).abs() < 0.02, "{lead}°: {found}°");
+            assert!((found - expected).abs() < 0.02, "{lead}°: {found}°");
             // The widest lug has a slot of its own.
             let other = PoseError { yaw: sign * TAU / 3.0, ..PoseError::default() };
             assert_eq!(problem.follow(&other).outcome, Outcome::Jammed);
@@ -329,13 +344,12 @@ fn three_petals_take_the_gap_between_their_tips() {
     // Tips of 36° on 60°: 24° of yaw to either side, about each of the three mated poses.
     for sign in [1.0, -1.0_f64] {
         let found = edge(&flat, [0.0, 0.0, 0.0, 0.0, sign.to_radians()], 40.0);
-        assert!((found - 24.0).abs() < 0.05, "{found}°");
+        assert!((found - geometry("three-petals", "yaw")).abs() < 0.05, "{found}°");
     }
     let third = PoseError { yaw: 143.0_f64.to_radians(), ..PoseError::default() };
     assert_eq!(flat.follow(&third).outcome, Outcome::Aligned);
     // Straight along the gap between two tips, whose inner corners are nearest: 2·411 mm·sin 12°.
-    let inner = 425.0 * 15.0_f64.to_radians().cos() / 3.0_f64.to_radians().cos();
-    let expected = 2.0 * inner * 12.0_f64.to_radians().sin();
+    let expected = geometry("three-petals", "-y");
     let found = edge(&flat, [0.0, -1.0 / D, 0.0, 0.0, 0.0], 200.0);
     assert!((found - expected).abs() < 0.2, "{found} mm for {expected}");
     // The initial contact of IDSS: 0.10 m, 4° of tilt, 4° about the axis, all at once.
@@ -343,7 +357,8 @@ fn three_petals_take_the_gap_between_their_tips() {
         a.half_ranges = [0.084, 0.084, 0.07, 0.07, 0.07];
         a.symmetry = 3;
     });
-    for error in limit(24, 100.0 / D, 4.0, 4.0) {
+    let lateral = geometry("three-petals", "lateral at 4° of tilt and 4° of yaw");
+    for error in limit(24, lateral / D, 4.0, 4.0) {
         assert_eq!(free.follow(&error).outcome, Outcome::Aligned, "{error:?}");
     }
 }
