@@ -35,7 +35,7 @@ pub mod stepping;
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
-use crate::design::{ConnectorSpec, Design, Family};
+use crate::design::{ConnectorSpec, Design, Docked, Family};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Grid;
 use crate::pose::{Dof, DofSet, Mount};
@@ -91,6 +91,9 @@ pub enum Unfit {
     /// Mounted the other way.
     #[error("its halves are mounted about y")]
     Mount,
+    /// Docked is another set than the mated pose alone.
+    #[error("its faces dock in one point: [docked] must leave depth as it is")]
+    Docked,
 }
 
 /// Why there is no acceptance.
@@ -132,6 +135,10 @@ impl Settings {
         }
         if alignment.mount != Mount::Y {
             return Err(Unfit::Mount);
+        }
+        // Limits change nothing: these seats have no play.
+        if alignment.docked.depth.to_bits() != Docked::DEFAULT_DEPTH.to_bits() {
+            return Err(Unfit::Docked);
         }
         let rotation_point = -2.0 * alignment.center_of_rotation;
         Ok(Self { face, aspect_ratio: spec.aspect_ratio(), rotation_point })
@@ -319,6 +326,9 @@ mod tests {
         let mut other = design(Family::SFace, 0.0);
         other.alignment.free = DofSet::ALL;
         assert_eq!(Settings::of(&other), Err(Unfit::Free));
+        let mut deep = design(Family::SFace, 0.0);
+        deep.alignment.docked.depth = 0.1;
+        assert_eq!(Settings::of(&deep), Err(Unfit::Docked));
     }
 
     /// A sample of the whole set of the tables (11 × 11 designs, 41 × 41 starts), spread by a low-discrepancy sequence.
