@@ -178,8 +178,9 @@ impl<'a> Motion<'a> {
             if let Some(waypoints) = record.as_deref_mut() {
                 waypoints.push(self.waypoint(&state, travelled));
             }
-            // What is deep enough moves on in its own part of what is: once tells whether that is the seat.
-            let deep = state.cor.z <= self.seat.level();
+            // What is deep enough moves on in its own part of what is: once tells whether that is the seat. Where all motion near the
+            // mated pose leads to it, coming near tells as much, and what slides off has not to ask.
+            let deep = !self.homing && state.cor.z <= self.seat.level();
             seated = seated || deep && !asked && self.is_seated(&state);
             asked |= deep;
             docked |= all_count
