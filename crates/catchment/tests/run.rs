@@ -224,3 +224,33 @@ fn what_would_not_fit_is_refused_before_it_is_computed() {
         assert!(matches!(refused, RunError::OutOfBudget(_)), "{}: {refused}", entry.info.name);
     }
 }
+
+/// Where it is known early that a half docks, its final pose is still the one in which it rests.
+#[test]
+fn final_poses_are_places_of_rest() {
+    let problem = problem(Family::Pyramid, DofSet::ALL);
+    let end = problem.follow(&PoseError { x: 0.1, yaw: 0.2, ..PoseError::default() });
+    let most = end.error.to_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+    // Motions are called within 0.02 of the mated pose.
+    assert!(end.outcome == Outcome::Aligned && most < 1e-3, "{end:?}");
+}
+
+#[test]
+fn undecided_random_motions_are_said() {
+    use catchment::method::descent::Settings;
+    let problem = problem(Family::XFace3dLocking, DofSet::ALL);
+    // A budget that suffices for some.
+    let short = Settings { max_steps: 9, ..Settings::default() };
+    let run = Run {
+        over: Over::Grid("2".parse().unwrap()),
+        sample: Sample::Until(Stop::Samples(200)),
+        ..Run::by(Method::new(short))
+    };
+    let answer = run.on(&problem, &Exec::new()).unwrap();
+    let said = answer.warnings().into_iter().find_map(|warning| match warning {
+        Warning::UndecidedSample { motions, of } => Some((motions, of)),
+        _ => None,
+    });
+    let Some((motions, of)) = said else { panic!("{:?}", answer.warnings()) };
+    assert!(motions > 0 && motions <= of && of >= 200, "{motions} of {of}");
+}
