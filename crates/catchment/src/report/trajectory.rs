@@ -166,9 +166,8 @@ fn spread(waypoints: &[WaypointReport]) -> Vec<&WaypointReport> {
         .map(|s| waypoints.partition_point(|w| w.travelled_d < s))
         .chain(waypoints.len().checked_sub(1))
         .collect();
-    // Where the path is long, the last share of it may round to beyond its end.
+    // The last share of a path may round to beyond its end, which is chosen anyhow.
     chosen.retain(|k| *k < waypoints.len());
-    chosen.sort_unstable();
     chosen.dedup();
     chosen.into_iter().filter_map(|k| waypoints.get(k)).collect()
 }

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub struct Seating {
     /// How far above its mated height a half may lie and be seated, in D.
     pub depth: f64,
-    /// How far off it may rest and lie as deep, per free error that matters.
+    /// How far off it may rest and lie as deep, per free error that matters; no less than what docked poses were seen to use.
     pub play: Vec<Play>,
     /// Accepted poses that were followed until they had come to rest.
     pub poses: usize,
