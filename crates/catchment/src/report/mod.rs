@@ -35,7 +35,7 @@ pub mod schema;
 mod sensitivity;
 mod slices;
 mod table;
-mod text;
+pub mod text;
 mod trajectory;
 pub mod write;
 #[cfg(feature = "zarr")]

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 /// Width of a line.
-pub(super) const COLUMNS: usize = 80;
+pub const COLUMNS: usize = 80;
 /// Width of the column of names.
 const NAMES: usize = 17;
 
@@ -19,18 +19,18 @@ pub fn steers(c: char) -> bool {
 }
 
 /// Ends a line of text with what may be printed of `content`.
-pub(super) fn line(text: &mut String, content: &str) {
+pub fn line(text: &mut String, content: &str) {
     text.push_str(printable(content).trim_end());
     text.push('\n');
 }
 
 /// A line that starts with a name.
-pub(super) fn row(text: &mut String, name: &str, value: &str) {
+pub fn row(text: &mut String, name: &str, value: &str) {
     line(text, &format!("  {name:<width$}{value}", width = NAMES - 2));
 }
 
 /// Breaks `content` between words; later lines are indented by the width of `first`.
-pub(super) fn wrapped(text: &mut String, first: &str, content: &str) {
+pub fn wrapped(text: &mut String, first: &str, content: &str) {
     let indent = first.chars().count();
     let mut current = first.to_owned();
     let mut used = indent;
@@ -52,18 +52,18 @@ pub(super) fn wrapped(text: &mut String, first: &str, content: &str) {
 }
 
 /// A share of 1 as `16.32 %`.
-pub(super) fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
 /// A number as a person writes it: up to four decimals, no trailing zeros.
-pub(super) fn rounded(value: f64) -> String {
+pub fn rounded(value: f64) -> String {
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Four significant digits.
-pub(super) fn significant(value: f64) -> String {
+pub fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -75,7 +75,7 @@ pub(super) fn significant(value: f64) -> String {
 }
 
 /// `2.391 ± 0.013`: the farther end of the interval, rounded up to two digits, and the value to as many decimals.
-pub(super) fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
+pub fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
     let error = (hi - value).max(value - lo);
     if !(error > 0.0 && error.is_finite()) {
         return significant(value);
@@ -89,7 +89,7 @@ pub(super) fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
 }
 
 /// Thousands kept apart by thin gaps: 24 300 000.
-pub(super) fn grouped(n: usize) -> String {
+pub fn grouped(n: usize) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (position, digit) in digits.chars().enumerate() {

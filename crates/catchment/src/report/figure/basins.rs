@@ -7,9 +7,9 @@
 //!   share    │ ◦ ◦◦        ●    ●  ∞
 //! ```
 
-use super::axis::{Frame, Scale, Units, short, tick_label};
-use super::colour::{self, hex};
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n};
+use super::draw::axis::{Frame, Scale, Units, short, tick_label};
+use super::draw::colour::{self, hex};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n};
 use super::{FigureError, Picture, headline};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::method::flood::{Hierarchy, Reason};
@@ -128,7 +128,7 @@ pub fn basins(
         svg.line([x, top.y], [x, bottom.y + bottom.h], &style);
     }
     legend(&mut svg, [left, bottom.y + bottom.h + 62.0]);
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 /// Two significant digits: depths are told apart by factors.

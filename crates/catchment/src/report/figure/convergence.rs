@@ -1,10 +1,10 @@
 //! Sum and ONAA against resolution and against time, one line per method.
 
 use super::Picture;
-use super::axis::short;
-use super::chart::{Chart, Line, Point, legend};
-use super::colour::CURVES;
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::axis::short;
+use super::draw::chart::{Chart, Line, Point, legend};
+use super::draw::colour::CURVES;
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::design::Design;
 use crate::study::convergence::{Convergence, Sequence};
 use crate::study::refinement::Refinement;
@@ -54,7 +54,7 @@ pub fn convergence(design: &Design, found: &Convergence) -> Picture {
     }
     let names = lines(|t| t.seconds, |t| (t.sum, None));
     legend(&mut svg, &names, [left, top - 16.0]);
-    Picture { svg: svg.finish() }
+    Picture::of(svg)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Curves over a logarithmic scale, in charts side by side.
 
 use super::Picture;
-use super::chart::{Chart, Line, Point, legend};
-use super::colour::{CURVES, Rgb};
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::chart::{Chart, Line, Point, legend};
+use super::draw::colour::{CURVES, Rgb};
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,7 @@ pub fn curves(title: &str, story: &str, charts: &[CurveChart]) -> Picture {
         names.get_or_insert(lines);
     }
     legend(&mut svg, &names.unwrap_or_default(), [left, top - 16.0]);
-    Picture { svg: svg.finish() }
+    Picture::of(svg)
 }
 
 fn lines(curves: &[Curve]) -> Vec<Line> {

@@ -1,9 +1,9 @@
 //! Where two acceptances differ: one map of two errors, or the slices through zero of every pair in a triangle.
 
-use super::axis::{Units, short};
-use super::colour::{Rgb, hex};
-use super::map::{self, Map, width_of};
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::axis::{Units, short};
+use super::draw::colour::{Rgb, hex};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::map::{self, Map};
 use super::{FigureError, Picture};
 use crate::acceptance::Outcome;
 use crate::design::Design;
@@ -69,7 +69,7 @@ pub fn difference(
         let frame = map.frame(rect, &units);
         map.paint(&mut svg, &frame, &colours)?;
         map::zero_lines(&mut svg, &frame);
-        let line = format!(r#"fill="none" stroke="{INK}" stroke-width="1.2" {}"#, map::JOIN);
+        let line = format!(r#"fill="none" stroke="{INK}" stroke-width="1.2" {JOIN}"#);
         svg.path(&map.border(&frame), &line);
         frame.outline(&mut svg);
         if row + 1 == rows.len() {
@@ -89,7 +89,7 @@ pub fn difference(
         svg.text([x + 19.0, y + 0.5], LABEL, Anchor::Start, INK, &words);
         x += 41.0 + width_of(&words, LABEL);
     }
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 /// Position in [`COLOURS`].

@@ -1,9 +1,9 @@
 //! The height of first contact over two errors, with contours and the border of the accepted set.
 
-use super::axis::{Frame, Units};
-use super::colour::{self, Rgb};
-use super::map::{self, JOIN, Map, width_of};
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::axis::{Frame, Units};
+use super::draw::colour::{self, Rgb};
+use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::map::{self, Map};
 use super::{FigureError, Picture, headline};
 use crate::acceptance::Acceptance;
 use crate::pose::{Dof, PoseError};
@@ -38,8 +38,8 @@ pub fn heights(
     let y = total - 22.0;
     svg.line([70.0, y - 4.0], [94.0, y - 4.0], r#"stroke="white" stroke-width="4""#);
     svg.line([70.0, y - 4.0], [94.0, y - 4.0], r#"stroke="black" stroke-width="1.8""#);
-    svg.text([101.0, y], LABEL, Anchor::Start, super::svg::INK, "border of the accepted set");
-    Ok(Picture { svg: svg.finish() })
+    svg.text([101.0, y], LABEL, Anchor::Start, super::draw::svg::INK, "border of the accepted set");
+    Ok(Picture::of(svg))
 }
 
 /// The map itself with its colour bar, which needs about 60 to the right.
@@ -77,7 +77,7 @@ pub(super) fn panel(
     frame.draw(svg);
     let label = scale.label.clone();
     map::colour_bar(svg, &frame, scale)?;
-    svg.text([rect.x + rect.w + 14.0, rect.y - 8.0], LABEL, Anchor::Start, super::svg::INK, &label);
+    svg.text([rect.x + rect.w + 14.0, rect.y - 8.0], LABEL, Anchor::Start, super::draw::svg::INK, &label);
     Ok(())
 }
 

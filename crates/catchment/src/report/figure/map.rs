@@ -1,8 +1,8 @@
 //! Maps over two errors: what slices, height maps and the overview share.
 
-use super::axis::{Frame, Units, short};
-use super::colour::{self, Rgb, hex};
-use super::svg::{Anchor, INK, LABEL, Rect, Svg, TICK, polyline};
+use super::draw::axis::{Frame, Units, short};
+use super::draw::colour::{self, Rgb, hex};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, Svg, TICK, polyline, width_of};
 use super::{FigureError, raster};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::Grid;
@@ -115,8 +115,6 @@ pub(super) fn inside(
     Ok(())
 }
 
-pub(super) const JOIN: &str = r#"stroke-linecap="round" stroke-linejoin="round""#;
-
 /// Thin lines through zero.
 pub(super) fn zero_lines(svg: &mut Svg, frame: &Frame) {
     let r = frame.rect;
@@ -188,20 +186,12 @@ pub(super) fn legend(svg: &mut Svg, acceptance: &Acceptance, onaa: bool, [x, y]:
     }
 }
 
-/// Width of a text in `DejaVu Sans`, near enough to lay things out: narrow, wide and other characters.
-pub(super) fn width_of(text: &str, size: f64) -> f64 {
-    let advance = |c: char| match c {
-        'i' | 'j' | 'l' | 'I' | '.' | ',' | ' ' | ':' => 0.3,
-        'f' | 't' | 'r' | '(' | ')' => 0.4,
-        'm' | 'w' | '%' | 'M' | 'W' => 0.93,
-        'A'..='Z' => 0.72,
-        _ => 0.62,
-    };
-    size * text.chars().map(advance).sum::<f64>()
-}
-
 /// A colour bar with ticks, to the right of a map.
-pub(super) fn colour_bar(svg: &mut Svg, map: &Frame, scale: super::axis::Scale) -> Result<(), FigureError> {
+pub(super) fn colour_bar(
+    svg: &mut Svg,
+    map: &Frame,
+    scale: super::draw::axis::Scale,
+) -> Result<(), FigureError> {
     const STEPS: usize = 128;
     let rect = Rect { x: map.rect.x + map.rect.w + 14.0, y: map.rect.y, w: 12.0, h: map.rect.h };
     let colours: Vec<Rgb> = (0..STEPS).map(|k| colour::sequential(k as f64 / (STEPS - 1) as f64)).collect();
@@ -215,8 +205,8 @@ pub(super) fn colour_bar(svg: &mut Svg, map: &Frame, scale: super::axis::Scale) 
             [rect.x + rect.w + 7.0, y + 3.8],
             TICK,
             Anchor::Start,
-            super::svg::SOFT,
-            &super::axis::tick_label(z),
+            super::draw::svg::SOFT,
+            &super::draw::axis::tick_label(z),
         );
     }
     Ok(())

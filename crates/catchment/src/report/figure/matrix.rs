@@ -8,11 +8,11 @@
 //!          x   y  roll pitch
 //! ```
 
-use super::axis::{Units, short};
-use super::colour::{self, hex};
-use super::map::{self, Map, width_of};
+use super::draw::axis::{Units, short};
+use super::draw::colour::{self, hex};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
+use super::map::{self, Map};
 use super::section::Placement;
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use super::{FigureError, Picture, solid};
 use crate::acceptance::Outcome;
 use crate::connector::Connector;
@@ -91,7 +91,7 @@ pub fn slice_matrix(design: &Design, connector: &Connector, found: &Slices) -> R
         solid::panel(&mut svg, corner, design, connector, &apart)?;
     }
     legend(&mut svg, found, height - 20.0);
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 /// Where the moving half is drawn: straight above, as the slices have it at their centre.

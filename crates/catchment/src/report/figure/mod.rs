@@ -27,13 +27,11 @@
 
 mod agreement;
 mod answer;
-mod axis;
 mod basins;
-mod chart;
-mod colour;
 mod convergence;
 mod curves;
 mod difference;
+pub mod draw;
 mod heights;
 mod map;
 mod matrix;
@@ -47,7 +45,6 @@ mod section;
 mod sensitivity;
 mod slices;
 mod solid;
-mod svg;
 mod trajectory;
 
 pub use agreement::agreement;
@@ -101,6 +98,11 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// What was drawn.
+    pub fn of(drawing: draw::svg::Svg) -> Self {
+        Self { svg: drawing.finish() }
+    }
+
     /// The picture as SVG. Text asks for `DejaVu Sans` and falls back to what the viewer has.
     pub fn svg(&self) -> &str {
         &self.svg

@@ -9,9 +9,9 @@
 //! ```
 
 use super::Picture;
-use super::axis::short;
-use super::colour::{Rgb, hex, mix, sequential};
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
+use super::draw::axis::short;
+use super::draw::colour::{Rgb, hex, mix, sequential};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 
 /// How a number becomes a colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,7 +92,7 @@ pub fn number_maps(sheet: &NumberSheet, maps: &[NumberMap]) -> Picture {
     for (k, map) in maps.iter().enumerate() {
         map.draw(&mut svg, [left + k as f64 * step, top], sheet.cell);
     }
-    Picture { svg: svg.finish() }
+    Picture::of(svg)
 }
 
 impl NumberMap<'_> {

@@ -1,9 +1,9 @@
 //! The picture of a design: its halves, its area of acceptance, its heights, side by side.
 
-use super::axis::Units;
+use super::draw::axis::Units;
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
 use super::map::{self, Map};
 use super::section::Placement;
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
 use super::{FigureError, Picture, cube, headline, heights, solid};
 use crate::acceptance::Acceptance;
 use crate::connector::Connector;
@@ -56,7 +56,7 @@ pub fn overview(
     let right = Rect { x: 762.0, y: top, w: side, h: side };
     heading(&mut svg, right.x, "height of first contact");
     heights::panel(&mut svg, &map, right, &units, height)?;
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The partition over two errors: every part of the contact space in the colour of its fate, and the exact outline of
 //! what is accepted.
 
-use super::axis::{Frame, Scale, Units};
-use super::colour::{self, hex};
-use super::map::{JOIN, legend, width_of, zero_lines};
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::draw::axis::{Frame, Scale, Units};
+use super::draw::colour::{self, hex};
+use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
+use super::map::{legend, zero_lines};
 use super::{FigureError, Picture, headline};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::method::partition::Partition;
@@ -68,5 +68,5 @@ pub fn partition(
     zero_lines(&mut svg, &frame);
     frame.draw(&mut svg);
     legend(&mut svg, acceptance, false, [rect.x, rect.y + rect.h + 62.0]);
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }

@@ -1,7 +1,7 @@
 //! Pixels: PNG images made from cells, and PNG pictures drawn from SVG.
 
 use super::FigureError;
-use super::colour::Rgb;
+use super::draw::colour::Rgb;
 use resvg::{tiny_skia, usvg};
 use std::sync::{Arc, OnceLock};
 

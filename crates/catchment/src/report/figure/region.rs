@@ -1,10 +1,9 @@
 //! Lateral offsets that contact corrects without any rotation: an area, or a stretch of one axis.
 
 use super::Picture;
-use super::axis::{Frame, Scale, Units};
-use super::colour::{self, hex};
-use super::map::JOIN;
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::draw::axis::{Frame, Scale, Units};
+use super::draw::colour::{self, hex};
+use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use crate::design::Design;
 use crate::method::zraa::Zraa;
 use crate::pose::Dof;
@@ -62,7 +61,7 @@ pub fn region(design: &Design, zraa: &Zraa) -> Picture {
     };
     svg.line([frame.px(0.0), rect.y], [frame.px(0.0), rect.y + rect.h], &dotted);
     frame.draw(&mut svg);
-    Picture { svg: svg.finish() }
+    Picture::of(svg)
 }
 
 /// Largest accepted offset along an axis, in D.

@@ -3,10 +3,9 @@
 //! The cut runs through y = 0, unless facets lie in that plane or nothing meets it (a connector in two layers): then one cut through the
 //! middle of either side is drawn, the farther one paler behind the nearer one.
 
-use super::axis::{Frame, Scale, Units};
-use super::colour::{self, Rgb, hex, mix};
-use super::map::JOIN;
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::draw::axis::{Frame, Scale, Units};
+use super::draw::colour::{self, Rgb, hex, mix};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use super::{FigureError, Picture};
 use crate::connector::{Connector, Half, Surface};
 use crate::design::Design;
@@ -54,7 +53,7 @@ pub fn section(
     let frame = view.frame(Rect { x: 72.0, y: 68.0, w: width, h: height });
     view.halves(&mut svg, &frame, placement);
     frame.draw(&mut svg);
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 /// The errors that are not zero, in words.

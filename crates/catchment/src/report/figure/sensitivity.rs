@@ -1,10 +1,10 @@
 //! The Sum against ρ, with its interval.
 
 use super::Picture;
-use super::axis::short;
-use super::chart::{Chart, Line, Point};
-use super::colour::CURVES;
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::axis::short;
+use super::draw::chart::{Chart, Line, Point};
+use super::draw::colour::CURVES;
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::design::Design;
 use crate::study::sensitivity::Sensitivity;
 
@@ -36,7 +36,7 @@ pub fn sensitivity(design: &Design, found: &Sensitivity) -> Picture {
         mark: Some((design.alignment.rotation_length, "this design")),
     };
     chart.draw(&mut svg);
-    Picture { svg: svg.finish() }
+    Picture::of(svg)
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Outcomes over pairs of errors, all others fixed.
 
-use super::axis::Units;
-use super::map::{self, Map, pairs_or_all, width_of};
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::draw::axis::Units;
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::map::{self, Map, pairs_or_all};
 use super::{FigureError, Picture, cube, headline};
 use crate::acceptance::Acceptance;
 use crate::merit::MeritError;
@@ -73,7 +73,7 @@ pub fn slices(
         }
     }
     map::legend(&mut svg, acceptance, !cube.is_empty(), [24.0, height - 20.0]);
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 //! A depth buffer shows halves that touch or overlap as they are, which sorting facets by distance cannot. The image
 //! is drawn three times larger than shown and averaged down; lines mark edges where the surface bends.
 
-use super::colour::{self, Rgb, mix};
+use super::draw::colour::{self, Rgb, mix};
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use super::section::{Placement, describe};
-use super::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use super::{FigureError, Picture, raster};
 use crate::connector::{Connector, Surface};
 use crate::design::Design;
@@ -28,7 +28,7 @@ pub fn solids(design: &Design, connector: &Connector, placement: &Placement) -> 
         connector,
         placement,
     )?;
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 /// The image alone.

@@ -1,10 +1,9 @@
 //! One motion: the moving half along its path in section, and the errors it still has.
 
-use super::axis::{Frame, Scale, Units};
-use super::colour::{self, hex};
-use super::map::{JOIN, width_of};
+use super::draw::axis::{Frame, Scale, Units};
+use super::draw::colour::{self, hex};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use super::section::{Placement, View, approach_axis, describe};
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use super::{FigureError, Picture};
 use crate::connector::Connector;
 use crate::design::Design;
@@ -54,7 +53,7 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     svg.end();
     frame.draw(&mut svg);
     errors(&mut svg, design, &path.waypoints, Rect { x: 590.0, y: 74.0, w: 340.0, h: height });
-    Ok(Picture { svg: svg.finish() })
+    Ok(Picture::of(svg))
 }
 
 const fn placed(w: &Waypoint) -> Placement {

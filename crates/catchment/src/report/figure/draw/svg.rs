@@ -6,33 +6,46 @@ use std::fmt::Write;
 
 /// A rectangle of the picture, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rect {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) w: f64,
-    pub(super) h: f64,
+pub struct Rect {
+    /// Left side.
+    pub x: f64,
+    /// Upper side.
+    pub y: f64,
+    /// Width.
+    pub w: f64,
+    /// Height.
+    pub h: f64,
 }
 
 /// Where a text hangs on its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub enum Anchor {
+    /// Its start.
     Start,
+    /// Its middle.
     Middle,
+    /// Its end.
     End,
 }
 
-/// Type sizes, in SVG units.
-pub(super) const TITLE: f64 = 15.0;
-pub(super) const LABEL: f64 = 12.0;
-pub(super) const TICK: f64 = 10.5;
+/// Size of a title, in SVG units.
+pub const TITLE: f64 = 15.0;
+/// Size of a label.
+pub const LABEL: f64 = 12.0;
+/// Size of the numbers at ticks.
+pub const TICK: f64 = 10.5;
 
-/// Colours of text and lines.
-pub(super) const INK: &str = "#1f2933";
-pub(super) const SOFT: &str = "#5f6b7a";
+/// The colour of text and lines.
+pub const INK: &str = "#1f2933";
+/// The colour of what is less important.
+pub const SOFT: &str = "#5f6b7a";
+
+/// Style of lines whose ends and corners are round.
+pub const JOIN: &str = r#"stroke-linecap="round" stroke-linejoin="round""#;
 
 /// A picture being drawn.
 #[derive(Debug)]
-pub(super) struct Svg {
+pub struct Svg {
     width: f64,
     height: f64,
     body: String,
@@ -40,7 +53,8 @@ pub(super) struct Svg {
 }
 
 impl Svg {
-    pub(super) const fn new(width: f64, height: f64) -> Self {
+    /// An empty picture of this size, in SVG units.
+    pub const fn new(width: f64, height: f64) -> Self {
         Self { width, height, body: String::new(), clips: 0 }
     }
 
@@ -50,37 +64,42 @@ impl Svg {
         self.body.push('\n');
     }
 
-    pub(super) fn rect(&mut self, r: Rect, style: &str) {
+    /// A rectangle; `style` is attributes.
+    pub fn rect(&mut self, r: Rect, style: &str) {
         let [x, y, w, h] = [r.x, r.y, r.w, r.h].map(n);
         self.push(format_args!(r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" {style}/>"#));
     }
 
-    pub(super) fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], style: &str) {
+    /// A line; `style` is attributes.
+    pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], style: &str) {
         let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(n);
         self.push(format_args!(r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" {style}/>"#));
     }
 
-    pub(super) fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &str) {
+    /// A circle; `style` is attributes.
+    pub fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &str) {
         self.push(format_args!(r#"<circle cx="{}" cy="{}" r="{}" {style}/>"#, n(x), n(y), n(radius)));
     }
 
     /// A path of the given data; nothing if that is empty.
-    pub(super) fn path(&mut self, data: &str, style: &str) {
+    pub fn path(&mut self, data: &str, style: &str) {
         if !data.is_empty() {
             self.push(format_args!(r#"<path d="{data}" {style}/>"#));
         }
     }
 
-    pub(super) fn text(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, fill: &str, content: &str) {
+    /// A text; what XML or a terminal could take amiss is escaped.
+    pub fn text(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, fill: &str, content: &str) {
         self.write_text([x, y], size, anchor, &format!(r#"fill="{fill}""#), content);
     }
 
-    pub(super) fn bold(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, content: &str) {
+    /// The same in bold ink.
+    pub fn bold(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, content: &str) {
         self.write_text([x, y], size, anchor, &format!(r#"fill="{INK}" font-weight="bold""#), content);
     }
 
     /// Text that reads upwards.
-    pub(super) fn text_up(&mut self, [x, y]: [f64; 2], size: f64, content: &str) {
+    pub fn text_up(&mut self, [x, y]: [f64; 2], size: f64, content: &str) {
         let turn = format!(r#"fill="{INK}" transform="rotate(-90 {} {})""#, n(x), n(y));
         self.write_text([x, y], size, Anchor::Middle, &turn, content);
     }
@@ -98,7 +117,7 @@ impl Svg {
     }
 
     /// An embedded PNG. `crisp` keeps its pixels square.
-    pub(super) fn image(&mut self, r: Rect, png: &[u8], crisp: bool) {
+    pub fn image(&mut self, r: Rect, png: &[u8], crisp: bool) {
         let [x, y, w, h] = [r.x, r.y, r.w, r.h].map(n);
         let rendering = if crisp { r#" style="image-rendering:pixelated""# } else { "" };
         let data = STANDARD.encode(png);
@@ -108,7 +127,7 @@ impl Svg {
     }
 
     /// Everything until [`Svg::end`] is cut off at the rectangle.
-    pub(super) fn begin_clip(&mut self, r: Rect) {
+    pub fn begin_clip(&mut self, r: Rect) {
         self.clips += 1;
         let id = self.clips;
         let [x, y, w, h] = [r.x, r.y, r.w, r.h].map(n);
@@ -118,15 +137,17 @@ impl Svg {
     }
 
     /// Everything until [`Svg::end`] is drawn with this opacity as a whole.
-    pub(super) fn begin_opacity(&mut self, opacity: f64) {
+    pub fn begin_opacity(&mut self, opacity: f64) {
         self.push(format_args!(r#"<g opacity="{}">"#, n(opacity)));
     }
 
-    pub(super) fn end(&mut self) {
+    /// Ends what was begun last.
+    pub fn end(&mut self) {
         self.body.push_str("</g>\n");
     }
 
-    pub(super) fn finish(self) -> String {
+    /// The whole file.
+    pub fn finish(self) -> String {
         let (w, h) = (n(self.width), n(self.height));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
@@ -138,14 +159,14 @@ impl Svg {
 }
 
 /// A number to a hundredth, without trailing zeros.
-pub(super) fn n(value: f64) -> String {
+pub fn n(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// Path data of a polyline; closed if `close`.
-pub(super) fn polyline(points: impl IntoIterator<Item = [f64; 2]>, close: bool) -> String {
+pub fn polyline(points: impl IntoIterator<Item = [f64; 2]>, close: bool) -> String {
     let mut data = String::new();
     for (k, [x, y]) in points.into_iter().enumerate() {
         data.push(if k == 0 { 'M' } else { 'L' });
@@ -172,6 +193,18 @@ fn escaped(text: &str) -> String {
         }
     }
     safe
+}
+
+/// Width of a text in `DejaVu Sans`, near enough to lay things out: narrow, wide and other characters.
+pub fn width_of(text: &str, size: f64) -> f64 {
+    let advance = |c: char| match c {
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ' ' | ':' => 0.3,
+        'f' | 't' | 'r' | '(' | ')' => 0.4,
+        'm' | 'w' | '%' | 'M' | 'W' => 0.93,
+        'A'..='Z' => 0.72,
+        _ => 0.62,
+    };
+    size * text.chars().map(advance).sum::<f64>()
 }
 
 #[cfg(test)]

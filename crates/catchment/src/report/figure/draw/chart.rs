@@ -2,37 +2,46 @@
 
 use super::axis::{Frame, Scale, tick_label};
 use super::colour::{Rgb, hex};
-use super::map::{JOIN, width_of};
-use super::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, polyline};
+use super::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 
 /// One line.
-pub(super) struct Line {
-    pub(super) name: String,
-    pub(super) colour: Rgb,
-    pub(super) points: Vec<Point>,
+pub struct Line {
+    /// What the legend calls it.
+    pub name: String,
+    /// Its colour.
+    pub colour: Rgb,
+    /// Its points, from left to right.
+    pub points: Vec<Point>,
 }
 
 /// One point of a line, with the interval of its value where it has one.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) interval: Option<[f64; 2]>,
+pub struct Point {
+    /// Along the logarithmic scale.
+    pub x: f64,
+    /// Its value.
+    pub y: f64,
+    /// The interval of the value.
+    pub interval: Option<[f64; 2]>,
 }
 
 /// A chart over a logarithmic x scale.
-pub(super) struct Chart<'a> {
-    pub(super) rect: Rect,
-    pub(super) x_label: &'a str,
-    pub(super) y_label: &'a str,
-    pub(super) lines: &'a [Line],
+pub struct Chart<'a> {
+    /// Where it lies in the picture.
+    pub rect: Rect,
+    /// What the x scale measures.
+    pub x_label: &'a str,
+    /// What the y scale measures.
+    pub y_label: &'a str,
+    /// The lines.
+    pub lines: &'a [Line],
     /// A value to mark on the x scale, and what it is.
-    pub(super) mark: Option<(f64, &'a str)>,
+    pub mark: Option<(f64, &'a str)>,
 }
 
 impl Chart<'_> {
     /// Draws the chart; needs about 56 to the left and 38 below. Points whose x is not positive are left out.
-    pub(super) fn draw(&self, svg: &mut Svg) {
+    pub fn draw(&self, svg: &mut Svg) {
         let Some(frame) = self.frame() else { return };
         let r = self.rect;
         let grid = format!(r#"stroke="{SOFT}" stroke-opacity="0.18" stroke-width="0.8""#);
@@ -139,7 +148,7 @@ impl Line {
 }
 
 /// The names of lines, from left to right.
-pub(super) fn legend(svg: &mut Svg, lines: &[Line], [mut x, y]: [f64; 2]) {
+pub fn legend(svg: &mut Svg, lines: &[Line], [mut x, y]: [f64; 2]) {
     for line in lines {
         let style = format!(r#"stroke="{}" stroke-width="2.4""#, hex(line.colour));
         svg.line([x, y - 4.0], [x + 18.0, y - 4.0], &style);

@@ -2,19 +2,22 @@
 
 use crate::acceptance::Outcome;
 
-pub(super) type Rgb = [u8; 3];
+/// Red, green and blue.
+pub type Rgb = [u8; 3];
 
 /// Where nothing is known or nothing touches.
-pub(super) const NOTHING: Rgb = [0xe6, 0xe9, 0xed];
-/// The fixed half, and its outline.
-pub(super) const FIXED: Rgb = [0x8f, 0xa9, 0xc9];
-pub(super) const FIXED_EDGE: Rgb = [0x2d, 0x42, 0x61];
-/// The moving half, and its outline.
-pub(super) const MOVING: Rgb = [0xee, 0xb8, 0x6c];
-pub(super) const MOVING_EDGE: Rgb = [0x82, 0x50, 0x12];
+pub const NOTHING: Rgb = [0xe6, 0xe9, 0xed];
+/// The fixed half.
+pub const FIXED: Rgb = [0x8f, 0xa9, 0xc9];
+/// Its outline.
+pub const FIXED_EDGE: Rgb = [0x2d, 0x42, 0x61];
+/// The moving half.
+pub const MOVING: Rgb = [0xee, 0xb8, 0x6c];
+/// Its outline.
+pub const MOVING_EDGE: Rgb = [0x82, 0x50, 0x12];
 
 /// The colour of an outcome in a map.
-pub(super) const fn outcome(outcome: Outcome) -> Rgb {
+pub const fn outcome(outcome: Outcome) -> Rgb {
     match outcome {
         Outcome::Aligned => [0x4b, 0x95, 0xc9],
         Outcome::Jammed => [0xf4, 0xc0, 0x7a],
@@ -24,7 +27,7 @@ pub(super) const fn outcome(outcome: Outcome) -> Rgb {
 }
 
 /// The colour of an error's curve, in the order of `Dof::ALL` (Okabe and Ito's palette).
-pub(super) const CURVES: [Rgb; 5] =
+pub const CURVES: [Rgb; 5] =
     [[0x00, 0x72, 0xb2], [0xd5, 0x5e, 0x00], [0x00, 0x9e, 0x73], [0xcc, 0x79, 0xa7], [0x7a, 0x6a, 0x00]];
 
 /// Sequential map for heights, low to high: viridis (van der Walt and Smith, CC0) at nine points.
@@ -41,19 +44,19 @@ const VIRIDIS: [Rgb; 9] = [
 ];
 
 /// The colour of `share` in [0, 1].
-pub(super) fn sequential(share: f64) -> Rgb {
+pub fn sequential(share: f64) -> Rgb {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let k = (place as usize).min(VIRIDIS.len() - 2);
     mix(VIRIDIS[k], VIRIDIS[k + 1], place - k as f64)
 }
 
 /// `share` of `b`, the rest of `a`.
-pub(super) fn mix(a: Rgb, b: Rgb, share: f64) -> Rgb {
+pub fn mix(a: Rgb, b: Rgb, share: f64) -> Rgb {
     let channel = |k: usize| (f64::from(a[k]) * (1.0 - share) + f64::from(b[k]) * share).round() as u8;
     [channel(0), channel(1), channel(2)]
 }
 
 /// `#rrggbb`.
-pub(super) fn hex([r, g, b]: Rgb) -> String {
+pub fn hex([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }

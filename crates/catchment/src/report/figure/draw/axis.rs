@@ -7,14 +7,15 @@ use crate::pose::Dof;
 
 /// How a design's lengths and angles are shown.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Units {
+pub struct Units {
     /// What one D is called on an axis.
     width: f64,
     symbol: &'static str,
 }
 
 impl Units {
-    pub(super) fn of(design: &Design) -> Self {
+    /// Those of a design.
+    pub fn of(design: &Design) -> Self {
         match design.unit {
             Some(unit) => Self { width: design.width, symbol: unit.symbol() },
             None => Self { width: 1.0, symbol: "D" },
@@ -22,17 +23,17 @@ impl Units {
     }
 
     /// What a library value must be multiplied by to be shown.
-    pub(super) fn factor(&self, dof: Dof) -> f64 {
+    pub fn factor(&self, dof: Dof) -> f64 {
         if dof.is_rotation() { 1f64.to_degrees() } else { self.width }
     }
 
     /// `x [mm]`, `pitch [deg]`.
-    pub(super) fn label(&self, dof: Dof) -> String {
+    pub fn label(&self, dof: Dof) -> String {
         format!("{} [{}]", dof.name(), if dof.is_rotation() { "deg" } else { self.symbol })
     }
 
     /// `x = 12.5 mm`, `pitch = 30°`.
-    pub(super) fn value(&self, dof: Dof, value: f64) -> String {
+    pub fn value(&self, dof: Dof, value: f64) -> String {
         let shown = short(value * self.factor(dof));
         if dof.is_rotation() {
             format!("{} = {shown}°", dof.name())
@@ -42,29 +43,29 @@ impl Units {
     }
 
     /// The scale of an error axis of a grid.
-    pub(super) fn axis(&self, axis: &GridAxis) -> Scale {
+    pub fn axis(&self, axis: &GridAxis) -> Scale {
         let factor = self.factor(axis.dof);
         Scale::new(self.label(axis.dof), axis.lo * factor, axis.hi * factor, axis.dof.is_rotation())
     }
 
     /// The scale of a length that is no error.
-    pub(super) fn length(&self, name: &str, lo: f64, hi: f64) -> Scale {
+    pub fn length(&self, name: &str, lo: f64, hi: f64) -> Scale {
         Scale::new(format!("{name} [{}]", self.symbol), lo * self.width, hi * self.width, false)
     }
 
     /// The unit of lengths.
-    pub(super) const fn symbol(&self) -> &'static str {
+    pub const fn symbol(&self) -> &'static str {
         self.symbol
     }
 
     /// What a length in D must be multiplied by to be shown.
-    pub(super) const fn lengths(&self) -> f64 {
+    pub const fn lengths(&self) -> f64 {
         self.width
     }
 }
 
 /// One decimal less than would be noise.
-pub(super) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     let digits = if value.abs() >= 100.0 {
         0
     } else if value.abs() >= 10.0 {
@@ -79,20 +80,24 @@ pub(super) fn short(value: f64) -> String {
 
 /// A labelled range of shown values.
 #[derive(Debug, Clone)]
-pub(super) struct Scale {
-    pub(super) label: String,
-    pub(super) lo: f64,
-    pub(super) hi: f64,
+pub struct Scale {
+    /// What is measured, with its unit.
+    pub label: String,
+    /// Where it begins.
+    pub lo: f64,
+    /// Where it ends.
+    pub hi: f64,
     degrees: bool,
 }
 
 impl Scale {
-    pub(super) const fn new(label: String, lo: f64, hi: f64, degrees: bool) -> Self {
+    /// A range with its label; `degrees` asks for ticks at multiples of 15 where they fit.
+    pub const fn new(label: String, lo: f64, hi: f64, degrees: bool) -> Self {
         Self { label, lo, hi, degrees }
     }
 
     /// Round numbers in the range, about `wanted` of them.
-    pub(super) fn ticks(&self, wanted: usize) -> Vec<f64> {
+    pub fn ticks(&self, wanted: usize) -> Vec<f64> {
         /// A step may be this much finer than wanted before the next rounder one is taken.
         const FINER: f64 = 0.8;
         const DEGREES: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0];
@@ -123,34 +128,40 @@ impl Scale {
 
 /// A frame with two scales: shown values to places in the picture.
 #[derive(Debug, Clone)]
-pub(super) struct Frame {
-    pub(super) rect: Rect,
-    pub(super) x: Scale,
-    pub(super) y: Scale,
+pub struct Frame {
+    /// Where it lies in the picture.
+    pub rect: Rect,
+    /// The scale of its lower side.
+    pub x: Scale,
+    /// The scale of its left side.
+    pub y: Scale,
 }
 
 impl Frame {
-    pub(super) fn px(&self, x: f64) -> f64 {
+    /// Across the picture, of a shown value.
+    pub fn px(&self, x: f64) -> f64 {
         self.rect.x + (x - self.x.lo) / (self.x.hi - self.x.lo) * self.rect.w
     }
 
-    pub(super) fn py(&self, y: f64) -> f64 {
+    /// Down the picture, of a shown value.
+    pub fn py(&self, y: f64) -> f64 {
         self.rect.y + self.rect.h - (y - self.y.lo) / (self.y.hi - self.y.lo) * self.rect.h
     }
 
-    pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    /// The place of two shown values.
+    pub fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.px(x), self.py(y)]
     }
 
     /// Outline, ticks and labels; needs about 46 to the left and 38 below.
-    pub(super) fn draw(&self, svg: &mut Svg) {
+    pub fn draw(&self, svg: &mut Svg) {
         self.below(svg);
         self.beside(svg);
         self.outline(svg);
     }
 
     /// Ticks and label of the lower side.
-    pub(super) fn below(&self, svg: &mut Svg) {
+    pub fn below(&self, svg: &mut Svg) {
         let r = self.rect;
         for x in self.x.ticks((r.w / 46.0) as usize) {
             let px = self.px(x);
@@ -161,7 +172,7 @@ impl Frame {
     }
 
     /// Ticks and label of the left side.
-    pub(super) fn beside(&self, svg: &mut Svg) {
+    pub fn beside(&self, svg: &mut Svg) {
         let r = self.rect;
         for y in self.y.ticks((r.h / 40.0) as usize) {
             let py = self.py(y);
@@ -171,7 +182,8 @@ impl Frame {
         svg.text_up([r.x - 38.0, r.y + 0.5 * r.h], LABEL, &self.y.label);
     }
 
-    pub(super) fn outline(&self, svg: &mut Svg) {
+    /// Its outline alone.
+    pub fn outline(&self, svg: &mut Svg) {
         svg.rect(self.rect, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="1""#));
     }
 }
@@ -180,7 +192,7 @@ impl Frame {
 const TICK_LINE: &str = r##"stroke="#5f6b7a" stroke-width="0.8""##;
 
 /// A tick's number: multiples of a round step need few digits.
-pub(super) fn tick_label(value: f64) -> String {
+pub fn tick_label(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}").replace('-', "−") }
 }

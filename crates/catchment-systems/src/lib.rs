@@ -1,0 +1,16 @@
+//! What stands on a connector's area of acceptance.
+//!
+//! The crate `catchment` knows one pair of halves and the errors that their contact corrects. Here is what engineers build with
+//! such a pair:
+//!
+//! ```text
+//!   catalog   published docking systems, their areas of acceptance, and where a design stands among them
+//!   compose   two halves that both move: the region over which they meet
+//!   latch     the latching X-Face: geometry, stiffness, forces, drawings for the laser cutter
+//!   chain     chains of modules: where their last face ends up, and whether it docks
+//!   invert    wanted heights and one half give the other
+//! ```
+//!
+//! Each stands by itself on `catchment`, which knows none of them. [`form`] reads their files.
+
+pub mod form;

@@ -1,0 +1,22 @@
+//! What pictures are drawn with: a thin writer of SVG, frames with round ticks, charts, colours.
+//!
+//! Public so that a picture of something else looks like those of this crate:
+//!
+//! ```
+//! use catchment::report::figure::Picture;
+//! use catchment::report::figure::draw::axis::{Frame, Scale};
+//! use catchment::report::figure::draw::svg::{Rect, Svg};
+//!
+//! let mut svg = Svg::new(300.0, 240.0);
+//! let rect = Rect { x: 60.0, y: 20.0, w: 220.0, h: 160.0 };
+//! let length = |name: &str| Scale::new(format!("{name} [mm]"), 0.0, 50.0, false);
+//! let frame = Frame { rect, x: length("x"), y: length("y") };
+//! frame.draw(&mut svg);
+//! svg.circle(frame.at([25.0, 10.0]), 3.0, r##"fill="#2d4261""##);
+//! assert!(Picture::of(svg).svg().contains("y [mm]"));
+//! ```
+
+pub mod axis;
+pub mod chart;
+pub mod colour;
+pub mod svg;
