@@ -23,6 +23,7 @@ use std::path::PathBuf;
         catchment run design.toml -o out        its area of acceptance, with pictures\n  \
         catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
         catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
+        catchment sweep design.toml --over aspect_ratio=0.5,1,2 --over cor=-1..1/5\n                                          many designs at once\n  \
         catchment outcome design.toml --poses poses.csv\n                                          what becomes of listed errors\n  \
         catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" -o trace.png\n                                          the way of one of them\n  \
         catchment zraa design.toml              offsets corrected by sliding alone\n  \
@@ -66,7 +67,23 @@ pub(crate) struct DesignArgs {
 impl DesignArgs {
     /// Reads the file and applies the changes.
     pub(crate) fn draft(&self) -> Result<Draft, ProblemError> {
-        let mut draft = Draft::open(&self.path)?;
+        self.change(Draft::open(&self.path)?)
+    }
+
+    /// Options that change the design, and the keys that they change.
+    pub(crate) fn changed(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        [
+            ("--free", "alignment.free", self.free.is_some()),
+            ("--cor", "alignment.center_of_rotation", self.cor.is_some()),
+            ("--aspect-ratio", "connector.aspect_ratio", self.aspect_ratio.is_some()),
+            ("--rotation-length", "alignment.rotation_length", self.rotation_length.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(option, key, given)| given.then_some((option, key)))
+    }
+
+    /// Applies the changes.
+    pub(crate) fn change(&self, mut draft: Draft) -> Result<Draft, ProblemError> {
         if let Some(free) = self.free {
             draft = draft.change("--free", |design| design.with_free(free))?;
         }

@@ -89,7 +89,12 @@ static WRITTEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// A file or folder is complete, whatever happens from now on.
 pub(crate) fn written(path: &Path) {
-    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).push(path.display().to_string());
+    kept(&path.display().to_string());
+}
+
+/// Something is complete, whatever happens from now on.
+pub(crate) fn kept(what: &str) {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).push(what.to_owned());
 }
 
 /// What is there although the command did not come to its end.

@@ -11,6 +11,7 @@ mod reproduce;
 mod run;
 mod schema;
 mod slices;
+mod sweep;
 mod trace;
 mod zraa;
 
@@ -26,6 +27,7 @@ pub(crate) enum Command {
     Run(Box<run::RunArgs>),
     Compare(compare::CompareArgs),
     Slices(Box<slices::SlicesArgs>),
+    Sweep(Box<sweep::SweepArgs>),
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
@@ -45,6 +47,7 @@ impl Command {
             Self::Run(args) => run::run(&args),
             Self::Compare(args) => compare::run(&args),
             Self::Slices(args) => slices::run(&args),
+            Self::Sweep(args) => sweep::run(&args),
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),

@@ -51,6 +51,7 @@ pub fn published(table: &TableComparison) -> Result<Picture, FigureError> {
     };
     let (rows, columns) = (&table.rows[..], &table.columns[..]);
     let map = |title, values, colouring| NumberMap {
+        marks: Vec::new(),
         title,
         rows,
         columns,

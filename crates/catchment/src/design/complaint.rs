@@ -53,6 +53,22 @@ pub enum Complaint {
         /// The keys that the table has.
         known: Vec<&'static str>,
     },
+    /// A name that no key has.
+    #[error("no key of a design is called `{name}`")]
+    NoSuchKey {
+        /// As written.
+        name: String,
+        /// What it probably stands for.
+        meant: Option<String>,
+    },
+    /// A name that several keys have.
+    #[error("several keys are called `{name}`")]
+    AmbiguousKey {
+        /// As written.
+        name: String,
+        /// Their paths.
+        paths: Vec<String>,
+    },
     /// A value of another type.
     #[error("`{key}` should be {expected}, not {found}")]
     WrongType {
@@ -270,6 +286,9 @@ impl Complaint {
             Self::UnknownKey { meant: Some(word), .. } => Some(format!("did you mean `{word}`?")),
             Self::UnknownKey { elsewhere: Some(table), .. } => Some(format!("it belongs to {table}")),
             Self::UnknownKey { known, .. } => Some(format!("keys here: {}", known.join(", "))),
+            Self::NoSuchKey { meant, .. } => did_you_mean(meant.as_deref())
+                .or_else(|| Some("`catchment schema` lists the keys; cor and rho are short for two of them".to_owned())),
+            Self::AmbiguousKey { paths, .. } => Some(format!("write {}", paths.join(" or "))),
             Self::OutOfRange { doc, range, .. } if range.unit == "rad" => {
                 Some(format!("{doc} Bare angles are radians; degrees are written \"30 deg\""))
             }

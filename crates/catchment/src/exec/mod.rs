@@ -20,7 +20,7 @@ use clock::Deadline;
 use progress::Reporter;
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 use threads::Threads;
 
@@ -130,6 +130,32 @@ impl Exec {
     /// Runs `work` on these threads; rayon iterators inside it use them.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.threads.install(work)
+    }
+
+    /// Does `count` pieces of work, and returns what they give in order. At most `side_by_side` run at once, each on one thread that works for
+    /// it alone and reports no progress of its own: good for many small pieces of different size. The share that is done is
+    /// reported as `stage`.
+    pub fn each<T: Send>(
+        &self,
+        count: usize,
+        side_by_side: usize,
+        stage: &'static str,
+        work: impl Fn(usize, &Self) -> T + Sync,
+    ) -> Vec<T> {
+        let lanes = self.threads().min(side_by_side).min(count);
+        let done = AtomicUsize::new(0);
+        let finished = |value| {
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            self.report(done as f64 / count as f64, stage);
+            value
+        };
+        self.report(0.0, stage);
+        if lanes <= 1 {
+            let alone = Self { progress: None, ..self.clone() };
+            return (0..count).map(|k| finished(work(k, &alone))).collect();
+        }
+        let lane = Self { threads: Threads::Here, progress: None, ..self.clone() };
+        threads::side_by_side(count, lanes, |k| finished(work(k, &lane)))
     }
 
     /// Bytes one result may use: the set budget, else three quarters of the memory the system says is free. Never more

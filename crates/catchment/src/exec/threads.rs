@@ -5,11 +5,14 @@
 //!   with_threads(n)   a pool of n threads of its own, or an error
 //!   otherwise         one pool for all runs that do not ask: a thread per core, half as many while the system refuses,
 //!                     and at last none: the caller's own thread does everything
+//!   each              pieces of work side by side, every one on a thread that works for it alone
 //! ```
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::num::NonZero;
-use std::sync::{Arc, OnceLock};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread::Builder;
 
 /// The system refuses threads.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -29,6 +32,8 @@ pub(super) enum Threads {
     Shared,
     /// In a pool of its own.
     Own(Arc<ThreadPool>),
+    /// On the caller's own thread.
+    Here,
 }
 
 impl Threads {
@@ -42,6 +47,7 @@ impl Threads {
         match self {
             Self::Shared => shared(),
             Self::Own(pool) => Some(pool),
+            Self::Here => None,
         }
     }
 
@@ -55,6 +61,28 @@ impl Threads {
             None => alone(work),
         }
     }
+}
+
+/// Hands the numbers below `count` to `work`, on `lanes` threads that share nothing: a pool would let a thread that waits in one
+/// piece begin another, and hold both in memory. Without threads everything happens here.
+pub(super) fn side_by_side<T: Send>(count: usize, lanes: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let done: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
+    let next = AtomicUsize::new(0);
+    let lane = || {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(slot) = done.get(number) else { break };
+            let value = work(number);
+            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(value);
+        }
+    };
+    std::thread::scope(|scope| {
+        let started = (0..lanes).filter(|_| Builder::new().spawn_scoped(scope, lane).is_ok()).count();
+        if started == 0 {
+            lane();
+        }
+    });
+    done.into_iter().filter_map(|slot| slot.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
 }
 
 /// The pool of all runs that did not ask for one, if the system gives a thread at all.
@@ -97,6 +125,15 @@ mod tests {
             [20, 13, 12, 5, 2, 1, 0].map(limited),
             [Some(13), Some(13), Some(6), Some(3), Some(1), Some(1), None]
         );
+    }
+
+    #[test]
+    fn work_side_by_side_comes_back_in_order() {
+        for lanes in [0, 1, 3, 20] {
+            let squares =
+                side_by_side(10, lanes, |k| Threads::Here.install(|| (0..=k).into_par_iter().sum::<usize>()));
+            assert_eq!(squares, (0..10).map(|k| k * (k + 1) / 2).collect::<Vec<_>>());
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@
 use super::figure::Drawn;
 use super::folder::{REPORT, RESULT, SaveError, encode, save_files, write_all};
 use super::write::{self, WriteError};
-use super::{Report, SlicesReport, zarr};
+use super::{Report, SlicesReport, SweepReport, zarr};
 use crate::exec::Exec;
 use crate::problem::Problem;
 use crate::run::{Answer, RunError};
@@ -100,6 +100,16 @@ impl Slices {
             zarr::write(&folder.join(of.name() + ".zarr"), &whole, &slice.acceptance, None, exec)?;
         }
         Ok(())
+    }
+}
+
+impl SweepReport {
+    /// Writes the Zarr group `sweep.zarr` into a folder that is being filled.
+    ///
+    /// # Errors
+    /// Whatever the system refuses, or it was asked to stop.
+    pub fn save_group(&self, folder: &Path, exec: &Exec) -> Result<(), SaveError> {
+        Ok(zarr::fill_sweep(folder, self, exec)?)
     }
 }
 

@@ -12,8 +12,10 @@
 
 mod outcomes;
 mod read;
+mod sweep;
 
 pub use read::read;
+pub(super) use sweep::fill as fill_sweep;
 
 use super::schema::{Report, Unit};
 use super::write::{self, WriteError};
@@ -129,28 +131,12 @@ fn fill(
     let store = Arc::new(FilesystemStore::new(folder).map_err(storage)?);
     let mut arrays = Map::new();
     for axis in &grid.axes {
-        let attributes = json!({
-            "long_name": long_name(axis),
-            "units": units(axis),
-            "lower_border": axis.lo,
-            "upper_border": axis.hi,
-        });
-        let plan = Plan {
-            name: axis.dof.name(),
-            axes: &[*axis],
-            kind: data_type::float64(),
-            fill: f64::NAN,
-            folder,
-            exec,
-        };
-        arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, |k| axis.center(k))?);
+        arrays.insert(axis.dof.name().to_owned(), coordinate(axis, &store, folder, exec)?);
     }
-    let attributes = json!({
-        "long_name": format!("outcome by {}", acceptance.method),
-        "flag_values": Outcome::ALL.map(|o| o as u8),
-        "flag_meanings": Outcome::ALL.map(Outcome::name).join(" "),
-    });
-    let plan = Plan { name: "outcome", axes: &grid.axes, kind: data_type::uint8(), fill: 0u8, folder, exec };
+    let dimensions: Vec<(&str, usize)> = grid.axes.iter().map(|axis| (axis.dof.name(), axis.cells)).collect();
+    let attributes = outcome_attributes(acceptance.method);
+    let plan =
+        Plan { name: "outcome", dimensions: &dimensions, kind: data_type::uint8(), fill: 0u8, folder, exec };
     let code = |cell: usize| acceptance.outcomes[cell] as u8;
     arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, code)?);
     if let Some(heights) = heights {
@@ -158,7 +144,7 @@ fn fill(
         let attributes = json!({ "long_name": "z of the centre of rotation at first contact", "units": "D" });
         let plan = Plan {
             name: "height",
-            axes: &grid.axes,
+            dimensions: &dimensions,
             kind: data_type::float32(),
             fill: f32::NAN,
             folder,
@@ -166,7 +152,11 @@ fn fill(
         };
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, finite)?);
     }
-    let report = serde_json::to_value(report).map_err(storage)?;
+    finish(folder, serde_json::to_value(report).map_err(storage)?, arrays)
+}
+
+/// Writes the group's own metadata, with those of all its arrays.
+fn finish(folder: &Path, report: Value, arrays: Map<String, Value>) -> Result<(), ZarrError> {
     let root = json!({
         "zarr_format": 3,
         "node_type": "group",
@@ -175,6 +165,33 @@ fn fill(
     });
     let text = serde_json::to_string_pretty(&root).map_err(storage)?;
     Ok(write::part(folder, "zarr.json", text.as_bytes())?)
+}
+
+/// The centres of the cells of an axis.
+fn coordinate(
+    axis: &GridAxis,
+    store: &Arc<FilesystemStore>,
+    folder: &Path,
+    exec: &Exec,
+) -> Result<Value, ZarrError> {
+    let attributes = json!({
+        "long_name": long_name(axis),
+        "units": units(axis),
+        "lower_border": axis.lo,
+        "upper_border": axis.hi,
+    });
+    let name = axis.dof.name();
+    let dimensions = &[(name, axis.cells)];
+    let plan = Plan { name, dimensions, kind: data_type::float64(), fill: f64::NAN, folder, exec };
+    plan.write(store, attributes, |k| axis.center(k))
+}
+
+fn outcome_attributes(method: &str) -> Value {
+    json!({
+        "long_name": format!("outcome by {method}"),
+        "flag_values": Outcome::ALL.map(|o| o as u8),
+        "flag_meanings": Outcome::ALL.map(Outcome::name).join(" "),
+    })
 }
 
 fn long_name(axis: &GridAxis) -> String {
@@ -191,10 +208,10 @@ const fn units(axis: &GridAxis) -> &'static str {
     }
 }
 
-/// An array to be written: axes with the fastest first, as in a grid.
+/// An array to be written: dimensions with the fastest first, as in a grid.
 struct Plan<'a, T> {
-    name: &'static str,
-    axes: &'a [GridAxis],
+    name: &'a str,
+    dimensions: &'a [(&'a str, usize)],
     kind: DataType,
     fill: T,
     folder: &'a Path,
@@ -212,7 +229,7 @@ where
         attributes: Value,
         value: impl Fn(usize) -> T + Sync,
     ) -> Result<Value, ZarrError> {
-        let shape: Vec<usize> = self.axes.iter().rev().map(|a| a.cells).collect();
+        let shape: Vec<usize> = self.dimensions.iter().rev().map(|(_, cells)| *cells).collect();
         let chunk = chunk_shape(&shape);
         let wide = |shape: &[usize]| shape.iter().map(|n| *n as u64).collect::<Vec<u64>>();
         let codec = GzipCodec::new(COMPRESSION).map_err(storage)?;
@@ -223,7 +240,7 @@ where
         let array: Array<FilesystemStore> =
             ArrayBuilder::new(wide(&shape), wide(&chunk), self.kind.clone(), FillValue::from(self.fill))
                 .bytes_to_bytes_codecs(vec![Arc::new(codec)])
-                .dimension_names(Some(self.axes.iter().rev().map(|a| a.dof.name())))
+                .dimension_names(Some(self.dimensions.iter().rev().map(|(name, _)| *name)))
                 .attributes(attributes)
                 .build(Arc::clone(store), &format!("/{}", self.name))
                 .map_err(storage)?;

@@ -5,6 +5,8 @@ mod place;
 mod sample;
 mod study;
 
+pub(super) use sample::SampleArgs;
+
 use crate::advice;
 use crate::args::DesignArgs;
 use crate::error_args::ErrorArgs;

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// When the sampling stops, and what it starts from.
 #[derive(Debug, Args)]
-pub(super) struct SampleArgs {
+pub(crate) struct SampleArgs {
     /// Random poses followed exactly to correct the Sum, 0 for none [default: 4000, fewer for round halves; 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
     pub(super) samples: Option<u32>,
@@ -20,14 +20,14 @@ pub(super) struct SampleArgs {
     pub(super) tolerance: Option<f64>,
     /// Seed of the random poses
     #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = SUM)]
-    pub(super) seed: u64,
+    pub(crate) seed: u64,
 }
 
 const SUM: &str = "How sure the Sum is";
 
 impl SampleArgs {
     /// What was asked for.
-    pub(super) fn sample(&self) -> Sample {
+    pub(crate) fn sample(&self) -> Sample {
         match (self.samples, self.budget, self.tolerance) {
             (_, Some(budget), _) => Sample::Until(Stop::Budget(budget)),
             (_, _, Some(share)) => Sample::Until(Stop::Tolerance(share)),

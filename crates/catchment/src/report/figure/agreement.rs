@@ -13,6 +13,7 @@ pub fn agreement(report: &AgreementReport) -> Picture {
         columns: &names,
         values: report.agreement.iter().map(|row| row.iter().map(of).collect()).collect(),
         digits: Digits::Decimals(4),
+        marks: Vec::new(),
         // Agreement of half the cells is no better than chance.
         colouring: Colouring::Deficit([0.5, 1.0]),
     };

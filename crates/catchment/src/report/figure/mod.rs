@@ -9,6 +9,7 @@
 //!   number_maps tables of numbers in colours, side by side
 //!   curves      any curves over a logarithmic scale, side by side
 //!   sensitivity the Sum against rho
+//!   sweep       the Sum of many designs in colours, and what each accepts
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
@@ -45,6 +46,7 @@ mod section;
 mod sensitivity;
 mod slices;
 mod solid;
+mod sweep;
 mod trajectory;
 
 pub use agreement::agreement;
@@ -64,6 +66,7 @@ pub use section::{Placement, section};
 pub use sensitivity::sensitivity;
 pub use slices::slices;
 pub use solid::solids;
+pub use sweep::{sweep_map, sweep_outlines};
 pub use trajectory::trajectory;
 
 use super::schema::Interval;

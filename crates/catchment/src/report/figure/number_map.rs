@@ -51,6 +51,8 @@ pub struct NumberMap<'a> {
     pub digits: Digits,
     /// Their colours.
     pub colouring: Colouring,
+    /// Row and column of cells that stand out, and their marks.
+    pub marks: Vec<([usize; 2], &'a str)>,
 }
 
 /// What stands above the maps, and their sizes, in units of the drawing.
@@ -112,6 +114,9 @@ impl NumberMap<'_> {
                 let ink = if is_dark(fill) { "#ffffff" } else { INK };
                 let place = [rect.x + 0.5 * w, rect.y + 0.5 * h + 3.6];
                 svg.text(place, TICK - 1.0, Anchor::Middle, ink, &self.digits.write(*value));
+                for (_, mark) in self.marks.iter().filter(|(cell, _)| *cell == [j, k]) {
+                    svg.text([rect.x + w - 4.0, rect.y + 11.0], TICK - 1.0, Anchor::End, ink, mark);
+                }
             }
         }
     }
@@ -157,6 +162,7 @@ mod tests {
     fn every_number_has_its_cell_and_nothing_has_none() {
         let names = ["a", "b"].map(str::to_owned);
         let map = |colouring| NumberMap {
+            marks: vec![([0, 0], "▲")],
             title: "numbers",
             rows: &names,
             columns: &names,

@@ -1,0 +1,153 @@
+//! `catchment sweep`: one design with keys of its file replaced, every combination computed.
+
+use super::run::{SampleArgs, resolution};
+use crate::args::DesignArgs;
+use crate::error_args::ErrorArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::method_args::{Choice, MethodArgs};
+use crate::output::{kept, tell, written};
+use catchment::design::SourceText;
+use catchment::exec::Exec;
+use catchment::landscape::Resolution;
+use catchment::report::folder::{StudyFolder, encode};
+use catchment::report::schema::Timing;
+use catchment::report::{Parts, SweepReport, figure};
+use catchment::run::{Over, Run, RunError};
+use catchment::study::sweep::{Axis, Keep, Nowhere, Plan, Settings, Sweep, SweepError};
+use clap::Args;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Sweep design parameters: every combination of values, computed and compared
+///
+/// Each --over names a key of the design file and its values; every combination is a design of its own, computed as `run`
+/// computes one. A combination whose halves do not build or do not meet is told with its reason and stops nothing.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment sweep design.toml --over aspect_ratio=0.25,0.5,1,2,4 --over cor=-1..1/5 -o out\n  \
+    catchment sweep design.toml --over 'errors.yaw=10..30 deg/5' --free x,y,yaw\n  \
+    catchment sweep design.toml --over family=v-face,s-face,x-face --samples 20000\n  \
+    catchment sweep design.toml --over connector.moving.mesh=a.stl,b.stl --json | jq '.designs[].figures.sum'\n\n\
+    A key is written as its path (errors.x), or as its last word where no other key has it; cor and rho are short for\n\
+    center_of_rotation and rotation_length. -1..1/5 is five values from -1 to 1.\n\
+    -o DIR: sweep.csv, sweep.png and outlines.png (also .svg), report.json, sweep.zarr. Until it is complete, finished designs are\n\
+    kept in DIR.parts: the same command goes on from there after Ctrl-C, and writes what it would have written.")]
+pub(crate) struct SweepArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// A key of the design file and its values, such as aspect_ratio=0.5,1 or cor=-1..1/5; may be repeated
+    #[arg(long, value_name = "KEY=VALUE,…", required = true, allow_hyphen_values = true, value_parser = axis)]
+    over: Vec<Axis>,
+    #[command(flatten)]
+    how: MethodArgs,
+    /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
+    #[arg(long, value_name = "CELLS", value_parser = resolution)]
+    resolution: Option<Resolution>,
+    #[command(flatten)]
+    sample: SampleArgs,
+    #[command(flatten)]
+    errors: ErrorArgs,
+    /// Write table, pictures, report and a Zarr group into this folder
+    #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]
+    output: Option<PathBuf>,
+    /// Print the report as JSON instead of the table
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+fn axis(text: &str) -> Result<Axis, String> {
+    text.parse::<Axis>().map_err(|error| error.to_string())
+}
+
+pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let folder = args.output.as_deref().map(|path| StudyFolder { path, name: "sweep" });
+    folder.as_ref().map_or(Ok(()), StudyFolder::check)?;
+    let plan = plan(args)?;
+    let running = args.exec.start()?;
+    let exec = &running.exec;
+    let base = plan.base().clone();
+    let parts = args.output.as_deref().map(Parts::beside);
+    let found = compute(plan, parts.as_ref(), exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
+    let report = SweepReport::new(&base, found, Some(timing));
+    let json = report.to_json()?;
+    let mut notes = Vec::new();
+    if let Some(folder) = &folder {
+        let mut drawn = Vec::new();
+        drawn.extend(figure::sweep_map(&report).map(|picture| ("sweep", picture)));
+        drawn.extend(figure::sweep_outlines(&report)?.map(|picture| ("outlines", picture)));
+        let pictures = encode(&drawn, exec)?;
+        let said =
+            folder.write(&json, &report.records(), pictures, exec, |into| report.save_group(into, exec))?;
+        written(folder.path);
+        notes.push(format!("{said}, sweep.zarr"));
+    }
+    if let Some(parts) = parts {
+        parts.clear();
+    }
+    drop(running);
+    tell(&if args.json { json } else { report.table() }, &notes)
+}
+
+/// The designs, read.
+fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
+    let Choice::One(method) = &args.how.method else {
+        let help = Some("name one; `run --method all` compares them on one design".to_owned());
+        return Err(Failure::with_help("--method: a sweep is by one method".to_owned(), help));
+    };
+    if let Some((option, key)) =
+        args.design.changed().find(|(_, key)| args.over.iter().any(|axis| axis.key == *key))
+    {
+        let message = format!("{option} and --over {key} both say what it is");
+        return Err(Failure::with_help(message, Some("leave out one of them".to_owned())));
+    }
+    let source = SourceText::new(&args.design.path, catchment::design::load(&args.design.path)?);
+    let base = args.design.change(catchment::problem::Draft::read(source.clone())?)?;
+    let run = Run {
+        method: args.how.settings.of(method)?,
+        over: Over::Grid(args.resolution.unwrap_or_default()),
+        sample: args.sample.sample(),
+        seed: args.sample.seed,
+        errors: args.errors.distribution(base.design())?,
+        ..Run::default()
+    };
+    let settings = Settings { axes: args.over.clone(), run };
+    Plan::new(&source, settings, |draft| args.design.change(draft)).map_err(refused)
+}
+
+/// Computes what is not kept; says what is where it stops.
+fn compute(plan: Plan, parts: Option<&Parts>, exec: &Exec) -> Result<Sweep, Failure> {
+    let Some(parts) = parts else { return plan.run(&Nowhere, exec).map_err(refused) };
+    let designs = plan.len();
+    let keep: &dyn Keep = parts;
+    plan.run(keep, exec).map_err(|error| {
+        let finished = parts.count();
+        if finished > 0 {
+            let place = parts.folder().display();
+            kept(&format!("{finished} of {designs} designs in {place}, from where the same command goes on"));
+        }
+        refused(error)
+    })
+}
+
+/// Why there is no sweep, at the option that it is about.
+fn refused(error: SweepError) -> Failure {
+    match error {
+        SweepError::Problem(error) => error.into(),
+        SweepError::NotApplicable(error) | SweepError::Run(RunError::NotApplicable(error)) => {
+            Failure::with_help(format!("--method {error}"), None)
+        }
+        SweepError::Run(RunError::Resolution(error)) => {
+            Failure::with_help(format!("--resolution: {error}"), None)
+        }
+        SweepError::Key { .. } | SweepError::TwoAxes { .. } | SweepError::TooMany { .. } => {
+            Failure::with_help(format!("--over: {error}"), None)
+        }
+        error => error.into(),
+    }
+}

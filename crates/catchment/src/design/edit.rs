@@ -1,0 +1,121 @@
+//! The text of a design with one key replaced: what a sweep does. The rest stays as its author wrote it.
+
+use super::complaint::Complaint;
+use super::keys::{Key, Kind, Table};
+use crate::suggest::nearest;
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+/// Short names of keys that people know by them.
+const ALIASES: [(&str, &str); 2] = [("cor", "center_of_rotation"), ("rho", "rotation_length")];
+
+/// The tables of a table of keys, by their paths.
+fn paths_of(table: Table) -> &'static [&'static str] {
+    match table {
+        Table::Root => &[""],
+        Table::Connector => &["connector."],
+        Table::Half => &["connector.fixed.", "connector.moving."],
+        Table::Alignment => &["alignment."],
+        Table::Errors => &["errors."],
+        Table::Docked => &["docked."],
+    }
+}
+
+/// Keys whose values a person may replace: those that hold one value and change the answer.
+fn replaceable() -> impl Iterator<Item = (String, &'static Key)> {
+    Table::ALL.into_iter().flat_map(|table| {
+        let one_value =
+            |key: &&Key| !matches!(key.kind, Kind::Table(_) | Kind::Later | Kind::Pieces | Kind::Line);
+        let keys = table.keys().filter(one_value).filter(|key| key.table != Table::Root);
+        keys.flat_map(move |key| paths_of(table).iter().map(move |path| (format!("{path}{}", key.name), key)))
+    })
+}
+
+/// The path of a key, such as `alignment.center_of_rotation`, by that path, by its last word where no other key has it, or by a
+/// short name (`cor`, `rho`).
+///
+/// # Errors
+/// No key is called so, or several are.
+pub fn key_path(name: &str) -> Result<String, Complaint> {
+    let name = name.trim();
+    let full = ALIASES.iter().find(|(short, _)| *short == name).map_or(name, |(_, full)| *full);
+    let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
+    let found: Vec<String> =
+        replaceable().map(|(path, _)| path).filter(|path| path == full || last(path) == full).collect();
+    match &found[..] {
+        [path] => Ok(path.clone()),
+        [] => {
+            let paths: Vec<String> = replaceable().map(|(path, _)| path).collect();
+            let words: Vec<String> = paths.iter().map(|path| last(path)).collect();
+            let meant = nearest(full, paths.iter().chain(&words).map(String::as_str)).map(str::to_owned);
+            Err(Complaint::NoSuchKey { name: super::quantity::shortened(name), meant })
+        }
+        _ => Err(Complaint::AmbiguousKey { name: super::quantity::shortened(name), paths: found }),
+    }
+}
+
+/// A value as the design file has it: a number, `true`, a quoted string, a list; anything else is a string without its quotes.
+fn value(text: &str) -> Value {
+    text.parse::<Value>().unwrap_or_else(|_| Value::from(text))
+}
+
+/// `text` with `path` set to `value`, in the place of what it says now or as a new key of its table.
+///
+/// # Errors
+/// The text is not TOML, or something that is no table stands where the key's table should be.
+pub fn with_key(text: &str, path: &str, written: &str) -> Result<String, Complaint> {
+    let syntax = |error: toml_edit::TomlError| Complaint::Syntax { message: error.message().to_owned() };
+    let mut document: DocumentMut = text.parse().map_err(syntax)?;
+    let mut words: Vec<&str> = path.split('.').collect();
+    let last = words.pop().unwrap_or_default();
+    let mut table: &mut dyn TableLike = document.as_table_mut();
+    for word in words {
+        let entry = table.entry(word).or_insert_with(|| Item::Table(toml_edit::Table::new()));
+        let not_a_table =
+            Complaint::WrongType { key: word.to_owned(), expected: "a table", found: entry.type_name() };
+        table = entry.as_table_like_mut().ok_or(not_a_table)?;
+    }
+    let mut value = value(written);
+    if let Some(old) = table.get(last).and_then(Item::as_value) {
+        *value.decor_mut() = old.decor().clone();
+    }
+    table.insert(last, Item::Value(value));
+    Ok(document.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_found_by_path_by_word_and_by_short_name() {
+        let path = |name: &str| key_path(name).unwrap();
+        assert_eq!(path("aspect_ratio"), "connector.aspect_ratio");
+        assert_eq!(path("cor"), "alignment.center_of_rotation");
+        assert_eq!(path("errors.x"), "errors.x");
+        assert_eq!(path("connector.fixed.mesh"), "connector.fixed.mesh");
+        assert!(matches!(key_path("mesh"), Err(Complaint::AmbiguousKey { paths, .. }) if paths.len() == 2));
+        assert!(matches!(key_path("x"), Err(Complaint::AmbiguousKey { .. })));
+        let meant = |name: &str| match key_path(name) {
+            Err(Complaint::NoSuchKey { meant, .. }) => meant,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(meant("aspect_ration").as_deref(), Some("aspect_ratio"));
+        assert_eq!(meant("connector"), None);
+        assert_eq!(meant("pieces"), None, "a list of points is no single value");
+    }
+
+    #[test]
+    fn one_key_changes_and_nothing_else() {
+        let text = "# mine\n[connector]\nfamily = \"pyramid\" # this one\naspect_ratio = 1 # H/D\n";
+        let edited = with_key(text, "connector.aspect_ratio", "0.25").unwrap();
+        assert_eq!(edited, text.replace("= 1 #", "= 0.25 #"));
+        let edited = with_key(text, "alignment.center_of_rotation", "5 mm").unwrap();
+        assert_eq!(edited, format!("{text}\n[alignment]\ncenter_of_rotation = \"5 mm\"\n"));
+        assert!(with_key(text, "connector.family", "cone").unwrap().contains("family = \"cone\" # this one"));
+        assert!(with_key(text, "alignment.free", "[\"x\"]").unwrap().ends_with("free = [\"x\"]\n"));
+        let inline = "connector = { family = \"cone\" }\n";
+        assert!(with_key(inline, "connector.width", "3").unwrap().contains("width = 3"));
+        assert!(with_key("connector = 3", "connector.width", "3").is_err());
+        assert!(with_key("[", "connector.width", "3").is_err());
+    }
+}
