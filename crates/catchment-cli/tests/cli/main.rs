@@ -17,6 +17,7 @@ mod plumbing;
 mod poses;
 mod seat;
 mod studies;
+mod sweep;
 mod tables;
 mod wire;
 

@@ -68,7 +68,7 @@ impl SweepReport {
         let (found, unit) = (&self.found, self.unit());
         heading(&mut text, &self.design);
         for axis in &found.settings.axes {
-            wrapped(&mut text, &format!("  {:<15}", axis.name()), &axis.values.join(", "));
+            wrapped(&mut text, &format!("  {:<20}", axis.name()), &axis.values.join(", "));
         }
         let count = grouped(found.designs.len());
         row(&mut text, "designs", &format!("{count}, each by {}", found.settings.run.method.name()));

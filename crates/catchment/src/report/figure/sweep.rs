@@ -221,7 +221,7 @@ fn ticks_below(svg: &mut Svg, frame: &Frame) {
 }
 
 fn ticks_beside(svg: &mut Svg, frame: &Frame) {
-    for y in frame.y.ticks(2) {
+    for y in frame.y.ticks(3) {
         let words = super::draw::axis::tick_label(y);
         svg.text([frame.rect.x - 5.0, frame.py(y) + 3.5], TICK - 1.0, Anchor::End, SOFT, &words);
     }

@@ -1,0 +1,180 @@
+//! Sweeps: what chapter 5 of the dissertation says of its own, and what a sweep promises about threads and about what was kept.
+
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
+use catchment::design::SourceText;
+use catchment::prelude::*;
+use catchment::report::SweepReport;
+use catchment::study::sweep::{Found, Keep, Nowhere, Plan, Settings, Sweep, SweepError};
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const RATIOS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+
+fn plan(text: &str, axes: &[&str], cells: &str, samples: usize) -> Result<Plan, SweepError> {
+    use catchment::method::correction::Stop;
+    let run = Run {
+        over: Over::Grid(cells.parse().unwrap()),
+        sample: Sample::Until(Stop::Samples(samples)),
+        ..Run::default()
+    };
+    let axes = axes.iter().map(|axis| axis.parse().unwrap()).collect();
+    Plan::new(&SourceText::new("d.toml", text), Settings { axes, run }, Ok)
+}
+
+fn family(name: &str, free: &str) -> String {
+    format!("[connector]\nfamily = '{name}'\n[alignment]\nfree = {free}\n")
+}
+
+/// Sums by aspect ratio (rows) and centre of rotation −1, −0.5, 0, 0.5, 1 (columns).
+fn table(text: &str, cells: &str, samples: usize) -> Vec<Vec<f64>> {
+    let axes = ["aspect_ratio=0.25,0.5,1,2,4", "cor=-1..1/5"];
+    let sweep = plan(text, &axes, cells, samples).unwrap().run(&Nowhere, &Exec::new()).unwrap();
+    let sums: Vec<f64> = sweep.designs.iter().map(|trial| trial.found.figures().unwrap().sum).collect();
+    sums.chunks(5).map(<[f64]>::to_vec).collect()
+}
+
+/// Kendall's count: pairs that rise less pairs that fall, of all.
+fn tendency(values: &[f64]) -> f64 {
+    let pairs = (0..values.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+    let signs: Vec<f64> = pairs.map(|(i, j)| (values[j] - values[i]).signum()).collect();
+    signs.iter().sum::<f64>() / signs.len() as f64
+}
+
+/// Section 5.2: "more remote COR tends to correspond to larger AA, as does smaller aspect ratio"; "most of the areas of acceptance for the
+/// X-Face are larger than the V-Face by a factor of up to two".
+#[test]
+fn the_trends_of_the_planar_faces() {
+    let v = table(&family("v-face", "['x', 'pitch']"), "30", 400);
+    let x = table(&family("x-face", "['x', 'pitch']"), "30", 400);
+    for (name, sums) in [("V", &v), ("X", &x)] {
+        for (ratio, row) in RATIOS.iter().zip(sums) {
+            assert!(row[4] > row[0] && tendency(row) > 0.0, "{name}-Face, AR {ratio}: {row:?}");
+        }
+        let over_ratio = (0..5).map(|k| tendency(&sums.iter().map(|row| row[k]).collect::<Vec<_>>()));
+        assert!(over_ratio.sum::<f64>() < 0.0, "{name}-Face: smaller ratios tend to accept more: {sums:?}");
+    }
+    let ratios: Vec<f64> = x.iter().flatten().zip(v.iter().flatten()).map(|(x, v)| x / v).collect();
+    let larger = ratios.iter().filter(|ratio| **ratio > 1.0).count();
+    assert!(larger > 25 / 2 && ratios.iter().all(|ratio| *ratio < 2.5), "{ratios:?}");
+}
+
+/// Section 5.3.2, of the pyramid in (x, y, pitch): "lower AR values yield AA that vary less with COR", and the largest acceptance lies at
+/// high ratio and remote centre, the smallest at a low one.
+#[test]
+fn the_trends_of_the_pyramid() {
+    let sums = table(&family("pyramid", "['x', 'y', 'pitch']"), "12", 600);
+    let spread =
+        |row: &[f64]| row.iter().fold(0.0f64, |a, b| a.max(*b)) - row.iter().fold(f64::MAX, |a, b| a.min(*b));
+    let (low, high) = (spread(&sums[0]), spread(&sums[4]));
+    assert!(low < high, "{low} at AR 0.25, {high} at AR 4: {sums:?}");
+    for (ratio, row) in RATIOS.iter().zip(&sums) {
+        assert!(tendency(row) >= 0.0, "AR {ratio}: {row:?}");
+    }
+    let column = |k: usize| sums.iter().map(|row| row[k]).collect::<Vec<_>>();
+    assert!(tendency(&column(4)) > tendency(&column(0)), "a high ratio helps at a remote centre: {sums:?}");
+}
+
+/// Keeps everything in memory, and counts what is asked for and found.
+#[derive(Default)]
+struct Memory {
+    kept: Mutex<BTreeMap<String, Found>>,
+    found: AtomicUsize,
+}
+
+impl Keep for Memory {
+    fn find(&self, key: &str) -> Option<Found> {
+        let found = self.kept.lock().unwrap().get(key).cloned();
+        self.found.fetch_add(usize::from(found.is_some()), Ordering::Relaxed);
+        found
+    }
+
+    fn keep(&self, key: &str, found: &Found) -> io::Result<()> {
+        let text = serde_json::to_string(found)?;
+        self.kept.lock().unwrap().insert(key.to_owned(), serde_json::from_str(&text)?);
+        Ok(())
+    }
+}
+
+fn small(axes: &[&str]) -> Plan {
+    plan(&family("x-face", "['x', 'pitch']"), axes, "9", 50).unwrap()
+}
+
+fn run(plan: Plan, keep: &dyn Keep, threads: usize) -> Sweep {
+    plan.run(keep, &Exec::new().with_threads(threads).unwrap()).unwrap()
+}
+
+#[test]
+fn threads_and_what_was_kept_change_nothing() {
+    let axes = ["aspect_ratio=0.5,1,2", "cor=-1,0,1"];
+    let memory = Memory::default();
+    let whole = run(small(&axes), &memory, 1);
+    assert_eq!(memory.kept.lock().unwrap().len(), 9);
+    assert_eq!(run(small(&axes), &Nowhere, 3), whole);
+    // Half of them are lost: the others are not computed again.
+    memory.kept.lock().unwrap().retain(|key, _| key.as_bytes()[0].is_multiple_of(2));
+    let left = memory.kept.lock().unwrap().len();
+    assert_eq!(run(small(&axes), &memory, 2), whole);
+    assert_eq!(memory.found.load(Ordering::Relaxed), left);
+    // Another run, or another design, finds none of them.
+    memory.found.store(0, Ordering::Relaxed);
+    plan(&family("x-face", "['x', 'pitch']"), &axes, "10", 50).unwrap().run(&memory, &Exec::new()).unwrap();
+    assert_eq!(memory.found.load(Ordering::Relaxed), 0);
+    // Fewer values find theirs.
+    let fewer = run(small(&["aspect_ratio=1", "cor=-1,1"]), &memory, 1);
+    assert_eq!(memory.found.load(Ordering::Relaxed), 2);
+    assert_eq!(fewer.designs[1].found, whole.designs[5].found);
+}
+
+/// One design of a sweep is what a run of that design is.
+#[test]
+fn a_design_of_a_sweep_is_a_run() {
+    let sweep = run(small(&["cor=-1,0.5"]), &Nowhere, 1);
+    let text = family("x-face", "['x', 'pitch']") + "center_of_rotation = 0.5\n";
+    let problem = Draft::read(SourceText::new("d.toml", text)).unwrap().build().unwrap();
+    let answer = sweep.settings.run.on(&problem, &Exec::new()).unwrap();
+    let figures = sweep.designs[1].found.figures().unwrap();
+    assert_eq!((figures.sum, figures.sum_ci95), (answer.sum(), answer.sum_ci95()));
+    assert_eq!(figures.onaa_edge, answer.onaa().map(|onaa| onaa.edge));
+    let outline = figures.outline.as_ref().unwrap();
+    let digits: String = answer.acceptance.outcomes.iter().map(|o| (*o as u8).to_string()).collect();
+    assert_eq!(outline.outcomes, digits);
+}
+
+#[test]
+fn what_cannot_be_built_is_told_and_stops_nothing() {
+    let text = family("pin-hole", "['x']");
+    let plan = plan(&text, &["pin_radius=0.08,0.9"], "5", 10).unwrap();
+    let base = plan.base().clone();
+    let sweep = run(plan, &Nowhere, 2);
+    assert!(sweep.designs[0].found.figures().is_some());
+    let Found::Refused(reason) = &sweep.designs[1].found else { panic!("{:?}", sweep.designs[1]) };
+    assert_eq!((sweep.largest, sweep.smallest), (Some(0), Some(0)));
+    let report = SweepReport::new(&base, sweep.clone(), None);
+    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        flat(&report.table()).contains(&flat(&format!("pin_radius 0.9: {reason}"))),
+        "{}",
+        report.table()
+    );
+    assert_eq!(report.records()[2].last(), Some(reason));
+    assert!(report.records().iter().all(|record| record.len() == report.records()[0].len()));
+}
+
+#[test]
+fn what_nobody_can_sweep_is_refused() {
+    let text = family("v-face", "['x']");
+    let refused = |axes: &[&str]| plan(&text, axes, "5", 10).unwrap_err().to_string();
+    assert!(
+        refused(&["aspect_ratio=1,-1"]).contains("d.toml with aspect_ratio = -1:"),
+        "{}",
+        refused(&["aspect_ratio=1,-1"])
+    );
+    assert!(refused(&["cor=1", "center_of_rotation=2"]).contains("two lists"));
+    assert!(refused(&["cor=0..1/1000", "rho=1..2/1000"]).contains("1000000 designs"));
+    assert!(refused(&["pins=1,2"]).contains("pins"), "not a parameter of the family");
+    let nothing = plan(&family("pin-hole", "['x']"), &["pin_radius=0.8,0.9"], "5", 10).unwrap();
+    assert!(matches!(nothing.run(&Nowhere, &Exec::new()), Err(SweepError::AllRefused { designs: 2, .. })));
+}
