@@ -91,6 +91,7 @@ fn the_budget_counts_pictures() {
         "run v.toml --method flood --resolution 2000 --memory 100MB -o out",
         "run v.toml --method flood --resolution 2000 --memory 100MB --figures out",
         "slices v.toml --resolution 100 --memory 30MB -o out",
+        "compare v.toml --methods flood,meyer --resolution 1000 --memory 40MB -o out",
         "zraa v.toml --memory 1MB -o out.svg",
     ] {
         is_refused(home.path(), "true", args, &["drawing the pictures needs"]);

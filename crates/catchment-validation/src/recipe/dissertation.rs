@@ -1,15 +1,16 @@
-//! The conventions behind the dissertation's printed tables 5.4 to 5.9.
+//! The conventions behind the dissertation's printed tables 5.4 to 5.11.
 //!
 //! They were recovered from the printed numbers; several contradict the text, and most were fitted on these very
 //! tables, with no independent check. They reproduce; they are not physics, and never the default.
 //!
 //! - **Rotation point**: on the axis behind the mated apex plane, `lever·(1 − COR)` away. The planar bodies have a block
 //!   half a width thick behind the face, and their lever is the total height H + D/2; the pyramid's is D where
-//!   (x, y, pitch) is sampled and H where (x, pitch, roll) is. (The text: from the centre, in units of D.)
+//!   (x, y, pitch) is sampled and H where two rotations are. (The text: from the centre, in units of D.)
 //! - **Samples** are on the rotation point's own coordinates: x, y in [−2, 2] with both ends, 101 in the plane and 31
 //!   in space; angles over [−π/2, π/2] with both ends in the plane (101), without the lower end in space (30). A
 //!   sample counts range/100 per axis in the plane and range/31 in space.
-//! - **Pyramid angles**: pitch turns about x and roll about y, `R = Rx(pitch)·Ry(roll)`.
+//! - **Pyramid angles**: pitch turns about x, roll about y, yaw about z, the last named first: `R = Rx(pitch)·Ry(roll)`,
+//!   `Rx(pitch)·Rz(yaw)`, `Ry(roll)·Rz(yaw)`.
 //! - **Flooding**: basins below a depth of 0.1·AR are merged; dam cells pass water on (as the text says). In space each
 //!   cell without a lower neighbour is a minimum (as the text says); in the plane plateaus that drain are not, which
 //!   reproduces one entry more.
@@ -37,6 +38,22 @@ pub enum Errors {
     XYPitch,
     /// x, pitch and roll: table 5.9.
     XPitchRoll,
+    /// x, pitch and yaw: table 5.10.
+    XPitchYaw,
+    /// x, roll and yaw: table 5.11.
+    XRollYaw,
+}
+
+impl Errors {
+    /// What turns a half by the first and by the second of two rotations; `None` where there is only one.
+    fn turns(self) -> Option<[fn(f64) -> DMat3; 2]> {
+        match self {
+            Self::XTheta | Self::XYPitch => None,
+            Self::XPitchRoll => Some([DMat3::from_rotation_x, DMat3::from_rotation_y]),
+            Self::XPitchYaw => Some([DMat3::from_rotation_x, DMat3::from_rotation_z]),
+            Self::XRollYaw => Some([DMat3::from_rotation_y, DMat3::from_rotation_z]),
+        }
+    }
 }
 
 /// One entry of a table: the connector and all that the answer depends on.
@@ -128,7 +145,7 @@ impl Settings {
     const fn base_thickness(&self) -> Option<f64> {
         match self.errors {
             Errors::XTheta => Some(0.5),
-            Errors::XYPitch | Errors::XPitchRoll => None,
+            _ => None,
         }
     }
 
@@ -137,7 +154,7 @@ impl Settings {
         let lever = match self.errors {
             Errors::XTheta => self.aspect_ratio + 0.5,
             Errors::XYPitch => 1.0,
-            Errors::XPitchRoll => self.aspect_ratio,
+            Errors::XPitchRoll | Errors::XPitchYaw | Errors::XRollYaw => self.aspect_ratio,
         };
         self.aspect_ratio / 2.0 - lever * (1.0 - self.cor)
     }
@@ -148,7 +165,7 @@ impl Settings {
             .with_base_thickness(self.base_thickness());
         let (free, mount) = match self.errors {
             Errors::XTheta => ([Dof::X, Dof::Pitch].into_iter().collect(), Mount::Y),
-            Errors::XYPitch | Errors::XPitchRoll => (DofSet::ALL, Mount::X),
+            _ => (DofSet::ALL, Mount::X),
         };
         let alignment =
             Alignment { center_of_rotation: self.center_of_rotation(), ..Alignment::new(free, mount) };
@@ -191,36 +208,30 @@ impl Samples {
             (0..in_plane).map(|k| PI * k as f64 / (in_plane - 1) as f64 - FRAC_PI_2).collect();
         let spatial: Vec<f64> =
             (1..SPATIAL).map(|k| PI * k as f64 / (SPATIAL - 1) as f64 - FRAC_PI_2).collect();
-        let (x, y, angles, rotations): (_, _, _, Vec<DMat3>) = match errors {
-            Errors::XTheta => {
+        let (x, y, angles, rotations): (_, _, _, Vec<DMat3>) = match (errors, errors.turns()) {
+            (_, Some([first, second])) => {
+                let pairs = spatial.iter().flat_map(|b| spatial.iter().map(move |a| first(*a) * second(*b)));
+                (ends(SPATIAL), locked, vec![spatial.len(); 2], pairs.collect())
+            }
+            (Errors::XTheta, None) => {
                 let rotations = planar.iter().map(|a| DMat3::from_rotation_y(*a)).collect();
                 (ends(in_plane), locked, vec![in_plane], rotations)
             }
-            Errors::XYPitch => {
+            (_, None) => {
                 let rotations = spatial.iter().map(|a| DMat3::from_rotation_x(*a)).collect();
                 (ends(SPATIAL), ends(SPATIAL), vec![spatial.len()], rotations)
-            }
-            Errors::XPitchRoll => {
-                let rotations = spatial
-                    .iter()
-                    .flat_map(|roll| {
-                        let roll = DMat3::from_rotation_y(*roll);
-                        spatial.iter().map(move |pitch| DMat3::from_rotation_x(*pitch) * roll)
-                    })
-                    .collect();
-                (ends(SPATIAL), locked, vec![spatial.len(); 2], rotations)
             }
         };
         let (weights, per_axis): (Vec<f64>, usize) = match errors {
             Errors::XTheta => (vec![2.0 * LATERAL, PI], in_plane - 1),
             Errors::XYPitch => (vec![2.0 * LATERAL, 2.0 * LATERAL, PI], SPATIAL),
-            Errors::XPitchRoll => (vec![2.0 * LATERAL, PI, PI], SPATIAL),
+            _ => (vec![2.0 * LATERAL, PI, PI], SPATIAL),
         };
         let cell_measure = weights.iter().map(|range| range / per_axis as f64).product();
         // Without the lower end the sample at 0 is the 15th of 30, number 14.
         let zero = match errors {
             Errors::XTheta => in_plane / 2,
-            Errors::XYPitch | Errors::XPitchRoll => SPATIAL / 2 - 1,
+            _ => SPATIAL / 2 - 1,
         };
         let rotation = angles.iter().rev().fold(0, |index, count| index * count + zero);
         let mated = middle(&x) + x.count * (middle(&y) + y.count * rotation);
@@ -294,6 +305,8 @@ mod tests {
             (Errors::XTheta, vec![101, 101]),
             (Errors::XYPitch, vec![31, 31, 30]),
             (Errors::XPitchRoll, vec![31, 30, 30]),
+            (Errors::XPitchYaw, vec![31, 30, 30]),
+            (Errors::XRollYaw, vec![31, 30, 30]),
         ] {
             let samples = Samples::of(errors, Settings::PLANAR_SAMPLES);
             assert_eq!(samples.shape(), shape);

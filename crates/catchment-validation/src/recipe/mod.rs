@@ -177,12 +177,12 @@ impl Recipe {
         exec.check()?;
         Ok(match self {
             Self::Kinematic(_) | Self::Zraa | Self::Slices => None,
-            Self::Sum(_, Errors::XYPitch | Errors::XPitchRoll) => Some(self.corrected(row, column, exec)?),
             Self::Sum(family, Errors::XTheta) | Self::Partition(family) => {
                 let accepted = followed(family, row, column, exec)?;
                 let count = accepted.iter().filter(|accepted| **accepted).count();
                 Some(Exact { value: count as f64 * PLANAR_CELL, ci95: None })
             }
+            Self::Sum(..) => Some(self.corrected(row, column, exec)?),
             Self::Onaa(family) => {
                 let edge = largest_cube(&[PLANAR; 2], &followed(family, row, column, exec)?);
                 Some(Exact { value: square(edge), ci95: None })
@@ -206,13 +206,16 @@ impl Recipe {
     }
 
     /// The Sum of a pyramid: a grid by transport, corrected. A pyramid is its own image with x and y exchanged, which turns
-    /// the dissertation's (x; pitch about x, roll about y) into (y; pitch about y, roll about x).
+    /// the dissertation's (x; pitch about x, roll about y) into (y; pitch about y, roll about x). With yaw the axes are the same, but here yaw
+    /// turns last and there first: the same rotations in another measure.
     fn corrected(self, row: usize, column: usize, exec: &Exec) -> Result<Exact, RecipeError> {
         let Self::Sum(family, errors) = self else {
             return Err(RecipeError::Exact { reason: "no such table".to_owned() });
         };
         let free: DofSet = match errors {
             Errors::XPitchRoll => [Dof::Y, Dof::Roll, Dof::Pitch].into_iter().collect(),
+            Errors::XPitchYaw => [Dof::X, Dof::Roll, Dof::Yaw].into_iter().collect(),
+            Errors::XRollYaw => [Dof::X, Dof::Pitch, Dof::Yaw].into_iter().collect(),
             _ => [Dof::X, Dof::Y, Dof::Pitch].into_iter().collect(),
         };
         let settings = settings(family, errors, row, column);

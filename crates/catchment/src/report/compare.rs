@@ -13,7 +13,7 @@ use super::zarr::{self, ZarrError};
 use super::{Report, figure};
 use crate::acceptance::Acceptance;
 use crate::exec::{Exec, Stopwatch};
-use crate::landscape::{Resolution, ResolutionError};
+use crate::landscape::{Grid, Resolution, ResolutionError};
 use crate::merit::MeritError;
 use crate::merit::comparison::{Comparison, ComparisonError, Paired};
 use crate::problem::Problem;
@@ -109,6 +109,13 @@ pub fn compare(
     }
     let stored = sides.iter().flatten().find_map(|(side, _)| as_resolution(&side.report));
     let cells = resolution.or(stored).unwrap_or_default();
+    if picture {
+        // The cells that both have are no more than those of either.
+        let grids =
+            subjects.iter().filter_map(|subject| planned(subject, cells)).collect::<Result<Vec<_>, _>>()?;
+        let fits = grids.iter().map(|grid| figure::ensure_grid_fits(grid, exec));
+        fits.reduce(Result::or).unwrap_or(Ok(()))?;
+    }
     let mut decided = Vec::with_capacity(2);
     for (k, (side, subject)) in sides.into_iter().zip(subjects).enumerate() {
         let part = exec.part([0.5 * k as f64, 0.5 * (k + 1) as f64], "comparing");
@@ -130,6 +137,7 @@ pub fn compare(
     })?;
     let comparison = Comparison::of(&paired, &first.report.design.alignment, exec)?;
     if let (true, Some(grid)) = (picture, paired.first.grid()) {
+        // Of two stored results nothing was known before.
         figure::ensure_grid_fits(grid, exec)?;
     }
     let picture = picture.then(|| {
@@ -154,6 +162,18 @@ fn as_resolution(report: &Report) -> Option<Resolution> {
     report.axes.iter().try_fold(Resolution::default(), |all, axis| all.with(axis.axis, axis.cells).ok())
 }
 
+/// The grid that a problem will be decided on; `None` of a stored result.
+fn planned(subject: &Subject, cells: Resolution) -> Option<Result<Grid, CompareError>> {
+    let Subject::Fresh { source, problem, .. } = subject else { return None };
+    Some(grid_of(source, problem, cells))
+}
+
+fn grid_of(source: &str, problem: &Problem, cells: Resolution) -> Result<Grid, CompareError> {
+    cells
+        .grid(problem.alignment(), &even_cells(problem))
+        .map_err(|error| CompareError::Resolution { subject: source.to_owned(), error })
+}
+
 /// Decides a problem, as a run does.
 fn decide(
     source: String,
@@ -162,8 +182,7 @@ fn decide(
     cells: Resolution,
     exec: &Exec,
 ) -> Result<(Side, Acceptance), CompareError> {
-    let grid = cells.grid(problem.alignment(), &even_cells(problem));
-    let grid = grid.map_err(|error| CompareError::Resolution { subject: source.clone(), error })?;
+    let grid = grid_of(&source, problem, cells)?;
     let answer = Run { over: Over::Grid(Resolution::of(&grid)), ..run.clone() }.on(problem, exec)?;
     let mut report = answer.report();
     report.timing = None;

@@ -1,8 +1,10 @@
 //! The upper envelope of the sheets as convex cells that tile the plane, and who lies across each border.
 
+use super::places::Places;
 use super::sheet::{Sheet, area};
 use crate::exec::{Cancelled, Exec};
 use glam::DVec2;
+use rayon::prelude::*;
 
 /// Cells smaller than this square of the seam's width, in multiples of the seam, are rounding.
 const SLIVER: f64 = 10.0;
@@ -33,37 +35,98 @@ impl Border {
     }
 }
 
-/// The upper envelope of the sheets.
+/// The upper envelope of the sheets: every sheet keeps what no other takes from it.
 pub(super) fn upper_envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result<Vec<Cell>, Cancelled> {
-    let boxes: Vec<(DVec2, DVec2)> = sheets.iter().map(|p| bounds(&p.footprint)).collect();
-    let mut cells = Vec::new();
-    for (i, sheet) in sheets.iter().enumerate() {
+    exec.install(|| {
+        let seen = seen(sheets, exec)?;
+        let places = Places::new(seen.iter().map(|i| &sheets[*i].footprint[..]), 0.0);
+        let parts = seen
+            .par_iter()
+            .map(|i| {
+                exec.check()?;
+                let polygons = uncovered(*i, &seen, sheets, &places, seam);
+                Ok(polygons.into_iter().map(|polygon| Cell { polygon, sheet: *i }).collect())
+            })
+            .collect::<Result<Vec<Vec<Cell>>, Cancelled>>()?;
+        Ok(parts.into_iter().flatten().collect())
+    })
+}
+
+/// The sheets that are not hidden by one other alone, ascending: one in ten of those of pins and holes.
+///
+/// A sheet is hidden where another reaches over all its corners and is nowhere lower there; of two that are equal the first is
+/// seen. Only the sheet that is the highest over the middle is tried.
+fn seen(sheets: &[Sheet], exec: &Exec) -> Result<Vec<usize>, Cancelled> {
+    let places = Places::new(sheets.iter().map(|sheet| &sheet.footprint[..]), 0.0);
+    let is_seen = |i: &usize| {
         exec.check()?;
-        let mut pieces = vec![sheet.footprint.clone()];
-        for (j, other) in sheets.iter().enumerate() {
-            if i == j || !overlap(boxes[i], boxes[j]) || pieces.is_empty() {
+        let own = &sheets[*i];
+        let middle = own.footprint.iter().sum::<DVec2>() / own.footprint.len() as f64;
+        let above = |j: usize| (sheets[j].height(middle), std::cmp::Reverse(j));
+        let order = |a: &(f64, std::cmp::Reverse<usize>), b: &(f64, std::cmp::Reverse<usize>)| {
+            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+        };
+        let top = places
+            .near(&[middle])
+            .filter(|j| j != i && holds(&sheets[*j].footprint, middle))
+            .map(above)
+            .max_by(order);
+        let hidden = top.is_some_and(|(_, std::cmp::Reverse(j))| {
+            let other = &sheets[j];
+            let steps = own.footprint.iter().map(|p| other.height(*p) - own.height(*p));
+            let (least, most) = steps.fold((f64::INFINITY, 0.0f64), |(lo, hi), d| (lo.min(d), hi.max(d)));
+            least >= 0.0
+                && (most > 0.0 || j < *i)
+                && own.footprint.iter().all(|p| holds(&other.footprint, *p))
+        });
+        Ok(!hidden)
+    };
+    let seen: Vec<bool> =
+        (0..sheets.len()).into_par_iter().map(|i| is_seen(&i)).collect::<Result<_, Cancelled>>()?;
+    Ok((0..sheets.len()).filter(|i| seen[*i]).collect())
+}
+
+/// Whether a point lies in a convex polygon or on its border.
+fn holds(polygon: &[DVec2], at: DVec2) -> bool {
+    (0..polygon.len())
+        .all(|k| (polygon[(k + 1) % polygon.len()] - polygon[k]).perp_dot(at - polygon[k]) >= 0.0)
+}
+
+/// What no other sheet takes from one. Those that lie highest over its middle are tried first, after which little is left.
+fn uncovered(i: usize, seen: &[usize], sheets: &[Sheet], places: &Places, seam: f64) -> Vec<Vec<DVec2>> {
+    let sheet = &sheets[i];
+    let middle = sheet.footprint.iter().sum::<DVec2>() / sheet.footprint.len() as f64;
+    let mut others: Vec<(f64, usize)> = places
+        .near(&sheet.footprint)
+        .map(|k| seen[k])
+        .filter(|j| *j != i)
+        .map(|j| (sheets[j].height(middle), j))
+        .collect();
+    others.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut pieces = vec![sheet.footprint.clone()];
+    for (_, j) in others {
+        let other = &sheets[j];
+        let higher = |p: DVec2| other.height(p) - sheet.height(p);
+        let steepness = (other.gradient - sheet.gradient).length();
+        let region = if steepness <= seam {
+            // Parallel planes: the higher one wins everywhere, and the first of two equal ones.
+            let above = higher(sheet.footprint[0]);
+            let wins = above > seam || (above >= -seam && j < i);
+            if !wins {
                 continue;
             }
-            let higher = |p: DVec2| other.height(p) - sheet.height(p);
-            let steepness = (other.gradient - sheet.gradient).length();
-            let region = if steepness <= seam {
-                // Parallel planes: the higher one wins everywhere, and the first of two equal ones.
-                let above = higher(sheet.footprint[0]);
-                let wins = above > seam || (above >= -seam && j < i);
-                if !wins {
-                    continue;
-                }
-                other.footprint.clone()
-            } else {
-                clip(&other.footprint, |p| higher(p) / steepness)
-            };
-            if is_cell(&region, seam) {
-                pieces = pieces.into_iter().flat_map(|piece| minus(piece, &region, seam)).collect();
-            }
+            other.footprint.clone()
+        } else {
+            clip(&other.footprint, |p| higher(p) / steepness)
+        };
+        if is_cell(&region, seam) {
+            pieces = pieces.into_iter().flat_map(|piece| minus(piece, &region, seam)).collect();
         }
-        cells.extend(pieces.into_iter().map(|polygon| Cell { polygon, sheet: i }));
+        if pieces.is_empty() {
+            break;
+        }
     }
-    Ok(cells)
+    pieces
 }
 
 /// The part of a convex polygon where `inside`, linear and in units of length, is at least 0.
@@ -133,18 +196,12 @@ fn overlap(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> bool {
 pub(super) fn borders(cells: &[Cell], seam: f64, exec: &Exec) -> Result<Vec<Vec<Border>>, Cancelled> {
     // Sides meet where their lines fall together within a few seams.
     let near = SLIVER * seam;
-    let boxes: Vec<(DVec2, DVec2)> = cells
-        .iter()
-        .map(|c| {
-            let (lo, hi) = bounds(&c.polygon);
-            (lo - near, hi + near)
-        })
-        .collect();
+    let places = Places::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * near);
     let mut borders = Vec::with_capacity(cells.len());
     for (i, cell) in cells.iter().enumerate() {
         exec.check()?;
-        let neighbours: Vec<usize> =
-            (0..cells.len()).filter(|&j| j != i && overlap(boxes[i], boxes[j])).collect();
+        let mut neighbours = places.overlapping(&cell.polygon);
+        neighbours.retain(|j| *j != i);
         let n = cell.polygon.len();
         let mut own = Vec::new();
         for k in 0..n {

@@ -16,11 +16,15 @@
 //! ends; strips with the same fate are joined, which keeps them few.
 
 use super::cells::{Border, Cell};
+use super::places::Places;
 use super::sheet::Sheet;
 use glam::DVec2;
 
 /// Longest chain of cells and valleys: far more than a path has, and it stops a cycle that rounding made.
 const MAX_DEPTH: usize = 4096;
+
+/// Distance under which two points are one, in seams.
+const NEAR: f64 = 20.0;
 
 /// A strip of a cell: positions between two values of [`Flow::across`], and whether it reaches the seat.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +47,7 @@ pub(super) struct Flow<'a, D> {
     sheets: &'a [Sheet],
     cells: &'a [Cell],
     borders: &'a [Vec<Border>],
+    places: Places,
     seam: f64,
     /// Whether a half at a position and height is in the seat.
     docked: D,
@@ -79,7 +84,9 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         docked: D,
     ) -> Self {
         let stretches = borders.iter().map(|b| vec![Stretch::Unknown; b.len()]).collect();
-        Self { sheets, cells, borders, seam, docked, stretches, tangled: false }
+        // What touches a point within `near` has a box that holds it by then.
+        let places = Places::new(cells.iter().map(|cell| &cell.polygon[..]), 2.0 * NEAR * seam);
+        Self { sheets, cells, borders, places, seam, docked, stretches, tangled: false }
     }
 
     fn sheet(&self, cell: usize) -> &'a Sheet {
@@ -99,7 +106,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
 
     /// Distance under which two points are one: a few seams, like the borders.
     fn near(&self) -> f64 {
-        20.0 * self.seam
+        NEAR * self.seam
     }
 
     /// The strips of a cell, in order.
@@ -214,6 +221,13 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         }
     }
 
+    /// The cells that touch a point, ascending.
+    fn touching(&self, at: DVec2) -> Vec<usize> {
+        let mut cells = self.places.overlapping(&[at]);
+        cells.retain(|cell| self.touches(*cell, at));
+        cells
+    }
+
     fn touches(&self, cell: usize, at: DVec2) -> bool {
         let polygon = &self.cells[cell].polygon;
         (0..polygon.len()).all(|k| {
@@ -238,8 +252,8 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
                 best = Some((steepness, way));
             }
         };
-        for cell in 0..self.cells.len() {
-            if !self.touches(cell, at) || (self.sheet(cell).height(at) - height).abs() > self.near() {
+        for cell in self.touching(at) {
+            if (self.sheet(cell).height(at) - height).abs() > self.near() {
                 continue;
             }
             let direction = self.direction(cell);
@@ -283,11 +297,14 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
     /// Nothing leads on at this height: the motion falls over a rim ahead of it, or rests.
     fn over_the_rim(&mut self, at: DVec2, height: f64, on: DVec2, depth: usize) -> bool {
         let ahead = at + on * (4.0 * self.near());
-        let landing = (0..self.cells.len())
-            .filter(|&c| self.touches(c, ahead) && self.sheet(c).height(at) < height - self.near())
+        let there = self.touching(ahead);
+        let lower = |c: usize| self.sheet(c).height(at) < height - self.near();
+        let landing = there
+            .iter()
+            .copied()
+            .filter(|c| lower(*c))
             .max_by(|&a, &b| self.sheet(a).height(ahead).total_cmp(&self.sheet(b).height(ahead)));
-        let blocked = (0..self.cells.len())
-            .any(|c| self.touches(c, ahead) && self.sheet(c).height(at) >= height - self.near());
+        let blocked = there.into_iter().any(|c| !lower(c));
         match landing {
             Some(cell) if !blocked => self.follow(cell, ahead, depth + 1),
             _ => false,

@@ -23,7 +23,8 @@ impl Segment {
 /// `depth` above the height at 0, or fall towards 0, and no step may block the way.
 pub(super) fn interval(sheets: &[Sheet], axis: DVec2, depth: f64, seam: f64) -> [f64; 2] {
     let segments: Vec<Segment> = sheets.iter().filter_map(|p| along(p, axis, seam)).collect();
-    [-1.0, 1.0].map(|sign| sign * reach(&segments, sign, depth, seam)).map(|s| s + 0.0)
+    let tops = envelope(&segments);
+    [-1.0, 1.0].map(|sign| sign * reach(&tops, sign, depth, seam)).map(|s| s + 0.0)
 }
 
 /// The part of a sheet over the line.
@@ -53,43 +54,135 @@ fn along(sheet: &Sheet, axis: DVec2, seam: f64) -> Option<Segment> {
     })
 }
 
-/// How far from 0, in the direction of `sign`, the motion still leads back.
-fn reach(segments: &[Segment], sign: f64, depth: f64, seam: f64) -> f64 {
-    let near = 10.0 * seam;
-    let mut cuts: Vec<f64> = segments.iter().flat_map(|s| [s.from, s.to]).collect();
-    for (k, a) in segments.iter().enumerate() {
-        for b in &segments[..k] {
-            let crossing = (b.offset - a.offset) / (a.slope - b.slope);
-            if crossing.is_finite() && crossing >= a.from.max(b.from) && crossing <= a.to.min(b.to) {
-                cuts.push(crossing);
+/// A stretch of the line and the segment that is the highest there.
+#[derive(Clone, Copy)]
+struct Top<'a> {
+    from: f64,
+    to: f64,
+    segment: &'a Segment,
+}
+
+/// The upper envelope of segments, from left to right: that of either half, merged.
+fn envelope(segments: &[Segment]) -> Vec<Top<'_>> {
+    match segments {
+        [] => Vec::new(),
+        [segment] => vec![Top { from: segment.from, to: segment.to, segment }],
+        _ => {
+            let (left, right) = segments.split_at(segments.len() / 2);
+            merged(&envelope(left), &envelope(right))
+        }
+    }
+}
+
+/// The higher of two envelopes.
+fn merged<'a>(a: &[Top<'a>], b: &[Top<'a>]) -> Vec<Top<'a>> {
+    let mut cuts: Vec<f64> = a.iter().chain(b).flat_map(|top| [top.from, top.to]).collect();
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    let mut out: Vec<Top<'a>> = Vec::new();
+    let mut push = |from: f64, to: f64, segment: &'a Segment| match out.last_mut() {
+        Some(last) if last.to == from && std::ptr::eq(last.segment, segment) => last.to = to,
+        _ => out.push(Top { from, to, segment }),
+    };
+    let (mut i, mut j) = (0, 0);
+    for ends in cuts.windows(2) {
+        let [from, to] = [ends[0], ends[1]];
+        while a.get(i).is_some_and(|top| top.to <= from) {
+            i += 1;
+        }
+        while b.get(j).is_some_and(|top| top.to <= from) {
+            j += 1;
+        }
+        let over =
+            |tops: &[Top<'a>], k: usize| tops.get(k).filter(|top| top.from <= from).map(|top| top.segment);
+        match (over(a, i), over(b, j)) {
+            (None, None) => {}
+            (Some(only), None) | (None, Some(only)) => push(from, to, only),
+            (Some(p), Some(q)) => {
+                let higher = |at: f64| if q.height(at) > p.height(at) { q } else { p };
+                let crossing = (q.offset - p.offset) / (p.slope - q.slope);
+                if crossing > from && crossing < to {
+                    push(from, crossing, higher(f64::midpoint(from, crossing)));
+                    push(crossing, to, higher(f64::midpoint(crossing, to)));
+                } else {
+                    push(from, to, higher(f64::midpoint(from, to)));
+                }
             }
         }
     }
-    let mut cuts: Vec<f64> = cuts.into_iter().map(|s| s * sign).filter(|s| *s > near).collect();
-    cuts.sort_by(f64::total_cmp);
-    let mated = segments.iter().filter(|s| s.from <= 0.0 && 0.0 <= s.to).map(|s| s.offset);
+    out
+}
+
+/// How far from 0, in the direction of `sign`, the motion still leads back.
+fn reach(tops: &[Top<'_>], sign: f64, depth: f64, seam: f64) -> f64 {
+    let near = 10.0 * seam;
+    let mated = tops.iter().filter(|top| top.from <= 0.0 && 0.0 <= top.to).map(|top| top.segment.offset);
     let level = mated.fold(f64::NEG_INFINITY, f64::max) + depth;
+    // Outward from 0, in distances.
+    let outward = |top: &Top<'_>| {
+        let [from, to] = [top.from * sign, top.to * sign];
+        (from.min(to), from.max(to))
+    };
+    let mut ahead: Vec<&Top<'_>> = tops.iter().filter(|top| outward(top).1 > near).collect();
+    ahead.sort_by(|a, b| outward(a).0.total_cmp(&outward(b).0));
     let mut seated = true;
     let mut reached = 0.0;
     let mut below: Option<f64> = None;
-    for cut in cuts {
-        if cut - reached <= near {
-            continue;
-        }
-        let middle = f64::midpoint(reached, cut) * sign;
-        let top = segments
-            .iter()
-            .filter(|s| s.from <= middle && middle <= s.to)
-            .max_by(|a, b| a.height(middle).total_cmp(&b.height(middle)));
-        let Some(top) = top else { break };
-        // Up a step outward is a drop on the way home; down a step outward is a wall.
-        let walled = below.is_some_and(|z| top.height(reached * sign) < z - near);
-        seated &= [reached, cut].into_iter().all(|s| top.height(s * sign) <= level + near);
-        if !seated && (top.slope * sign <= seam || walled) {
+    for top in ahead {
+        let (from, to) = outward(top);
+        if from > reached + near {
             break;
         }
-        reached = cut;
-        below = Some(top.height(cut * sign));
+        if to - reached <= near {
+            continue;
+        }
+        // Up a step outward is a drop on the way home; down a step outward is a wall.
+        let segment = top.segment;
+        let walled = below.is_some_and(|z| segment.height(reached * sign) < z - near);
+        seated &= [reached, to].into_iter().all(|s| segment.height(s * sign) <= level + near);
+        if !seated && (segment.slope * sign <= seam || walled) {
+            break;
+        }
+        reached = to;
+        below = Some(segment.height(to * sign));
     }
     reached
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Between any two ends or crossings one segment is the highest, and the envelope has it.
+        #[test]
+        fn the_envelope_is_the_highest_everywhere(
+            raw in prop::collection::vec((-4i32..4, 1i32..5, -3i32..3, -2i32..3), 1..12),
+            at in prop::collection::vec(-4.5..8.5f64, 20),
+        ) {
+            let segments: Vec<Segment> = raw
+                .iter()
+                .map(|(from, length, offset, slope)| Segment {
+                    from: f64::from(*from),
+                    to: f64::from(from + length),
+                    offset: f64::from(*offset),
+                    slope: f64::from(*slope),
+                })
+                .collect();
+            let tops = envelope(&segments);
+            prop_assert!(tops.windows(2).all(|w| w[0].from < w[0].to && w[0].to <= w[1].from));
+            for s in at {
+                let over = |from: f64, to: f64| from < s && s < to;
+                let brute = segments.iter().filter(|p| over(p.from, p.to)).map(|p| p.height(s)).reduce(f64::max);
+                let found = tops.iter().find(|top| over(top.from, top.to)).map(|top| top.segment.height(s));
+                // On an end itself, which random places do not hit, either may be missing.
+                match (brute, found) {
+                    (Some(brute), Some(found)) => prop_assert!((brute - found).abs() < 1e-9, "{brute} {found} at {s}"),
+                    // Only where one piece of the envelope ends, and the next begins, is there none.
+                    (brute, found) => prop_assert_eq!(brute.is_some() && tops.iter().all(|t| t.from != s && t.to != s), found.is_some()),
+                }
+            }
+        }
+    }
 }

@@ -18,6 +18,7 @@ mod cells;
 mod circle;
 mod flow;
 mod line;
+mod places;
 mod sheet;
 
 pub use circle::circle_bounds;
@@ -30,8 +31,8 @@ use flow::Flow;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// Most sheets: cutting them against each other takes their square.
-const MAX_SHEETS: usize = 20_000;
+/// Most sheets: half a minute of cutting, and 100 MB.
+const MAX_SHEETS: usize = 400_000;
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -92,11 +93,8 @@ pub enum ZraaError {
     )]
     NoMatedPose,
     /// The geometry is too rich.
-    #[error("{count} ways to touch, more than {MAX_SHEETS}: give a coarser mesh or a larger chord_error")]
-    TooManySheets {
-        /// How many.
-        count: usize,
-    },
+    #[error("more than {MAX_SHEETS} ways to touch: give a coarser mesh or a larger chord_error")]
+    TooManySheets,
     /// The subdivision is not consistent.
     #[error(
         "the motion over {cells} cells does not come to an end: the geometry has details below the seam of {seam:.1e} D"
@@ -117,11 +115,8 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaEr
     if let Some(Play { axis, .. }) = cut.filter(|play| !play.axis.is_rotation()) {
         return Err(ZraaError::Limited { name: axis.name() });
     }
-    let sheets = sheet::sheets(&pair.fixed, &pair.moving);
-    if sheets.len() > MAX_SHEETS {
-        return Err(ZraaError::TooManySheets { count: sheets.len() });
-    }
-    exec.check()?;
+    let sheets =
+        sheet::sheets(&pair.fixed, &pair.moving, MAX_SHEETS, exec)?.ok_or(ZraaError::TooManySheets)?;
     let (axis, direction) = match (free.contains(Dof::X), free.contains(Dof::Y)) {
         (true, true) => return region(pair, &sheets, settings.seam, exec),
         (true, false) => (Dof::X, DVec2::X),

@@ -6,6 +6,7 @@
 //! out; what stays in too much does no harm to the upper envelope.
 
 use crate::connector::{Half, Surface};
+use crate::exec::{Cancelled, Exec};
 use glam::{DVec2, DVec3};
 
 /// Below this z-component a normal is horizontal: the feature is a wall and has no height.
@@ -50,21 +51,33 @@ pub(super) fn area(polygon: &[DVec2]) -> f64 {
     polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>() / 2.0
 }
 
-/// All sheets of a pair of halves, the moving one given from the COR at the aligned rotation.
-pub(super) fn sheets(fixed: &Half, moving: &Half) -> Vec<Sheet> {
+/// All sheets of a pair of halves, the moving one given from the COR at the aligned rotation; `None` for more than `most`.
+pub(super) fn sheets(
+    fixed: &Half,
+    moving: &Half,
+    most: usize,
+    exec: &Exec,
+) -> Result<Option<Vec<Sheet>>, Cancelled> {
     let mut sheets = Vec::new();
     for f in &fixed.surfaces {
         for m in &moving.surfaces {
-            facets_and_corners(f, m, 1.0, &mut sheets);
-            facets_and_corners(m, f, -1.0, &mut sheets);
-            edges(f, m, &mut sheets);
+            facets_and_corners(f, m, 1.0, most, exec, &mut sheets)?;
+            facets_and_corners(m, f, -1.0, most, exec, &mut sheets)?;
+            edges(f, m, most, exec, &mut sheets)?;
         }
     }
-    sheets
+    Ok((sheets.len() <= most).then_some(sheets))
 }
 
 /// Facets of `a` against corners of `b`; `up` is +1 where a is the fixed half and −1 where it is the moving one.
-fn facets_and_corners(a: &Surface, b: &Surface, up: f64, out: &mut Vec<Sheet>) {
+fn facets_and_corners(
+    a: &Surface,
+    b: &Surface,
+    up: f64,
+    most: usize,
+    exec: &Exec,
+    out: &mut Vec<Sheet>,
+) -> Result<(), Cancelled> {
     let mut neighbours: Vec<Vec<DVec3>> = vec![Vec::new(); b.vertices.len()];
     for facet in &b.facets {
         for (k, &from) in facet.corners.iter().enumerate() {
@@ -73,8 +86,12 @@ fn facets_and_corners(a: &Surface, b: &Surface, up: f64, out: &mut Vec<Sheet>) {
         }
     }
     for facet in &a.facets {
+        exec.check()?;
         if facet.normal.z * up <= VERTICAL {
             continue;
+        }
+        if out.len() > most {
+            break;
         }
         for (v, around) in b.vertices.iter().zip(&neighbours) {
             if around.is_empty() || around.iter().any(|e| facet.normal.dot(*e) < -ROUNDING * e.length()) {
@@ -86,11 +103,22 @@ fn facets_and_corners(a: &Surface, b: &Surface, up: f64, out: &mut Vec<Sheet>) {
             out.extend(Sheet::new(facet.normal * up, p, q, corners.collect()));
         }
     }
+    Ok(())
 }
 
 /// Convex edges against convex edges.
-fn edges(fixed: &Surface, moving: &Surface, out: &mut Vec<Sheet>) {
+fn edges(
+    fixed: &Surface,
+    moving: &Surface,
+    most: usize,
+    exec: &Exec,
+    out: &mut Vec<Sheet>,
+) -> Result<(), Cancelled> {
     for e in &fixed.edges {
+        exec.check()?;
+        if out.len() > most {
+            break;
+        }
         let [a, b] = e.ends.map(|k| fixed.vertices[k as usize]);
         let sides = e.facets.map(|k| fixed.facets[k as usize].normal);
         for g in &moving.edges {
@@ -107,6 +135,7 @@ fn edges(fixed: &Surface, moving: &Surface, out: &mut Vec<Sheet>) {
             out.extend(Sheet::new(n, a, p, vec![a2 - p2, b2 - p2, b2 - q2, a2 - q2]));
         }
     }
+    Ok(())
 }
 
 /// Whether `n`, across a convex edge, lies between the outward normals of its two facets.

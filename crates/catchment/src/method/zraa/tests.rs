@@ -24,6 +24,10 @@ fn pair_of(connector: ConnectorSpec, planar: bool) -> Pair {
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
+fn sheets_of(pair: &Pair) -> Vec<sheet::Sheet> {
+    sheet::sheets(&pair.fixed, &pair.moving, MAX_SHEETS, &Exec::new()).unwrap().unwrap()
+}
+
 fn run_family(spec: FamilySpec) -> Zraa {
     run(&pair(spec), &Settings::default(), &Exec::new()).unwrap()
 }
@@ -103,7 +107,7 @@ fn height(sheets: &[sheet::Sheet], at: DVec2) -> f64 {
 fn sheets_have_the_brute_height() {
     for family in [Family::Pyramid, Family::Cone, Family::XFace3d, Family::XFace3dLocking, Family::PinHole] {
         let pair = pair(FamilySpec::new(family).with_chord_error(0.05));
-        let sheets = sheet::sheets(&pair.fixed, &pair.moving);
+        let sheets = sheets_of(&pair);
         for k in 0..60u32 {
             let lateral = offset(k);
             let brute = pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
@@ -160,7 +164,7 @@ fn regions_agree_with_small_steps_downhill() {
     for spec in specs {
         let pair = pair(spec);
         let zraa = run(&pair, &Settings::default(), &Exec::new()).unwrap();
-        let sheets = sheet::sheets(&pair.fixed, &pair.moving);
+        let sheets = sheets_of(&pair);
         let mut wrong = 0;
         for k in 0..200u32 {
             let at = offset(k);
@@ -269,4 +273,30 @@ fn locking_lips_and_pins_have_closed_forms_too() {
         let area = area(spec.into());
         assert!((area - exact).abs() < 1e-9, "{spec:?}: {area} {exact}");
     }
+}
+
+/// Four pins and four holes in turn on either half: each pin meets each hole, pin and the plate between, at another offset. Pins of 4 mm on
+/// a face of 50 mm, with points: their tips must land inside the mouths.
+#[test]
+fn a_ring_of_four_pins_and_four_holes() {
+    let ring = PinHole { pins: 4, hermaphroditic: true, pin_radius: 0.04, chamfer: 0.04, ..PinHole::DEFAULT };
+    let spec = PinHole { clearance: 0.002, chord_error: 0.002, ..ring };
+    assert!(sheets_of(&pair(spec.into())).len() > 20_000);
+    let mouth = spec.pin_radius + spec.clearance + spec.chamfer;
+    let half_angle = (1.0 - spec.chord_error / mouth).acos();
+    let n = 4.0 * (std::f64::consts::PI / half_angle / 4.0).ceil();
+    let exact = n / 2.0 * (2.0 * std::f64::consts::PI / n).sin() * mouth * mouth;
+    let area = area(spec.into());
+    assert!((area - exact).abs() < 1e-9, "{area} {exact}");
+}
+
+#[test]
+fn too_many_ways_to_touch_are_refused_before_they_are_made() {
+    let pair = pair(FamilySpec::new(Family::PinHole));
+    let most = 100;
+    assert!(sheets_of(&pair).len() > 2 * most);
+    assert_eq!(
+        sheet::sheets(&pair.fixed, &pair.moving, most, &Exec::new()).map(|found| found.is_none()),
+        Ok(true)
+    );
 }

@@ -139,6 +139,11 @@ fn parts(list: &str) -> Vec<&str> {
     found
 }
 
+/// Whether a value means several: a number, two dots. Paths begin otherwise.
+fn is_range(part: &str) -> bool {
+    part.split_once("..").is_some_and(|(first, _)| first.trim().parse::<Quantity>().is_ok())
+}
+
 /// `first..last/number`, with a unit behind the last: so many values at equal distances, written with no more digits than tell them
 /// apart.
 fn range(text: &str) -> Result<Vec<String>, AxisError> {
