@@ -99,8 +99,7 @@ impl FromStr for Axis {
         let key = key_path(name).map_err(|complaint| AxisError::Key { complaint })?;
         let mut values: Vec<String> = Vec::new();
         for part in parts(list) {
-            let found =
-                if part.contains("..") && part.contains('/') { range(part)? } else { vec![part.to_owned()] };
+            let found = if is_range(part) { range(part)? } else { vec![part.to_owned()] };
             for value in found {
                 let wrong = |how| AxisError::Value { key: key.clone(), value: short(&value), how };
                 if value.is_empty() {
