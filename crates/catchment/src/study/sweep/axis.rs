@@ -213,9 +213,15 @@ mod tests {
         assert!(told("mesh=a.stl").ends_with("write connector.fixed.mesh or connector.moving.mesh"));
         assert!(told("cor=1,2,1").contains("twice"));
         assert!(told("cor=1,,2").contains("nothing"));
-        for range in
-            ["cor=1..1/3", "cor=1..2/1", "cor=1..2/1000000", "cor=a..2/3", "cor=1 mm..2 deg/3", "cor=1..2/x"]
-        {
+        for range in [
+            "cor=1..1/3",
+            "cor=1..2/1",
+            "cor=1..2/1000000",
+            "cor=1..b/3",
+            "cor=1..2",
+            "cor=1 mm..2 deg/3",
+            "cor=1..2/x",
+        ] {
             assert!(told(range).contains("is no range"), "{range}");
         }
         assert!(
