@@ -1,7 +1,7 @@
 //! What a design file says of a latch, with the dissertation's values where it is silent.
 
 use super::outline::Geometry;
-use super::rules::{Verdict, rules};
+use super::rules::{Verdict, WIDEST_SLIT, rules};
 use crate::form::{Form, Section};
 use catchment::design::{Findings, SourceText};
 use serde::Serialize;
@@ -154,7 +154,7 @@ fn filled(form: &mut Form<'_>, root: &Section<'_>) -> Latch {
     let poisson = form.number(&s, "poisson", 0.0..=0.49, Some(d.poisson));
     let slit_distance = form.length(&s, "slit_distance", 0.5..=500.0, Some(d.slit_distance));
     let slit_depth = form.length(&s, "slit_depth", 0.5..=500.0, Some(d.slit_depth));
-    let slit_gap = form.length(&s, "slit_gap", 0.0..=20.0, Some(2.0 * kerf));
+    let slit_gap = form.length(&s, "slit_gap", 0.0..=20.0, Some((2.0 * kerf).min(WIDEST_SLIT).max(kerf)));
     let wide_slit = form.flag(&s, "wide_slit", d.wide_slit);
     let cutout_depth = form.length(&s, "cutout_depth", 0.5..=500.0, Some(d.cutout_depth));
     let l_eq = form.length(&s, "l_eq", 0.2..=200.0, Some(d.l_eq));
@@ -240,4 +240,45 @@ fn checked(form: &mut Form<'_>, root: &Section<'_>, latch: &Latch) -> Option<Geo
         form.refuse(at, message, Some(&rule.reason));
     }
     (!form.is_refused()).then_some(geometry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Latch, String> {
+        Latch::read(SourceText::new("l.toml", text)).map(|(latch, _)| latch).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn an_empty_table_is_the_dissertations_part() {
+        assert_eq!(read("[latch]\n").unwrap(), Latch::default());
+        let text = include_str!("../../../../designs/systems/latch.toml");
+        let said = Latch {
+            name: "latching X-Face, overhang 5.1, neck 3.0".to_owned(),
+            dowel: Some(4.0),
+            ..Latch::default()
+        };
+        assert_eq!(read(text).unwrap(), said);
+        assert_eq!(read("[latch]\nsides = 3\n").unwrap().base, 47.5);
+        let inches = read("[latch]\nsheet = '0.125 in'\nkerf = 0.2\n").unwrap();
+        assert!((inches.sheet - 3.175).abs() < 1e-12 && inches.separator == inches.sheet);
+        // Two kerfs, unless that is too wide, and never less than one.
+        assert_eq!(inches.slit_gap, 0.36);
+        assert_eq!(read("[latch]\nkerf = 0.1\n").unwrap().slit_gap, 0.2);
+    }
+
+    #[test]
+    fn broken_rules_are_told_in_their_place_with_their_reason() {
+        let told = read("[latch]\nslit_depth = 15\nspline_end = '70 deg'\n").unwrap_err();
+        assert!(told.contains("l.toml:2:14: the stop slit ends below the cut-out"), "{told}");
+        assert!(told.contains("l.toml:3:14: the tangent at the hook passes through P"), "{told}");
+        assert!(read("[latch]\nsides = 2\n").unwrap_err().contains("one face or three"));
+        assert!(read("").unwrap_err().contains("`latch` is missing"));
+        assert!(
+            read("[latch]\nspline_start = '88 deg'\n")
+                .unwrap_err()
+                .contains("l.toml:2:16: no falling profile")
+        );
+    }
 }

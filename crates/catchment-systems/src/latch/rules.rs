@@ -39,7 +39,7 @@ pub struct Rule {
 /// The smallest overhang that latched, in mm.
 const LEAST_OVERHANG: f64 = 2.5;
 /// The widest slit that was found to stop the arm soon enough, in mm.
-const WIDEST_SLIT: f64 = 0.36;
+pub const WIDEST_SLIT: f64 = 0.36;
 /// How far the tangent may pass from P, as a share of the lever.
 const TANGENT: f64 = 0.01;
 /// The angle at the outer edge that was chosen, in degrees, and how far another may be from it without a word.
@@ -297,4 +297,68 @@ fn of_the_whole(list: &mut List, latch: &Latch, geometry: &Geometry) {
         ),
         "a hook that misses its partner's does not hold",
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn broken(latch: &Latch) -> Vec<&'static str> {
+        let geometry = Geometry::of(latch).unwrap();
+        rules(latch, &geometry).iter().filter(|r| r.verdict == Verdict::Broken).map(|r| r.key).collect()
+    }
+
+    fn doubted(latch: &Latch) -> Vec<&'static str> {
+        let geometry = Geometry::of(latch).unwrap();
+        rules(latch, &geometry).iter().filter(|r| r.verdict == Verdict::Doubt).map(|r| r.key).collect()
+    }
+
+    #[test]
+    fn the_defaults_meet_every_rule() {
+        assert!(broken(&Latch::default()).is_empty() && doubted(&Latch::default()).is_empty());
+    }
+
+    /// Each rule can be broken by the number that it names.
+    #[test]
+    fn every_rule_has_a_number_that_breaks_it() {
+        let d = Latch::default;
+        let angle = |deg: f64| Some(deg.to_radians());
+        assert_eq!(broken(&Latch { spline_start: -0.1, ..d() }), ["spline_start"]);
+        assert_eq!(broken(&Latch { spline_end: angle(30.0), ..d() }), ["spline_end", "spline_end"]);
+        assert_eq!(broken(&Latch { spline_end: angle(70.0), ..d() }), ["spline_end"]);
+        assert_eq!(broken(&Latch { slit_depth: 15.0, ..d() }), ["slit_depth"]);
+        assert_eq!(broken(&Latch { slit_gap: 0.1, ..d() }), ["slit_gap", "kerf"]);
+        assert_eq!(broken(&Latch { slit_gap: 0.5, ..d() }), ["slit_gap"]);
+        assert!(broken(&Latch { slit_gap: 0.5, wide_slit: true, ..d() }).is_empty());
+        assert_eq!(broken(&Latch { l_eq: 1.0, ..d() }), ["l_eq"]);
+        assert!(broken(&Latch { cutout_depth: 8.5, ..d() }).contains(&"cutout_depth"));
+        assert_eq!(broken(&Latch { base: 81.0, ..d() }), ["base"]);
+        assert_eq!(broken(&Latch { base: 40.0, ..d() })[0], "base");
+        assert_eq!(broken(&Latch { sides: 3, base: 48.0, ..d() }), ["base"]);
+        assert!(broken(&Latch { sides: 3, base: 47.5, ..d() }).is_empty());
+        assert_eq!(broken(&Latch { width: 80.0, module_width: 65.5, ..d() })[0], "width");
+        assert_eq!(broken(&Latch { dowel: Some(9.0), ..d() }), ["dowel"]);
+        let mut aside = d();
+        aside.press.offset = 5.2;
+        assert_eq!(broken(&aside), ["offset"]);
+    }
+
+    #[test]
+    fn what_may_work_is_doubted() {
+        let d = Latch::default;
+        assert_eq!(doubted(&Latch { overhang: 1.27, ..d() }), ["overhang"]);
+        assert_eq!(doubted(&Latch { separator: 3.0, ..d() }), ["separator"]);
+        assert_eq!(doubted(&Latch { spline_start: 0.5, ..d() }), ["spline_start"]);
+        assert_eq!(doubted(&Latch { slit_distance: 14.0, ..d() }), ["slit_depth"]);
+    }
+
+    /// A wider slit lets the arm turn farther in tension.
+    #[test]
+    fn free_play_grows_with_the_slit() {
+        let geometry = Geometry::of(&Latch::default()).unwrap();
+        let narrow = play(&Latch::default(), &geometry);
+        // 0.36 mm, 16.0 mm above P.
+        assert!((narrow - 0.36 / 16.0).abs() < 1e-5, "{narrow}");
+        assert!(play(&Latch { slit_gap: 0.5, ..Latch::default() }, &geometry) > narrow);
+    }
 }

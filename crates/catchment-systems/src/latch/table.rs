@@ -57,8 +57,8 @@ impl Body for TableBody {
 const CONTRADICTIONS: [&str; 7] = [
     "the text says six designs were tested; the table has nine",
     "the text names the tip failures once as t = 3.0 or 4.6, once as 3.0 or greater; the force at 3.8 fits the second",
-    "\"effective spring constants increased with thickness\" is false for k_C at o 2.5, t 3.8 and for k_E at o 5.1, t 4.6",
-    "\"the thicker, the larger the force to break\" is false at o 2.5, t 4.6; that break was at the tip",
+    "that spring constants grow with the neck is false for k_C at o 2.5, t 3.8 and for k_E at o 5.1, t 4.6",
+    "that a thicker neck takes more force to break is false at o 2.5, t 4.6, which broke at the tip",
     "the three-sided part: 584 N over 9.61 N is 60.8, the text prints 60.9",
     "the pseudo-rigid body asks for t³; the nine designs show t^1.6 at o 2.5 and t^2.2 at o 5.1",
     "k = 4.99 N·m/rad is stated without the length and width of the neck, so that it can be inverted only: l_eq 6.01 mm for one layer",

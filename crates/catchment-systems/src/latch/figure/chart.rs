@@ -61,7 +61,9 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, forces: &Forces, latch: Option<&La
     );
     svg.text([x + 5.0, rect.y + 14.0], TICK, Anchor::Start, INK, "1.27 mm: did not latch");
     // The model grows towards the smallest of both, where nothing was measured.
-    svg.text([x + 5.0, rect.y + rect.h - 8.0], TICK, Anchor::Start, INK, "its maximum: extrapolated");
+    for (k, words) in ["maximum:", "extrapolated"].into_iter().enumerate() {
+        svg.text([x + 5.0, rect.y + rect.h - 20.0 + 13.0 * k as f64], TICK, Anchor::Start, INK, words);
+    }
     for row in &forces.rows {
         let [x, y] = frame.at([row.overhang_mm, row.neck_mm]);
         svg.circle(

@@ -1,6 +1,6 @@
 //! The part itself: its outline with names, and two of them in the four steps of latching.
 
-use super::super::outline::{Polygon, edges};
+use super::super::outline::Polygon;
 use super::super::{Geometry, Latch};
 use super::Drawn;
 use catchment::report::figure::draw::colour::{FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, Rgb, hex};
@@ -160,15 +160,10 @@ pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &Drawn<'_>) {
         }
         // Faces on top, without the seams between arm, neck and body.
         let arm = half(geometry, swing).pop().unwrap_or_default();
-        let face: Vec<(DVec2, DVec2)> = edges(&arm).collect();
-        for (a, b) in face {
-            for (p, q, colour) in [(a, b, FIXED_EDGE), (2.0 * middle - a, 2.0 * middle - b, MOVING_EDGE)] {
-                svg.line(
-                    view.at(p),
-                    view.at(q),
-                    &format!(r#"stroke="{}" stroke-width="1" {JOIN}"#, hex(colour)),
-                );
-            }
+        let turned: Polygon = arm.iter().map(|p| 2.0 * middle - *p).collect();
+        for (polygon, colour) in [(arm, FIXED_EDGE), (turned, MOVING_EDGE)] {
+            let style = format!(r#"fill="none" stroke="{}" stroke-width="1" {JOIN}"#, hex(colour));
+            svg.path(&polyline(polygon.iter().map(|p| view.at(*p)), true), &style);
         }
     }
 }

@@ -45,14 +45,9 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record) {
     for (k, dip) in record.dips.iter().enumerate() {
         let [x, y] = frame.at([way(dip.above), dip.from]);
         svg.circle([x, y], 3.0, &format!(r##"fill="{}" stroke="#ffffff" stroke-width="1""##, hex(CURVES[0])));
-        let level = rect.y + 34.0 + 15.0 * k as f64;
-        svg.text(
-            [x - 8.0, level.max(y - 8.0)],
-            TICK,
-            Anchor::End,
-            INK,
-            &format!("layer {} snaps", dip.layer),
-        );
+        // Above the curve for the first, below it for what follows, clear of the drop.
+        let level = if k == 0 { y - 10.0 } else { y + 18.0 };
+        svg.text([x - 24.0, level], TICK, Anchor::End, INK, &format!("layer {} snaps", dip.layer));
     }
     let seat = frame.px(way(0.0));
     svg.line(
