@@ -15,7 +15,10 @@ fn home(text: &str) -> tempfile::TempDir {
 fn the_defaults_are_the_dissertations_part() {
     let home = home("[latch]\n");
     let report = json(home.path(), &["latch", "l.toml", "--json"]);
-    assert_eq!((report["kind"].as_str(), report["warnings"].as_array().map(Vec::len)), (Some("latch"), Some(0)));
+    assert_eq!(
+        (report["kind"].as_str(), report["warnings"].as_array().map(Vec::len)),
+        (Some("latch"), Some(0))
+    );
     let near = |pointer: &str, value: f64, by: f64| {
         let found = report.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
         assert!((found - value).abs() < by, "{pointer} is {found}, not {value}");
@@ -27,7 +30,10 @@ fn the_defaults_are_the_dissertations_part() {
     assert!(report["rules"].as_array().unwrap().iter().all(|rule| rule["verdict"] == "holds"));
     assert_eq!(entries(home.path()), ["l.toml"]);
     let told = run(home.path(), &["latch", "l.toml"]);
-    assert!(told.starts_with("exit 0") && told.contains("5.0006 N·m/rad") && told.ends_with("--- stderr\n"), "{told}");
+    assert!(
+        told.starts_with("exit 0") && told.contains("5.0006 N·m/rad") && told.ends_with("--- stderr\n"),
+        "{told}"
+    );
 }
 
 #[test]
@@ -81,7 +87,10 @@ fn the_table_stands_beside_the_model() {
     }
     assert!((table["neck_line_n_per_mm"].as_f64().unwrap() - 213.6).abs() < 0.05);
     let told = run(home.path(), &["latch", "--table", "-o", "t.csv"]);
-    assert!(told.contains("213.6 N/mm") && told.contains("six designs were tested; the table has nine"), "{told}");
+    assert!(
+        told.contains("213.6 N/mm") && told.contains("six designs were tested; the table has nine"),
+        "{told}"
+    );
     let csv = fs::read_to_string(home.path().join("t.csv")).unwrap();
     assert_eq!(csv.lines().count(), 10);
     assert!(run(home.path(), &["latch", "--table", "-o", "chart.svg"]).starts_with("exit 0"));

@@ -79,7 +79,9 @@ impl GeometryError {
         match self {
             Self::PivotLeft { .. } => "a larger slit_distance moves it; 15 mm was found to be sufficient",
             Self::SlitOutside { .. } => "a smaller slit_distance moves it inward",
-            Self::NoProfile { .. } => "start flatter (35 deg was found to be best), or move the slit",
+            Self::NoProfile { .. } => {
+                "start flatter (35 deg was found to be best), or put P lower: cutout_depth and l_eq decide it"
+            }
         }
     }
 }
@@ -456,10 +458,11 @@ mod tests {
 
     #[test]
     fn what_has_no_outline_is_refused() {
+        // A cut-out as high as that puts P above the hook.
         let refuse = |latch: Latch| Geometry::of(&latch).unwrap_err().key();
         assert_eq!(refuse(Latch { slit_distance: 2.0, ..Latch::default() }), "slit_distance");
         assert_eq!(refuse(Latch { slit_distance: 40.0, ..Latch::default() }), "slit_distance");
-        assert_eq!(refuse(Latch { spline_start: 88f64.to_radians(), ..Latch::default() }), "spline_start");
+        assert_eq!(refuse(Latch { l_eq: 100.0, ..Latch::default() }), "spline_start");
     }
 
     proptest! {

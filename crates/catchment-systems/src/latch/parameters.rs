@@ -275,10 +275,7 @@ mod tests {
         assert!(told.contains("l.toml:3:14: the tangent at the hook passes through P"), "{told}");
         assert!(read("[latch]\nsides = 2\n").unwrap_err().contains("one face or three"));
         assert!(read("").unwrap_err().contains("`latch` is missing"));
-        assert!(
-            read("[latch]\nspline_start = '88 deg'\n")
-                .unwrap_err()
-                .contains("l.toml:2:16: no falling profile")
-        );
+        let told = read("[latch]\nspline_start = '35 deg'\nl_eq = 100\n").unwrap_err();
+        assert!(told.contains("l.toml:2:16: no falling profile"), "{told}");
     }
 }
