@@ -16,7 +16,7 @@ use catchment_systems::latch::{Latch, connector, drawing, press, report, table};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// A latching X-Face: outline, stiffness, forces to latch and to break, drawings for the laser cutter
+/// A latching X-Face: outline, forces to latch and to break, drawings for a laser cutter
 ///
 /// Two halves of one shape align, press their arms aside and hook into each other. The outline follows from the
 /// dissertation's design principles (chapter 6); every rule is checked and told with its reason. Forces are fits to nine

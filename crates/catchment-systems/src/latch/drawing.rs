@@ -27,8 +27,8 @@ pub const CUT: &str = "CUT";
 const COLOURS: [u8; 2] = [7, 1];
 /// Flag of a closed polyline.
 const CLOSED: i32 = 1;
-/// Width of the lines of an SVG, in mm: what cutters read as "cut".
-const HAIRLINE: f64 = 0.01;
+/// Width of the lines of an SVG, in mm: thin, and still seen on a screen. Cutters go by the middle, and by the colour.
+const HAIRLINE: f64 = 0.1;
 /// Room around the drawing, in mm.
 const MARGIN: f64 = 5.0;
 
@@ -116,7 +116,7 @@ impl Sheet {
         Ok(without_dates(&String::from_utf8(bytes)?))
     }
 
-    /// The sheet as SVG, a unit to the mm, hairlines in red.
+    /// The sheet as SVG, a unit to the mm, thin lines in red.
     pub fn svg(&self) -> String {
         let (lo, hi) = self
             .outline

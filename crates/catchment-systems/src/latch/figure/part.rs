@@ -60,7 +60,7 @@ pub(super) fn outline(svg: &mut Svg, rect: Rect, latch: &Latch, geometry: &Geome
     );
     svg.circle(pivot, 4.0, &format!(r##"fill="{}" stroke="#ffffff" stroke-width="1""##, hex(MOVING_EDGE)));
     let label = |svg: &mut Svg, at: [f64; 2], anchor, text: &str| svg.text(at, LABEL, anchor, INK, text);
-    label(svg, [pivot[0] - 10.0, pivot[1] + 26.0], Anchor::End, "P, neck t");
+    label(svg, [pivot[0] - 10.0, pivot[1] + 36.0], Anchor::End, "P, neck t");
     let middle_cutout = 0.5 * (geometry.cutout[0] + geometry.cutout[1]);
     let cutout = view.at(DVec2::new(0.3 * width, middle_cutout));
     label(svg, [cutout[0], cutout[1] + 4.0], Anchor::Middle, "cut-out");
