@@ -23,7 +23,7 @@ use std::fmt::Write;
 pub const PART: &str = "PART";
 /// CAD layer of the cut line.
 pub const CUT: &str = "CUT";
-/// Colours of the two, in AutoCAD's palette: white or black, and red.
+/// Colours of the two, in `AutoCAD`'s palette: white or black, and red.
 const COLOURS: [u8; 2] = [7, 1];
 /// Flag of a closed polyline.
 const CLOSED: i32 = 1;
@@ -84,10 +84,11 @@ impl Sheet {
         Ok(Self { name: self.name, outline: compensated(&self.outline, kerf)?, holes })
     }
 
-    /// The sheet as DXF (AutoCAD 2000), on one CAD layer. The same sheet gives the same bytes: no date, no random numbers.
+    /// The sheet as DXF (`AutoCAD` 2000), on one CAD layer. The same sheet gives the same bytes: no date, no random numbers.
     ///
     /// # Errors
     /// None that is known: it is written into memory.
+    #[expect(clippy::default_trait_access, reason = "only dxf itself depends on the crate of the type")]
     pub fn dxf(&self, layer: &str) -> Result<String, DrawingError> {
         let mut drawing = Drawing::new();
         drawing.header.version = AcadVersion::R2000;

@@ -187,7 +187,7 @@ impl Forces {
         Failure { force_n: as_tested * section, mode, upper_bound, doubts }
     }
 
-    /// Mean stress in the necks when they break, in MPa.
+    /// Mean stress in the necks when they break, in `MPa`.
     pub fn neck_stress(&self) -> f64 {
         let tested = Latch::default();
         self.neck_line / (f64::from(tested.layers) * tested.sheet)

@@ -21,7 +21,7 @@
 //! Source: the dissertation, sections 6.1 and 6.2 (pages 91 to 101), table 6.1. Its drawings are lost to us: the outline is
 //! *derived* from its sentences, and whatever is our reading is marked [`Basis::Inferred`].
 //!
-//! Lengths are in mm, angles in rad, forces in N, moduli in MPa.
+//! Lengths are in mm, angles in rad, forces in N, moduli in `MPa`.
 //!
 //! # What is not promised
 //!

@@ -6,12 +6,12 @@ use crate::form::{Form, Section};
 use catchment::design::{Findings, SourceText};
 use serde::Serialize;
 
-/// MPa in a GPa.
+/// `MPa` in a `GPa`.
 const GIGA: f64 = 1000.0;
 /// Lower edge below the plane of the overhang where a file says nothing: room for dowels under the slit of a one-sided part.
 const BASE_ONE_SIDED: f64 = 60.0;
 
-/// A latching X-Face: lengths in mm, angles in rad, the modulus in MPa.
+/// A latching X-Face: lengths in mm, angles in rad, the modulus in `MPa`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Latch {
     /// What the design is called.
@@ -32,7 +32,7 @@ pub struct Latch {
     pub separator: f64,
     /// Layers with a profile: one, or two that mirror each other.
     pub layers: u32,
-    /// Young's modulus, in MPa.
+    /// Young's modulus, in `MPa`.
     pub modulus: f64,
     /// Poisson's ratio.
     pub poisson: f64,

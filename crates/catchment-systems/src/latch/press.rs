@@ -176,9 +176,9 @@ impl Layer<'_> {
                 let seen = self.seen(middle, swing);
                 let over = seen.y - profile.height(seen.x);
                 if over < 0.0 {
-                    inside = swing
+                    inside = swing;
                 } else {
-                    outside = swing
+                    outside = swing;
                 }
                 let moved = -(seen - self.geometry.pivot).perp();
                 let next = swing - over / (moved.y - profile.slope(seen.x) * moved.x);

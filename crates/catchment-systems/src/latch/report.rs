@@ -16,7 +16,7 @@ pub type LatchReport = Envelope<LatchBody>;
 /// N·mm in a N·m.
 const MILLI: f64 = 1e-3;
 
-/// A latch and what is found of it; mm, rad, N, MPa where no unit is named.
+/// A latch and what is found of it; mm, rad, N, `MPa` where no unit is named.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatchBody {
     /// What the file says, with defaults.
@@ -37,7 +37,7 @@ pub struct LatchBody {
     pub latching: Latching,
     /// Force to break.
     pub failure: Failure,
-    /// Mean stress in the necks at which they break, in MPa.
+    /// Mean stress in the necks at which they break, in `MPa`.
     pub neck_strength_mpa: f64,
     /// Break over latch.
     pub bonding_ratio: f64,

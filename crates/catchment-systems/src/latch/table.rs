@@ -19,7 +19,7 @@ pub struct TableBody {
     pub fits: Vec<Fit>,
     /// Force per thickness of a neck that breaks, in N/mm, over both layers.
     pub neck_line_n_per_mm: f64,
-    /// The same as a stress, in MPa.
+    /// The same as a stress, in `MPa`.
     pub neck_strength_mpa: f64,
     /// Law of the spring constant in tension, C·oᵖ·t^q.
     pub k_extension: Fit,
