@@ -14,7 +14,7 @@
 //!   ────────────────────────────┘
 //! ```
 //!
-//! [`Latch`] is what a design file says, [`Geometry`] the outline that follows from it, [`rules`] what the outline must meet
+//! [`Latch`] is what a design file says, [`Geometry`] the outline that follows from it, [`rules()`] what the outline must meet
 //! and why. [`force`] says what it takes to latch and to break, from the nine measured designs of [`measured`]; [`press`]
 //! pushes two halves together. [`drawing`] writes what a laser cutter takes.
 //!

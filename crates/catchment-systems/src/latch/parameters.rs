@@ -244,7 +244,10 @@ fn checked(form: &mut Form<'_>, root: &Section<'_>, latch: &Latch) -> Option<Geo
 
 #[cfg(test)]
 mod tests {
+    use super::super::drawing::files;
+    use super::super::press::record;
     use super::*;
+    use proptest::prelude::*;
 
     fn read(text: &str) -> Result<Latch, String> {
         Latch::read(SourceText::new("l.toml", text)).map(|(latch, _)| latch).map_err(|e| e.to_string())
@@ -277,5 +280,31 @@ mod tests {
         assert!(read("").unwrap_err().contains("`latch` is missing"));
         let told = read("[latch]\nspline_start = '35 deg'\nl_eq = 100\n").unwrap_err();
         assert!(told.contains("l.toml:2:16: no falling profile"), "{told}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Whatever lengths a file has: an outline that everything can be made of, or a list of what is wrong.
+        #[test]
+        fn any_lengths_are_drawn_or_refused(
+            width in 10.0f64..200.0, overhang in 0.1f64..20.0, neck in 0.2f64..12.0, hook in 0.2f64..20.0,
+            kerf in 0.0f64..0.6, distance in 1.0f64..60.0, depth in 1.0f64..60.0, cutout in 1.0f64..60.0,
+            l_eq in 0.3f64..30.0, start in -20f64..85.0, bend in 1.0f64..50.0, friction in 0.0f64..2.0,
+        ) {
+            let text = format!(
+                "[latch]\nwidth = {width}\noverhang = {overhang}\nneck = {neck}\nhook = {hook}\nkerf = {kerf}\n\
+                 slit_distance = {distance}\nslit_depth = {depth}\ncutout_depth = {cutout}\nl_eq = {l_eq}\n\
+                 spline_start = '{start} deg'\nbend = {bend}\nmodule_width = 500\nrotor_distance = 500\nbase = 400\n\
+                 [press]\nfriction = {friction}\n"
+            );
+            match Latch::read(SourceText::new("l.toml", text)) {
+                Ok((latch, geometry)) => {
+                    prop_assert!(record(&latch, &geometry).unwrap().peak > 0.0);
+                    prop_assert!(files(&latch, &geometry).unwrap().len() == 9);
+                }
+                Err(found) => prop_assert!(!found.list.is_empty()),
+            }
+        }
     }
 }
