@@ -124,6 +124,8 @@ fn half(geometry: &Geometry, swing: f64) -> Vec<Polygon> {
 /// Draws approach, contact, arms pushed outward and the latched pair, one layer of each.
 pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &Drawn<'_>) {
     const GAP: f64 = 18.0;
+    /// Above the first contact when halves approach, in mm.
+    const CLEAR: f64 = 5.0;
     let geometry = drawn.geometry;
     let contact = 2.0 * geometry.profile.height(0.5 * geometry.width);
     // Open widest: the hooks' walls just before they pass.
@@ -136,15 +138,17 @@ pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &Drawn<'_>) {
             },
         );
     let aside = 0.12 * geometry.width;
+    // The mirrored layer is off to the other side, and meets its partner earlier.
+    let approach = 2.0 * geometry.profile.height(0.5 * (geometry.width - aside)) + CLEAR;
     let steps = [
-        ("1  approach", contact + 8.0, aside, 0.0),
+        ("1  approach; dashed: other layer", approach, aside, 0.0),
         ("2  aligned: profiles meet", contact, 0.0, 0.0),
         ("3  arms pushed outward", open.max(0.0), 0.0, swing),
         ("4  snapped", 0.0, 0.0, 0.0),
     ];
     let wide = (rect.w - 3.0 * GAP) / 4.0;
     // The same scale for all, so that the first, which is the tallest, fits.
-    let tall = contact + 8.0 - 2.0 * geometry.bottom;
+    let tall = approach - 2.0 * geometry.bottom;
     let scale = ((rect.h - 26.0) / tall).min(wide / (geometry.width + aside));
     for (k, (name, above, offset, swing)) in steps.into_iter().enumerate() {
         let x = rect.x + k as f64 * (wide + GAP);
@@ -160,6 +164,17 @@ pub(super) fn sequence(svg: &mut Svg, rect: Rect, drawn: &Drawn<'_>) {
         }
         // Faces on top, without the seams between arm, neck and body.
         let arm = half(geometry, swing).pop().unwrap_or_default();
+        // The other layer's faces, dashed, as long as its arms are at rest.
+        let behind: Polygon = geometry.face().iter().map(|p| DVec2::new(geometry.width - p.x, p.y)).collect();
+        let partner: Polygon = behind.iter().map(|p| 2.0 * middle - *p).collect();
+        // Once both are one line, two dashed ones would make it solid.
+        let dashed = [(behind, FIXED_EDGE), (partner, MOVING_EDGE)];
+        let shown = if swing > 0.0 { 0 } else { 1 + usize::from(above > 0.0) };
+        for (face, colour) in dashed.into_iter().take(shown) {
+            let style =
+                format!(r#"fill="none" stroke="{}" stroke-width="0.9" stroke-dasharray="4 3""#, hex(colour));
+            svg.path(&polyline(face.iter().map(|p| view.at(*p)), false), &style);
+        }
         let turned: Polygon = arm.iter().map(|p| 2.0 * middle - *p).collect();
         for (polygon, colour) in [(arm, FIXED_EDGE), (turned, MOVING_EDGE)] {
             let style = format!(r#"fill="none" stroke="{}" stroke-width="1" {JOIN}"#, hex(colour));
