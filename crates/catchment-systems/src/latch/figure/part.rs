@@ -25,7 +25,7 @@ impl View {
     }
 }
 
-/// A dotted helper line.
+/// A dotted line.
 const DOTTED: &str = r##"stroke="#5f6b7a" stroke-width="0.9" stroke-dasharray="2 3""##;
 /// A line with a length on it.
 const MEASURE: &str = r##"stroke="#1f2933" stroke-width="0.9""##;
