@@ -63,6 +63,19 @@ impl FileArgs {
         Ok(Some(kind))
     }
 
+    /// The path as a folder for many files of this kind, where one is asked for. Refuses what cannot be written in the end,
+    /// before anything is computed.
+    pub(crate) fn folder(&self, kind: &str) -> Result<Option<&Path>, Failure> {
+        if self.force {
+            let help =
+                "leave it out: a folder that this command wrote is replaced without it, and no other is";
+            return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
+        }
+        let Some(path) = self.output.as_deref() else { return Ok(None) };
+        write::check_folder(path, kind)?;
+        Ok(Some(path))
+    }
+
     /// Writes the file, if one is asked for.
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         self.output.as_deref().map_or(Ok(()), |path| write_file(path, bytes, self.force))

@@ -14,3 +14,4 @@
 //! Each stands by itself on `catchment`, which knows none of them. [`form`] reads their files.
 
 pub mod form;
+pub mod latch;

@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod completions;
 mod export;
+mod latch;
 mod man;
 mod new;
 mod outcome;
@@ -32,6 +33,7 @@ pub(crate) enum Command {
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
     Export(Box<export::ExportArgs>),
+    Latch(latch::LatchArgs),
     Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
     Completions(completions::CompletionsArgs),
@@ -52,6 +54,7 @@ impl Command {
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
+            Self::Latch(args) => latch::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),
             Self::Completions(args) => completions::run(&args),

@@ -10,6 +10,7 @@ mod door;
 mod files;
 mod hostile;
 mod kills;
+mod latch;
 mod limits;
 mod meshes;
 mod new;

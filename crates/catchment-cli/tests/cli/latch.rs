@@ -1,0 +1,119 @@
+//! `catchment latch`: rules, forces, drawings, and the table of measured prototypes.
+
+use crate::{catchment, designs, entries, json, run, written};
+use std::fs;
+use std::path::Path;
+
+/// A folder with a latch in it.
+fn home(text: &str) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("l.toml"), text).unwrap();
+    dir
+}
+
+#[test]
+fn the_defaults_are_the_dissertations_part() {
+    let home = home("[latch]\n");
+    let report = json(home.path(), &["latch", "l.toml", "--json"]);
+    assert_eq!(
+        (report["kind"].as_str(), report["warnings"].as_array().map(Vec::len)),
+        (Some("latch"), Some(0))
+    );
+    let near = |pointer: &str, value: f64, by: f64| {
+        let found = report.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
+        assert!((found - value).abs() < by, "{pointer} is {found}, not {value}");
+    };
+    near("/stiffness_nm_per_rad", 5.0006, 5e-5);
+    near("/latching/force_n", 13.35, 0.01);
+    near("/failure/force_n", 640.9, 0.1);
+    near("/outline/end_deg", 75.7, 0.05);
+    assert!(report["rules"].as_array().unwrap().iter().all(|rule| rule["verdict"] == "holds"));
+    assert_eq!(entries(home.path()), ["l.toml"]);
+    let told = run(home.path(), &["latch", "l.toml"]);
+    assert!(
+        told.starts_with("exit 0") && told.contains("5.0006 N·m/rad") && told.ends_with("--- stderr\n"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_folder_has_every_sheet_and_picture_and_the_same_bytes_each_time() {
+    let home = tempfile::tempdir().unwrap();
+    let design = designs().join("systems/latch.toml");
+    let args = |out: &'static str| ["latch", design.to_str().unwrap(), "-o", out].map(str::to_owned);
+    for out in ["a", "b"] {
+        let output = catchment(home.path()).args(args(out)).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let names = written(&home.path().join("a"));
+    for sheet in ["front", "back", "separator"] {
+        for ending in [".dxf", "-cut.dxf", "-cut.svg"] {
+            assert!(names.contains(&format!("{sheet}{ending}")), "{names:?}");
+        }
+    }
+    for name in ["latch.png", "chart.svg", "sequence.png", "press.csv", "connector.toml", "report.json"] {
+        assert!(names.contains(&name.to_owned()), "{name}");
+    }
+    for name in &names {
+        let [a, b] = ["a", "b"].map(|out| fs::read(home.path().join(out).join(name)).unwrap());
+        assert!(a == b, "{name} differs");
+    }
+    // The same command again replaces its own folder, and nobody else's.
+    assert!(catchment(home.path()).args(args("a")).status().unwrap().success());
+    fs::write(home.path().join("a/mine.txt"), "mine").unwrap();
+    let told = run(home.path(), &["latch", design.to_str().unwrap(), "-o", "a"]);
+    assert!(told.starts_with("exit 2"), "{told}");
+    assert!(home.path().join("a/mine.txt").exists());
+}
+
+/// The aligning part of the face is a design that the rest of the program reads.
+#[test]
+fn the_connector_that_is_written_slides_into_place_from_a_whole_width() {
+    let home = home("[latch]\n");
+    assert!(run(home.path(), &["latch", "l.toml", "-o", "out"]).starts_with("exit 0"));
+    let zraa = json(home.path(), &["zraa", "out/connector.toml", "--json"]);
+    assert!((zraa["length_d"].as_f64().unwrap() - 2.0).abs() < 1e-6, "{zraa}");
+}
+
+#[test]
+fn the_table_stands_beside_the_model() {
+    let home = tempfile::tempdir().unwrap();
+    let table = json(home.path(), &["latch", "--table", "--json"]);
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!((table["kind"].as_str(), rows.len()), (Some("latch-table"), 9));
+    for row in rows {
+        let [ratio, printed] = ["ratio", "bonding_ratio"].map(|key| row[key].as_f64().unwrap());
+        assert!((ratio - printed).abs() <= 0.0501, "{row}");
+    }
+    assert!((table["neck_line_n_per_mm"].as_f64().unwrap() - 213.6).abs() < 0.05);
+    let told = run(home.path(), &["latch", "--table", "-o", "t.csv"]);
+    assert!(
+        told.contains("213.6 N/mm") && told.contains("six designs were tested; the table has nine"),
+        "{told}"
+    );
+    let csv = fs::read_to_string(home.path().join("t.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 10);
+    assert!(run(home.path(), &["latch", "--table", "-o", "chart.svg"]).starts_with("exit 0"));
+    assert!(fs::read_to_string(home.path().join("chart.svg")).unwrap().contains("did not latch"));
+}
+
+/// 1.27 mm was made and given up: it is computed, with the reason why not.
+#[test]
+fn an_overhang_that_failed_is_warned_of() {
+    let home = home("[latch]\noverhang = 1.27\n");
+    let told = run(home.path(), &["latch", "l.toml"]);
+    let stderr = told.split("--- stderr\n").nth(1).unwrap();
+    assert!(told.starts_with("exit 0") && stderr.contains("less than 1 mm"), "{told}");
+    assert!(stderr.lines().all(|line| line.starts_with("warning: ")), "{stderr}");
+}
+
+#[test]
+fn a_design_may_come_from_a_pipe_but_needs_to_come() {
+    let home = tempfile::tempdir().unwrap();
+    let told = run(home.path(), &["latch"]);
+    assert!(told.starts_with("exit 2") && told.contains("<DESIGN>"), "{told}");
+    let told = run(home.path(), &["latch", "no.toml"]);
+    assert!(told.starts_with("exit 2") && told.contains("cannot read no.toml"), "{told}");
+    assert_eq!(entries(home.path()).len(), 0);
+    assert!(Path::new(&designs().join("systems/latch.toml")).exists());
+}

@@ -1,0 +1,60 @@
+//! The record of a press: force over the way, with the dips where hooks pass.
+
+use super::super::press::Record;
+use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::colour::{CURVES, hex};
+use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
+
+/// Draws the record into a rectangle, its title above.
+pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record) {
+    svg.bold(
+        [rect.x - 46.0, rect.y - 26.0],
+        LABEL,
+        Anchor::Start,
+        "pressed together: springs and friction alone",
+    );
+    let way = |above: f64| record.first_contact - above;
+    let (first, last) = match &record.positions[..] {
+        [first, .., last] => (way(first.above), way(last.above)),
+        _ => return,
+    };
+    let frame = Frame {
+        rect,
+        x: Scale::new("way after first contact [mm]".to_owned(), first, last, false),
+        y: Scale::new("force [N]".to_owned(), 0.0, 1.15 * record.peak.max(f64::MIN_POSITIVE), false),
+    };
+    let curve = |of: &dyn Fn(usize) -> f64| {
+        polyline(
+            (0..record.positions.len()).map(|k| frame.at([way(record.positions[k].above), of(k)])),
+            false,
+        )
+    };
+    let layers = record.positions.first().map_or(0, |p| p.layers.len());
+    for layer in (0..layers).filter(|_| layers > 1) {
+        let style = format!(
+            r#"fill="none" stroke="{}" stroke-width="1.2" stroke-dasharray="4 3" {JOIN}"#,
+            hex(CURVES[layer + 1])
+        );
+        svg.path(&curve(&|k| record.positions[k].layers[layer].force), &style);
+        let x = rect.x + 10.0 + 92.0 * layer as f64;
+        svg.line([x, rect.y + 12.0], [x + 16.0, rect.y + 12.0], &style);
+        svg.text([x + 21.0, rect.y + 16.0], TICK, Anchor::Start, SOFT, &format!("layer {}", layer + 1));
+    }
+    let style = format!(r#"fill="none" stroke="{}" stroke-width="2" {JOIN}"#, hex(CURVES[0]));
+    svg.path(&curve(&|k| record.positions[k].force), &style);
+    for (k, dip) in record.dips.iter().enumerate() {
+        let [x, y] = frame.at([way(dip.above), dip.from]);
+        svg.circle([x, y], 3.0, &format!(r##"fill="{}" stroke="#ffffff" stroke-width="1""##, hex(CURVES[0])));
+        // Above the curve for the first, below it for what follows, clear of the drop.
+        let level = if k == 0 { y - 10.0 } else { y + 18.0 };
+        svg.text([x - 24.0, level], TICK, Anchor::End, INK, &format!("layer {} snaps", dip.layer));
+    }
+    let seat = frame.px(way(0.0));
+    svg.line(
+        [seat, rect.y],
+        [seat, rect.y + rect.h],
+        r##"stroke="#5f6b7a" stroke-width="0.9" stroke-dasharray="2 3""##,
+    );
+    svg.text([seat, rect.y - 5.0], TICK, Anchor::Middle, SOFT, "seat");
+    frame.draw(svg);
+}
