@@ -43,8 +43,10 @@ fn tendency(values: &[f64]) -> f64 {
     signs.iter().sum::<f64>() / signs.len() as f64
 }
 
-/// Section 5.2: "more remote COR tends to correspond to larger AA, as does smaller aspect ratio"; "most of the areas of acceptance for the
-/// X-Face are larger than the V-Face by a factor of up to two".
+/// Section 5.2 of the dissertation, by exact motion and with the centre of rotation measured from the face: "more remote COR tends to
+/// correspond to larger AA" holds for both faces at every ratio. "As does smaller aspect ratio" holds for the V-Face where the centre does not
+/// lie behind the face, and does not for the X-Face, whose acceptance is largest in between. "Most of the areas of acceptance for the X-Face are
+/// larger than the V-Face by a factor of up to two" holds, but for the flattest.
 #[test]
 fn the_trends_of_the_planar_faces() {
     let v = table(&family("v-face", "['x', 'pitch']"), "30", 400);
@@ -53,28 +55,37 @@ fn the_trends_of_the_planar_faces() {
         for (ratio, row) in RATIOS.iter().zip(sums) {
             assert!(row[4] > row[0] && tendency(row) > 0.0, "{name}-Face, AR {ratio}: {row:?}");
         }
-        let over_ratio = (0..5).map(|k| tendency(&sums.iter().map(|row| row[k]).collect::<Vec<_>>()));
-        assert!(over_ratio.sum::<f64>() < 0.0, "{name}-Face: smaller ratios tend to accept more: {sums:?}");
+    }
+    let over_ratio = |sums: &[Vec<f64>], k: usize| sums.iter().map(|row| row[k]).collect::<Vec<_>>();
+    assert!((2..5).all(|k| tendency(&over_ratio(&v, k)) < 0.0), "{v:?}");
+    assert!(
+        (0..2).all(|k| v[4][k] > v[0][k]),
+        "behind the face the steepest accept more than the flattest: {v:?}"
+    );
+    for k in 2..5 {
+        let column = over_ratio(&x, k);
+        let inner = column[1..4].iter().fold(0.0f64, |a, b| a.max(*b));
+        assert!(inner > column[0] && inner > column[4], "{x:?}");
     }
     let ratios: Vec<f64> = x.iter().flatten().zip(v.iter().flatten()).map(|(x, v)| x / v).collect();
     let larger = ratios.iter().filter(|ratio| **ratio > 1.0).count();
-    assert!(larger > 25 / 2 && ratios.iter().all(|ratio| *ratio < 2.5), "{ratios:?}");
+    assert!(larger > 20 && ratios.iter().all(|ratio| *ratio < 3.0), "{larger} of 25: {ratios:?}");
 }
 
-/// Section 5.3.2, of the pyramid in (x, y, pitch): "lower AR values yield AA that vary less with COR", and the largest acceptance lies at
-/// high ratio and remote centre, the smallest at a low one.
+/// Section 5.3.2, of the pyramid in (x, y, pitch), likewise: a remote centre accepts more at every ratio. "Lower AR values yield AA that vary
+/// less with COR" does not hold of centres measured in D from the face: a pyramid of four widths is so steep that a width more or less
+/// changes nothing, which is seen best where its acceptance is small.
 #[test]
 fn the_trends_of_the_pyramid() {
     let sums = table(&family("pyramid", "['x', 'y', 'pitch']"), "12", 600);
-    let spread =
-        |row: &[f64]| row.iter().fold(0.0f64, |a, b| a.max(*b)) - row.iter().fold(f64::MAX, |a, b| a.min(*b));
-    let (low, high) = (spread(&sums[0]), spread(&sums[4]));
-    assert!(low < high, "{low} at AR 0.25, {high} at AR 4: {sums:?}");
     for (ratio, row) in RATIOS.iter().zip(&sums) {
-        assert!(tendency(row) >= 0.0, "AR {ratio}: {row:?}");
+        assert!(row[4] > row[0] && tendency(row) >= 0.0, "AR {ratio}: {row:?}");
     }
-    let column = |k: usize| sums.iter().map(|row| row[k]).collect::<Vec<_>>();
-    assert!(tendency(&column(4)) > tendency(&column(0)), "a high ratio helps at a remote centre: {sums:?}");
+    let gain = |row: &[f64]| row[4] / row[0];
+    let gains: Vec<f64> = sums.iter().map(|row| gain(row)).collect();
+    assert!(gains.is_sorted_by(|a, b| a > b), "the flatter, the more the centre matters: {gains:?}");
+    let behind = sums.iter().map(|row| row[0]).collect::<Vec<_>>();
+    assert!(tendency(&behind) > 0.0, "centres behind the face want steep pyramids: {behind:?}");
 }
 
 /// Keeps everything in memory, and counts what is asked for and found.

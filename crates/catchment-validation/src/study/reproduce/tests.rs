@@ -60,6 +60,38 @@ fn the_pyramid_tables_are_reproduced_as_far_as_their_conventions_are_known() {
     assert!(summary.matching == 20 && summary.mean_log_ratio.unwrap() < 0.0595, "{summary:?}");
     let summary = comparison("5.9").summary;
     assert!(summary.matching >= 11 && summary.mean_log_ratio.unwrap() < 0.43, "{summary:?}");
+    let summary = comparison("5.10").summary;
+    assert!(summary.matching >= 99, "{summary:?}");
+    let summary = comparison("5.11").summary;
+    assert!(summary.matching >= 99, "{summary:?}");
+}
+
+/// What chapter 5 says of its own tables, asked of their printed numbers.
+#[test]
+fn the_statements_of_chapter_5_about_its_tables() {
+    let printed = |name: &str| Table::of(name).unwrap().published().unwrap().values;
+    let column = |table: &[Vec<f64>], k: usize| table.iter().map(|row| row[k]).collect::<Vec<f64>>();
+    // "More remote COR tends to correspond to larger AA" (5.2): every row of every table of Sums ends larger than it begins.
+    for name in ["5.2", "5.3", "5.4", "5.5", "5.8", "5.9", "5.10", "5.11"] {
+        assert!(printed(name).iter().all(|row| row[4] > row[0]), "{name}");
+    }
+    // "The (x, y, pitch) case is different": its minimum lies at the lowest ratio, that of the other pyramids at the highest (5.3.2).
+    let [xy, others @ ..] = ["5.8", "5.9", "5.10", "5.11"].map(printed);
+    assert!(column(&xy, 0).is_sorted());
+    assert!(others.iter().all(|table| table[4][0] < table[0][0]));
+    // "Higher AR often increases AA for high COR but decreases AA for negative COR", of the same.
+    assert!(others.iter().all(|table| table[4][4] > table[0][4] && table[4][1] < table[0][1]));
+    // "The highest AA value is not the highest COR and AR" of (x, y, pitch), by 42 samples.
+    let highest = xy.iter().flatten().fold(0.0f64, |a, b| a.max(*b));
+    assert!(highest == xy[3][4] && xy[4][4] < highest);
+    let samples = (highest - xy[4][4]) / ((4.0f64 / 31.0).powi(2) * std::f64::consts::PI / 31.0);
+    assert!((samples - 42.0).abs() < 3.0, "{samples}: three printed digits");
+    // "Four values in the upper right section of the table are larger for V-Face than X-Face" (5.2).
+    let larger: Vec<(usize, usize)> = (0..25)
+        .map(|k| (k / 5, k % 5))
+        .filter(|(j, k)| printed("5.2")[*j][*k] > printed("5.3")[*j][*k])
+        .collect();
+    assert_eq!(larger, [(0, 3), (0, 4), (1, 4), (2, 4)]);
 }
 
 #[test]
@@ -76,7 +108,7 @@ fn an_unknown_table_lists_the_known_ones() {
     assert_eq!(
         error.to_string(),
         "there is no table `5.33` to reproduce; known are 2.1, 3.2, 3.3, 3.4, 5.2, 5.3, 5.4, 5.5, 5.6, 5.7, 5.8, 5.9, \
-         slices"
+         5.10, 5.11, slices"
     );
 }
 
