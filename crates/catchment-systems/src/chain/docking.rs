@@ -156,6 +156,7 @@ mod tests {
     #[test]
     fn straight_chains_dock_as_published() {
         let (problem, body, exec) = (x_face(0.5), Body::default(), Exec::new());
+        let mut worst: f64 = 0.0;
         let rows = [
             (0.5, [1.00, 1.00, 0.988, 0.918, 0.746]),
             (1.0, [1.00, 0.986, 0.821, 0.565, 0.456]),
@@ -163,12 +164,13 @@ mod tests {
         ];
         for (degrees, published) in rows {
             for (n, published) in [4, 8, 12, 16, 20].into_iter().zip(published) {
-                let cloud = Closing::straight(body, n).cloud(&joints(degrees), 1, 2000, &exec).unwrap();
+                let cloud = Closing::straight(body, n).cloud(&joints(degrees), 1, 20_000, &exec).unwrap();
                 let found = Probability::of(&docks(&problem, &body, &cloud, &exec).unwrap());
                 println!("{degrees}° {n}: {:.3} {:?} for {published}", found.probability, found.ci95);
-                assert!((found.probability - published).abs() < 0.03, "{n}, {degrees}°: {found:?} for {published}");
+                worst = worst.max((found.probability - published).abs());
             }
         }
+        assert!(worst < 0.03, "{worst}");
     }
 
     /// With the other sign the answer is another one: published as 0.968 where the right one gives 0.988.

@@ -48,10 +48,14 @@
 
 pub mod accumulation;
 pub mod docking;
+pub mod file;
+pub mod fold;
 pub mod kinematics;
 pub mod random;
 pub mod ring;
+pub mod sequence;
 pub mod shape;
+pub mod study;
 
 pub use accumulation::{Covariance, Errors};
 pub use kinematics::{Body, Frame};
