@@ -48,15 +48,19 @@
 
 pub mod accumulation;
 pub mod docking;
+pub mod figure;
 pub mod file;
 pub mod fold;
 pub mod kinematics;
 pub mod random;
+pub mod report;
 pub mod ring;
 pub mod sequence;
 pub mod shape;
 pub mod study;
 
 pub use accumulation::{Covariance, Errors};
+pub use file::ChainFile;
 pub use kinematics::{Body, Frame};
+pub use report::ChainReport;
 pub use shape::{Latch, Shape, Side};

@@ -64,6 +64,8 @@ const TABLE_6_2: &str = include_str!("../../data/table-6.2-latching-sequence.csv
 /// The commands of table 6.2: the first joint makes the L, the second presses.
 const L: Command = Command::Angle(-1.67);
 const PRESS: Command = Command::Angle(-1.74);
+/// Ours: as far past straight as [`PRESS`] is past the right angle.
+const PUSH: Command = Command::Angle(-0.17);
 const STRAIGHT: Command = Command::Angle(0.0);
 /// Ours, for the O: open enough that nothing touches.
 const OPEN: Command = Command::Angle(-1.3);
@@ -77,7 +79,15 @@ impl Sequence {
     pub fn of(shape: Shape) -> Result<Self, Findings> {
         let steps = match shape {
             Shape::P => table(&SourceText::new("table-6.2-latching-sequence.csv", TABLE_6_2))?,
-            Shape::Block { reading: Reading::Middle } => lattice_step(0.0, 3, 4),
+            // The fold presses 5 against 2, and brings 6 to 1; joint 2 presses those.
+            Shape::Block { reading: Reading::Middle } => {
+                let mut steps = lattice_step(0.0, 3, 4);
+                steps.extend([
+                    Step { time_s: 7.0, commands: vec![(2, PUSH)] },
+                    Step { time_s: 8.0, commands: vec![(2, Command::Slack)] },
+                ]);
+                steps
+            }
             Shape::Block { reading: Reading::Tail } => {
                 let fold = |time_s, command| Step { time_s, commands: vec![(2, command)] };
                 let mut steps = lattice_step(0.0, 4, 5);

@@ -11,8 +11,8 @@
 //!
 //! Quasi-static: commands ramp within a second, and at every sub-step the chain is where its energy has a minimum near to where it
 //! was. Faces that meet farther off-centre than half the overhang engage one layer: the other layer's hook rides beside its
-//! trench, and the pair rests off-centre by up to the overhang, until the pressing force is gone; then the flexures pull the
-//! pair to its aligned pose. The next press latches the second layer.
+//! trench, and the pair rests off-centre by up to the overhang, until a joint between the faces goes slack; then the flexures pull
+//! the pair to its aligned pose. The next press latches the second layer.
 //!
 //! Every step is checked for collisions: module bodies, without their faces, may not overlap; pairs that latch may press.
 //!

@@ -41,8 +41,6 @@ pub(super) struct Spring {
 const FACING: f64 = 1.0;
 /// Layers of a face.
 const LAYERS: f64 = 2.0;
-/// Share of a layer's force below which a press is over: springs that hold a little against each other do not count.
-const GONE: f64 = 0.5;
 
 impl Pair {
     pub(super) const fn new(latch: Latch, hooks: Hooks) -> Self {
@@ -89,7 +87,8 @@ impl Pair {
         let at = faces[1].place();
         match self.held {
             Layers::None => {
-                if lateral.abs() >= body.face || angle.abs() >= FACING {
+                // Faces that lie behind each other do not touch, such as the two ends of a straight chain.
+                if lateral.abs() >= body.face || angle.abs() >= FACING || gap <= -body.overhang {
                     return Vec::new();
                 }
                 let edge = 0.5 * body.face * left(direction(faces[1].heading));
@@ -141,13 +140,14 @@ impl Pair {
         }
     }
 
-    /// What a pressing force and an offset change: whether anything, and the layers that hold if one has snapped.
-    pub(super) fn change(&mut self, press: f64, lateral: f64) -> Option<Option<usize>> {
+    /// What a pressing force and an offset change, `driven` telling that no joint between the faces is slack: whether anything, and the
+    /// layers that hold if one has snapped.
+    pub(super) fn change(&mut self, press: f64, lateral: f64, driven: bool) -> Option<Option<usize>> {
         self.most = self.most.max(press);
-        let Hooks { force, overhang, .. } = self.hooks;
+        let overhang = self.hooks.overhang;
         let Some(needed) = self.threshold(lateral) else {
             let rides = matches!(self.held, Layers::One { .. });
-            if rides && press < GONE * force {
+            if rides && !driven {
                 self.held = Layers::One { offset: 0.0 };
                 return Some(None);
             }

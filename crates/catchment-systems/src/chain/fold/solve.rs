@@ -63,7 +63,8 @@ impl Chain {
         for pair in &mut self.pairs {
             let press = pair.press(&self.body, &rotors, &self.angles);
             let error = pair.error(&self.body, &rotors, &self.angles);
-            if let Some(change) = pair.change(press, error[0]) {
+            let driven = self.told[pair.latch.joints()].iter().all(Option::is_some);
+            if let Some(change) = pair.change(press, error[0], driven) {
                 let (from, to) = (pair.latch.from, pair.latch.to);
                 return Some(change.map(|layers| (press, error, from, to, layers)));
             }
