@@ -189,6 +189,8 @@ pub struct Reach {
     pub requirement: Requirement,
     /// The most modules of the table up to which every row meets it; null where the first row does not.
     pub modules: Option<usize>,
+    /// The same with both ends of every interval meeting it.
+    pub surely: Option<usize>,
 }
 
 impl ReportBody for ChainBody {
@@ -324,11 +326,17 @@ fn reach(lengths: &[LengthReport], requirements: &[Requirement]) -> Vec<Reach> {
         rows.sort_by_key(|row| row.modules);
         let Some(first) = rows.first() else { continue };
         for requirement in &wanted {
-            let meets = |row: &&&LengthReport| {
-                row.docking.is_some_and(|docking| requirement.is_met_by(docking.probability))
+            let up_to = |met: &dyn Fn(&Probability) -> bool| {
+                let meets = |row: &&&LengthReport| row.docking.as_ref().is_some_and(met);
+                rows.iter().take_while(meets).last().map(|row| row.modules)
             };
-            let modules = rows.iter().take_while(meets).last().map(|row| row.modules);
-            found.push(Reach { joint_sigma_rad: first.joint_sigma_rad, requirement: requirement.clone(), modules });
+            let met = |value: f64| requirement.is_met_by(value);
+            found.push(Reach {
+                joint_sigma_rad: first.joint_sigma_rad,
+                requirement: requirement.clone(),
+                modules: up_to(&|docking| met(docking.probability)),
+                surely: up_to(&|docking| docking.ci95.into_iter().all(met)),
+            });
         }
     }
     found

@@ -44,12 +44,12 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, told: &Arriv
     frame.draw(svg);
     let where_ = told.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
     let said = match told.docking {
-        Some(docking) => format!("{where_}: {} of {} chains dock", percent(docking.probability), report.chains),
+        Some(docking) => format!("{where_}: {} of {} dock", percent(docking.probability), report.chains),
         None => format!("{where_}: {} chains", report.chains),
     };
     svg.text([rect.x, rect.y - 8.0], TICK, Anchor::Start, INK, &said);
-    let ellipses = "ellipses: 1σ, 2σ, first order";
-    svg.text([rect.x + rect.w, rect.y - 8.0], TICK, Anchor::End, SOFT, ellipses);
+    let contours = "1σ, 2σ";
+    svg.text([rect.x + rect.w, rect.y - 8.0], TICK, Anchor::End, SOFT, contours);
 }
 
 /// Lateral and angle around the ellipse of so many standard deviations.

@@ -21,26 +21,30 @@ const CHART: f64 = 230.0;
 
 pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
     let Some(folding) = &report.folding else { return Picture::of(Svg::new(WIDTH, TOP)) };
-    let bounds = bounds(folding, &report.body.body);
+    let body = &report.body.body;
     let cell = (WIDTH - 2.0 * SIDE) / ACROSS as f64;
-    let size = bounds[1] - bounds[0];
-    let scale = (cell - 16.0) / size.x;
-    let tall = scale * size.y + WORDS;
-    let rows = folding.steps.len().div_ceil(ACROSS);
-    let charts = TOP + rows as f64 * tall + 40.0;
+    let [left, right] = bounds(&folding.steps, body).map(|corner| corner.x);
+    let scale = (cell - 16.0) / (right - left);
+    // Rows are as high as what they show.
+    let rows: Vec<(&[StepReport], [f64; 2])> =
+        folding.steps.chunks(ACROSS).map(|row| (row, bounds(row, body).map(|corner| corner.y))).collect();
+    let height = |[low, high]: [f64; 2]| scale * (high - low);
+    let charts = TOP + rows.iter().map(|(_, span)| height(*span) + WORDS).sum::<f64>() + 34.0;
     let name = folding.shape.map_or("own sequence", |shape| shape.name());
-    let story = format!("{name}: commands from {}", folding.commands_from);
+    let story = format!("{name}; commands: {}", folding.commands_from);
     let mut svg = headed(report, charts + CHART + 58.0, &story);
-    let mut before = None;
-    for (k, step) in folding.steps.iter().enumerate() {
-        let corner = DVec2::new(SIDE + (k % ACROSS) as f64 * cell, TOP + (k / ACROSS) as f64 * tall);
-        let place = |p: DVec2| {
-            let at = scale * (p - bounds[0]);
-            [corner.x + 8.0 + at.x, corner.y + scale * size.y - at.y]
-        };
-        chain(&mut svg, &report.body.body, step, folding, scale, &place);
-        words(&mut svg, step, before, folding, [corner.x + 8.0, corner.y + scale * size.y + 15.0]);
-        before = Some(step);
+    legend(&mut svg);
+    let (mut before, mut top) = (None, TOP);
+    for (row, span) in rows {
+        let bottom = top + height(span);
+        for (k, step) in row.iter().enumerate() {
+            let start = SIDE + k as f64 * cell + 8.0;
+            let place = |p: DVec2| [start + scale * (p.x - left), bottom - scale * (p.y - span[0])];
+            chain(&mut svg, body, step, folding, scale, &place);
+            words(&mut svg, step, before, folding, [start, bottom + 15.0]);
+            before = Some(step);
+        }
+        top = bottom + WORDS;
     }
     let left_chart = Rect { x: 84.0, y: charts, w: 330.0, h: CHART };
     track(&mut svg, left_chart, folding, study);
@@ -51,10 +55,29 @@ pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
     Picture::of(svg)
 }
 
-/// The corners of all that is drawn, in mm.
-fn bounds(folding: &FoldingReport, body: &Body) -> [DVec2; 2] {
+/// What the marks mean, to the right of the title.
+fn legend(svg: &mut Svg) {
+    let y = 26.0;
+    let mut x = 520.0;
+    for (fill, name) in [(INK, "holds"), (STALLED, "at full torque"), ("#ffffff", "slack")] {
+        svg.circle([x, y], 5.0, &format!(r#"fill="{fill}" stroke="{INK}" stroke-width="1""#));
+        svg.text([x + 9.0, y + 3.8], TICK, Anchor::Start, INK, name);
+        x += 24.0 + width_of(name, TICK);
+    }
+    for (full, name) in [(false, "first layer"), (true, "latched")] {
+        diamond(svg, [x + 2.0, y], full);
+        svg.text([x + 12.0, y + 3.8], TICK, Anchor::Start, INK, name);
+        x += 26.0 + width_of(name, TICK);
+    }
+}
+
+/// Colour of a joint at its stall torque.
+const STALLED: &str = "#b3261e";
+
+/// The corners of some steps, in mm.
+fn bounds(steps: &[StepReport], body: &Body) -> [DVec2; 2] {
     let reach = DVec2::splat(body.overhang.hypot(0.5 * body.face).max(0.5 * body.length));
-    let all = folding.steps.iter().flat_map(|step| &step.modules).map(|m| DVec2::new(m.x_mm, m.y_mm));
+    let all = steps.iter().flat_map(|step| &step.modules).map(|m| DVec2::new(m.x_mm, m.y_mm));
     let (low, high) = all.fold((DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY)), |(low, high), p| {
         (low.min(p), high.max(p))
     });
@@ -84,7 +107,7 @@ fn chain(
         let at = place(DVec2::new(m.x_mm, m.y_mm));
         let (fill, ink) = match m.state {
             State::Slack => ("#ffffff", INK),
-            State::Stalled => ("#b3261e", "#ffffff"),
+            State::Stalled => (STALLED, "#ffffff"),
             State::Holding => (INK, "#ffffff"),
         };
         let radius = (0.24 * body.face * scale).clamp(4.0, 9.0);
@@ -126,8 +149,7 @@ fn words(svg: &mut Svg, step: &StepReport, before: Option<&StepReport>, folding:
     };
     let was = |k: usize| before.map_or(Some(0.0), |b| b.modules[k].command_rad);
     let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
-    for (k, m) in step.modules.iter().enumerate().filter(|(k, m)| was(*k) != m.command_rad) {
-        let _ = k;
+    for (_, m) in step.modules.iter().enumerate().filter(|(k, m)| was(*k) != m.command_rad) {
         match groups.iter_mut().find(|(said, _)| *said == of(m)) {
             Some((_, joints)) => joints.push(m.module),
             None => groups.push((of(m), vec![m.module])),

@@ -113,7 +113,14 @@ impl ChainBody {
         for reach in &self.reach {
             let who = format!("joint error {}: ", degrees(reach.joint_sigma_rad));
             let said = match reach.modules {
-                Some(modules) => format!("{} up to {modules} modules of the table", reach.requirement),
+                Some(modules) => {
+                    let surely = match reach.surely {
+                        Some(surely) if surely == modules => String::new(),
+                        Some(surely) => format!(", surely up to {surely}"),
+                        None => ", surely for none".to_owned(),
+                    };
+                    format!("{} up to {modules} modules{surely}", reach.requirement)
+                }
                 None => format!("{} for none of the table", reach.requirement),
             };
             line(t, &format!("  {who}{said}"));
@@ -148,7 +155,7 @@ fn folded(t: &mut String, folding: &FoldingReport, face: f64) {
         wrapped(t, "  shape          ", &folding.reading);
     }
     wrapped(t, "  commands       ", &folding.commands_from);
-    line(t, "   t     joints (command → angle)");
+    line(t, "   t     joint:command→angle");
     let mut before: Vec<Option<f64>> = Vec::new();
     for step in &folding.steps {
         let moved = step.modules.iter().enumerate().filter(|(k, m)| {
@@ -157,10 +164,10 @@ fn folded(t: &mut String, folding: &FoldingReport, face: f64) {
         let moved: Vec<String> = moved
             .map(|(_, m)| {
                 let command = m.command_rad.map_or(Command::Slack.text(), degrees);
-                format!("{}: {command} → {}", m.module, degrees(m.angle_rad))
+                format!("{}:{command}→{}", m.module, degrees(m.angle_rad))
             })
             .collect();
-        let said = if moved.is_empty() { "straight".to_owned() } else { moved.join("; ") };
+        let said = if moved.is_empty() { "straight".to_owned() } else { moved.join(", ") };
         wrapped(t, &format!("  {:>3} s  ", rounded(step.time_s)), &said);
         before = step.modules.iter().map(|m| m.command_rad).collect();
     }

@@ -59,11 +59,11 @@ fn the_reach_is_the_last_row_before_the_first_that_fails() {
         modules,
         lateral_sigma_d: 0.0,
         heading_sigma_rad: 0.0,
-        docking: Some(Probability { probability, ci95: [0.0, 1.0] }),
+        docking: Some(Probability { probability, ci95: [probability - 0.006, 1.0] }),
         offset_probability: None,
     };
     let rows = [row(2, 1.0), row(3, 0.995), row(4, 0.98), row(5, 0.999)];
-    assert_eq!(reach(&rows, &[])[0].modules, Some(3));
+    assert_eq!((reach(&rows, &[])[0].modules, reach(&rows, &[])[0].surely), (Some(3), Some(2)));
     assert_eq!(reach(&rows, &["probability>0.999".parse().unwrap()])[0].modules, Some(2));
     assert_eq!(reach(&rows[2..3], &["probability>0.999".parse().unwrap()])[0].modules, None);
     // A requirement about something else leaves the usual one.
