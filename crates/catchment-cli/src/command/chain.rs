@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::output::{FileArgs, to_stderr, to_stdout};
 use catchment::design::{Quantity, SourceText, load};
 use catchment::exec::Stopwatch;
-use catchment::report::schema::Timing;
 use catchment::report::csv;
+use catchment::report::schema::Timing;
 use catchment::run::{Requirement, Verdict};
 use catchment_systems::chain::file::{ChainFile, MOST_MODULES};
 use catchment_systems::chain::study::{self, Settings};
@@ -98,7 +98,10 @@ fn angles(text: &str) -> Result<Angles, String> {
         let quantity: Quantity = text.trim().parse().map_err(|error| format!("{error}"))?;
         let angle = quantity.angle_rad().map_err(|error| error.to_string())?;
         let shown = text.trim();
-        (0.0..=LARGEST).contains(&angle).then_some(angle).ok_or(format!("`{shown}` is not from 0 to {LARGEST} rad"))
+        (0.0..=LARGEST)
+            .contains(&angle)
+            .then_some(angle)
+            .ok_or(format!("`{shown}` is not from 0 to {LARGEST} rad"))
     };
     text.split(',').map(angle).collect::<Result<_, _>>().map(Angles)
 }
@@ -136,9 +139,9 @@ pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
 fn judged(requirements: &[Requirement], report: &report::ChainReport) -> Result<Vec<Verdict>, Failure> {
     let value = serde_json::to_value(report)?;
     let judge = |requirement: &Requirement| {
-        requirement
-            .judge(&value)
-            .map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), advice(report)))
+        requirement.judge(&value).map_err(|error| {
+            Failure::with_help(format!("--require '{requirement}': {error}"), advice(report))
+        })
     };
     requirements.iter().map(judge).collect()
 }

@@ -52,7 +52,17 @@ fn the_p_latches_as_table_6_2_says() {
 
 #[test]
 fn the_table_over_modules_is_the_published_one() {
-    let args = ["chain", "chain.toml", "--modules", "2..20", "--joint-sigma", "0.5deg,1deg,2deg", "--chains", "40", "--json"];
+    let args = [
+        "chain",
+        "chain.toml",
+        "--modules",
+        "2..20",
+        "--joint-sigma",
+        "0.5deg,1deg,2deg",
+        "--chains",
+        "40",
+        "--json",
+    ];
     let report = json(&systems(), &args);
     let rows = report["lengths"].as_array().unwrap();
     assert_eq!(rows.len(), 3 * 19);
@@ -90,7 +100,8 @@ fn the_ring_closes_and_its_corners_are_ranked() {
 
 #[test]
 fn both_readings_of_the_block_latch_and_say_which_they_are() {
-    for (reading, pairs, said) in [("A", [[2, 5], [1, 6]], "reading A"), ("B", [[3, 6], [1, 6]], "reading B")] {
+    for (reading, pairs, said) in [("A", [[2, 5], [1, 6]], "reading A"), ("B", [[3, 6], [1, 6]], "reading B")]
+    {
         let home = with(&format!("[sequence]\nname = \"Block\"\nreading = \"{reading}\"\n"));
         let report = json(home.path(), &["chain", "c.toml", "--chains", "1", "--json"]);
         let folding = &report["folding"];
@@ -122,13 +133,26 @@ fn requirements_decide_the_exit_code() {
     let bare = home();
     fs::write(bare.path().join("c.toml"), "[chain]\nmodules = 4\n").unwrap();
     let told = run(bare.path(), &["chain", "c.toml", "--require", "probability>=0.99"]);
-    assert!(told.starts_with("exit 2\n--- stdout\n--- stderr") && told.contains("needs a [connector]"), "{told}");
+    assert!(
+        told.starts_with("exit 2\n--- stdout\n--- stderr") && told.contains("needs a [connector]"),
+        "{told}"
+    );
 }
 
 #[test]
 fn threads_change_nothing() {
     let report = |threads: &str| {
-        let args = ["chain", "p-sequence.toml", "--chains", "60", "--modules", "3,9", "--json", "--threads", threads];
+        let args = [
+            "chain",
+            "p-sequence.toml",
+            "--chains",
+            "60",
+            "--modules",
+            "3,9",
+            "--json",
+            "--threads",
+            threads,
+        ];
         let output = catchment(&systems()).args(args).output().unwrap();
         assert_eq!(output.status.code(), Some(0));
         String::from_utf8(output.stdout).unwrap().split("\"timing\"").next().unwrap().to_owned()
@@ -159,14 +183,19 @@ fn files_hold_poses_chains_and_pictures() {
     let stored: Value = serde_json::from_slice(&write("report.json", &[])).unwrap();
     assert_eq!(stored["kind"], "chain");
     let told = run(home.path(), &["chain", "c.toml", "-o", "steps.txt"]);
-    assert!(told.starts_with("exit 2") && told.contains("let its name end in .svg, .png, .csv, .json"), "{told}");
+    assert!(
+        told.starts_with("exit 2") && told.contains("let its name end in .svg, .png, .csv, .json"),
+        "{told}"
+    );
     let told = run(home.path(), &["chain", "c.toml", "-o", "steps.svg"]);
     assert!(told.starts_with("exit 2") && told.contains("--force replaces it"), "{told}");
 }
 
 #[test]
 fn collisions_are_refused_at_their_step() {
-    let step = |time: usize, joint: usize| format!("[[step]]\ntime = {time}\njoint = {joint}\ncommand = \"-90 deg\"\n");
+    let step = |time: usize, joint: usize| {
+        format!("[[step]]\ntime = {time}\njoint = {joint}\ncommand = \"-90 deg\"\n")
+    };
     let steps: String = (2..=5).map(|joint| step(joint - 2, joint)).collect();
     let home = with(&format!("[chain]\nmodules = 6\n{steps}"));
     let told = run(home.path(), &["chain", "c.toml", "-o", "out.svg"]);

@@ -77,9 +77,9 @@ impl Covariance {
 
     /// Correlation of lateral offset and angle; 0 where one of them is always the same.
     pub fn correlation(&self) -> f64 {
-        let [lateral, _, angle] = self.sigmas();
-        // Rounding of a dozen terms that cancel.
+        /// Rounding of a dozen terms that cancel.
         const NOTHING: f64 = 1e-12;
+        let [lateral, _, angle] = self.sigmas();
         let product = lateral * angle;
         if product > 0.0 && (self.matrix[0][2] / product).abs() > NOTHING {
             self.matrix[0][2] / product

@@ -106,7 +106,9 @@ fn what_a_latch_holds_cannot_be_wrong() {
     assert_eq!(of(Reading::Tail).joints(), [2, 3]);
     // Middle: levers of joint 2 at (a, 0) and 6 at (0, −a) on the face at (0, −½ a), along x: ½ a each.
     let [lateral, _, angle] = of(Reading::Middle).first_order(&joints(1.0)).sigmas();
-    assert!((lateral - 47.5 * DEGREE * 2f64.sqrt()).abs() < 1e-9 && (angle - DEGREE * 2f64.sqrt()).abs() < 1e-12);
+    assert!(
+        (lateral - 47.5 * DEGREE * 2f64.sqrt()).abs() < 1e-9 && (angle - DEGREE * 2f64.sqrt()).abs() < 1e-12
+    );
 }
 
 #[test]
@@ -121,7 +123,9 @@ fn every_optional_term_has_its_closed_form() {
     let found = of(Errors { base_sigma: DEGREE, ..Errors::default() }, n);
     assert!((found.sigmas()[0] - 7.5 * 95.0 * DEGREE).abs() < 1e-9 && found.sigmas()[2] == DEGREE);
     let found = of(Errors { base_offset_sigma: 3.0, ..Errors::default() }, n);
-    assert!((found.sigmas()[0] - 3.0).abs() + (found.sigmas()[1] - 3.0).abs() < 1e-12 && found.sigmas()[2] == 0.0);
+    assert!(
+        (found.sigmas()[0] - 3.0).abs() + (found.sigmas()[1] - 3.0).abs() < 1e-12 && found.sigmas()[2] == 0.0
+    );
     // A uniform error of width s has the deviation s/√12.
     let found = of(Errors { encoder_step: 12f64.sqrt() * DEGREE, ..Errors::default() }, n);
     assert!((found.sigmas()[0] / lateral_sigma(&body, n, DEGREE) - 1.0).abs() < 1e-12);

@@ -75,10 +75,7 @@ impl Probability {
     /// The share of what is true.
     pub fn of(docked: &[bool]) -> Self {
         let hits = docked.iter().filter(|docked| **docked).count();
-        Self {
-            probability: hits as f64 / docked.len().max(1) as f64,
-            ci95: wilson95(hits, docked.len()),
-        }
+        Self { probability: hits as f64 / docked.len().max(1) as f64, ci95: wilson95(hits, docked.len()) }
     }
 }
 
@@ -115,7 +112,8 @@ mod tests {
     use catchment::problem::Draft;
 
     fn x_face(rotation_length: f64) -> Problem {
-        let text = "[connector]\nfamily = \"x-face\"\naspect_ratio = 1.0\n[alignment]\ncenter_of_rotation = 0.5\n";
+        let text =
+            "[connector]\nfamily = \"x-face\"\naspect_ratio = 1.0\n[alignment]\ncenter_of_rotation = 0.5\n";
         let draft = Draft::read(SourceText::new("x.toml", text)).unwrap();
         let change = |design| as_chain_uses_it(design, &Body::default(), Some(rotation_length));
         draft.change("chain", change).unwrap().build().unwrap()

@@ -91,13 +91,15 @@ impl ChainFile {
         let folder = source.path.parent().map_or_else(PathBuf::new, std::path::Path::to_path_buf);
         let kept = source.clone();
         Form::read(source, |form, root| {
-            let name = form.word(root, "name").map_or_else(|| "chain".to_owned(), |word| word.text.to_owned());
+            let name =
+                form.word(root, "name").map_or_else(|| "chain".to_owned(), |word| word.text.to_owned());
             let (chain, named) = (form.table(root, "chain"), form.table(root, "sequence"));
             let shape = shape(form, &named);
-            let default = shape.map_or(DEFAULT_MODULES, |shape| shape.modules() as i64);
+            let default = shape.map_or(DEFAULT_MODULES, |shape| whole(shape.modules()));
             let modules = form.integer(&chain, "modules", 1..=MOST_MODULES, Some(default)) as usize;
             if let Some(shape) = shape.filter(|shape| shape.modules() != modules) {
-                let message = format!("{} is folded from {} modules, not {modules}", shape.name(), shape.modules());
+                let message =
+                    format!("{} is folded from {} modules, not {modules}", shape.name(), shape.modules());
                 form.refuse(chain.span_of("modules"), message, Some("leave `modules` out"));
             }
             let body = body(form, &chain);
@@ -130,6 +132,11 @@ impl ChainFile {
     }
 }
 
+/// A small count as the reader of forms has it.
+fn whole(count: usize) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
+}
+
 fn body(form: &mut Form<'_>, chain: &Section<'_>) -> Body {
     let own = Body::default();
     let pitch = form.length(chain, "pitch", 1.0..=10_000.0, Some(own.pitch));
@@ -139,7 +146,11 @@ fn body(form: &mut Form<'_>, chain: &Section<'_>) -> Body {
     let length = form.length(chain, "length", 1.0..=10_000.0, Some(own.length / own.pitch * pitch));
     if length > pitch {
         let message = format!("modules {length} mm long do not fit a pitch of {pitch} mm");
-        form.refuse(chain.span_of("length"), message, Some("`length` is that of the shell, without its faces"));
+        form.refuse(
+            chain.span_of("length"),
+            message,
+            Some("`length` is that of the shell, without its faces"),
+        );
     }
     if face > pitch {
         let message = format!("faces {face} mm wide do not fit a lattice of {pitch} mm");
@@ -193,11 +204,15 @@ fn shape(form: &mut Form<'_>, section: &Section<'_>) -> Option<Shape> {
         .has("name")
         .then(|| form.choice(section, "name", &[("P", Named::P), ("Block", Named::Block), ("O", Named::O)]));
     let reading = form.choice(section, "reading", &[("A", Reading::Middle), ("B", Reading::Tail)]);
-    let corners = *FIRST_CORNERS.start() as i64..=*FIRST_CORNERS.end() as i64;
+    let corners = whole(*FIRST_CORNERS.start())..=whole(*FIRST_CORNERS.end());
     let first_corner = form.integer(section, "first_corner", corners, Some(2)) as usize;
     for (key, owner, belongs) in [("reading", Named::Block, "Block"), ("first_corner", Named::O, "O")] {
         if section.has(key) && named != Some(owner) {
-            form.refuse(section.span_of(key), format!("`sequence.{key}` is for name = \"{belongs}\" alone"), None);
+            form.refuse(
+                section.span_of(key),
+                format!("`sequence.{key}` is for name = \"{belongs}\" alone"),
+                None,
+            );
         }
     }
     Some(match named? {
@@ -218,7 +233,11 @@ fn folding(
     // Asked for here, so that the key is known even where it does not count.
     let pairs = form.word(named, "latches");
     if let (Some(_), Some(pairs)) = (shape, &pairs) {
-        form.refuse(pairs.span.clone(), "the latches of a named shape are known", Some("leave `latches` out"));
+        form.refuse(
+            pairs.span.clone(),
+            "the latches of a named shape are known",
+            Some("leave `latches` out"),
+        );
     }
     if form.is_refused() {
         return None;
@@ -265,16 +284,16 @@ fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[
     let mut found = Vec::new();
     for pair in text.split(',').map(str::trim) {
         let numbers: Vec<usize> = pair.split(['-', '–']).filter_map(|n| n.trim().parse().ok()).collect();
-        match possible.iter().find(|latch| numbers == [latch.from, latch.to]) {
-            Some(latch) => found.push(*latch),
-            None => {
-                let names: Vec<String> = possible.iter().map(|l| format!("{}-{}", l.from, l.to)).collect();
-                let there = if names.is_empty() { "there are none".to_owned() } else { names.join(", ") };
-                let shown: String = catchment::report::printable(pair).chars().take(40).collect();
-                let message = format!("`{shown}` are no two modules whose faces meet on the lattice of the last step");
-                form.refuse(span.clone(), message, Some(&format!("those that do: {there}")));
-            }
+        if let Some(latch) = possible.iter().find(|latch| numbers == [latch.from, latch.to]) {
+            found.push(*latch);
+            continue;
         }
+        let names: Vec<String> = possible.iter().map(|l| format!("{}-{}", l.from, l.to)).collect();
+        let there = if names.is_empty() { "there are none".to_owned() } else { names.join(", ") };
+        let shown: String = catchment::report::printable(pair).chars().take(40).collect();
+        let message =
+            format!("`{shown}` are no two modules whose faces meet on the lattice of the last step");
+        form.refuse(span.clone(), message, Some(&format!("those that do: {there}")));
     }
     found
 }
@@ -294,7 +313,11 @@ fn steps(form: &mut Form<'_>, root: &Section<'_>, modules: usize) -> (Vec<Step>,
         let Some(known) = usize::try_from(joint).ok().filter(|joint| (1..=modules).contains(joint)) else {
             if entry.has("joint") {
                 let message = format!("joint {joint} does not exist");
-                form.refuse(entry.span_of("joint"), message, Some(&format!("the chain has joints 1 to {modules}")));
+                form.refuse(
+                    entry.span_of("joint"),
+                    message,
+                    Some(&format!("the chain has joints 1 to {modules}")),
+                );
             }
             continue;
         };
@@ -345,9 +368,8 @@ fn command(form: &mut Form<'_>, entry: &Section<'_>) -> Option<Command> {
 fn connector(form: &mut Form<'_>, root: &Section<'_>, folder: &std::path::Path) -> Option<ConnectorLine> {
     let table = form.table(root, "connector");
     let design = form.word(&table, "design");
-    let rotation_length = table
-        .has("rotation_length")
-        .then(|| form.number(&table, "rotation_length", 1e-3..=1e3, None));
+    let rotation_length =
+        table.has("rotation_length").then(|| form.number(&table, "rotation_length", 1e-3..=1e3, None));
     if table.is_written() && !table.has("design") {
         let help = "write design = \"x-face.toml\", a connector design beside this file";
         form.refuse(table.span(), "`connector.design` is missing: a path", Some(help));
@@ -387,7 +409,9 @@ mod tests {
         let step = |time: f64, joint: usize, command: &str| {
             format!("[[step]]\ntime = {time}\njoint = {joint}\ncommand = {command}\n")
         };
-        let fold = [step(0.0, 4, "0"), step(1.0, 4, "-1.67"), step(1.0, 5, "'-95 deg'"), step(2.0, 5, "'slack'")].concat();
+        let fold =
+            [step(0.0, 4, "0"), step(1.0, 4, "-1.67"), step(1.0, 5, "'-95 deg'"), step(2.0, 5, "'slack'")]
+                .concat();
         let file = read(&format!("[chain]\nmodules = 6\n[sequence]\nlatches = '3-6'\n{fold}")).unwrap();
         let folding = file.folding.unwrap();
         assert_eq!(folding.lattice, Shape::P.angles());
@@ -395,7 +419,10 @@ mod tests {
         assert_eq!(folding.sequence.latches.len(), 1);
         assert_eq!(folding.sequence.steps[1].commands.len(), 2);
         let wrong = told(&format!("[chain]\nmodules = 6\n[sequence]\nlatches = '2-6'\n{fold}"));
-        assert!(wrong.contains("`2-6` are no two modules") && wrong.contains("those that do: 3-6"), "{wrong}");
+        assert!(
+            wrong.contains("`2-6` are no two modules") && wrong.contains("those that do: 3-6"),
+            "{wrong}"
+        );
     }
 
     #[test]
@@ -411,7 +438,10 @@ mod tests {
         ] {
             assert!(all.contains(wanted), "{wanted}: {all}");
         }
-        assert!(told("[sequence]\nname = 'P'\n[chain]\nmodules = 7").contains("P is folded from 6 modules, not 7"));
+        assert!(
+            told("[sequence]\nname = 'P'\n[chain]\nmodules = 7")
+                .contains("P is folded from 6 modules, not 7")
+        );
         assert!(told("[sequence]\nname = 'P'\nreading = 'A'").contains("is for name = \"Block\" alone"));
         assert!(told("[sequence]\nname = 'Q'").contains("cannot be \"Q\""));
         assert!(told("[sequence]\n").contains("names no shape"));

@@ -25,7 +25,7 @@ pub struct Body {
 }
 
 impl Default for Body {
-    /// CKBot with the latching X-Face: the dissertation, section 6.1 (p. 94–95).
+    /// `CKBot` with the latching X-Face: the dissertation, section 6.1 (p. 94–95).
     fn default() -> Self {
         Self { pitch: 95.0, face: 65.5, overhang: 47.5, length: 90.4 }
     }
@@ -118,6 +118,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    const STEP: f64 = 1e-4;
+
     proptest! {
         /// The swing is the derivative of exact motion: central differences of step h are wrong by h²·l/6, below 1e-5 mm for
         /// levers of 2 m and h = 1e-4, and their rounding by 1e-12 of 2 m over h.
@@ -130,7 +132,6 @@ mod tests {
                 angles[joint] += change;
                 rotors(&body, &angles).last().unwrap().ahead(0.0, body.overhang).place()
             };
-            const STEP: f64 = 1e-4;
             let slope = (tip(STEP) - tip(-STEP)) / (2.0 * STEP);
             let expected = swing(rotors(&body, &angles)[joint].place(), tip(0.0));
             prop_assert!((slope - expected).length() < 1e-4, "{slope} for {expected}");

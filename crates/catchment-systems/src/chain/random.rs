@@ -91,9 +91,8 @@ mod tests {
         assert!((mean(&|[a, _]| a * a) - 1.0).abs() < 5.0 * (2.0 / n).sqrt());
         assert!((mean(&|[a, _]| a.powi(4)) - 3.0).abs() < 5.0 * (96.0 / n).sqrt());
         assert!(mean(&|[a, b]| a * b).abs() < 5.0 / n.sqrt());
-        let chains = (0..COUNT).map(|k| {
-            Draws::of(1, k).normal(Term::Joint(0)) * Draws::of(1, k + 1).normal(Term::Joint(0))
-        });
+        let chains = (0..COUNT)
+            .map(|k| Draws::of(1, k).normal(Term::Joint(0)) * Draws::of(1, k + 1).normal(Term::Joint(0)));
         assert!((chains.sum::<f64>() / n).abs() < 5.0 / n.sqrt());
         let flat = (0..COUNT).map(|k| Draws::of(1, k).uniform(Term::Encoder(3)).powi(2)).sum::<f64>() / n;
         assert!((flat - 1.0 / 12.0).abs() < 5.0 / (180.0 * n).sqrt());

@@ -345,7 +345,7 @@ fn reach(lengths: &[LengthReport], requirements: &[Requirement]) -> Vec<Reach> {
 /// The report of a study.
 pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing>) -> ChainReport {
     let body = ChainBody::of(study, requirements);
-    let doubts = doubts(study, &body).iter().map(|text| WarningReport::note(text)).collect();
+    let doubts = doubts(study, &body).iter().map(WarningReport::note).collect();
     Envelope::of(body, doubts, timing)
 }
 
@@ -368,7 +368,10 @@ fn doubts(study: &Study, body: &ChainBody) -> Vec<String> {
         let width = design.unit.map(|unit| design.width * unit.metres() * 1e3);
         if let Some(width) = width.filter(|width| (width / study.file.body.face - 1.0).abs() > 0.01) {
             let face = rounded(study.file.body.face);
-            told.push(format!("the design is {} mm wide, the chain's faces {face} mm: D is the chain's", rounded(width)));
+            told.push(format!(
+                "the design is {} mm wide, the chain's faces {face} mm: D is the chain's",
+                rounded(width)
+            ));
         }
     }
     if let Some(folding) = &body.folding {

@@ -51,6 +51,8 @@ pub fn forces(closing: &Closing, torque: f64, turned: &[usize]) -> (f64, f64) {
 
 /// All choices of corners.
 pub fn choices(body: &Body, errors: &Errors, torque: f64) -> Vec<Corners> {
+    /// Mirror images differ by rounding.
+    const SAME: f64 = 1e-9;
     let mut found: Vec<Corners> = FIRST_CORNERS
         .filter_map(|first_corner| {
             let shape = Shape::O { first_corner };
@@ -73,8 +75,6 @@ pub fn choices(body: &Body, errors: &Errors, torque: f64) -> Vec<Corners> {
             })
         })
         .collect();
-    // Mirror images differ by rounding.
-    const SAME: f64 = 1e-9;
     let errors: Vec<f64> = found.iter().map(|c| c.lateral_sigma_mm).collect();
     let pushes: Vec<f64> = found.iter().map(|c| c.push_n).collect();
     for corners in &mut found {
@@ -96,7 +96,9 @@ mod tests {
         assert_eq!(found.iter().map(|c| c.rank_by_error).collect::<Vec<_>>(), [2, 1, 2]);
         assert_eq!(found.iter().map(|c| c.rank_by_force).collect::<Vec<_>>(), [1, 3, 1]);
         // Half a pitch, a pitch and a half; three pitches along the normal for all.
-        assert!((found[0].push_n - 10.9 / 0.0475).abs() < 1e-6 && (found[1].push_n - 10.9 / 0.1425).abs() < 1e-6);
+        assert!(
+            (found[0].push_n - 10.9 / 0.0475).abs() < 1e-6 && (found[1].push_n - 10.9 / 0.1425).abs() < 1e-6
+        );
         assert!(found.iter().all(|c| (c.press_n - 10.9 / 0.285).abs() < 1e-6));
         assert_eq!(found[1].corners, [2, 5, 8, 11]);
     }

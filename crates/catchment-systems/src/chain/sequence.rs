@@ -246,7 +246,11 @@ mod tests {
     /// Rotors 5 and 6 with rotor 3 at the origin and the link behind it along x.
     fn seen_from_3(angles: &[f64]) -> [Frame; 2] {
         let rotors = rotors(&Body::default(), angles);
-        [4, 5].map(|k: usize| Frame { x: rotors[k].x - rotors[2].x, y: rotors[k].y - rotors[2].y, ..rotors[k] })
+        [4, 5].map(|k: usize| Frame {
+            x: rotors[k].x - rotors[2].x,
+            y: rotors[k].y - rotors[2].y,
+            ..rotors[k]
+        })
     }
 
     fn near(found: Frame, x: f64, y: f64) {
@@ -257,7 +261,10 @@ mod tests {
     fn table_6_2_is_the_sequence_of_the_p() {
         let sequence = Sequence::of(Shape::P).unwrap();
         assert_eq!(sequence.steps, lattice_step(0.0, 4, 5));
-        assert_eq!(sequence.steps.iter().map(|s| s.time_s).collect::<Vec<_>>(), [0.0, 1.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(
+            sequence.steps.iter().map(|s| s.time_s).collect::<Vec<_>>(),
+            [0.0, 1.0, 3.0, 4.0, 5.0, 6.0]
+        );
         let told = sequence.commanded(6);
         assert_eq!(told[1][3], Command::Angle(-1.67));
         assert_eq!((told[4][3], told[4][4]), (Command::Slack, Command::Angle(-1.74)));
@@ -294,14 +301,18 @@ mod tests {
         let told = |text: &str| read(text).unwrap_err().to_string();
         assert!(told("time_s,modul_2\n0,0\n").starts_with("t.csv:1:1: a column is of no module"));
         let all = told("time_s,module_2\n1,0\n1,slakc\nx,0\n");
-        assert!(all.contains("t.csv:3:1: 1 s does not come after") && all.contains("t.csv:3:1: `slakc` is neither"));
+        assert!(
+            all.contains("t.csv:3:1: 1 s does not come after")
+                && all.contains("t.csv:3:1: `slakc` is neither")
+        );
         assert!(all.contains("t.csv:4:1: `x` is no time"), "{all}");
         assert!(told("time_s,module_1\n0,0,0\n").contains("record"), "a row of another length");
     }
 
     #[test]
     fn commands_end_slack() {
-        let shapes = [Shape::P, Shape::Block { reading: Reading::Middle }, Shape::Block { reading: Reading::Tail }];
+        let shapes =
+            [Shape::P, Shape::Block { reading: Reading::Middle }, Shape::Block { reading: Reading::Tail }];
         for shape in shapes.into_iter().chain([Shape::O { first_corner: 2 }]) {
             let told = Sequence::of(shape).unwrap().commanded(shape.modules());
             let last = told.last().unwrap();

@@ -86,10 +86,7 @@ impl Latch {
 
     /// Both faces, from the rotors of a chain and its joint angles.
     pub fn faces(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> [Frame; 2] {
-        [
-            self.from_side.of(body, rotors, angles, self.from),
-            self.to_side.of(body, rotors, angles, self.to),
-        ]
+        [self.from_side.of(body, rotors, angles, self.from), self.to_side.of(body, rotors, angles, self.to)]
     }
 
     /// Joints between the two faces, counted from 0.
@@ -130,7 +127,7 @@ pub enum Shape {
 }
 
 /// First corners that an O can have.
-pub const FIRST_CORNERS: std::ops::RangeInclusive<usize> = 1..=3;
+pub const FIRST_CORNERS: std::ops::RangeInclusive<usize> = 1..=SIDE;
 /// Modules of a side of the O, counting each corner once.
 const SIDE: usize = 3;
 

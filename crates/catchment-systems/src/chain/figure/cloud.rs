@@ -42,7 +42,8 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, report: &ChainReport, told: &Arriv
     }
     svg.end();
     frame.draw(svg);
-    let where_ = told.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
+    let where_ =
+        told.latch.map_or_else(|| "last face".to_owned(), |latch| format!("docking {}", latch.name()));
     let said = match told.docking {
         Some(docking) => format!("{where_}: {} of {} dock", percent(docking.probability), report.chains),
         None => format!("{where_}: {} chains", report.chains),

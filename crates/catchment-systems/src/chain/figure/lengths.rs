@@ -50,7 +50,8 @@ fn chart(
     value: impl Fn(&LengthReport) -> Option<(f64, Option<[f64; 2]>)>,
 ) {
     let all = || rows.iter().copied().flatten();
-    let (first, last) = all().fold((usize::MAX, 0), |(low, high), r| (low.min(r.modules), high.max(r.modules)));
+    let (first, last) =
+        all().fold((usize::MAX, 0), |(low, high), r| (low.min(r.modules), high.max(r.modules)));
     let highest = all().filter_map(&value).map(|(v, _)| v).fold(1e-9, f64::max);
     let frame = Frame {
         rect,

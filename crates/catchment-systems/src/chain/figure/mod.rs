@@ -63,10 +63,12 @@ mod tests {
     fn every_kind_of_study_has_its_picture() {
         let picture = |text: &str, modules: Vec<usize>| {
             let file = ChainFile::read(SourceText::new("c.toml", text)).unwrap();
-            let study = run(&file, &Settings { chains: 60, modules, ..Settings::default() }, &Exec::new()).unwrap();
+            let study =
+                run(&file, &Settings { chains: 60, modules, ..Settings::default() }, &Exec::new()).unwrap();
             draw(&report(&study, &[], None), &study)
         };
-        let folded = picture("name = 'a<b'\n[chain]\njoint_sigma = '1 deg'\n[sequence]\nname = 'P'", Vec::new());
+        let folded =
+            picture("name = 'a<b'\n[chain]\njoint_sigma = '1 deg'\n[sequence]\nname = 'P'", Vec::new());
         assert!(folded.svg().contains("a&lt;b") && folded.svg().contains("t = 3 s"));
         assert!(folded.svg().contains("joint angles") && !folded.svg().contains("NaN"));
         let straight = picture("[chain]\njoint_sigma = '1 deg'", Vec::new());

@@ -9,7 +9,9 @@ use super::{SIDE, TOP, WIDTH, cloud, degrees, headed};
 use catchment::report::figure::Picture;
 use catchment::report::figure::draw::axis::{Frame, Scale};
 use catchment::report::figure::draw::colour::{CURVES, FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, hex};
-use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
+use catchment::report::figure::draw::svg::{
+    Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of,
+};
 use glam::DVec2;
 
 /// Pictures of steps in a row.
@@ -78,9 +80,10 @@ const STALLED: &str = "#b3261e";
 fn bounds(steps: &[StepReport], body: &Body) -> [DVec2; 2] {
     let reach = DVec2::splat(body.overhang.hypot(0.5 * body.face).max(0.5 * body.length));
     let all = steps.iter().flat_map(|step| &step.modules).map(|m| DVec2::new(m.x_mm, m.y_mm));
-    let (low, high) = all.fold((DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY)), |(low, high), p| {
-        (low.min(p), high.max(p))
-    });
+    let (low, high) = all
+        .fold((DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY)), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
     [low - reach, high + reach]
 }
 
@@ -93,11 +96,13 @@ fn chain(
     place: &impl Fn(DVec2) -> [f64; 2],
 ) {
     for m in &step.modules {
-        let latching = folding.latches.iter().filter_map(|l| l.latch).any(|l| l.from == m.module || l.to == m.module);
+        let latching =
+            folding.latches.iter().filter_map(|l| l.latch).any(|l| l.from == m.module || l.to == m.module);
         let (fill, edge) = if latching { (MOVING, MOVING_EDGE) } else { (FIXED, FIXED_EDGE) };
         let style = format!(r#"fill="{}" stroke="{}" stroke-width="0.9" {JOIN}"#, hex(fill), hex(edge));
         for heading in [m.heading_rad - m.angle_rad + std::f64::consts::PI, m.heading_rad] {
-            let (along, across) = (0.5 * body.length * direction(heading), 0.5 * body.face * left(direction(heading)));
+            let (along, across) =
+                (0.5 * body.length * direction(heading), 0.5 * body.face * left(direction(heading)));
             let at = DVec2::new(m.x_mm, m.y_mm);
             let corners = [at - across, at + along - across, at + along + across, at + across].map(place);
             svg.path(&polyline(corners, true), &style);
@@ -138,11 +143,20 @@ fn diamond(svg: &mut Svg, [x, y]: [f64; 2], full: bool) {
     let r = 6.5;
     let fill = if full { "#009e73" } else { "#ffffff" };
     let corners = [[x - r, y], [x, y - r], [x + r, y], [x, y + r]];
-    svg.path(&polyline(corners, true), &format!(r##"fill="{fill}" stroke="#00513b" stroke-width="1.6" {JOIN}"##));
+    svg.path(
+        &polyline(corners, true),
+        &format!(r##"fill="{fill}" stroke="#00513b" stroke-width="1.6" {JOIN}"##),
+    );
 }
 
 /// What is new in a step, in one line of text or two.
-fn words(svg: &mut Svg, step: &StepReport, before: Option<&StepReport>, folding: &FoldingReport, [x, y]: [f64; 2]) {
+fn words(
+    svg: &mut Svg,
+    step: &StepReport,
+    before: Option<&StepReport>,
+    folding: &FoldingReport,
+    [x, y]: [f64; 2],
+) {
     let of = |m: &ModuleReport| match m.command_rad {
         Some(angle) => degrees(angle),
         None => "slack".to_owned(),
@@ -184,7 +198,8 @@ fn track(svg: &mut Svg, rect: Rect, folding: &FoldingReport, study: &Study) {
     let Some(folded) = &study.folded else { return };
     let mut moved: Vec<usize> = folding.turned.clone();
     moved.truncate(CURVES.len());
-    let angles = || folded.track.iter().flat_map(|(_, angles)| moved.iter().map(|j| angles[j - 1].to_degrees()));
+    let angles =
+        || folded.track.iter().flat_map(|(_, angles)| moved.iter().map(|j| angles[j - 1].to_degrees()));
     let (low, high) = angles().fold((0.0f64, 0.0f64), |(low, high), a| (low.min(a), high.max(a)));
     let last = folded.track.last().map_or(1.0, |(time, _)| *time).max(1.0);
     let margin = 0.06 * (high - low).max(1.0);
@@ -198,11 +213,16 @@ fn track(svg: &mut Svg, rect: Rect, folding: &FoldingReport, study: &Study) {
     for (k, joint) in moved.iter().enumerate() {
         let colour = hex(CURVES[k]);
         // Between two ramps nothing moves.
-        let points = folded.track.iter().map(|(time, angles)| frame.at([*time, angles[joint - 1].to_degrees()]));
+        let points =
+            folded.track.iter().map(|(time, angles)| frame.at([*time, angles[joint - 1].to_degrees()]));
         let style = format!(r#"fill="none" stroke="{colour}" stroke-width="2" {JOIN}"#);
         svg.path(&polyline(points, false), &style);
         let x = rect.x + 4.0 + 76.0 * k as f64;
-        svg.line([x, rect.y - 12.0], [x + 18.0, rect.y - 12.0], &format!(r#"stroke="{colour}" stroke-width="2.4""#));
+        svg.line(
+            [x, rect.y - 12.0],
+            [x + 18.0, rect.y - 12.0],
+            &format!(r#"stroke="{colour}" stroke-width="2.4""#),
+        );
         svg.text([x + 22.0, rect.y - 8.0], TICK, Anchor::Start, INK, &format!("joint {joint}"));
     }
     frame.draw(svg);

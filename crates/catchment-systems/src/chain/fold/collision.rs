@@ -29,7 +29,8 @@ pub(super) fn first(
     angles: &[f64],
     latches: &[Latch],
 ) -> Option<(usize, usize, bool)> {
-    let halves: Vec<[Block; 2]> = rotors.iter().zip(angles).map(|(r, angle)| halves(body, r, *angle)).collect();
+    let halves: Vec<[Block; 2]> =
+        rotors.iter().zip(angles).map(|(r, angle)| halves(body, r, *angle)).collect();
     // No two modules farther apart overlap.
     let reach = body.length.hypot(body.face);
     for b in 1..rotors.len() {

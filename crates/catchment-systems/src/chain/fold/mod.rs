@@ -189,8 +189,12 @@ pub fn fold(
     exec: &Exec,
 ) -> Result<Folded, FoldError> {
     let mut chain = Chain::new(*body, modules, &sequence.latches, settings);
-    let mut found =
-        Folded { moments: Vec::new(), events: Vec::new(), track: vec![(0.0, chain.angles.clone())], pressed: Vec::new() };
+    let mut found = Folded {
+        moments: Vec::new(),
+        events: Vec::new(),
+        track: vec![(0.0, chain.angles.clone())],
+        pressed: Vec::new(),
+    };
     let told = sequence.commanded(modules);
     let mut before = vec![Command::Angle(0.0); modules];
     for (number, (step, commands)) in sequence.steps.iter().zip(&told).enumerate() {
@@ -203,7 +207,9 @@ pub fn fold(
             share = advance(&mut chain, commands, &from, share, settings.substeps);
             let time_s = step.time_s + share * length;
             settle(&mut chain, time_s, &mut found.events);
-            if let Some((a, b, in_cell)) = collision::first(body, &chain.rotors(), &chain.angles, &sequence.latches) {
+            if let Some((a, b, in_cell)) =
+                collision::first(body, &chain.rotors(), &chain.angles, &sequence.latches)
+            {
                 return Err(FoldError::Collision { step: number, time_s: step.time_s, a, b, in_cell });
             }
             found.track.push((time_s, chain.angles.clone()));
@@ -258,12 +264,9 @@ const fn ramp_start(before: Command, now: f64) -> f64 {
 
 /// Finds the rest of a chain; every layer that snaps on the way moves it.
 fn settle(chain: &mut Chain, time_s: f64, events: &mut Vec<Event>) {
-    loop {
+    chain.rest();
+    while chain.snap(time_s, events) {
         chain.rest();
-        let Some(snapped) = chain.snap() else { break };
-        if let Some((force_n, [lateral_mm, _, angle_rad], from, to, layers)) = snapped {
-            events.push(Event { time_s, from, to, layers, force_n, lateral_mm, angle_rad });
-        }
     }
 }
 

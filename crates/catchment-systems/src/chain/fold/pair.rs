@@ -30,6 +30,16 @@ pub(super) struct Pair {
     pub(super) most: f64,
 }
 
+/// What became of a pair.
+pub(super) enum Change {
+    /// It is as it was.
+    Nothing,
+    /// Its riding hook is free: it rests aligned.
+    Realigned,
+    /// So many layers hold now.
+    Snapped(usize),
+}
+
 /// One spring: how far it is stretched, how that changes with every joint, and its stiffness.
 pub(super) struct Spring {
     pub(super) stretch: f64,
@@ -56,22 +66,26 @@ impl Pair {
     }
 
     /// Lateral offset, gap and angle of the arriving face, and the axes of the waiting one.
-    fn seen(&self, [waiting, arriving]: [Frame; 2]) -> ([f64; 3], glam::DVec2, glam::DVec2) {
+    fn seen([waiting, arriving]: [Frame; 2]) -> ([f64; 3], glam::DVec2, glam::DVec2) {
         let normal = direction(waiting.heading);
         let across = -left(normal);
         let apart = arriving.place() - waiting.place();
-        ([apart.dot(across), apart.dot(normal), wrapped(arriving.heading - waiting.heading - PI)], across, normal)
+        (
+            [apart.dot(across), apart.dot(normal), wrapped(arriving.heading - waiting.heading - PI)],
+            across,
+            normal,
+        )
     }
 
     /// Lateral offset in mm, gap in mm, angle in radians.
     pub(super) fn error(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> [f64; 3] {
-        self.seen(self.latch.faces(body, rotors, angles)).0
+        Self::seen(self.latch.faces(body, rotors, angles)).0
     }
 
     /// What acts between the two faces now.
     pub(super) fn springs(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> Vec<Spring> {
         let faces = self.latch.faces(body, rotors, angles);
-        let ([lateral, gap, angle], across, normal) = self.seen(faces);
+        let ([lateral, gap, angle], across, normal) = Self::seen(faces);
         let slopes = |at: glam::DVec2, along: glam::DVec2| {
             let mut slopes = vec![0.0; angles.len()];
             for joint in self.latch.joints() {
@@ -140,27 +154,26 @@ impl Pair {
         }
     }
 
-    /// What a pressing force and an offset change, `driven` telling that no joint between the faces is slack: whether anything, and the
-    /// layers that hold if one has snapped.
-    pub(super) fn change(&mut self, press: f64, lateral: f64, driven: bool) -> Option<Option<usize>> {
+    /// What a pressing force and an offset change, `driven` telling that no joint between the faces is slack.
+    pub(super) fn change(&mut self, press: f64, lateral: f64, driven: bool) -> Change {
         self.most = self.most.max(press);
         let overhang = self.hooks.overhang;
         let Some(needed) = self.threshold(lateral) else {
             let rides = matches!(self.held, Layers::One { .. });
             if rides && !driven {
                 self.held = Layers::One { offset: 0.0 };
-                return Some(None);
+                return Change::Realigned;
             }
-            return None;
+            return Change::Nothing;
         };
         if press < needed {
-            return None;
+            return Change::Nothing;
         }
         let off_centre = lateral.abs() > 0.5 * overhang;
         self.held = match self.held {
             Layers::None if off_centre => Layers::One { offset: lateral.clamp(-overhang, overhang) },
             _ => Layers::Both,
         };
-        Some(Some(self.layers()))
+        Change::Snapped(self.layers())
     }
 }

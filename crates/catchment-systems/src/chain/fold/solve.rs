@@ -9,8 +9,8 @@
 
 use super::super::kinematics::{Body, Frame, rotors};
 use super::super::shape::Latch;
-use super::pair::Pair;
-use super::{Settings, State};
+use super::pair::{Change, Pair};
+use super::{Event, Settings, State};
 
 /// N·mm in a N·m.
 const MILLI: f64 = 1e3;
@@ -24,9 +24,6 @@ pub(super) struct Chain {
     pub(super) told: Vec<Option<f64>>,
     pub(super) pairs: Vec<Pair>,
 }
-
-/// Pressing force, lateral, gap and angle, modules and layers of a pair that snapped.
-pub(super) type Snapped = (f64, [f64; 3], usize, usize, usize);
 
 impl Chain {
     pub(super) fn new(body: Body, modules: usize, latches: &[Latch], settings: &Settings) -> Self {
@@ -57,19 +54,24 @@ impl Chain {
             .collect()
     }
 
-    /// Lets the first pair change that has reason to; whether one has, and what snapped.
-    pub(super) fn snap(&mut self) -> Option<Option<Snapped>> {
+    /// Lets the first pair change that has reason to; whether one has, and what snapped is noted as of `time_s`.
+    pub(super) fn snap(&mut self, time_s: f64, events: &mut Vec<Event>) -> bool {
         let rotors = self.rotors();
         for pair in &mut self.pairs {
-            let press = pair.press(&self.body, &rotors, &self.angles);
-            let error = pair.error(&self.body, &rotors, &self.angles);
+            let force_n = pair.press(&self.body, &rotors, &self.angles);
+            let [lateral_mm, _, angle_rad] = pair.error(&self.body, &rotors, &self.angles);
             let driven = self.told[pair.latch.joints()].iter().all(Option::is_some);
-            if let Some(change) = pair.change(press, error[0], driven) {
-                let (from, to) = (pair.latch.from, pair.latch.to);
-                return Some(change.map(|layers| (press, error, from, to, layers)));
+            match pair.change(force_n, lateral_mm, driven) {
+                Change::Nothing => {}
+                Change::Realigned => return true,
+                Change::Snapped(layers) => {
+                    let (from, to) = (pair.latch.from, pair.latch.to);
+                    events.push(Event { time_s, from, to, layers, force_n, lateral_mm, angle_rad });
+                    return true;
+                }
             }
         }
-        None
+        false
     }
 
     /// Whether a pair is pressed well beyond what snaps its next layer.
@@ -133,7 +135,9 @@ impl Chain {
             let Some(mut step) = solved(&curvature, damping, &gradient) else { break };
             let longest = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
             if longest > LONGEST {
-                step.iter_mut().for_each(|s| *s *= LONGEST / longest);
+                for turn in &mut step {
+                    *turn *= LONGEST / longest;
+                }
             }
             let next: Vec<f64> = self.angles.iter().zip(&step).map(|(a, s)| a - s).collect();
             let tried = self.energy(&next);

@@ -15,7 +15,8 @@ fn told(found: &Folded) {
         println!("{event:?}");
     }
     for moment in &found.moments {
-        let degrees: Vec<_> = moment.angles.iter().map(|a| (a.to_degrees() * 100.0).round() / 100.0).collect();
+        let degrees: Vec<_> =
+            moment.angles.iter().map(|a| (a.to_degrees() * 100.0).round() / 100.0).collect();
         println!("{} {degrees:?} {:?} {:?}", moment.time_s, moment.states, moment.latched);
     }
 }
@@ -54,7 +55,8 @@ fn every_shape_latches_and_ends_on_its_lattice() {
         told(&found);
         let latches = Sequence::of(shape).unwrap().latches;
         assert!(open_latches(&found, &latches).is_empty(), "{shape:?}");
-        let (off, turned) = off_lattice(&Body::default(), &found.moments.last().unwrap().angles, &shape.angles());
+        let (off, turned) =
+            off_lattice(&Body::default(), &found.moments.last().unwrap().angles, &shape.angles());
         assert!(off < 1.0 && turned < 1f64.to_radians(), "{shape:?}: {off} mm, {turned} rad");
     }
 }
@@ -84,7 +86,10 @@ fn centred_faces_latch_both_layers_at_once() {
 
 #[test]
 fn collisions_name_their_step() {
-    let bend = |time_s: f64, joint| Step { time_s, commands: vec![(joint, Command::Angle(-std::f64::consts::FRAC_PI_2))] };
+    let bend = |time_s: f64, joint| Step {
+        time_s,
+        commands: vec![(joint, Command::Angle(-std::f64::consts::FRAC_PI_2))],
+    };
     let steps = vec![bend(0.0, 2), bend(1.0, 3), bend(2.0, 4), bend(3.0, 5)];
     let sequence = Sequence { steps, latches: Vec::new(), source: "a test" };
     let refused = fold(&Body::default(), 6, &sequence, &Settings::default(), &Exec::new()).unwrap_err();

@@ -2,7 +2,7 @@
 
 use super::{ArrivalReport, ChainBody, ChainReport, FoldingReport, growth};
 use crate::chain::sequence::Command;
-use catchment::report::text::{COLUMNS, line, percent, row, rounded, wrapped};
+use catchment::report::text::{COLUMNS, line, percent, rounded, row, wrapped};
 
 /// `1.00° `.
 fn degrees(radians: f64) -> String {
@@ -75,19 +75,26 @@ impl ChainBody {
         line(t, "choices of corners          across     gap  angle  corr.   push  rank  press");
         for c in &self.corners {
             let names = c.corners.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-            line(t, &format!(
-                "  {names:<15} error {:>2}  {:>6.2} mm {:>7.2} {:>6} {:>6.2} {:>6.1} {:>4} {:>6.1} N",
-                c.rank_by_error,
-                c.lateral_sigma_mm,
-                c.normal_sigma_mm,
-                degrees(c.angle_sigma_rad),
-                c.correlation,
-                c.push_n,
-                c.rank_by_force,
-                c.press_n,
-            ));
+            line(
+                t,
+                &format!(
+                    "  {names:<15} error {:>2}  {:>6.2} mm {:>7.2} {:>6} {:>6.2} {:>6.1} {:>4} {:>6.1} N",
+                    c.rank_by_error,
+                    c.lateral_sigma_mm,
+                    c.normal_sigma_mm,
+                    degrees(c.angle_sigma_rad),
+                    c.correlation,
+                    c.push_n,
+                    c.rank_by_force,
+                    c.press_n,
+                ),
+            );
         }
-        wrapped(t, "  ", "push: torque over the distance of the nearest corner from the face; press: along the normal, what all joints can hold");
+        wrapped(
+            t,
+            "  ",
+            "push: torque over the distance of the nearest corner from the face; press: along the normal, what all joints can hold",
+        );
     }
 
     fn length_lines(&self, t: &mut String) {
@@ -99,16 +106,25 @@ impl ChainBody {
         for row in &self.lengths {
             let docks = row.docking.map_or_else(
                 || format!("{:<29}", "–"),
-                |d| format!("{:<9} {:<19}", percent(d.probability), format!("{} to {}", percent(d.ci95[0]), percent(d.ci95[1]))),
+                |d| {
+                    format!(
+                        "{:<9} {:<19}",
+                        percent(d.probability),
+                        format!("{} to {}", percent(d.ci95[0]), percent(d.ci95[1]))
+                    )
+                },
             );
             let alone = row.offset_probability.map_or_else(|| "–".to_owned(), percent);
-            line(t, &format!(
-                "  {:<6} {:>5}   {:.4} D  {:>7}   {docks} {alone}",
-                degrees(row.joint_sigma_rad),
-                row.modules,
-                row.lateral_sigma_d,
-                degrees(row.heading_sigma_rad),
-            ));
+            line(
+                t,
+                &format!(
+                    "  {:<6} {:>5}   {:.4} D  {:>7}   {docks} {alone}",
+                    degrees(row.joint_sigma_rad),
+                    row.modules,
+                    row.lateral_sigma_d,
+                    degrees(row.heading_sigma_rad),
+                ),
+            );
         }
         for reach in &self.reach {
             let who = format!("joint error {}: ", degrees(reach.joint_sigma_rad));
@@ -158,9 +174,11 @@ fn folded(t: &mut String, folding: &FoldingReport, face: f64) {
     line(t, "   t     joint:command→angle");
     let mut before: Vec<Option<f64>> = Vec::new();
     for step in &folding.steps {
-        let moved = step.modules.iter().enumerate().filter(|(k, m)| {
-            before.get(*k).copied().unwrap_or(Some(0.0)) != m.command_rad
-        });
+        let moved = step
+            .modules
+            .iter()
+            .enumerate()
+            .filter(|(k, m)| before.get(*k).copied().unwrap_or(Some(0.0)) != m.command_rad);
         let moved: Vec<String> = moved
             .map(|(_, m)| {
                 let command = m.command_rad.map_or(Command::Slack.text(), degrees);
@@ -173,16 +191,19 @@ fn folded(t: &mut String, folding: &FoldingReport, face: f64) {
     }
     for event in &folding.events {
         let layers = if event.layers == 1 { "first layer" } else { "both layers hold" };
-        line(t, &format!(
-            "  {:>5.2} s  {}–{} {layers}: {:.1} N, {:.2} mm = {:.3} D off-centre, {}",
-            event.time_s,
-            event.from,
-            event.to,
-            event.force_n,
-            event.lateral_mm.abs(),
-            event.lateral_mm.abs() / face,
-            degrees(event.angle_rad),
-        ));
+        line(
+            t,
+            &format!(
+                "  {:>5.2} s  {}–{} {layers}: {:.1} N, {:.2} mm = {:.3} D off-centre, {}",
+                event.time_s,
+                event.from,
+                event.to,
+                event.force_n,
+                event.lateral_mm.abs(),
+                event.lateral_mm.abs() / face,
+                degrees(event.angle_rad),
+            ),
+        );
     }
     let end = format!(
         "{}; {:.3} mm and {} off the lattice",
@@ -204,7 +225,11 @@ fn folded(t: &mut String, folding: &FoldingReport, face: f64) {
             pair.from
         );
         let fits = head.chars().count() <= COLUMNS;
-        if fits { line(t, &head) } else { wrapped(t, "", &head) }
+        if fits {
+            line(t, &head);
+        } else {
+            wrapped(t, "", &head);
+        }
         arrival(t, latch);
         row(t, "presses", &format!("{:.1} N at most along the normal", latch.press_n));
     }

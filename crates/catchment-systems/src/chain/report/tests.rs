@@ -46,10 +46,15 @@ fn poses_are_told_step_by_step() {
 
 #[test]
 fn a_latch_that_does_not_hold_is_a_doubt() {
-    let (report, _) = told("[sequence]\nname = 'P'\n[servo]\ntorque = 0.8", &Settings { chains: 1, ..Settings::default() });
+    let (report, _) =
+        told("[sequence]\nname = 'P'\n[servo]\ntorque = 0.8", &Settings { chains: 1, ..Settings::default() });
     assert_eq!(report.warnings.len(), 1);
     let said = &report.warnings[0].message;
-    assert!(said.starts_with("3–6 holds with 0 of 2 layers: pressed with 8.") && said.ends_with("a layer needs 9.61 N"), "{said}");
+    assert!(
+        said.starts_with("3–6 holds with 0 of 2 layers: pressed with 8.")
+            && said.ends_with("a layer needs 9.61 N"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -67,5 +72,8 @@ fn the_reach_is_the_last_row_before_the_first_that_fails() {
     assert_eq!(reach(&rows, &["probability>0.999".parse().unwrap()])[0].modules, Some(2));
     assert_eq!(reach(&rows[2..3], &["probability>0.999".parse().unwrap()])[0].modules, None);
     // A requirement about something else leaves the usual one.
-    assert_eq!(reach(&rows, &["modules>3".parse().unwrap()])[0].requirement.to_string(), "probability >= 0.99");
+    assert_eq!(
+        reach(&rows, &["modules>3".parse().unwrap()])[0].requirement.to_string(),
+        "probability >= 0.99"
+    );
 }
