@@ -1,6 +1,6 @@
 //! What was found about a chain: as versioned JSON, as a table for people, as records for programs.
 
-use super::accumulation::{Covariance, Errors, heading_sigma, lateral_sigma};
+use super::accumulation::{Covariance, Errors};
 use super::docking::Probability;
 use super::fold::{Event, Hooks, Servo, State, off_lattice, open_latches};
 use super::kinematics::{Body, rotors};
@@ -392,12 +392,6 @@ fn doubts(study: &Study, body: &ChainBody) -> Vec<String> {
 
 fn rounded(value: f64) -> String {
     catchment::report::text::rounded(value)
-}
-
-/// Lateral deviation in D and heading in radians that the closed forms give a straight chain, for the story of growth.
-fn growth(body: &ChainBody) -> (f64, f64) {
-    let sigma = body.errors.joint_sigma;
-    (lateral_sigma(&body.body, body.modules, sigma) / body.body.face, heading_sigma(body.modules, sigma))
 }
 
 #[cfg(test)]

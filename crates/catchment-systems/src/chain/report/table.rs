@@ -1,6 +1,7 @@
 //! A chain's report for people: millimetres and degrees, 80 columns.
 
-use super::{ArrivalReport, ChainBody, ChainReport, FoldingReport, growth};
+use super::{ArrivalReport, ChainBody, ChainReport, FoldingReport};
+use crate::chain::accumulation::{heading_sigma, lateral_sigma};
 use crate::chain::sequence::Command;
 use catchment::report::text::{COLUMNS, line, percent, rounded, row, wrapped};
 
@@ -142,6 +143,12 @@ impl ChainBody {
             line(t, &format!("  {who}{said}"));
         }
     }
+}
+
+/// Lateral deviation in D and heading in radians that the closed forms give a straight chain, for the story of growth.
+fn growth(body: &ChainBody) -> (f64, f64) {
+    let sigma = body.errors.joint_sigma;
+    (lateral_sigma(&body.body, body.modules, sigma) / body.body.face, heading_sigma(body.modules, sigma))
 }
 
 fn arrival(t: &mut String, a: &ArrivalReport) {
