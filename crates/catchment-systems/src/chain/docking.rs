@@ -180,6 +180,7 @@ mod tests {
         let docked = |cloud: &[[f64; 3]]| Probability::of(&docks(&problem, &body, cloud, &exec).unwrap());
         let turned: Vec<[f64; 3]> = cloud.iter().map(|[l, n, a]| [-l, *n, *a]).collect();
         let (right, wrong) = (docked(&cloud), docked(&turned));
+        println!("right {right:?} wrong {wrong:?}");
         // The two intervals do not meet.
         assert!(right.ci95[0] > wrong.ci95[1], "{right:?} {wrong:?}");
         assert!((wrong.probability - 0.867).abs() < 0.03, "{wrong:?}");

@@ -3,7 +3,7 @@
 use super::super::report::{ChainReport, LengthReport};
 use super::{SIDE, TOP, WIDTH, degrees, headed};
 use catchment::report::figure::Picture;
-use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::axis::{Frame, Scale, short};
 use catchment::report::figure::draw::colour::{CURVES, hex};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
 
@@ -13,7 +13,7 @@ const CHART: f64 = 300.0;
 pub(super) fn draw(report: &ChainReport) -> Picture {
     let story = match &report.connector {
         Some(connector) => {
-            let cor = catchment::report::text::rounded(connector.center_of_rotation_d);
+            let cor = short(connector.center_of_rotation_d);
             format!("straight chains, {}, centre of rotation {cor} D: the last rotor", connector.name)
         }
         None => "straight chains".to_owned(),

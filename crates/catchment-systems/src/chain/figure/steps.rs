@@ -212,7 +212,6 @@ fn track(svg: &mut Svg, rect: Rect, folding: &FoldingReport, study: &Study) {
     svg.line([rect.x, frame.py(-90.0)], [rect.x + rect.w, frame.py(-90.0)], &dotted);
     for (k, joint) in moved.iter().enumerate() {
         let colour = hex(CURVES[k]);
-        // Between two ramps nothing moves.
         let points =
             folded.track.iter().map(|(time, angles)| frame.at([*time, angles[joint - 1].to_degrees()]));
         let style = format!(r#"fill="none" stroke="{colour}" stroke-width="2" {JOIN}"#);

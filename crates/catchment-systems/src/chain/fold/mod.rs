@@ -146,7 +146,7 @@ pub struct Folded {
     pub moments: Vec<Moment>,
     /// What latched, in order.
     pub events: Vec<Event>,
-    /// Time and joint angles of every sub-step.
+    /// Time and joint angles at the start of every ramp and after every sub-step.
     pub track: Vec<(f64, Vec<f64>)>,
     /// Largest pressing force that each pair has seen, in N.
     pub pressed: Vec<f64>,
@@ -189,12 +189,8 @@ pub fn fold(
     exec: &Exec,
 ) -> Result<Folded, FoldError> {
     let mut chain = Chain::new(*body, modules, &sequence.latches, settings);
-    let mut found = Folded {
-        moments: Vec::new(),
-        events: Vec::new(),
-        track: vec![(0.0, chain.angles.clone())],
-        pressed: Vec::new(),
-    };
+    let mut found =
+        Folded { moments: Vec::new(), events: Vec::new(), track: Vec::new(), pressed: Vec::new() };
     let told = sequence.commanded(modules);
     let mut before = vec![Command::Angle(0.0); modules];
     for (number, (step, commands)) in sequence.steps.iter().zip(&told).enumerate() {
@@ -202,6 +198,8 @@ pub fn fold(
         let until = sequence.steps.get(number + 1).map_or(step.time_s + RAMP_S, |next| next.time_s);
         let length = (until - step.time_s).min(RAMP_S);
         let from: Vec<f64> = before.iter().zip(&chain.angles).map(|(b, now)| ramp_start(*b, *now)).collect();
+        // Between two ramps nothing moves.
+        found.track.push((step.time_s, chain.angles.clone()));
         let mut share = 0.0;
         while share < 1.0 {
             share = advance(&mut chain, commands, &from, share, settings.substeps);

@@ -5,9 +5,10 @@ use crate::chain::accumulation::{heading_sigma, lateral_sigma};
 use crate::chain::sequence::Command;
 use catchment::report::text::{COLUMNS, line, percent, rounded, row, wrapped};
 
-/// `1.00° `.
+/// `1.00°`.
 fn degrees(radians: f64) -> String {
-    format!("{:.2}°", radians.to_degrees())
+    let text = format!("{:.2}°", radians.to_degrees());
+    if text == "-0.00°" { "0.00°".to_owned() } else { text }
 }
 
 fn with_interval(probability: f64, [low, high]: [f64; 2]) -> String {
@@ -46,7 +47,7 @@ impl ChainBody {
             let cor = rounded(connector.center_of_rotation_d);
             let rho = rounded(connector.rotation_length_d);
             row(t, "connector", &format!("{}, rho {rho} D", connector.name));
-            row(t, "", &format!("centre of rotation {cor} D in front of the face: the last rotor"));
+            row(t, "", &format!("centre of rotation: the last rotor, {cor} D in front of the face"));
         }
         if let (Some(probability), Some(ci95)) = (self.probability, self.ci95) {
             row(t, "docks", &with_interval(probability, ci95));
