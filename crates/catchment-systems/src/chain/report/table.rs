@@ -47,7 +47,7 @@ impl ChainBody {
             let cor = rounded(connector.center_of_rotation_d);
             let rho = rounded(connector.rotation_length_d);
             row(t, "connector", &format!("{}, rho {rho} D", connector.name));
-            row(t, "", &format!("centre of rotation: the last rotor, {cor} D in front of the face"));
+            row(t, "", &format!("COR {cor} D in front of the face: the last rotor"));
         }
         if let (Some(probability), Some(ci95)) = (self.probability, self.ci95) {
             row(t, "docks", &with_interval(probability, ci95));
