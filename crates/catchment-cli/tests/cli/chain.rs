@@ -27,6 +27,11 @@ fn code(folder: &Path, args: &[&str]) -> Option<i32> {
 #[test]
 fn the_p_latches_as_table_6_2_says() {
     let report = json(&systems(), &["chain", "p-sequence.toml", "--json", "--chains", "100"]);
+    let names: Vec<&str> = report.as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(
+        (&names[..3], &names[names.len() - 2..]),
+        (&["schema", "catchment", "kind"][..], &["warnings", "timing"][..])
+    );
     assert_eq!((&report["kind"], &report["modules"]), (&"chain".into(), &6.into()));
     let folding = &report["folding"];
     let events: Vec<(f64, u64)> = folding["events"]
@@ -207,7 +212,7 @@ fn collisions_are_refused_at_their_step() {
 
 #[test]
 fn every_example_is_answered() {
-    for name in ["chain.toml", "p-sequence.toml", "o-ring.toml"] {
+    for name in ["chain.toml", "p-sequence.toml", "block.toml", "o-ring.toml"] {
         let told = run(&systems(), &["chain", name, "--chains", "20"]);
         assert!(told.starts_with("exit 0\n") && told.ends_with("--- stderr\n"), "{told}");
         let widest = told.lines().map(|line| line.chars().count()).max().unwrap();

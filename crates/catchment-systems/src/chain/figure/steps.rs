@@ -20,6 +20,8 @@ const ACROSS: usize = 3;
 const WORDS: f64 = 46.0;
 /// Height of the charts.
 const CHART: f64 = 230.0;
+/// Height of a row of them, with their labels.
+const CHART_ROW: f64 = 304.0;
 
 pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
     let Some(folding) = &report.folding else { return Picture::of(Svg::new(WIDTH, TOP)) };
@@ -32,9 +34,10 @@ pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
         folding.steps.chunks(ACROSS).map(|row| (row, bounds(row, body).map(|corner| corner.y))).collect();
     let height = |[low, high]: [f64; 2]| scale * (high - low);
     let charts = TOP + rows.iter().map(|(_, span)| height(*span) + WORDS).sum::<f64>() + 34.0;
+    let rows_of_charts = (1 + folding.latches.len()).div_ceil(2) as f64;
     let name = folding.shape.map_or("own sequence", |shape| shape.name());
     let story = format!("{name}; commands: {}", folding.commands_from);
-    let mut svg = headed(report, charts + CHART + 58.0, &story);
+    let mut svg = headed(report, charts + rows_of_charts * CHART_ROW - 16.0, &story);
     legend(&mut svg);
     let (mut before, mut top) = (None, TOP);
     for (row, span) in rows {
@@ -48,11 +51,14 @@ pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
         }
         top = bottom + WORDS;
     }
-    let left_chart = Rect { x: 84.0, y: charts, w: 330.0, h: CHART };
-    track(&mut svg, left_chart, folding, study);
-    let right_chart = Rect { x: 540.0, y: charts, w: 330.0, h: CHART };
-    if let (Some(told), Some(found)) = (folding.latches.first(), study.arrivals.first()) {
-        cloud::draw(&mut svg, right_chart, report, told, found);
+    // Two charts in a row: the joints first, then every docking.
+    let place = |k: usize| {
+        let (column, row) = ((k % 2) as f64, (k / 2) as f64);
+        Rect { x: 84.0 + 456.0 * column, y: charts + row * CHART_ROW, w: 330.0, h: CHART }
+    };
+    track(&mut svg, place(0), folding, study);
+    for (k, (told, found)) in folding.latches.iter().zip(&study.arrivals).enumerate() {
+        cloud::draw(&mut svg, place(k + 1), report, told, found);
     }
     Picture::of(svg)
 }

@@ -194,7 +194,7 @@ pub fn fold(
     let told = sequence.commanded(modules);
     let mut before = vec![Command::Angle(0.0); modules];
     for (number, (step, commands)) in sequence.steps.iter().zip(&told).enumerate() {
-        exec.check()?;
+        exec.report(number as f64 / told.len() as f64, "folding");
         let until = sequence.steps.get(number + 1).map_or(step.time_s + RAMP_S, |next| next.time_s);
         let length = (until - step.time_s).min(RAMP_S);
         let from: Vec<f64> = before.iter().zip(&chain.angles).map(|(b, now)| ramp_start(*b, *now)).collect();
@@ -202,6 +202,7 @@ pub fn fold(
         found.track.push((step.time_s, chain.angles.clone()));
         let mut share = 0.0;
         while share < 1.0 {
+            exec.check()?;
             share = advance(&mut chain, commands, &from, share, settings.substeps);
             let time_s = step.time_s + share * length;
             settle(&mut chain, time_s, &mut found.events);
@@ -236,7 +237,8 @@ fn advance(chain: &mut Chain, commands: &[Command], from: &[f64], done: f64, sub
     let mut part = 1.0;
     loop {
         // Rounding of the sum must not leave a sliver behind.
-        let share = if done + 1.5 * part * whole > 1.0 && part == 1.0 { 1.0 } else { done + part * whole };
+        let share =
+            if done + 1.5 * part * whole > 1.0 && part == 1.0 { 1.0 } else { (done + part * whole).min(1.0) };
         for ((told, to), from) in chain.told.iter_mut().zip(commands).zip(from) {
             *told = match to {
                 Command::Angle(to) => Some(from + share * (to - from)),

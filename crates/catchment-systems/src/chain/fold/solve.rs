@@ -188,10 +188,35 @@ fn solved(m: &[Vec<f64>], damping: f64, b: &[f64]) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::shape::{Shape, latches};
+    use super::super::pair::Layers;
     use super::*;
     use proptest::prelude::*;
 
     proptest! {
+        /// The gradient is that of the energy, open and latched: central differences, whose rounding is 1e-10 of the energy.
+        #[test]
+        fn the_gradient_is_that_of_the_energy(off in proptest::collection::vec(-0.2..0.2f64, 6), held in 0usize..4) {
+            const STEP: f64 = 1e-6;
+            let angles = Shape::P.angles();
+            let mut chain = Chain::new(Body::default(), 6, &latches(&angles), &Settings::default());
+            chain.told = vec![Some(0.0), Some(0.01), None, Some(-1.67), Some(-1.74), Some(0.0)];
+            chain.pairs[0].held =
+                [Layers::None, Layers::One { offset: 3.0 }, Layers::One { offset: 0.0 }, Layers::Both][held];
+            let at: Vec<f64> = angles.iter().zip(&off).map(|(a, o)| a + o).collect();
+            let (energy, gradient, _) = chain.energy(&at);
+            for k in 0..6 {
+                let moved = |step: f64| {
+                    let mut angles = at.clone();
+                    angles[k] += step;
+                    chain.energy(&angles).0
+                };
+                let slope = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
+                let slack = 1e-4 * gradient[k].abs() + 1e-8 * energy + 1.0;
+                prop_assert!((slope - gradient[k]).abs() < slack, "{k}: {slope} for {}", gradient[k]);
+            }
+        }
+
         #[test]
         fn a_solution_solves(entries in proptest::collection::vec(-1.0..1.0f64, 36), b in proptest::collection::vec(-1.0..1.0f64, 6)) {
             // aᵀa + 1 is positive definite.
