@@ -30,7 +30,8 @@ pub fn draw(report: &ChainReport, study: &Study) -> Picture {
     if report.folding.is_some() {
         return steps::draw(report, study);
     }
-    let mut svg = headed(report, 470.0, &format!("straight chain of {} modules", report.modules));
+    let colours = if report.connector.is_some() { ": blue docks, orange does not" } else { "" };
+    let mut svg = headed(report, 470.0, &format!("straight chain of {} modules{colours}", report.modules));
     let rect = Rect { x: 90.0, y: TOP + 26.0, w: WIDTH - 180.0, h: 330.0 };
     cloud::draw(&mut svg, rect, report, &report.straight, &study.straight);
     Picture::of(svg)
