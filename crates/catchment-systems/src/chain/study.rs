@@ -169,7 +169,7 @@ fn follow(file: &ChainFile, exec: &Exec) -> Result<Option<Folded>, StudyError> {
     match fold(&file.body, file.modules, &folding.sequence, &settings, exec) {
         Ok(folded) => Ok(Some(folded)),
         Err(FoldError::Cancelled(cancelled)) => Err(cancelled.into()),
-        Err(error @ FoldError::Collision { step, .. }) => {
+        Err(error @ (FoldError::Cell { step, .. } | FoldError::Collision { step, .. })) => {
             Err(file.refuse_step(step, error.to_string()).into())
         }
     }

@@ -14,7 +14,8 @@
 //! trench, and the pair rests off-centre by up to the overhang, until a joint between the faces goes slack; then the flexures pull
 //! the pair to its aligned pose. The next press latches the second layer.
 //!
-//! Every step is checked for collisions: module bodies, without their faces, may not overlap; pairs that latch may press.
+//! Every step is checked: its commands may not put two modules into one cell, and on the way module bodies, without their faces, may
+//! not overlap; pairs that latch may press.
 //!
 //! Source: the dissertation, section 6.3.1 (p. 104–105) tells this order of events; 10.9 N·m (p. 103), 9.61 N (p. 101), stiffnesses of
 //! the design o = 5.1 mm, t = 3.0 mm in table 6.1. Ours are: the servo's stiffness, which is not stated; that 9.61 N, the highest force of
@@ -155,8 +156,20 @@ pub struct Folded {
 /// Why a sequence cannot be followed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FoldError {
-    /// Two modules would be in one place.
-    #[error("at {time_s} s module {b} {} module {a}", if *in_cell { "enters the cell of" } else { "hits" })]
+    /// The commands put two modules into one cell.
+    #[error("at {time_s} s module {b} is sent into the cell of module {a}")]
+    Cell {
+        /// Number of the step, from 0.
+        step: usize,
+        /// Its time.
+        time_s: f64,
+        /// Module nearer to the base.
+        a: usize,
+        /// The other.
+        b: usize,
+    },
+    /// Two modules touch on the way that do not latch with each other.
+    #[error("at {time_s} s module {b} hits module {a}")]
     Collision {
         /// Number of the step, from 0.
         step: usize,
@@ -166,8 +179,6 @@ pub enum FoldError {
         a: usize,
         /// The other.
         b: usize,
-        /// Whether their rotors are nearer than half a pitch.
-        in_cell: bool,
     },
     /// It was asked to stop.
     #[error(transparent)]
@@ -193,7 +204,11 @@ pub fn fold(
         Folded { moments: Vec::new(), events: Vec::new(), track: Vec::new(), pressed: Vec::new() };
     let told = sequence.commanded(modules);
     let mut before = vec![Command::Angle(0.0); modules];
+    let meant = sequence.commanded_angles(modules);
     for (number, (step, commands)) in sequence.steps.iter().zip(&told).enumerate() {
+        if let Some((a, b)) = collision::in_one_cell(body, &rotors(body, &meant[number]), &sequence.latches) {
+            return Err(FoldError::Cell { step: number, time_s: step.time_s, a, b });
+        }
         exec.report(number as f64 / told.len() as f64, "folding");
         let until = sequence.steps.get(number + 1).map_or(step.time_s + RAMP_S, |next| next.time_s);
         let length = (until - step.time_s).min(RAMP_S);
@@ -206,10 +221,9 @@ pub fn fold(
             share = advance(&mut chain, commands, &from, share, settings.substeps);
             let time_s = step.time_s + share * length;
             settle(&mut chain, time_s, &mut found.events);
-            if let Some((a, b, in_cell)) =
-                collision::first(body, &chain.rotors(), &chain.angles, &sequence.latches)
-            {
-                return Err(FoldError::Collision { step: number, time_s: step.time_s, a, b, in_cell });
+            let hit = collision::first(body, &chain.rotors(), &chain.angles, &sequence.latches);
+            if let Some((a, b)) = hit {
+                return Err(FoldError::Collision { step: number, time_s: step.time_s, a, b });
             }
             found.track.push((time_s, chain.angles.clone()));
         }

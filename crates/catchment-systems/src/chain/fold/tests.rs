@@ -93,8 +93,8 @@ fn collisions_name_their_step() {
     let steps = vec![bend(0.0, 2), bend(1.0, 3), bend(2.0, 4), bend(3.0, 5)];
     let sequence = Sequence { steps, latches: Vec::new(), source: "a test" };
     let refused = fold(&Body::default(), 6, &sequence, &Settings::default(), &Exec::new()).unwrap_err();
-    // The third bend swings the tail, modules 5 and 6, against module 1.
-    assert!(matches!(refused, FoldError::Collision { step: 2, a: 1, .. }), "{refused}");
+    // The third bend closes a ring of four.
+    assert!(matches!(refused, FoldError::Cell { step: 2, a: 1, b: 5, .. }), "{refused}");
     // Without its latch the P's press is a collision, too.
     let sequence = Sequence { latches: Vec::new(), ..Sequence::of(Shape::P).unwrap() };
     let refused = fold(&Body::default(), 6, &sequence, &Settings::default(), &Exec::new()).unwrap_err();
