@@ -1,5 +1,6 @@
 //! One file per subcommand.
 
+mod chain;
 mod check;
 mod compare;
 mod completions;
@@ -25,6 +26,7 @@ use clap::Subcommand;
 pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
+    Chain(Box<chain::ChainArgs>),
     Run(Box<run::RunArgs>),
     Compare(compare::CompareArgs),
     Slices(Box<slices::SlicesArgs>),
@@ -46,6 +48,7 @@ impl Command {
         match self {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
+            Self::Chain(args) => chain::run(&args),
             Self::Run(args) => run::run(&args),
             Self::Compare(args) => compare::run(&args),
             Self::Slices(args) => slices::run(&args),

@@ -1,0 +1,153 @@
+//! `catchment chain`: chains of modules.
+
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, to_stderr, to_stdout};
+use catchment::design::{Quantity, SourceText, load};
+use catchment::exec::Stopwatch;
+use catchment::report::csv;
+use catchment::report::schema::Timing;
+use catchment::run::{Requirement, Verdict};
+use catchment_systems::chain::file::{ChainFile, MOST_MODULES};
+use catchment_systems::chain::study::{self, Settings};
+use catchment_systems::chain::{figure, report};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Where the last face of a chain of modules ends up, and whether it docks
+///
+/// The file names the modules, their joint errors, the connector at their faces and what the joints are told. Errors are added up
+/// to first order and by random chains, which are followed exactly until they dock or jam. A sequence is folded step by step with
+/// servos as springs: it says when each layer of a latch snaps, and refuses modules that collide.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment chain chain.toml\n  \
+    catchment chain p-sequence.toml -o steps.svg     the chain after every step (.svg, .png), or as .csv, .json\n  \
+    catchment chain chain.toml --modules 2..20 --joint-sigma 0.5deg,1deg,2deg\n                                                   \
+    how many modules still dock\n  \
+    catchment chain chain.toml --require 'probability>=0.99'\n  \
+    catchment chain p-sequence.toml --json | jq .folding.events\n\n\
+    `probability` is that of the file's own chain: of every docking of its sequence, or of its last face where it stays straight.")]
+pub(crate) struct ChainArgs {
+    /// The chain file
+    #[arg(value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    path: PathBuf,
+    /// Also straight chains of these numbers of modules, such as 2..20 or 4,8,12
+    #[arg(long, value_name = "NUMBERS", value_parser = modules)]
+    modules: Option<Modules>,
+    /// And of these joint errors (standard deviations), such as 0.5deg,1deg
+    #[arg(long, value_name = "ANGLES", value_parser = angles)]
+    joint_sigma: Option<Angles>,
+    /// Random chains
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    chains: u64,
+    /// Seed of the random chains
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// End with exit code 1 unless this holds of the JSON report, such as "probability>=0.99"; may be repeated
+    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
+    require: Vec<Requirement>,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+/// Numbers of modules, in order.
+#[derive(Debug, Clone)]
+struct Modules(Vec<usize>);
+
+/// Angles in radians.
+#[derive(Debug, Clone)]
+struct Angles(Vec<f64>);
+
+fn requirement(text: &str) -> Result<Requirement, String> {
+    text.parse::<Requirement>().map_err(|error| error.to_string())
+}
+
+fn modules(text: &str) -> Result<Modules, String> {
+    let most = MOST_MODULES as usize;
+    let number = |text: &str| match text.trim().parse::<usize>() {
+        Ok(n) if (1..=most).contains(&n) => Ok(n),
+        _ => Err(format!("`{}` is no number of modules from 1 to {most}", text.trim())),
+    };
+    if let Some((first, last)) = text.split_once("..") {
+        let (first, last) = (number(first)?, number(last)?);
+        if first > last {
+            return Err(format!("{first}..{last} goes down; write {last}..{first}"));
+        }
+        return Ok(Modules((first..=last).collect()));
+    }
+    let mut list = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
+    list.sort_unstable();
+    list.dedup();
+    Ok(Modules(list))
+}
+
+fn angles(text: &str) -> Result<Angles, String> {
+    /// The largest that a chain file takes, in radians.
+    const LARGEST: f64 = 0.5;
+    let angle = |text: &str| {
+        let quantity: Quantity = text.trim().parse().map_err(|error| format!("{error}"))?;
+        let angle = quantity.angle_rad().map_err(|error| error.to_string())?;
+        let shown = text.trim();
+        (0.0..=LARGEST)
+            .contains(&angle)
+            .then_some(angle)
+            .ok_or(format!("`{shown}` is not from 0 to {LARGEST} rad"))
+    };
+    text.split(',').map(angle).collect::<Result<_, _>>().map(Angles)
+}
+
+pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
+    let kind = args.file.kind(&["svg", "png", "csv", "json"])?;
+    let file = ChainFile::read(SourceText::new(&args.path, load(&args.path)?))?;
+    let settings = Settings {
+        chains: args.chains,
+        seed: args.seed,
+        modules: args.modules.clone().map(|list| list.0).unwrap_or_default(),
+        joint_sigmas: args.joint_sigma.clone().map(|list| list.0).unwrap_or_default(),
+    };
+    let running = args.exec.start()?;
+    let (watch, threads) = (Stopwatch::start(), running.exec.threads());
+    let study = study::run(&file, &settings, &running.exec)?;
+    drop(running);
+    let timing = Timing { total_s: watch.seconds(), threads };
+    let report = report::report(&study, &args.require, Some(timing));
+    let verdicts = judged(&args.require, &report)?;
+    match kind {
+        Some("svg") => args.file.write(figure::draw(&report, &study).svg().as_bytes())?,
+        Some("png") => args.file.write(&figure::draw(&report, &study).png(PNG_SCALE)?)?,
+        Some("csv") => args.file.write(&csv(&report.records(&study))?)?,
+        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
+        None => {}
+    }
+    to_stdout(&if args.json { report.to_json()? } else { report::table(&report) })?;
+    let missed: Vec<String> = verdicts.iter().filter(|v| !v.met).map(ToString::to_string).collect();
+    to_stderr(&missed);
+    Ok(if missed.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+}
+
+/// What became of every requirement.
+fn judged(requirements: &[Requirement], report: &report::ChainReport) -> Result<Vec<Verdict>, Failure> {
+    let value = serde_json::to_value(report)?;
+    let judge = |requirement: &Requirement| {
+        requirement.judge(&value).map_err(|error| {
+            Failure::with_help(format!("--require '{requirement}': {error}"), advice(report))
+        })
+    };
+    requirements.iter().map(judge).collect()
+}
+
+/// Why there may be no probability.
+fn advice(report: &report::ChainReport) -> Option<String> {
+    let text = "a probability needs a [connector] in the file: design = \"x-face.toml\"";
+    report.connector.is_none().then(|| text.to_owned())
+}

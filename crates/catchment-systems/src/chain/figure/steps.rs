@@ -1,0 +1,234 @@
+//! A chain after every step, its joint angles over time, and the errors at its first docking.
+
+use super::super::fold::State;
+use super::super::kinematics::{Body, Frame as Pose, direction, left};
+use super::super::report::{ChainReport, FoldingReport, ModuleReport, StepReport};
+use super::super::shape::Side;
+use super::super::study::Study;
+use super::{SIDE, TOP, WIDTH, cloud, degrees, headed};
+use catchment::report::figure::Picture;
+use catchment::report::figure::draw::axis::{Frame, Scale};
+use catchment::report::figure::draw::colour::{CURVES, FIXED, FIXED_EDGE, MOVING, MOVING_EDGE, hex};
+use catchment::report::figure::draw::svg::{
+    Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of,
+};
+use glam::DVec2;
+
+/// Pictures of steps in a row.
+const ACROSS: usize = 3;
+/// Room below a step for two lines of text.
+const WORDS: f64 = 46.0;
+/// Height of the charts.
+const CHART: f64 = 230.0;
+/// Height of a row of them, with their labels.
+const CHART_ROW: f64 = 304.0;
+
+pub(super) fn draw(report: &ChainReport, study: &Study) -> Picture {
+    let Some(folding) = &report.folding else { return Picture::of(Svg::new(WIDTH, TOP)) };
+    let body = &report.body.body;
+    let cell = (WIDTH - 2.0 * SIDE) / ACROSS as f64;
+    let [left, right] = bounds(&folding.steps, body).map(|corner| corner.x);
+    let scale = (cell - 16.0) / (right - left);
+    // Rows are as high as what they show.
+    let rows: Vec<(&[StepReport], [f64; 2])> =
+        folding.steps.chunks(ACROSS).map(|row| (row, bounds(row, body).map(|corner| corner.y))).collect();
+    let height = |[low, high]: [f64; 2]| scale * (high - low);
+    let charts = TOP + rows.iter().map(|(_, span)| height(*span) + WORDS).sum::<f64>() + 34.0;
+    let rows_of_charts = (1 + folding.latches.len()).div_ceil(2) as f64;
+    let name = folding.shape.map_or("own sequence", |shape| shape.name());
+    let story = format!("{name}; commands: {}", folding.commands_from);
+    let mut svg = headed(report, charts + rows_of_charts * CHART_ROW - 16.0, &story);
+    legend(&mut svg);
+    let (mut before, mut top) = (None, TOP);
+    for (row, span) in rows {
+        let bottom = top + height(span);
+        for (k, step) in row.iter().enumerate() {
+            let start = SIDE + k as f64 * cell + 8.0;
+            let place = |p: DVec2| [start + scale * (p.x - left), bottom - scale * (p.y - span[0])];
+            chain(&mut svg, body, step, folding, scale, &place);
+            words(&mut svg, step, before, folding, [start, bottom + 15.0]);
+            before = Some(step);
+        }
+        top = bottom + WORDS;
+    }
+    // Two charts in a row: the joints first, then every docking.
+    let place = |k: usize| {
+        let (column, row) = ((k % 2) as f64, (k / 2) as f64);
+        Rect { x: 84.0 + 456.0 * column, y: charts + row * CHART_ROW, w: 330.0, h: CHART }
+    };
+    track(&mut svg, place(0), folding, study);
+    for (k, (told, found)) in folding.latches.iter().zip(&study.arrivals).enumerate() {
+        cloud::draw(&mut svg, place(k + 1), report, told, found);
+    }
+    Picture::of(svg)
+}
+
+/// What the marks mean, to the right of the title.
+fn legend(svg: &mut Svg) {
+    let y = 26.0;
+    let mut x = 520.0;
+    for (fill, name) in [(INK, "holds"), (STALLED, "at full torque"), ("#ffffff", "slack")] {
+        svg.circle([x, y], 5.0, &format!(r#"fill="{fill}" stroke="{INK}" stroke-width="1""#));
+        svg.text([x + 9.0, y + 3.8], TICK, Anchor::Start, INK, name);
+        x += 24.0 + width_of(name, TICK);
+    }
+    for (full, name) in [(false, "first layer"), (true, "latched")] {
+        diamond(svg, [x + 2.0, y], full);
+        svg.text([x + 12.0, y + 3.8], TICK, Anchor::Start, INK, name);
+        x += 26.0 + width_of(name, TICK);
+    }
+}
+
+/// Colour of a joint at its stall torque.
+const STALLED: &str = "#b3261e";
+
+/// The corners of some steps, in mm.
+fn bounds(steps: &[StepReport], body: &Body) -> [DVec2; 2] {
+    let reach = DVec2::splat(body.overhang.hypot(0.5 * body.face).max(0.5 * body.length));
+    let all = steps.iter().flat_map(|step| &step.modules).map(|m| DVec2::new(m.x_mm, m.y_mm));
+    let (low, high) = all
+        .fold((DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY)), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+    [low - reach, high + reach]
+}
+
+fn chain(
+    svg: &mut Svg,
+    body: &Body,
+    step: &StepReport,
+    folding: &FoldingReport,
+    scale: f64,
+    place: &impl Fn(DVec2) -> [f64; 2],
+) {
+    for m in &step.modules {
+        let latching =
+            folding.latches.iter().filter_map(|l| l.latch).any(|l| l.from == m.module || l.to == m.module);
+        let (fill, edge) = if latching { (MOVING, MOVING_EDGE) } else { (FIXED, FIXED_EDGE) };
+        let style = format!(r#"fill="{}" stroke="{}" stroke-width="0.9" {JOIN}"#, hex(fill), hex(edge));
+        for heading in [m.heading_rad - m.angle_rad + std::f64::consts::PI, m.heading_rad] {
+            let (along, across) =
+                (0.5 * body.length * direction(heading), 0.5 * body.face * left(direction(heading)));
+            let at = DVec2::new(m.x_mm, m.y_mm);
+            let corners = [at - across, at + along - across, at + along + across, at + across].map(place);
+            svg.path(&polyline(corners, true), &style);
+        }
+    }
+    for m in &step.modules {
+        let at = place(DVec2::new(m.x_mm, m.y_mm));
+        let (fill, ink) = match m.state {
+            State::Slack => ("#ffffff", INK),
+            State::Stalled => (STALLED, "#ffffff"),
+            State::Holding => (INK, "#ffffff"),
+        };
+        let radius = (0.24 * body.face * scale).clamp(4.0, 9.0);
+        svg.circle(at, radius, &format!(r#"fill="{fill}" stroke="{INK}" stroke-width="1""#));
+        if radius > 5.5 {
+            let size = 1.15 * radius;
+            svg.text([at[0], at[1] + 0.36 * size], size, Anchor::Middle, ink, &m.module.to_string());
+        }
+    }
+    for (latch, layers) in folding.latches.iter().zip(&step.layers) {
+        let Some(pair) = latch.latch else { continue };
+        if *layers > 0 {
+            let face = |module: usize, side: Side| face(body, &step.modules[module - 1], side);
+            let at = place(0.5 * (face(pair.from, pair.from_side) + face(pair.to, pair.to_side)));
+            diamond(svg, at, *layers == 2);
+        }
+    }
+}
+
+/// The centre of a module's face.
+fn face(body: &Body, m: &ModuleReport, side: Side) -> DVec2 {
+    let rotor = Pose { x: m.x_mm, y: m.y_mm, heading: m.heading_rad };
+    let before = if side == Side::Back { -m.angle_rad } else { 0.0 };
+    rotor.ahead(before + side.turn(), body.overhang).place()
+}
+
+fn diamond(svg: &mut Svg, [x, y]: [f64; 2], full: bool) {
+    let r = 6.5;
+    let fill = if full { "#009e73" } else { "#ffffff" };
+    let corners = [[x - r, y], [x, y - r], [x + r, y], [x, y + r]];
+    svg.path(
+        &polyline(corners, true),
+        &format!(r##"fill="{fill}" stroke="#00513b" stroke-width="1.6" {JOIN}"##),
+    );
+}
+
+/// What is new in a step, in one line of text or two.
+fn words(
+    svg: &mut Svg,
+    step: &StepReport,
+    before: Option<&StepReport>,
+    folding: &FoldingReport,
+    [x, y]: [f64; 2],
+) {
+    let of = |m: &ModuleReport| match m.command_rad {
+        Some(angle) => degrees(angle),
+        None => "slack".to_owned(),
+    };
+    let was = |k: usize| before.map_or(Some(0.0), |b| b.modules[k].command_rad);
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    for (_, m) in step.modules.iter().enumerate().filter(|(k, m)| was(*k) != m.command_rad) {
+        match groups.iter_mut().find(|(said, _)| *said == of(m)) {
+            Some((_, joints)) => joints.push(m.module),
+            None => groups.push((of(m), vec![m.module])),
+        }
+    }
+    let said: Vec<String> = groups
+        .iter()
+        .map(|(said, joints)| {
+            let joints = joints.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            format!("{joints}: {said}")
+        })
+        .collect();
+    let told = if said.is_empty() { "straight".to_owned() } else { said.join(";  ") };
+    let time = format!("t = {} s", catchment::report::text::rounded(step.time_s));
+    svg.bold([x, y], LABEL, Anchor::Start, &time);
+    svg.text([x + width_of(&time, LABEL) + 14.0, y], TICK, Anchor::Start, INK, &told);
+    let news: Vec<String> = folding
+        .latches
+        .iter()
+        .enumerate()
+        .filter_map(|(k, latch)| {
+            let (now, then) = (step.layers[k], before.map_or(0, |b| b.layers[k]));
+            let name = latch.latch.map(|l| l.name())?;
+            (now > then).then(|| format!("{name} {}", if now == 2 { "latched" } else { "first layer" }))
+        })
+        .collect();
+    svg.text([x, y + 15.0], TICK, Anchor::Start, SOFT, &news.join(";  "));
+}
+
+/// Angles of the joints that move, over time.
+fn track(svg: &mut Svg, rect: Rect, folding: &FoldingReport, study: &Study) {
+    let Some(folded) = &study.folded else { return };
+    let mut moved: Vec<usize> = folding.turned.clone();
+    moved.truncate(CURVES.len());
+    let angles =
+        || folded.track.iter().flat_map(|(_, angles)| moved.iter().map(|j| angles[j - 1].to_degrees()));
+    let (low, high) = angles().fold((0.0f64, 0.0f64), |(low, high), a| (low.min(a), high.max(a)));
+    let last = folded.track.last().map_or(1.0, |(time, _)| *time).max(1.0);
+    let margin = 0.06 * (high - low).max(1.0);
+    let frame = Frame {
+        rect,
+        x: Scale::new("t [s]".to_owned(), 0.0, last, false),
+        y: Scale::new("joint angles [deg]".to_owned(), low - margin, high + margin, false),
+    };
+    let dotted = format!(r#"stroke="{SOFT}" stroke-width="0.9" stroke-dasharray="2 3""#);
+    svg.line([rect.x, frame.py(-90.0)], [rect.x + rect.w, frame.py(-90.0)], &dotted);
+    for (k, joint) in moved.iter().enumerate() {
+        let colour = hex(CURVES[k]);
+        let points =
+            folded.track.iter().map(|(time, angles)| frame.at([*time, angles[joint - 1].to_degrees()]));
+        let style = format!(r#"fill="none" stroke="{colour}" stroke-width="2" {JOIN}"#);
+        svg.path(&polyline(points, false), &style);
+        let x = rect.x + 4.0 + 76.0 * k as f64;
+        svg.line(
+            [x, rect.y - 12.0],
+            [x + 18.0, rect.y - 12.0],
+            &format!(r#"stroke="{colour}" stroke-width="2.4""#),
+        );
+        svg.text([x + 22.0, rect.y - 8.0], TICK, Anchor::Start, INK, &format!("joint {joint}"));
+    }
+    frame.draw(svg);
+}

@@ -1,0 +1,398 @@
+//! What was found about a chain: as versioned JSON, as a table for people, as records for programs.
+
+use super::accumulation::{Covariance, Errors};
+use super::docking::Probability;
+use super::fold::{Event, Hooks, Servo, State, off_lattice, open_latches};
+use super::kinematics::{Body, rotors};
+use super::ring::Corners;
+use super::shape::{Latch, Shape, cells};
+use super::study::{Arrival, Length, Study};
+use catchment::report::number;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{Body as ReportBody, Envelope};
+use catchment::run::Requirement;
+use serde::{Deserialize, Serialize};
+
+mod records;
+mod table;
+
+pub use table::table;
+
+/// A chain's report, with its head.
+pub type ChainReport = Envelope<ChainBody>;
+
+/// What was found about a chain. Millimetres, radians, newtons, seconds; `_d` is in D, the width of a face.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChainBody {
+    /// What the person called it.
+    pub name: String,
+    /// Modules.
+    pub modules: usize,
+    /// Dimensions of a module.
+    pub body: Body,
+    /// How large the errors are.
+    pub errors: Errors,
+    /// What a servo can do.
+    pub servo: Servo,
+    /// What a pair of latching faces does.
+    pub hooks: Hooks,
+    /// Random chains.
+    pub chains: u64,
+    /// Their seed.
+    pub seed: u64,
+    /// The connector, if one is named.
+    pub connector: Option<ConnectorReport>,
+    /// Share of the chains that dock everywhere they have to; null without a connector.
+    pub probability: Option<f64>,
+    /// Its 95 % interval.
+    pub ci95: Option<[f64; 2]>,
+    /// The last face of the straight chain.
+    pub straight: ArrivalReport,
+    /// What the chain folds into, if it folds.
+    pub folding: Option<FoldingReport>,
+    /// Choices of corners, for an O.
+    pub corners: Vec<Corners>,
+    /// The table over numbers of modules.
+    pub lengths: Vec<LengthReport>,
+    /// How many modules still meet what is required, for each joint error of the table.
+    pub reach: Vec<Reach>,
+}
+
+/// The connector as the chain uses it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConnectorReport {
+    /// Its name.
+    pub name: String,
+    /// The centre of rotation in front of the face, from the chain: the last rotor, in D.
+    pub center_of_rotation_d: f64,
+    /// What its design says, which does not count here.
+    pub design_center_of_rotation_d: f64,
+    /// ρ, in D.
+    pub rotation_length_d: f64,
+    /// Offsets that are corrected without any rotation, in D.
+    pub offsets_d: Option<[f64; 2]>,
+}
+
+/// Errors of a face where it arrives.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ArrivalReport {
+    /// The latch; null for the last face of a straight chain.
+    pub latch: Option<Latch>,
+    /// Joints that may be wrong.
+    pub joints: Vec<usize>,
+    /// Standard deviation across the face, to first order, in mm.
+    pub lateral_sigma_mm: f64,
+    /// The same in D.
+    pub lateral_sigma_d: f64,
+    /// Standard deviation of the gap, which is not in the area of acceptance, in mm.
+    pub normal_sigma_mm: f64,
+    /// Standard deviation of the angle, in radians.
+    pub angle_sigma_rad: f64,
+    /// Correlation of lateral offset and angle.
+    pub correlation: f64,
+    /// Mean and covariance to first order: lateral mm, normal mm, angle rad.
+    pub first_order: Covariance,
+    /// The same of the random chains, by exact kinematics.
+    pub exact: Covariance,
+    /// Share of the chains that dock here.
+    pub docking: Option<Probability>,
+    /// The probability that the lateral offset alone is corrected without rotation, to first order.
+    pub offset_probability: Option<f64>,
+    /// Pressing force along the normal that the joints can hold, in N.
+    pub press_n: f64,
+}
+
+/// A sequence and what became of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FoldingReport {
+    /// The shape, where one is named.
+    pub shape: Option<Shape>,
+    /// What of it is ours.
+    pub reading: String,
+    /// Where the commands come from.
+    pub commands_from: String,
+    /// Joints that turn on the lattice.
+    pub turned: Vec<usize>,
+    /// Cells of the rotors.
+    pub cells: Vec<[i64; 2]>,
+    /// Every latch in the order of the sequence.
+    pub latches: Vec<ArrivalReport>,
+    /// The chain after every step.
+    pub steps: Vec<StepReport>,
+    /// What latched.
+    pub events: Vec<Event>,
+    /// Largest pressing force that each pair has seen, in N.
+    pub pressed_n: Vec<f64>,
+    /// Whether every pair holds with both layers in the end.
+    pub latched: bool,
+    /// Farthest rotor from its place on the lattice in the end, in mm.
+    pub off_lattice_mm: f64,
+    /// Largest heading error in the end, in radians.
+    pub off_lattice_rad: f64,
+}
+
+/// The chain at the end of a step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StepReport {
+    /// Time of the step, in seconds.
+    pub time_s: f64,
+    /// Layers that hold, for each latch.
+    pub layers: Vec<usize>,
+    /// Every module.
+    pub modules: Vec<ModuleReport>,
+}
+
+/// A module at the end of a step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModuleReport {
+    /// Its number.
+    pub module: usize,
+    /// Rotor across, in mm.
+    pub x_mm: f64,
+    /// Rotor up, in mm.
+    pub y_mm: f64,
+    /// Heading behind its joint, in radians.
+    pub heading_rad: f64,
+    /// Angle of its joint, in radians.
+    pub angle_rad: f64,
+    /// The commanded angle; null where it is slack.
+    pub command_rad: Option<f64>,
+    /// What its joint does.
+    pub state: State,
+    /// Where the commands alone would put its rotor; a slack joint counts as at its nearest quarter turn.
+    pub commanded_mm: [f64; 2],
+}
+
+/// A row of the table over numbers of modules.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LengthReport {
+    /// Standard deviation of a joint's angle, in radians.
+    pub joint_sigma_rad: f64,
+    /// Modules of the straight chain.
+    pub modules: usize,
+    /// Standard deviation of the last face across, to first order, in D.
+    pub lateral_sigma_d: f64,
+    /// Standard deviation of its heading, in radians.
+    pub heading_sigma_rad: f64,
+    /// Share of the chains that dock.
+    pub docking: Option<Probability>,
+    /// The probability that the lateral offset alone is corrected without rotation, to first order.
+    pub offset_probability: Option<f64>,
+}
+
+/// How many modules still meet a requirement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reach {
+    /// Standard deviation of a joint's angle, in radians.
+    pub joint_sigma_rad: f64,
+    /// What is required.
+    pub requirement: Requirement,
+    /// The most modules of the table up to which every row meets it; null where the first row does not.
+    pub modules: Option<usize>,
+    /// The same with both ends of every interval meeting it.
+    pub surely: Option<usize>,
+}
+
+impl ReportBody for ChainBody {
+    const KIND: &'static str = "chain";
+}
+
+/// What a reach is about, where nothing else is required.
+const USUAL: &str = "probability>=0.99";
+
+impl ArrivalReport {
+    fn of(arrival: &Arrival, body: &Body) -> Self {
+        let [lateral, normal, angle] = arrival.first_order.sigmas();
+        Self {
+            latch: arrival.latch,
+            joints: arrival.joints.clone(),
+            lateral_sigma_mm: lateral,
+            lateral_sigma_d: lateral / body.face,
+            normal_sigma_mm: normal,
+            angle_sigma_rad: angle,
+            correlation: arrival.first_order.correlation(),
+            first_order: arrival.first_order,
+            exact: arrival.exact,
+            docking: arrival.docked.as_deref().map(Probability::of),
+            offset_probability: arrival.offset_probability,
+            press_n: arrival.press_n,
+        }
+    }
+}
+
+impl LengthReport {
+    fn of(length: &Length, body: &Body) -> Self {
+        let [lateral, _, heading] = length.first_order.sigmas();
+        Self {
+            joint_sigma_rad: length.joint_sigma,
+            modules: length.modules,
+            lateral_sigma_d: lateral / body.face,
+            heading_sigma_rad: heading,
+            docking: length.probability,
+            offset_probability: length.offset_probability,
+        }
+    }
+}
+
+impl FoldingReport {
+    fn of(study: &Study) -> Option<Self> {
+        let (folding, folded) = (study.file.folding.as_ref()?, study.folded.as_ref()?);
+        let body = &study.file.body;
+        let commanded = folding.sequence.commanded_angles(study.file.modules);
+        let steps = folded.moments.iter().zip(&commanded).map(|(moment, commanded)| StepReport {
+            time_s: moment.time_s,
+            layers: moment.latched.clone(),
+            modules: (0..study.file.modules)
+                .zip(rotors(body, commanded))
+                .map(|(k, wanted)| ModuleReport {
+                    module: k + 1,
+                    x_mm: moment.rotors[k].x,
+                    y_mm: moment.rotors[k].y,
+                    heading_rad: moment.rotors[k].heading,
+                    angle_rad: moment.angles[k],
+                    command_rad: match moment.commands[k] {
+                        super::sequence::Command::Angle(angle) => Some(angle),
+                        super::sequence::Command::Slack => None,
+                    },
+                    state: moment.states[k],
+                    commanded_mm: wanted.place().to_array(),
+                })
+                .collect(),
+        });
+        let last = folded.moments.last().map_or(&folding.lattice, |moment| &moment.angles);
+        let (off_lattice_mm, off_lattice_rad) = off_lattice(body, last, &folding.lattice);
+        let turns = folding.lattice.iter().zip(1..).filter(|(angle, _)| angle.abs() > f64::EPSILON);
+        Some(Self {
+            shape: folding.shape,
+            reading: folding.shape.map_or_else(String::new, |shape| shape.reading().to_owned()),
+            commands_from: folding.sequence.source.to_owned(),
+            turned: turns.map(|(_, joint)| joint).collect(),
+            cells: cells(&folding.lattice),
+            latches: study.arrivals.iter().map(|arrival| ArrivalReport::of(arrival, body)).collect(),
+            steps: steps.collect(),
+            events: folded.events.clone(),
+            pressed_n: folded.pressed.clone(),
+            latched: open_latches(folded, &folding.sequence.latches).is_empty(),
+            off_lattice_mm,
+            off_lattice_rad,
+        })
+    }
+}
+
+impl ChainBody {
+    /// Of a study; the reach is that of every requirement about `probability`, or of 99 %.
+    fn of(study: &Study, requirements: &[Requirement]) -> Self {
+        let file = &study.file;
+        let lengths: Vec<LengthReport> =
+            study.lengths.iter().map(|length| LengthReport::of(length, &file.body)).collect();
+        let connector = study.docking.as_ref().map(|docking| ConnectorReport {
+            name: docking.problem.design().name.clone(),
+            center_of_rotation_d: docking.problem.alignment().center_of_rotation,
+            design_center_of_rotation_d: docking.own_center_of_rotation,
+            rotation_length_d: docking.problem.alignment().rotation_length,
+            offsets_d: docking.offsets.as_ref().ok().copied(),
+        });
+        Self {
+            name: file.name.clone(),
+            modules: file.modules,
+            body: file.body,
+            errors: file.errors,
+            servo: file.servo,
+            hooks: file.hooks,
+            chains: study.settings.chains,
+            seed: study.settings.seed,
+            connector,
+            probability: study.probability.map(|p| p.probability),
+            ci95: study.probability.map(|p| p.ci95),
+            straight: ArrivalReport::of(&study.straight, &file.body),
+            folding: FoldingReport::of(study),
+            corners: study.corners.clone(),
+            reach: reach(&lengths, requirements),
+            lengths,
+        }
+    }
+}
+
+/// How many modules still meet every requirement about `probability`.
+fn reach(lengths: &[LengthReport], requirements: &[Requirement]) -> Vec<Reach> {
+    let about = |requirement: &&Requirement| requirement.to_string().starts_with("probability ");
+    let mut wanted: Vec<Requirement> = requirements.iter().filter(about).cloned().collect();
+    if wanted.is_empty() {
+        wanted.extend(USUAL.parse::<Requirement>());
+    }
+    let mut found = Vec::new();
+    for rows in lengths.chunk_by(|a, b| a.joint_sigma_rad == b.joint_sigma_rad) {
+        let mut rows: Vec<&LengthReport> = rows.iter().filter(|row| row.docking.is_some()).collect();
+        rows.sort_by_key(|row| row.modules);
+        let Some(first) = rows.first() else { continue };
+        for requirement in &wanted {
+            let up_to = |met: &dyn Fn(&Probability) -> bool| {
+                let meets = |row: &&&LengthReport| row.docking.as_ref().is_some_and(met);
+                rows.iter().take_while(meets).last().map(|row| row.modules)
+            };
+            let met = |value: f64| requirement.is_met_by(value);
+            found.push(Reach {
+                joint_sigma_rad: first.joint_sigma_rad,
+                requirement: requirement.clone(),
+                modules: up_to(&|docking| met(docking.probability)),
+                surely: up_to(&|docking| docking.ci95.into_iter().all(met)),
+            });
+        }
+    }
+    found
+}
+
+/// The report of a study.
+pub fn report(study: &Study, requirements: &[Requirement], timing: Option<Timing>) -> ChainReport {
+    let body = ChainBody::of(study, requirements);
+    let doubts = doubts(study, &body).iter().map(WarningReport::note).collect();
+    Envelope::of(body, doubts, timing)
+}
+
+/// What a reader must know.
+fn doubts(study: &Study, body: &ChainBody) -> Vec<String> {
+    let mut told = Vec::new();
+    if let Some(docking) = &study.docking {
+        let (found, own) = (docking.problem.alignment().center_of_rotation, docking.own_center_of_rotation);
+        if (found - own).abs() > 1e-9 {
+            told.push(format!(
+                "the centre of rotation is the last rotor, {} D behind the face; that of the design, {} D, does not count",
+                rounded(-found),
+                rounded(own)
+            ));
+        }
+        if let Err(reason) = &docking.offsets {
+            told.push(format!("no exact offsets without rotation: {reason}"));
+        }
+        let design = docking.problem.design();
+        let width = design.unit.map(|unit| design.width * unit.metres() * 1e3);
+        if let Some(width) = width.filter(|width| (width / study.file.body.face - 1.0).abs() > 0.01) {
+            let face = rounded(study.file.body.face);
+            told.push(format!(
+                "the design is {} mm wide, the chain's faces {face} mm: D is the chain's",
+                rounded(width)
+            ));
+        }
+    }
+    if let Some(folding) = &body.folding {
+        let open = folding.latches.iter().zip(&folding.pressed_n);
+        let last = folding.steps.last().map(|step| step.layers.clone()).unwrap_or_default();
+        for ((latch, pressed), layers) in open.zip(last) {
+            let name = latch.latch.map_or_else(String::new, |latch| latch.name());
+            if layers < 2 {
+                told.push(format!(
+                    "{name} holds with {layers} of 2 layers: pressed with {pressed:.1} N at most, a layer needs {} N",
+                    number(body.hooks.force)
+                ));
+            }
+        }
+    }
+    told
+}
+
+fn rounded(value: f64) -> String {
+    catchment::report::text::rounded(value)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,326 @@
+//! Commands over time: what every joint is told, and when.
+//!
+//! ```text
+//!   t (s)   joint 4    joint 5         the dissertation's table 6.2, for the P
+//!     0       0          0             straight
+//!     1     −1.67        0             an L, 5.7° past the right angle
+//!     3     −1.67      −1.74           presses module 6 against module 3: the first layer latches
+//!     4     slack      slack           the connectors realign themselves
+//!     5     slack      −1.74           the second layer latches
+//!     6     slack      slack           realigned, no power
+//! ```
+//!
+//! Seconds, radians. A joint that is not named keeps its command; at first all hold 0. The row for 2 s does not exist. The text calls
+//! the L "slightly less than π/2", which holds of its inner angle, 84.3°: the command is 95.7°. "The same sequence was repeated" for
+//! the Block and "a similar procedure" used for the O without numbers: their commands here are ours.
+
+use super::kinematics::nearest_quarter;
+use super::shape::{Latch, Reading, Shape, latches};
+use catchment::design::{Finding, Findings, SourceText};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+
+/// What a joint is told.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Command {
+    /// Go to this angle and hold it, in radians.
+    Angle(f64),
+    /// Apply no torque.
+    Slack,
+}
+
+impl Command {
+    /// `−1.67`, or `slack`.
+    pub fn text(self) -> String {
+        match self {
+            Self::Angle(angle) => catchment::report::number(angle),
+            Self::Slack => "slack".to_owned(),
+        }
+    }
+}
+
+/// One moment at which joints are told something.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// When, in seconds.
+    pub time_s: f64,
+    /// Joints, numbered from 1, and their commands.
+    pub commands: Vec<(usize, Command)>,
+}
+
+/// Commands over time, and the pairs of faces that may latch on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sequence {
+    /// In the order of time.
+    pub steps: Vec<Step>,
+    /// Pairs that may latch.
+    pub latches: Vec<Latch>,
+    /// Where the commands come from.
+    pub source: &'static str,
+}
+
+const TABLE_6_2: &str = include_str!("../../data/table-6.2-latching-sequence.csv");
+/// The commands of table 6.2: the first joint makes the L, the second presses.
+const L: Command = Command::Angle(-1.67);
+const PRESS: Command = Command::Angle(-1.74);
+/// Ours: as far past straight as [`PRESS`] is past the right angle.
+const PUSH: Command = Command::Angle(-0.17);
+const STRAIGHT: Command = Command::Angle(0.0);
+/// Ours, for the O: open enough that nothing touches.
+const OPEN: Command = Command::Angle(-1.3);
+const SQUARE: Command = Command::Angle(-FRAC_PI_2);
+
+impl Sequence {
+    /// The sequence of a shape.
+    ///
+    /// # Errors
+    /// None at present: the stored table is read in a test.
+    pub fn of(shape: Shape) -> Result<Self, Findings> {
+        let steps = match shape {
+            Shape::P => table(&SourceText::new("table-6.2-latching-sequence.csv", TABLE_6_2))?,
+            // The fold presses 5 against 2, and brings 6 to 1; joint 2 presses those.
+            Shape::Block { reading: Reading::Middle } => {
+                let mut steps = lattice_step(0.0, 3, 4);
+                steps.extend([
+                    Step { time_s: 7.0, commands: vec![(2, PUSH)] },
+                    Step { time_s: 8.0, commands: vec![(2, Command::Slack)] },
+                ]);
+                steps
+            }
+            Shape::Block { reading: Reading::Tail } => {
+                let fold = |time_s, command| Step { time_s, commands: vec![(2, command)] };
+                let mut steps = lattice_step(0.0, 4, 5);
+                steps.extend([
+                    fold(7.0, PRESS),
+                    fold(8.0, Command::Slack),
+                    fold(9.0, PRESS),
+                    fold(10.0, Command::Slack),
+                ]);
+                steps
+            }
+            Shape::O { .. } => ring(&shape.turned()),
+        };
+        let source = match shape {
+            Shape::P => "the dissertation's table 6.2",
+            _ => "ours, after table 6.2: the dissertation does not tabulate them",
+        };
+        Ok(Self { steps, latches: latches(&shape.angles()), source })
+    }
+
+    /// What every joint of a chain is told at the end of every step; joint k is at k − 1.
+    pub fn commanded(&self, modules: usize) -> Vec<Vec<Command>> {
+        let mut now = vec![STRAIGHT; modules];
+        let mut found = Vec::with_capacity(self.steps.len());
+        for step in &self.steps {
+            for (joint, command) in &step.commands {
+                if let Some(told) = now.get_mut(joint - 1) {
+                    *told = *command;
+                }
+            }
+            found.push(now.clone());
+        }
+        found
+    }
+
+    /// Angles that the commands of every step mean; a slack joint is taken to lie at the quarter turn that is nearest to its last
+    /// angle, where the latched faces pull it.
+    pub fn commanded_angles(&self, modules: usize) -> Vec<Vec<f64>> {
+        let mut now = vec![0.0; modules];
+        let told = self.commanded(modules);
+        let mut found = Vec::with_capacity(told.len());
+        for commands in told {
+            for (angle, command) in now.iter_mut().zip(commands) {
+                *angle = match command {
+                    Command::Angle(angle) => angle,
+                    Command::Slack => nearest_quarter(*angle),
+                };
+            }
+            found.push(now.clone());
+        }
+        found
+    }
+}
+
+/// Table 6.2 for another pair of joints.
+fn lattice_step(start_s: f64, bend: usize, press: usize) -> Vec<Step> {
+    let rows = [
+        (0.0, STRAIGHT, STRAIGHT),
+        (1.0, L, STRAIGHT),
+        (3.0, L, PRESS),
+        (4.0, Command::Slack, Command::Slack),
+        (5.0, Command::Slack, PRESS),
+        (6.0, Command::Slack, Command::Slack),
+    ];
+    rows.map(|(time, a, b)| Step { time_s: start_s + time, commands: vec![(bend, a), (press, b)] }).to_vec()
+}
+
+/// All corners fold together; then the two far ones press the last face onto the first, twice. Four slack corners would shear the
+/// ring, so the first holds.
+fn ring(corners: &[usize]) -> Vec<Step> {
+    let [first, far, farther, last] = corners else { return Vec::new() };
+    let all = |command| corners.iter().map(|k| (*k, command)).collect::<Vec<_>>();
+    let press = || vec![(*far, PRESS), (*farther, PRESS)];
+    let near = || vec![(*first, SQUARE), (*last, L)];
+    let loose = || [far, farther, last].map(|joint| (*joint, Command::Slack)).to_vec();
+    let rows = [
+        (0.0, all(STRAIGHT)),
+        (1.0, all(OPEN)),
+        (3.0, near()),
+        (5.0, press()),
+        (6.0, loose()),
+        (7.0, press()),
+        (8.0, loose()),
+    ];
+    rows.map(|(time_s, commands)| Step { time_s, commands }).to_vec()
+}
+
+/// Reads a table of commands: `time_s,module_4,module_5`, angles in radians or `slack`.
+///
+/// # Errors
+/// Everything that is wrong with it, each in its place.
+pub fn table(source: &SourceText) -> Result<Vec<Step>, Findings> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(source.text.as_bytes());
+    let mut wrong: Vec<Finding> = Vec::new();
+    let joints: Vec<Option<usize>> = match reader.headers() {
+        Ok(names) => names.iter().skip(1).map(joint_of).collect(),
+        Err(error) => return Err(refused(source, vec![Finding::new(error.to_string(), None)])),
+    };
+    if joints.is_empty() || joints.contains(&None) {
+        let help = "the header is time_s and a column module_N for each joint".to_owned();
+        wrong.push(Finding::new("a column is of no module", Some(help)).at(Some(0..first_line(source))));
+    }
+    let mut steps: Vec<Step> = Vec::new();
+    for record in reader.records() {
+        let record = match record {
+            Ok(record) => record,
+            Err(error) => {
+                wrong.push(Finding::new(error.to_string(), None));
+                continue;
+            }
+        };
+        let start = record.position().map_or(0, |p| p.byte() as usize);
+        let end = source.text[start..].find('\n').map_or(source.text.len(), |at| start + at);
+        let mut refuse = |what: String| wrong.push(Finding::new(what, None).at(Some(start..end)));
+        let time_s = match record.get(0).unwrap_or_default().parse::<f64>() {
+            Ok(time) if time.is_finite() => time,
+            _ => {
+                refuse(format!("`{}` is no time in seconds", record.get(0).unwrap_or_default()));
+                continue;
+            }
+        };
+        if steps.last().is_some_and(|before| before.time_s >= time_s) {
+            refuse(format!("{time_s} s does not come after the row before"));
+        }
+        let mut commands = Vec::new();
+        for (joint, cell) in joints.iter().flatten().zip(record.iter().skip(1)) {
+            match (cell, cell.parse::<f64>()) {
+                ("slack", _) => commands.push((*joint, Command::Slack)),
+                (_, Ok(angle)) if angle.is_finite() => commands.push((*joint, Command::Angle(angle))),
+                _ => refuse(format!("`{cell}` is neither an angle in radians nor slack")),
+            }
+        }
+        steps.push(Step { time_s, commands });
+    }
+    if wrong.is_empty() { Ok(steps) } else { Err(refused(source, wrong)) }
+}
+
+fn joint_of(name: &str) -> Option<usize> {
+    name.strip_prefix("module_")?.parse().ok().filter(|joint| *joint > 0)
+}
+
+fn first_line(source: &SourceText) -> usize {
+    source.text.find('\n').unwrap_or(source.text.len())
+}
+
+fn refused(source: &SourceText, list: Vec<Finding>) -> Findings {
+    Findings { source: Some(source.clone()), list, omitted: 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::kinematics::{Body, Frame, rotors, wrapped};
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// Rotors 5 and 6 with rotor 3 at the origin and the link behind it along x.
+    fn seen_from_3(angles: &[f64]) -> [Frame; 2] {
+        let rotors = rotors(&Body::default(), angles);
+        [4, 5].map(|k: usize| Frame {
+            x: rotors[k].x - rotors[2].x,
+            y: rotors[k].y - rotors[2].y,
+            ..rotors[k]
+        })
+    }
+
+    fn near(found: Frame, x: f64, y: f64) {
+        assert!((found.x - x).abs() < 0.006 && (found.y - y).abs() < 0.006, "{found:?} for {x} {y}");
+    }
+
+    #[test]
+    fn table_6_2_is_the_sequence_of_the_p() {
+        let sequence = Sequence::of(Shape::P).unwrap();
+        assert_eq!(sequence.steps, lattice_step(0.0, 4, 5));
+        assert_eq!(
+            sequence.steps.iter().map(|s| s.time_s).collect::<Vec<_>>(),
+            [0.0, 1.0, 3.0, 4.0, 5.0, 6.0]
+        );
+        let told = sequence.commanded(6);
+        assert_eq!(told[1][3], Command::Angle(-1.67));
+        assert_eq!((told[4][3], told[4][4]), (Command::Slack, Command::Angle(-1.74)));
+        // 5.68° and 9.69° past the right angle.
+        assert!(((1.67 - FRAC_PI_2).to_degrees() - 5.68).abs() < 0.005);
+        assert!(((1.74 - FRAC_PI_2).to_degrees() - 9.69).abs() < 0.005);
+    }
+
+    /// The states of table 6.2 to 0.01 mm: rotors 5 and 6, and the heading's error.
+    #[test]
+    fn the_commanded_states_are_the_published_ones() {
+        let q = -FRAC_PI_2;
+        let [five, six] = seen_from_3(&[0.0, 0.0, 0.0, q, q, 0.0]);
+        near(five, 95.0, -95.0);
+        near(six, 0.0, -95.0);
+        let [five, six] = seen_from_3(&[0.0, 0.0, 0.0, -1.67, 1.67 - PI, 0.0]);
+        near(five, 85.59, -94.53);
+        near(six, -9.41, -94.53);
+        let angles = Sequence::of(Shape::P).unwrap().commanded_angles(6);
+        let [five, six] = seen_from_3(&angles[2]);
+        near(five, 85.59, -94.53);
+        near(six, -6.01, -69.34);
+        assert!((wrapped(six.heading + PI).to_degrees() + 15.38).abs() < 0.006, "{}", six.heading);
+        let [five, six] = seen_from_3(&angles[4]);
+        near(five, 95.0, -95.0);
+        near(six, 1.36, -79.0);
+        assert!((wrapped(six.heading + PI).to_degrees() + 9.69).abs() < 0.006);
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_table_is_told_in_its_place() {
+        let read = |text: &str| table(&SourceText::new("t.csv", text));
+        assert_eq!(read("time_s,module_2\n0,0\n1,slack\n").unwrap().len(), 2);
+        let told = |text: &str| read(text).unwrap_err().to_string();
+        assert!(told("time_s,modul_2\n0,0\n").starts_with("t.csv:1:1: a column is of no module"));
+        let all = told("time_s,module_2\n1,0\n1,slakc\nx,0\n");
+        assert!(
+            all.contains("t.csv:3:1: 1 s does not come after")
+                && all.contains("t.csv:3:1: `slakc` is neither")
+        );
+        assert!(all.contains("t.csv:4:1: `x` is no time"), "{all}");
+        assert!(told("time_s,module_1\n0,0,0\n").contains("record"), "a row of another length");
+    }
+
+    #[test]
+    fn commands_end_slack() {
+        let shapes =
+            [Shape::P, Shape::Block { reading: Reading::Middle }, Shape::Block { reading: Reading::Tail }];
+        for shape in shapes.into_iter().chain([Shape::O { first_corner: 2 }]) {
+            let told = Sequence::of(shape).unwrap().commanded(shape.modules());
+            let last = told.last().unwrap();
+            // The first corner of a ring holds its shape.
+            let holds = usize::from(matches!(shape, Shape::O { .. }));
+            for joint in shape.turned().into_iter().skip(holds) {
+                assert_eq!(last[joint - 1], Command::Slack, "{shape:?} {joint}");
+            }
+        }
+    }
+}

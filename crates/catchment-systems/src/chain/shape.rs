@@ -1,0 +1,292 @@
+//! The shapes that chains fold into: cells of a lattice of one pitch, joints that turn, faces that latch.
+//!
+//! ```text
+//!    P            Block, middle    Block, tail       O
+//!    1─2─3─4      1─2─3            1─2               1─2     (corners 2, 5, 8, 11)
+//!        ◆ │      ◆ ◆ │            ◆ │          ┌─12◆  │
+//!        6─5      6─5─4            6◆3          11     3
+//!                                  │ │          │      │
+//!                                  5─4          ┊      ┊
+//! ```
+//!
+//! A joint of a lattice turns by quarters, here by −90° each. Two modules in neighbouring cells that are no link of the chain
+//! latch (◆) where both have a face there: front and sides lie behind the joint, and the first module has a back.
+//!
+//! The dissertation names P, Block and O (section 6.3, figure 6.5) and its picture is lost: which joints turn is given for P alone.
+//! Both readings of the Block give a cluster of 3 × 2 with two latches; the one folded in the middle is preferred because the text
+//! tells of latching in mid chain, from a straight chain, like a zipper. The corners of the O are chosen so that the closing link
+//! lies in the middle of a side.
+
+use super::kinematics::{Body, Frame, rotors, wrapped};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A face of a module.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// Ahead, behind the joint.
+    Front,
+    /// To the left, behind the joint.
+    Left,
+    /// To the right, behind the joint.
+    Right,
+    /// Against the heading, before the joint: the first module's alone.
+    Back,
+}
+
+impl Side {
+    /// How far it is turned from the heading that it is fixed to.
+    pub const fn turn(self) -> f64 {
+        match self {
+            Self::Front => 0.0,
+            Self::Left => FRAC_PI_2,
+            Self::Right => -FRAC_PI_2,
+            Self::Back => PI,
+        }
+    }
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Back => "back",
+        }
+    }
+
+    /// The face centre with its outward direction, from the rotors of a chain and its joint angles; `module` from 1.
+    pub fn of(self, body: &Body, rotors: &[Frame], angles: &[f64], module: usize) -> Frame {
+        let rotor = rotors[module - 1];
+        // What lies before the joint does not turn with it.
+        let before = if self == Self::Back { -angles[module - 1] } else { 0.0 };
+        rotor.ahead(before + self.turn(), body.overhang)
+    }
+}
+
+/// Two faces that latch; modules are numbered from 1, and `from` is the nearer to the base.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Latch {
+    /// Module nearer to the base.
+    pub from: usize,
+    /// Module farther along the chain.
+    pub to: usize,
+    /// Which face of `from`.
+    pub from_side: Side,
+    /// Which face of `to`.
+    pub to_side: Side,
+}
+
+impl Latch {
+    /// `3–6`.
+    pub fn name(&self) -> String {
+        format!("{}–{}", self.from, self.to)
+    }
+
+    /// Both faces, from the rotors of a chain and its joint angles.
+    pub fn faces(&self, body: &Body, rotors: &[Frame], angles: &[f64]) -> [Frame; 2] {
+        [self.from_side.of(body, rotors, angles, self.from), self.to_side.of(body, rotors, angles, self.to)]
+    }
+
+    /// Joints between the two faces, counted from 0.
+    pub const fn joints(&self) -> std::ops::Range<usize> {
+        match self.from_side {
+            Side::Back => self.from - 1..self.to,
+            _ => self.from..self.to,
+        }
+    }
+}
+
+/// Which cluster the Block is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reading {
+    /// Reading A: folded in the middle, joints 3 and 4.
+    Middle,
+    /// Reading B: from the P, its tail folded at joint 2.
+    Tail,
+}
+
+/// A shape by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "name")]
+pub enum Shape {
+    /// Six modules, one lattice step.
+    P,
+    /// Six modules, a cluster of 3 × 2.
+    Block {
+        /// How it is folded.
+        reading: Reading,
+    },
+    /// Twelve modules, a square of four modules a side.
+    O {
+        /// The first corner: 1, 2 or 3; the others follow every three modules.
+        first_corner: usize,
+    },
+}
+
+/// First corners that an O can have.
+pub const FIRST_CORNERS: std::ops::RangeInclusive<usize> = 1..=SIDE;
+/// Modules of a side of the O, counting each corner once.
+const SIDE: usize = 3;
+
+impl Shape {
+    /// `P`, `Block A`, `Block B`, `O`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::P => "P",
+            Self::Block { reading: Reading::Middle } => "Block, reading A",
+            Self::Block { reading: Reading::Tail } => "Block, reading B",
+            Self::O { .. } => "O",
+        }
+    }
+
+    /// Modules of the chain.
+    pub const fn modules(self) -> usize {
+        match self {
+            Self::P | Self::Block { .. } => 6,
+            Self::O { .. } => 4 * SIDE,
+        }
+    }
+
+    /// Joints that turn by −90°, numbered from 1.
+    pub fn turned(self) -> Vec<usize> {
+        match self {
+            Self::P => vec![4, 5],
+            Self::Block { reading: Reading::Middle } => vec![3, 4],
+            Self::Block { reading: Reading::Tail } => vec![2, 4, 5],
+            Self::O { first_corner } => (0..4).map(|side| first_corner + SIDE * side).collect(),
+        }
+    }
+
+    /// Angle of every joint.
+    pub fn angles(self) -> Vec<f64> {
+        let turned = self.turned();
+        (1..=self.modules()).map(|k| if turned.contains(&k) { -FRAC_PI_2 } else { 0.0 }).collect()
+    }
+
+    /// What is the dissertation's and what is our reading.
+    pub const fn reading(self) -> &'static str {
+        match self {
+            Self::P => "joints and commands of table 6.2",
+            Self::Block { reading: Reading::Middle } => {
+                "our reading: the picture is lost, the text tells of latching in mid chain from straight"
+            }
+            Self::Block { reading: Reading::Tail } => {
+                "our reading, not the preferred one: the P, its tail folded at module 2"
+            }
+            Self::O { .. } => {
+                "our reading: the picture is lost; corners so that the closing link lies as asked for"
+            }
+        }
+    }
+}
+
+/// The cell of every rotor, in pitches; the first is (0, 0).
+pub fn cells(angles: &[f64]) -> Vec<[i64; 2]> {
+    let unit = Body { pitch: 1.0, ..Body::default() };
+    rotors(&unit, angles).iter().map(|r| [r.x.round() as i64, r.y.round() as i64]).collect()
+}
+
+/// All pairs of a chain folded by quarter turns that latch: nearest along the chain first.
+pub fn latches(angles: &[f64]) -> Vec<Latch> {
+    let cells = cells(angles);
+    let mut found = Vec::new();
+    for from in 1..=cells.len() {
+        for to in from + 2..=cells.len() {
+            let [a, b] = [cells[from - 1], cells[to - 1]];
+            if (a[0] - b[0]).abs() + (a[1] - b[1]).abs() != 1 {
+                continue;
+            }
+            let towards = |a: [i64; 2], b: [i64; 2]| ((b[1] - a[1]) as f64).atan2((b[0] - a[0]) as f64);
+            let sides = (side(angles, from, towards(a, b)), side(angles, to, towards(b, a)));
+            if let (Some(from_side), Some(to_side)) = sides {
+                found.push(Latch { from, to, from_side, to_side });
+            }
+        }
+    }
+    found.sort_by_key(|latch| latch.to - latch.from);
+    found
+}
+
+/// The face of a module that looks in a direction, if it has one there.
+fn side(angles: &[f64], module: usize, towards: f64) -> Option<Side> {
+    /// Far above rounding, far below a quarter turn.
+    const SAME: f64 = 1e-6;
+    let heading: f64 = angles[..module].iter().sum();
+    let looks = |heading: f64, side: Side| wrapped(heading + side.turn() - towards).abs() < SAME;
+    if module == 1 && looks(0.0, Side::Back) {
+        return Some(Side::Back);
+    }
+    [Side::Front, Side::Left, Side::Right].into_iter().find(|side| looks(heading, *side))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: Shape = Shape::Block { reading: Reading::Middle };
+    const B: Shape = Shape::Block { reading: Reading::Tail };
+
+    fn latched(shape: Shape) -> Vec<(usize, usize)> {
+        latches(&shape.angles()).iter().map(|l| (l.from, l.to)).collect()
+    }
+
+    #[test]
+    fn the_shapes_have_the_published_cells_and_latches() {
+        assert_eq!(cells(&Shape::P.angles()), [[0, 0], [1, 0], [2, 0], [3, 0], [3, -1], [2, -1]]);
+        assert_eq!(cells(&A.angles()), [[0, 0], [1, 0], [2, 0], [2, -1], [1, -1], [0, -1]]);
+        assert_eq!(cells(&B.angles()), [[0, 0], [1, 0], [1, -1], [1, -2], [0, -2], [0, -1]]);
+        assert_eq!(latched(Shape::P), [(3, 6)]);
+        assert_eq!(latched(A), [(2, 5), (1, 6)]);
+        assert_eq!(latched(B), [(3, 6), (1, 6)]);
+        for first_corner in FIRST_CORNERS {
+            let shape = Shape::O { first_corner };
+            assert_eq!(latched(shape), [(1, 12)], "{shape:?}");
+            let cells = cells(&shape.angles());
+            let reach = |k: usize| {
+                let along = || cells.iter().map(|c| c[k]);
+                (along().min().unwrap(), along().max().unwrap())
+            };
+            // The border of a lattice of 4 × 4.
+            let ([left, right], [low, high]) = ([reach(0).0, reach(0).1], [reach(1).0, reach(1).1]);
+            assert_eq!((right - left, high - low), (3, 3), "{shape:?}");
+            assert!(cells.iter().all(|c| c[0] == left || c[0] == right || c[1] == low || c[1] == high));
+        }
+        for shape in [Shape::P, A, B, Shape::O { first_corner: 2 }] {
+            let mut cells = cells(&shape.angles());
+            cells.sort_unstable();
+            cells.dedup();
+            assert_eq!(cells.len(), shape.modules(), "{shape:?}: distinct cells");
+        }
+    }
+
+    /// Latched faces coincide and look at each other: the chain closes exactly, to the rounding of a dozen sines.
+    #[test]
+    fn latched_faces_coincide() {
+        let body = Body::default();
+        let shapes = [Shape::P, A, B].into_iter();
+        for shape in shapes.chain(FIRST_CORNERS.map(|first_corner| Shape::O { first_corner })) {
+            let angles = shape.angles();
+            let rotors = rotors(&body, &angles);
+            for latch in latches(&angles) {
+                let [from, to] = latch.faces(&body, &rotors, &angles);
+                assert!((from.place() - to.place()).length() < 1e-9, "{shape:?} {latch:?}: {from:?} {to:?}");
+                assert!(wrapped(to.heading - from.heading - PI).abs() < 1e-9, "{shape:?} {latch:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn faces_that_a_module_lacks_do_not_latch() {
+        // A ring of four: the last module's front meets the first one's back, and nothing else.
+        let ring = [0.0, -FRAC_PI_2, -FRAC_PI_2, -FRAC_PI_2];
+        let found = latches(&ring);
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].from, found[0].to), (1, 4));
+        // The second cell of a turned module, against its new heading, has no face.
+        assert_eq!(side(&[0.0, -FRAC_PI_2], 2, FRAC_PI_2), None);
+        assert_eq!(latches(&[0.0; 5]), []);
+    }
+}
