@@ -1,6 +1,8 @@
 //! One file per subcommand.
 
+mod catalog;
 mod check;
+mod classify;
 mod compare;
 mod completions;
 mod export;
@@ -29,6 +31,8 @@ pub(crate) enum Command {
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
+    Catalog(Box<catalog::CatalogArgs>),
+    Classify(classify::ClassifyArgs),
     Export(Box<export::ExportArgs>),
     Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
@@ -48,6 +52,8 @@ impl Command {
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
+            Self::Catalog(args) => catalog::run(&args),
+            Self::Classify(args) => classify::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),

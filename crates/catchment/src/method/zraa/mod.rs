@@ -19,8 +19,10 @@ mod circle;
 mod flow;
 mod line;
 mod sheet;
+mod square;
 
 pub use circle::circle_bounds;
+pub use square::{Square, circle_square};
 
 use crate::contact::{Pair, Play, Seat, play};
 use crate::design::Alignment;

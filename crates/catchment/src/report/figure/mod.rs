@@ -13,7 +13,7 @@
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
 //!   trajectory  the moving half along its path, and the errors it still has
-//!   region      offsets that are corrected without any rotation
+//!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
 //!   partition   the contact space as polygons, and the exact outline of what is accepted
 //!   overview    the picture of a design: halves, acceptance, heights
@@ -63,7 +63,7 @@ pub use region::region;
 pub use section::{Placement, section};
 pub use sensitivity::sensitivity;
 pub use slices::slices;
-pub use solid::solids;
+pub use solid::{panel as solid_panel, solids};
 pub use trajectory::trajectory;
 
 use super::schema::Interval;
