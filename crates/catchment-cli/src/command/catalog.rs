@@ -128,7 +128,7 @@ pub(crate) fn run(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
         None => list(args),
         Some(CatalogCommand::Show(show)) => {
             let catalog = Catalog::published()?;
-            let report = SystemBody::report(catalog.named(&show.name).map_err(unknown)?);
+            let report = SystemBody::report(catalog.named(&show.name).map_err(|error| unknown(&error))?);
             to_stdout(&if show.json { report.to_json()? } else { report.table() })?;
             Ok(ExitStatus::Done)
         }
@@ -145,7 +145,7 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     let mut catalog = Catalog::published()?;
     let conditions: Result<Vec<Condition>, UnknownError> =
         args.conditions.iter().map(|text| catalog.condition(text)).collect();
-    let conditions = conditions.map_err(unknown)?;
+    let conditions = conditions.map_err(|error| unknown(&error))?;
     let problems: Result<Vec<Problem>, _> = args.append.iter().map(Problem::open).collect();
     let problems = problems?;
     if kind.is_some() || !problems.is_empty() {
@@ -196,10 +196,6 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
 }
 
 /// What the catalogue does not know, with what it knows as the advice.
-fn unknown(error: UnknownError) -> Failure {
-    let message = error.to_string();
-    match message.split_once("; ") {
-        Some((message, help)) => Failure::with_help(message.to_owned(), Some(help.to_owned())),
-        None => Failure::with_help(message, None),
-    }
+fn unknown(error: &UnknownError) -> Failure {
+    Failure::with_help(error.to_string(), error.help())
 }

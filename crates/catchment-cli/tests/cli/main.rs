@@ -4,6 +4,7 @@
 
 mod area;
 mod bad_inputs;
+mod catalog;
 mod check;
 mod compare;
 mod door;

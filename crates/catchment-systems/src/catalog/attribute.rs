@@ -133,7 +133,12 @@ pub const ODDITIES: [Oddity; 11] = [
         "none of the three degrees that the text defines; a mechanism that aligns falls under its \"None\"",
     ),
     odd(Attribute::DisconnectionActivity, "Manual", "Passive", "a hand undoes it: no module acts"),
-    odd(Attribute::ConnectionType, "Magnet", "Magnetic", "the same mechanism is Magnetic in eight other rows"),
+    odd(
+        Attribute::ConnectionType,
+        "Magnet",
+        "Magnetic",
+        "the same mechanism is Magnetic in eight other rows",
+    ),
     odd(
         Attribute::ConnectionType,
         "Mag/Latching",

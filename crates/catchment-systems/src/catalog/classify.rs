@@ -173,7 +173,12 @@ mod tests {
         assert!((beside("DRAGON").onaa_ratio.unwrap() - 2.11).abs() < 0.005);
         assert!((beside("3-D X-Face").area_ratio.unwrap() - 1.0).abs() < 1e-9);
         // A length has no ratio to an area.
-        assert!(of(Family::SFace).ratios(&catalog).iter().all(|r| r.area_ratio.is_none() && r.onaa_ratio.is_none()));
+        assert!(
+            of(Family::SFace)
+                .ratios(&catalog)
+                .iter()
+                .all(|r| r.area_ratio.is_none() && r.onaa_ratio.is_none())
+        );
     }
 
     #[test]

@@ -177,7 +177,8 @@ impl Catalog {
 
     /// The row of a name: that of either table, or one that people use for it; upper and lower case do not count.
     pub fn find(&self, name: &str) -> Option<&System> {
-        let meant = ASKED.iter().find(|(asked, _)| asked.eq_ignore_ascii_case(name)).map_or(name, |(_, of)| of);
+        let meant =
+            ASKED.iter().find(|(asked, _)| asked.eq_ignore_ascii_case(name)).map_or(name, |(_, of)| of);
         self.systems.iter().find(|system| {
             let is = |known: &str| known.eq_ignore_ascii_case(meant);
             is(&system.name) || system.zraa_name().is_some_and(is)
@@ -192,7 +193,12 @@ impl Catalog {
         let mut rows: Vec<Vec<String>> = Vec::new();
         match table {
             Table::Connectors => {
-                rows.push(std::iter::once("connector").chain(Attribute::ALL.map(Attribute::key)).map(str::to_owned).collect());
+                rows.push(
+                    std::iter::once("connector")
+                        .chain(Attribute::ALL.map(Attribute::key))
+                        .map(str::to_owned)
+                        .collect(),
+                );
                 for system in &self.systems {
                     if let (Source::Connectors(_), Some(values)) = (&system.source, &system.attributes) {
                         rows.push(std::iter::once(&system.name).chain(values).cloned().collect());
@@ -225,9 +231,8 @@ fn records(table: Table, text: &str, columns: usize) -> Result<Vec<Record>, Data
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let mut found = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|error| {
-            refused(error.position().map_or(1, csv::Position::line), error.to_string())
-        })?;
+        let record = record
+            .map_err(|error| refused(error.position().map_or(1, csv::Position::line), error.to_string()))?;
         let line = record.position().map_or(1, csv::Position::line);
         if record.len() != columns {
             return Err(refused(line, format!("it has {} columns where {columns} are wanted", record.len())));
@@ -252,7 +257,9 @@ fn zraa_rows(text: &str) -> Result<Vec<(String, PublishedZraa)>, DataError> {
     };
     records(Table::Zraa, text, 3)?
         .into_iter()
-        .map(|record| row(record).map_err(|(line, reason)| DataError { table: Table::Zraa.name(), line, reason }))
+        .map(|record| {
+            row(record).map_err(|(line, reason)| DataError { table: Table::Zraa.name(), line, reason })
+        })
         .collect()
 }
 
@@ -303,7 +310,14 @@ mod tests {
             (Attribute::DisconnectionActivity, &[("Active", 18), ("Passive", 8), ("Manual", 1)]),
             (
                 Attribute::ConnectionAgency,
-                &[("Double End", 9), ("Male End", 7), ("Single End", 5), ("Female End", 3), ("-", 2), ("N/A", 1)],
+                &[
+                    ("Double End", 9),
+                    ("Male End", 7),
+                    ("Single End", 5),
+                    ("Female End", 3),
+                    ("-", 2),
+                    ("N/A", 1),
+                ],
             ),
             (
                 Attribute::DisconnectionAgency,
@@ -354,7 +368,10 @@ mod tests {
             assert_eq!(catalog.find(second).unwrap(), system);
         }
         let of = |source: &Source| catalog.systems.iter().filter(|s| s.source == *source).count();
-        assert_eq!((of(&Source::ZraaAlone), of(&Source::Connectors(None)), of(&Source::Section412)), (3, 19, 1));
+        assert_eq!(
+            (of(&Source::ZraaAlone), of(&Source::Connectors(None)), of(&Source::Section412)),
+            (3, 19, 1)
+        );
         assert_eq!(catalog.systems.len(), 31);
         for (asked, name) in ASKED {
             assert_eq!(catalog.find(&asked.to_uppercase()).unwrap().name, name);
@@ -367,7 +384,10 @@ mod tests {
     fn broken_data_says_its_line() {
         let refused = |text: &str| zraa_rows(text).unwrap_err().to_string();
         let head = "system,normalized_zraa_sum,estimated\n";
-        assert!(refused(&format!("{head}a,1.5,0\nb,x,0\n")).contains("table 2.1 cannot be read, line 3: `x` is not"));
+        assert!(
+            refused(&format!("{head}a,1.5,0\nb,x,0\n"))
+                .contains("table 2.1 cannot be read, line 3: `x` is not")
+        );
         assert!(refused(&format!("{head}a,1.5,2\n")).contains("line 2: `2` is neither 0 nor 1"));
         assert!(refused(&format!("{head}a,1.5\n")).contains("line 2"));
     }

@@ -47,7 +47,8 @@ mod tests {
     fn every_design_is_a_problem_to_decide() {
         for design in DESIGNS {
             let source = SourceText::new(format!("{}.toml", design.name), design.text);
-            let problem = Draft::read(source).and_then(Draft::build).unwrap_or_else(|e| panic!("{}: {e}", design.name));
+            let problem =
+                Draft::read(source).and_then(Draft::build).unwrap_or_else(|e| panic!("{}: {e}", design.name));
             let ungendered = problem.connector().ungendered(problem.alignment().mount);
             assert_eq!(ungendered, design.name != "cone", "{}", design.name);
         }
@@ -57,7 +58,8 @@ mod tests {
     /// The example beside the other designs is what the command writes.
     #[test]
     fn the_committed_example_is_the_design_that_is_written() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/systems/polybot.toml");
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/systems/polybot.toml");
         assert_eq!(std::fs::read_to_string(path).unwrap(), DesignText::named("polybot").unwrap().text);
     }
 }

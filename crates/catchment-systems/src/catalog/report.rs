@@ -161,16 +161,17 @@ impl CatalogBody {
         line(text, "  system            introduced  degree   gendering   type            ZRAA [D²]");
         let mut odd: Vec<&Oddity> = Vec::new();
         for system in &self.systems {
-            let mut told = format!("  {:<NAME$}", cut(&system.system, NAME));
+            let mut told = vec![format!("  {:<NAME$}", cut(&system.system, NAME))];
             for (attribute, width) in COLUMNS {
                 let printed = system.printed(attribute);
                 let oddity = attribute.oddity(printed);
                 // What an appended design leaves open is no oddity of the source.
                 let mark = oddity.filter(|_| system.source != Source::Appended).map_or("", |_| "!");
                 odd.extend(oddity.filter(|oddity| !mark.is_empty() && !odd.contains(oddity)));
-                told += &format!(" {:<width$}", format!("{printed}{mark}"));
+                told.push(format!("{:<width$}", format!("{printed}{mark}")));
             }
-            line(text, &format!("{told} {:>9}", system.zraa()));
+            told.push(format!("{:>9}", system.zraa()));
+            line(text, &told.join(" "));
         }
         line(text, &format!("{} systems", self.systems.len()));
         if self.systems.iter().any(|system| system.estimated) {
@@ -198,7 +199,10 @@ impl CatalogBody {
             let mut record = vec![system.system.clone(), source(&system.source).to_owned()];
             for attribute in Attribute::ALL {
                 let value = system.value(attribute);
-                record.extend([value.map(|v| v.printed.clone()), value.map(|v| v.normal.clone())].map(Option::unwrap_or_default));
+                record.extend(
+                    [value.map(|v| v.printed.clone()), value.map(|v| v.normal.clone())]
+                        .map(Option::unwrap_or_default),
+                );
             }
             let stated = system.numbers.iter().find(|n| n.name == "ONAA" && n.basis.starts_with("section"));
             record.extend([
@@ -272,7 +276,11 @@ impl SystemBody {
         };
         line(text, &format!("{}: {}{other}", self.system, source(&self.source)));
         if self.attributes.is_none() {
-            line(text, "  table 1.1 does not have it: its attributes are not stated");
+            let known = match self.source {
+                Source::Section412 => "section 4.1 calls it ungendered and states nothing else",
+                _ => "its attributes are not stated",
+            };
+            line(text, &format!("  table 1.1 does not have it: {known}"));
         }
         for attribute in Attribute::ALL {
             if let Some(value) = self.value(attribute) {
@@ -280,7 +288,11 @@ impl SystemBody {
                 match value.reason {
                     None => line(text, &format!("{first}{}", value.printed)),
                     Some(reason) => {
-                        wrapped(text, &first, &format!("{}, read as {} [I]: {reason}", value.printed, value.normal));
+                        wrapped(
+                            text,
+                            &first,
+                            &format!("{}, read as {} [I]: {reason}", value.printed, value.normal),
+                        );
                     }
                 }
             }
@@ -342,14 +354,14 @@ impl ClassifyBody {
             line(text, "  One translation is locked: a length has no ratio to published areas.");
             return std::mem::take(text);
         }
-        line(text, "  beside         stated area    × area   stated ONAA    × ONAA");
+        line(text, "  beside            stated area     × area   stated ONAA    × ONAA");
         for ratio in &self.ratios {
             let star = if ratio.estimated { "*" } else { "" };
             let some = |value: Option<f64>| value.map_or_else(|| NOTHING.to_owned(), shown);
             let area = format!("{} D²{star}", shown(ratio.area_d2));
             let onaa = ratio.onaa_d.map_or_else(|| NOTHING.to_owned(), |onaa| format!("{} D", shown(onaa)));
             let (areas, onaas) = (some(ratio.area_ratio), some(ratio.onaa_ratio));
-            line(text, &format!("  {:<15}{area:<12}{areas:>9}   {onaa:<12}{onaas:>9}", ratio.system));
+            line(text, &format!("  {:<18}{area:<12}{areas:>10}   {onaa:<12}{onaas:>9}", ratio.system));
         }
         line(text, "* marked as an estimate in the source");
         std::mem::take(text)
@@ -364,14 +376,18 @@ mod tests {
     fn every_line_fits_a_terminal_and_every_system_can_be_shown() {
         let catalog = Catalog::published().unwrap();
         let report = CatalogBody::report(&catalog);
-        let shown: Vec<String> = catalog.systems.iter().map(|system| SystemBody::report(system).table()).collect();
+        let shown: Vec<String> =
+            catalog.systems.iter().map(|system| SystemBody::report(system).table()).collect();
         for text in shown.iter().chain([&report.table()]) {
             for line in text.lines() {
                 assert!(line.chars().count() <= 80, "{line}");
             }
         }
         let dragon = SystemBody::report(catalog.find("DRAGON").unwrap()).table();
-        assert!(dragon.contains("[D] table 2.1") && dragon.contains("Ø/5") && dragon.contains("0.1257 D²"), "{dragon}");
+        assert!(
+            dragon.contains("[D] table 2.1") && dragon.contains("Ø/5") && dragon.contains("0.1257 D²"),
+            "{dragon}"
+        );
         let jhu = SystemBody::report(catalog.find("JHU").unwrap()).table();
         assert!(jhu.contains("[I]") && jhu.contains("attributes are not stated"), "{jhu}");
     }
@@ -387,7 +403,8 @@ mod tests {
         assert!(report.table().contains("Active!") && report.table().contains("is read as None [I]"));
         let json: serde_json::Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();
         assert_eq!(json["kind"], "catalog");
-        let ckbot = json["systems"].as_array().unwrap().iter().find(|s| s["system"] == "CKBot (SAE)").unwrap();
+        let ckbot =
+            json["systems"].as_array().unwrap().iter().find(|s| s["system"] == "CKBot (SAE)").unwrap();
         assert_eq!(ckbot["attributes"]["self_aligning_degree"]["printed"], "Active");
         assert_eq!(ckbot["attributes"]["self_aligning_degree"]["normal"], "None");
     }

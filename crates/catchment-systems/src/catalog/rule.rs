@@ -140,7 +140,8 @@ mod tests {
     #[test]
     fn an_extent_ends_at_the_first_gap_and_passes_seams() {
         // Two tiles that share a border, one with a gap before it, one that does not meet the axis.
-        let parts = [[-0.1, -0.2, 0.1, 0.3], [0.0, -0.05, 0.05, 0.3], [0.3, -0.1, 0.2, 0.2], [-1.0, 0.5, 2.0, 0.1]];
+        let parts =
+            [[-0.1, -0.2, 0.1, 0.3], [0.0, -0.05, 0.05, 0.3], [0.3, -0.1, 0.2, 0.2], [-1.0, 0.5, 2.0, 0.1]];
         let extents = Extents::of(&region(&parts));
         let near = |found: Option<[f64; 2]>, expected: [f64; 2]| {
             found.unwrap().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12)
@@ -166,7 +167,8 @@ mod tests {
             judged.collect()
         };
         let full = printed(1.0);
-        let wrong: Vec<&str> = full.iter().filter(|(_, holds)| !holds).map(|(name, _)| name.as_str()).collect();
+        let wrong: Vec<&str> =
+            full.iter().filter(|(_, holds)| !holds).map(|(name, _)| name.as_str()).collect();
         assert_eq!((full.len(), wrong), (6, vec!["CONRO"]));
         // By the way to one side Vacuubes would not be High.
         let half = printed(0.5);

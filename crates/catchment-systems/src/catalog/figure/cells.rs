@@ -72,25 +72,40 @@ pub(super) fn corners(shape: Shape) -> Vec<DVec2> {
     }
 }
 
-/// The mating surface of a half as it is seen along the approach: what faces the viewer, the lower parts first.
+/// The mating surface of a half as it is seen along the approach: what faces the viewer, the lower parts first, and
+/// the edges that stand out.
 pub(super) fn face(svg: &mut Svg, view: &View, half: &Half, factor: f64) {
     /// What is steeper than this is a wall, and seen as a line.
     const FACING: f64 = 1e-6;
+    /// Cosine of 20°: facets of a rounding meet at less.
+    const BEND: f64 = 0.94;
     let light = DVec3::new(-0.45, 0.55, 0.7).normalize_or_zero();
+    let place = |p: DVec3| factor * p.truncate();
     let mut seen: Vec<(f64, DVec3, Vec<DVec2>)> = Vec::new();
     for surface in &half.surfaces {
         for facet in surface.facets.iter().filter(|facet| facet.normal.z > FACING) {
             let at = |k: &u32| surface.vertices[*k as usize];
             let top = facet.corners.iter().map(|k| at(k).z).fold(f64::NEG_INFINITY, f64::max);
-            seen.push((top, facet.normal, facet.corners.iter().map(|k| factor * at(k).truncate()).collect()));
+            seen.push((top, facet.normal, facet.corners.iter().map(|k| place(at(k))).collect()));
         }
     }
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, normal, corners) in seen {
-        let fill = hex(mix(colour::FIXED, [255; 3], 0.85 * normal.dot(light).clamp(0.0, 1.0)));
-        let edge = hex(colour::FIXED_EDGE);
-        let style = format!(r#"fill="{fill}" stroke="{edge}" stroke-width="0.5" stroke-opacity="0.55" {JOIN}"#);
-        view.path(svg, &corners, &style);
+        view.path(
+            svg,
+            &corners,
+            &filled(mix(colour::FIXED, [255; 3], 0.85 * normal.dot(light).clamp(0.0, 1.0))),
+        );
+    }
+    let line = format!(r#"stroke="{}" stroke-width="0.7" {JOIN}"#, hex(colour::FIXED_EDGE));
+    for surface in &half.surfaces {
+        for edge in &surface.edges {
+            let [a, b] = edge.facets.map(|k| surface.facets[k as usize].normal);
+            let [from, to] = edge.ends.map(|k| place(surface.vertices[k as usize]));
+            if a.z.max(b.z) > FACING && a.dot(b) < BEND && from.distance(to) > FACING {
+                svg.line(view.at(from), view.at(to), &line);
+            }
+        }
     }
 }
 
@@ -119,7 +134,7 @@ pub fn cone_over_x_face() -> Picture {
     Frame { rect, x: scale("x"), y: scale("y") }.draw(&mut svg);
     let words = [
         "3-D X-Face: |x| + |y| < D, 2.0 D², ONAA 1.0 D",
-        "cone around the unit square: π/2 = 1.5708 D², ONAA 1.0 D; the X-Face has 27.3 % more area",
+        "cone around the unit square: π/2 = 1.5708 D², ONAA 1.0 D (X-Face: + 27.3 %)",
         "cone inside it: π/4 = 0.7854 D², ONAA 0.7071 D",
     ];
     for (k, ((_, style), words)) in styles.iter().zip(words).enumerate() {

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Which rows the published figure 2.1 had is not known: here are those whose region is known. Regions of families are computed by the
-//! program, that of PolyBot is its closed form, and that of DRAGON is the circle of its printed number and says so. Everything is drawn with
+//! program, that of `PolyBot` is its closed form, and that of DRAGON is the circle of its printed number and says so. Everything is drawn with
 //! width D, but the cone around the unit square, which is √2 D wide.
 
 mod cells;
@@ -66,12 +66,19 @@ pub fn comparison(catalog: &Catalog, exec: &Exec) -> Result<Picture, DrawError> 
     let width = 20.0 + BLOCK * blocks as f64;
     let areas = scale::height(catalog);
     let mut svg = Svg::new(width, below + areas + 20.0);
-    svg.bold([24.0, 30.0], TITLE + 1.0, Anchor::Start, "Zero-rotation areas of acceptance of published connectors");
-    let story = "known regions, every face of width D; dotted: offsets of half a face; dashed: the largest square inside (ONAA)";
+    svg.bold(
+        [24.0, 30.0],
+        TITLE + 1.0,
+        Anchor::Start,
+        "Zero-rotation areas of acceptance of published connectors",
+    );
+    let story = "one scale; dotted: the unit square, of width D; dashed: the largest square in the area of acceptance (ONAA)";
     svg.text([24.0, 51.0], LABEL, Anchor::Start, SOFT, story);
     for block in 0..blocks {
         let left = 24.0 + BLOCK * block as f64;
-        for (k, heading) in ["the two halves", "along the approach", "area of acceptance"].into_iter().enumerate() {
+        for (k, heading) in
+            ["the two halves", "along the approach", "area of acceptance"].into_iter().enumerate()
+        {
             let x = left + rows::NAMES + (k as f64 + 0.5) * rows::CELL;
             svg.text([x, top - 12.0], LABEL, Anchor::Middle, INK, heading);
         }
@@ -93,7 +100,16 @@ mod tests {
         let catalog = Catalog::published().unwrap();
         let picture = comparison(&catalog, &Exec::new()).unwrap();
         let svg = picture.svg();
-        for words in ["π/2", "PolyBot", "DRAGON", "2 D²", "SINGO Connector", "shape unknown", "0.0187*"] {
+        for words in [
+            "1.570796 D²",
+            "π/2",
+            "PolyBot",
+            "DRAGON",
+            "1.99995 D²",
+            "SINGO Connector",
+            "shape unknown",
+            "0.0187*",
+        ] {
             assert!(svg.contains(words), "{words}");
         }
         assert!(!svg.contains("NaN") && !svg.contains("inf"));

@@ -13,7 +13,6 @@ use catchment::problem::Problem;
 use catchment::report::figure::draw::colour::{NOTHING, hex, mix};
 use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg};
 use catchment::report::figure::{Placement, solid_panel};
-use catchment::report::text::significant;
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 
@@ -65,28 +64,35 @@ pub(super) fn all(exec: &Exec) -> Result<Vec<Row>, DrawError> {
     for (family, name, width, words) in FAMILIES {
         rows.push(of_family(family, name, width, words, exec)?);
     }
-    let shape = |system: &str| GEOMETRY.iter().find(|fact| fact.system == system).and_then(|f: &Fact| f.shape);
+    let shape =
+        |system: &str| GEOMETRY.iter().find(|fact| fact.system == system).and_then(|f: &Fact| f.shape);
     if let Some((shape, _)) = shape("Polybot G3") {
         let words = ["π · (2/50)² D²", "4 pairs of pins, Ø 4 mm", "on a face of 50 mm"];
-        rows.insert(5, Row {
-            name: "PolyBot",
-            words: told(&words, shape.area(), shape.onaa()),
-            problem: Some(problem("polybot")?),
-            width: 1.0,
-            region: Region::Closed(shape),
-        });
+        rows.insert(
+            5,
+            Row {
+                name: "PolyBot",
+                words: told(&words, shape.area(), shape.onaa()),
+                problem: Some(problem("polybot")?),
+                width: 1.0,
+                region: Region::Closed(shape),
+            },
+        );
     }
     let dragon = Catalog::published().ok().and_then(|c| c.find("DRAGON")?.published.clone());
     if let Some(PublishedZraa { area_d2, .. }) = dragon {
         let shape = Shape::Disc((area_d2 / std::f64::consts::PI).sqrt());
         let words = ["circle of the published", "area: drawn from the", "number, not from geometry"];
-        rows.insert(6, Row {
-            name: "DRAGON",
-            words: told(&words, area_d2, shape.onaa()),
-            problem: None,
-            width: 1.0,
-            region: Region::OfNumber(shape),
-        });
+        rows.insert(
+            6,
+            Row {
+                name: "DRAGON",
+                words: told(&words, area_d2, shape.onaa()),
+                problem: None,
+                width: 1.0,
+                region: Region::OfNumber(shape),
+            },
+        );
     }
     rows.push(of_family(Family::SFace, "S-Face", 1.0, "planar, ±D/3", exec)?);
     Ok(rows)
@@ -94,13 +100,15 @@ pub(super) fn all(exec: &Exec) -> Result<Vec<Row>, DrawError> {
 
 /// The words of a row: what it is, its area and edge.
 fn told(words: &[&str], area: f64, edge: f64) -> Vec<String> {
-    let trimmed = |value: f64| {
-        let text = significant(value);
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    };
-    let mut lines = vec![format!("{} D²", trimmed(area)), format!("ONAA {} D", trimmed(edge))];
+    let mut lines = vec![format!("{} D²", trimmed(area, 6)), format!("ONAA {} D", trimmed(edge, 4))];
     lines.extend(words.iter().map(|&words| words.to_owned()));
     lines
+}
+
+/// A number without zeros at its end.
+fn trimmed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn of_family(
@@ -119,7 +127,9 @@ fn of_family(
     let zraa = run(problem.pair(), &Settings::default(), exec)?;
     let square = Square::of(&zraa, exec)?;
     let words = match (&zraa, family) {
-        (Zraa::Interval { from, to, .. }, _) => vec![format!("{} D long", significant(to - from)), words.to_owned()],
+        (Zraa::Interval { from, to, .. }, _) => {
+            vec![format!("{} D long", trimmed(to - from, 4)), words.to_owned()]
+        }
         // What is printed is the circle's.
         (Zraa::Region { .. }, Family::Cone) => {
             let shape = Shape::Disc(0.5 * width);

@@ -44,7 +44,7 @@ fn shape_of(system: &System) -> &'static str {
 
 pub(super) fn draw(svg: &mut Svg, catalog: &Catalog, rect: Rect) {
     svg.bold([rect.x, rect.y + 4.0], 13.0, Anchor::Start, "All published areas");
-    let note = "bars on a logarithmic scale; * an estimate";
+    let note = "logarithmic scale; * an estimate; filled where the shape is known";
     svg.text([rect.x + NAME, rect.y + 4.0], 11.0, Anchor::Start, SOFT, note);
     let left = rect.x + NAME;
     let right = rect.x + rect.w - SAID;
@@ -56,7 +56,11 @@ pub(super) fn draw(svg: &mut Svg, catalog: &Catalog, rect: Rect) {
     let (top, bottom) = (rect.y + HEAD - 12.0, rect.y + HEAD + LINE * systems.len() as f64);
     for tick in [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0] {
         let x = at(tick);
-        svg.line([x, top], [x, bottom], &format!(r#"stroke="{SOFT}" stroke-opacity="0.22" stroke-width="0.8""#));
+        svg.line(
+            [x, top],
+            [x, bottom],
+            &format!(r#"stroke="{SOFT}" stroke-opacity="0.22" stroke-width="0.8""#),
+        );
         svg.text([x, bottom + 15.0], TICK, Anchor::Middle, SOFT, &tick_label(tick));
     }
     svg.text([0.5 * (left + right), bottom + 33.0], LABEL, Anchor::Middle, INK, "area of acceptance [D²]");
@@ -71,11 +75,13 @@ pub(super) fn draw(svg: &mut Svg, catalog: &Catalog, rect: Rect) {
             (true, _) => (hex(ACCEPTED), hex(ACCEPTED)),
             (false, _) => ("#ffffff".to_owned(), hex(ACCEPTED)),
         };
-        let bar = Rect { x: left, y: y - 2.0, w: at(area) - left, h: LINE - 7.0 };
-        svg.rect(bar, &format!(r#"fill="{fill}" stroke="{edge}" stroke-width="1""#));
+        let middle = y + 4.0;
+        svg.line([left, middle], [at(area), middle], &format!(r#"stroke="{edge}" stroke-width="1.6""#));
+        let dot = format!(r#"fill="{fill}" stroke="{edge}" stroke-width="1.6""#);
+        svg.circle([at(area), middle], 5.0, &dot);
         let printed = system.published.as_ref().map_or_else(|| tick_label(area), |zraa| zraa.printed.clone());
         let star = if system.published.as_ref().is_some_and(|zraa| zraa.estimated) { "*" } else { "" };
-        svg.text([at(area) + 7.0, y + 8.0], 11.0, Anchor::Start, INK, &format!("{printed}{star}"));
+        svg.text([at(area) + 11.0, y + 8.0], 11.0, Anchor::Start, INK, &format!("{printed}{star}"));
         svg.text([right + 44.0, y + 8.0], 11.0, Anchor::Start, SOFT, shape_of(system));
     }
 }

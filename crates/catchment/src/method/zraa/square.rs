@@ -198,9 +198,7 @@ impl<'a> Search<'a> {
             let along = (to - from) / length;
             let mut covered: Vec<[f64; 2]> = Vec::new();
             for k in self.around(from.min(to), from.max(to)).filter(|&k| k != own) {
-                covered.extend(
-                    sides(&self.polygons[k]).filter_map(|side| beside(side, from, along, length)),
-                );
+                covered.extend(sides(&self.polygons[k]).filter_map(|side| beside(side, from, along, length)));
             }
             covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
             covered.push([length, length]);
@@ -422,22 +420,41 @@ mod tests {
         let half_turned = TAU / 16.0;
         for (name, region, edge) in [
             ("the diamond of the X-Face", star(&[1.0; 4], 0.0), 1.0),
-            ("a square of many parts", (0..7).map(|k| tile(f64::from(k) / 7.0, 0.0, 1.0 / 7.0, 1.0)).collect(), 1.0),
+            (
+                "a square of many parts",
+                (0..7).map(|k| tile(f64::from(k) / 7.0, 0.0, 1.0 / 7.0, 1.0)).collect(),
+                1.0,
+            ),
             ("a corridor in which it slides", vec![tile(-1.5, -0.25, 3.0, 0.5)], 0.5),
             ("a right triangle", vec![polygon(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])], 0.5),
             ("a ring of squares around a hole", ring, 1.0),
             ("a cross", cross, 0.2),
-            ("two parts, the larger one apart", vec![tile(0.0, 0.0, 0.3, 0.3), tile(1.0, 1.0, 0.4, 0.5)], 0.4),
+            (
+                "two parts, the larger one apart",
+                vec![tile(0.0, 0.0, 0.3, 0.3), tile(1.0, 1.0, 0.4, 0.5)],
+                0.4,
+            ),
             // A corner of the polygon on the diagonal, and the middle of a side there.
             ("a polygon of 8 corners", disc(8), FRAC_1_SQRT_2),
             ("a polygon of 12 corners", disc(12), FRAC_1_SQRT_2 * (TAU / 24.0).cos()),
-            ("a strip askew", vec![tile(-1.0, -0.1, 2.0, 0.2).iter().map(|p| DVec2::from_angle(half_turned).rotate(*p)).collect()],
-                0.2 / (half_turned.sin() + half_turned.cos())),
+            (
+                "a strip askew",
+                vec![
+                    tile(-1.0, -0.1, 2.0, 0.2)
+                        .iter()
+                        .map(|p| DVec2::from_angle(half_turned).rotate(*p))
+                        .collect(),
+                ],
+                0.2 / (half_turned.sin() + half_turned.cos()),
+            ),
             ("nothing", vec![], 0.0),
         ] {
             let found = square(&region);
             assert!((found.edge - edge).abs() < Square::TOLERANCE, "{name}: {found:?}");
-            assert!(found.edge == 0.0 || fits(&region, found.center, found.edge / 2.0 - 1e-9), "{name}: {found:?}");
+            assert!(
+                found.edge == 0.0 || fits(&region, found.center, found.edge / 2.0 - 1e-9),
+                "{name}: {found:?}"
+            );
         }
     }
 

@@ -1,7 +1,7 @@
 //! Lateral offsets that contact corrects without any rotation: an area with the largest square in it, or a stretch of one axis.
 
-use super::Picture;
 use super::super::text::significant;
+use super::Picture;
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
@@ -103,7 +103,9 @@ mod tests {
         let square = Square { edge: 1.0, center: DVec2::ZERO, centered_edge: 1.0 };
         let picture = region(&design(free), &Zraa::Region { polygons, area: 1.0 }, &square);
         look("zraa-region", &picture);
-        assert!(picture.svg().contains("1.000000 D² accepted, ONAA 1.000 D") && picture.svg().contains("y [mm]"));
+        assert!(
+            picture.svg().contains("1.000000 D² accepted, ONAA 1.000 D") && picture.svg().contains("y [mm]")
+        );
         let zraa = Zraa::Interval { axis: Dof::X, from: -1.0, to: 1.0 };
         let picture = region(&design(free), &zraa, &Square { edge: 2.0, ..square });
         look("zraa-interval", &picture);
