@@ -280,7 +280,7 @@ impl SystemBody {
                 Source::Section412 => "section 4.1 calls it ungendered and states nothing else",
                 _ => "its attributes are not stated",
             };
-            line(text, &format!("  table 1.1 does not have it: {known}"));
+            wrapped(text, "  ", &format!("table 1.1 does not have it: {known}"));
         }
         for attribute in Attribute::ALL {
             if let Some(value) = self.value(attribute) {
