@@ -145,3 +145,23 @@ fn both_figures_are_written() {
     assert!(run(folder.path(), &["catalog", "--figure", "4.2", "-o", "b.png"]).starts_with("exit 0\n"));
     assert!(fs::read(folder.path().join("b.png")).unwrap().starts_with(b"\x89PNG"));
 }
+
+#[test]
+fn a_name_cannot_steer_the_terminal() {
+    let home = home();
+    let name = "name = \"a\\u202e|<&\\u001b[2J and very much longer than a column of a table\"\n";
+    fs::write(home.path().join("evil.toml"), name.to_owned() + super::V_FACE).unwrap();
+    let append = ["catalog", "--append", "evil.toml"];
+    for args in [
+        &["classify", "evil.toml"][..],
+        &append,
+        &[&append[..], &["--csv"]].concat(),
+        &[&append[..], &["--json"]].concat(),
+        &[&append[..], &["--markdown"]].concat(),
+        &[&append[..], &["-o", "evil.svg"]].concat(),
+    ] {
+        let told = run(home.path(), args);
+        let steers = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
+        assert!(told.starts_with("exit 0\n") && !told.contains(steers), "{args:?}: {told:?}");
+    }
+}

@@ -151,7 +151,9 @@ pub const GEOMETRY: [Fact; 13] = [
         ..read("CONRO", None, "")
     },
     Fact {
-        doubt: Some("1/18 = 0.05556 is near the printed number; no geometry is given"),
+        doubt: Some(
+            "1/18 = 0.05556 is near the printed number but rounds to 0.0556; no geometry is given [I]",
+        ),
         ..read("Vacuubes", None, "")
     },
     read(
@@ -345,13 +347,15 @@ mod tests {
             assert_eq!(provenance, Provenance::Recomputed);
             assert!((shape.area() / published(name) - 1.0).abs() < 0.002, "{name}: {}", shape.area());
         }
-        // To the three printed digits.
-        for name in ["M-TRAN III", "JHU", "ACOR (unpaired)"] {
+        // Within half a unit of the third printed digit.
+        for (name, half_a_unit) in [("M-TRAN III", 5e-6), ("JHU", 5e-6), ("ACOR (unpaired)", 5e-5)] {
             let (shape, provenance) = fact(name).shape.unwrap();
             assert_eq!(provenance, Provenance::Inferred);
-            assert!((shape.area() - published(name)).abs() < 5e-4 * published(name) * 10.0, "{name}");
+            assert!((shape.area() - published(name)).abs() < half_a_unit, "{name}: {}", shape.area());
         }
-        assert!((1.0 / 18.0 - published("Vacuubes")).abs() < 6e-5);
+        // 1/18 misses by a little more than that.
+        let off = (1.0 / 18.0 - published("Vacuubes")).abs();
+        assert!(off > 5e-5 && off < 6e-5, "{off}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::facts::{Fact, Number, numbers};
 use super::rule::{Extents, HIGH};
 use catchment::design::Design;
 use catchment::report::text::{line, number, row, significant, wrapped};
-use catchment::report::{Body, Envelope};
+use catchment::report::{Body, Envelope, printable};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -196,7 +196,7 @@ impl CatalogBody {
         head.extend(["zraa_d2", "estimated", "provenance", "stated_onaa_d"].map(str::to_owned));
         let mut records = vec![head];
         for system in &self.systems {
-            let mut record = vec![system.system.clone(), source(&system.source).to_owned()];
+            let mut record = vec![printable(&system.system), source(&system.source).to_owned()];
             for attribute in Attribute::ALL {
                 let value = system.value(attribute);
                 record.extend(
@@ -417,6 +417,7 @@ mod tests {
         catalog.systems[0].name = name;
         let report = CatalogBody::report(&catalog);
         assert!(report.markdown().contains("| a\\|b?[2J which"));
+        assert!(report.records()[1][0].starts_with("a|b?[2J"));
         assert!(report.table().lines().all(|line| line.chars().count() <= 80));
     }
 }

@@ -59,7 +59,7 @@ const BLOCK: f64 = 560.0;
 /// # Errors
 /// If a region cannot be computed, or it is cancelled.
 pub fn comparison(catalog: &Catalog, exec: &Exec) -> Result<Picture, DrawError> {
-    let rows = rows::all(exec)?;
+    let rows = rows::all(catalog, exec)?;
     let blocks = rows.len().div_ceil(ROWS);
     let top = 96.0;
     let below = top + ROW * ROWS as f64 + 30.0;

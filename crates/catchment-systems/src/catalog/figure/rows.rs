@@ -59,7 +59,7 @@ const FAMILIES: [(Family, &str, f64, &str); 7] = [
 ];
 
 /// Every row, in order.
-pub(super) fn all(exec: &Exec) -> Result<Vec<Row>, DrawError> {
+pub(super) fn all(catalog: &Catalog, exec: &Exec) -> Result<Vec<Row>, DrawError> {
     let mut rows = Vec::new();
     for (family, name, width, words) in FAMILIES {
         rows.push(of_family(family, name, width, words, exec)?);
@@ -79,8 +79,8 @@ pub(super) fn all(exec: &Exec) -> Result<Vec<Row>, DrawError> {
             },
         );
     }
-    let dragon = Catalog::published().ok().and_then(|c| c.find("DRAGON")?.published.clone());
-    if let Some(PublishedZraa { area_d2, .. }) = dragon {
+    let dragon = catalog.find("DRAGON").and_then(|system| system.published.as_ref());
+    if let Some(&PublishedZraa { area_d2, .. }) = dragon {
         let shape = Shape::Disc((area_d2 / std::f64::consts::PI).sqrt());
         let words = ["circle of the published", "area: drawn from the", "number, not from geometry"];
         rows.insert(
