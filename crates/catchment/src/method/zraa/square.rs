@@ -394,8 +394,8 @@ mod tests {
         }
         let mut step = 1.0 / f64::from(GRID);
         while step > 1e-6 {
-            let next = (0..8).map(|k| at + step * DVec2::from_angle(f64::from(k) * TAU / 8.0));
-            match next.filter_map(|p| Some((widest(polygons, p, half + 1e-7)?, p))).next() {
+            let mut next = (0..8).map(|k| at + step * DVec2::from_angle(f64::from(k) * TAU / 8.0));
+            match next.find_map(|p| Some((widest(polygons, p, half + 1e-7)?, p))) {
                 Some(better) => (half, at) = better,
                 None => step /= 2.0,
             }
