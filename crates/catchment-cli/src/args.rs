@@ -27,6 +27,7 @@ use std::path::PathBuf;
         catchment outcome design.toml --poses poses.csv\n                                          what becomes of listed errors\n  \
         catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" -o trace.png\n                                          the way of one of them\n  \
         catchment zraa design.toml              offsets corrected by sliding alone\n  \
+        catchment classify design.toml          where it stands among published connectors\n  \
         catchment export design.toml --pose x=0.2 -o trial\n                                          a drop test for MuJoCo and Gazebo\n  \
         catchment reproduce 5.7                 a published table beside ours\n\n\
         Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\

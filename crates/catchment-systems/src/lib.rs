@@ -14,5 +14,6 @@
 //! Each stands by itself on `catchment`, which knows none of them. [`form`] reads their files.
 
 pub mod chain;
+pub mod catalog;
 pub mod form;
 pub mod latch;

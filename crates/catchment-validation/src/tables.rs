@@ -117,8 +117,9 @@ const PARTITION_NOTES: &[&str] = &[
      these tables are consistent with. Exact: every sample of the discrete tables' grid, followed exactly.",
 ];
 const ZRAA_NOTES: &[&str] = &[
-    "Computed where the geometry is known: PolyBot π·(2/50)², DRAGON π·0.335², amour by its cone (a polygon stands for the \
-     circle: 0.3 % below π/2). The others are held: their drawings are not.",
+    "Computed where the geometry is known: PolyBot π·(2/50)², amour by its cone (a polygon stands for the circle: 0.3 % below \
+     π/2). DRAGON's π·0.335² is calculated back from the printed number: the reach that the text states, Ø/5, would give 0.126. The \
+     others are held: their drawings are not.",
 ];
 const SLICE_NOTES: &[&str] = &[
     "Printed: drop tests in a rigid-body engine (Gazebo). Ours: drop tests in Rapier, heavily damped and without friction, at the \

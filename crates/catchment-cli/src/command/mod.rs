@@ -1,7 +1,9 @@
 //! One file per subcommand.
 
 mod chain;
+mod catalog;
 mod check;
+mod classify;
 mod compare;
 mod completions;
 mod export;
@@ -34,6 +36,8 @@ pub(crate) enum Command {
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
+    Catalog(Box<catalog::CatalogArgs>),
+    Classify(classify::ClassifyArgs),
     Export(Box<export::ExportArgs>),
     Latch(latch::LatchArgs),
     Reproduce(reproduce::ReproduceArgs),
@@ -56,6 +60,8 @@ impl Command {
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
+            Self::Catalog(args) => catalog::run(&args),
+            Self::Classify(args) => classify::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Latch(args) => latch::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),

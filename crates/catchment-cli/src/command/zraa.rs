@@ -5,7 +5,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, to_stdout};
-use catchment::method::zraa::{Settings, run as accepted_offsets};
+use catchment::method::zraa::{Settings, Square, run as accepted_offsets};
 use catchment::report::{ZraaReport, csv, figure};
 use clap::Args;
 
@@ -13,7 +13,8 @@ use clap::Args;
 ///
 /// Rotations are locked whatever the design says; of x and y those that are free count. Both: the accepted
 /// offsets are an area. One: they are an interval, which for the planar families has a closed form
-/// (s-face D/3, v-face D/2, x-face D to either side).
+/// (s-face D/3, v-face D/2, x-face D to either side). Beside the measure stands the ONAA in D: the edge of the
+/// largest axis-parallel square inside, wherever it lies.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment zraa design.toml\n  \
@@ -45,11 +46,12 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
         figure::ensure_fits(0, &running.exec)?;
     }
     let zraa = accepted_offsets(pair, &Settings::default(), &running.exec)?;
+    let square = Square::of(&zraa, &running.exec)?;
     drop(running);
-    let report = ZraaReport::new(design, &zraa);
+    let report = ZraaReport::new(design, &zraa, &square);
     match kind {
-        Some("svg") => args.file.write(figure::region(design, &zraa).svg().as_bytes())?,
-        Some("png") => args.file.write(&figure::region(design, &zraa).png(PNG_SCALE)?)?,
+        Some("svg") => args.file.write(figure::region(design, &zraa, &square).svg().as_bytes())?,
+        Some("png") => args.file.write(&figure::region(design, &zraa, &square).png(PNG_SCALE)?)?,
         Some(_) => args.file.write(&csv(&report.records())?)?,
         None => {}
     }

@@ -5,6 +5,7 @@
 mod area;
 mod bad_inputs;
 mod chain;
+mod catalog;
 mod check;
 mod compare;
 mod door;

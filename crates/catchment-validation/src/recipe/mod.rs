@@ -316,7 +316,7 @@ fn partitioned(family: Family, row: usize, column: usize, exec: &Exec) -> Result
 fn zero_rotation(row: usize, exec: &Exec) -> Result<Option<f64>, RecipeError> {
     /// A pin of radius 2 mm on a face of 50 mm finds its hole from that far.
     const POLYBOT: f64 = 2.0 / 50.0;
-    /// Radius of the circle from which the four cones and funnels find each other.
+    /// Calculated back from the printed number: no geometry that is stated gives it.
     const DRAGON: f64 = 0.335;
     Ok(match row {
         1 => Some(PI * POLYBOT * POLYBOT),

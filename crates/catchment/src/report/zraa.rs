@@ -1,9 +1,9 @@
 //! The offsets that are corrected without any rotation: as versioned JSON, as text, as corners for programs.
 
 use super::envelope::{Body, Envelope};
-use super::text::{line, number};
+use super::text::{line, number, rounded};
 use crate::design::Design;
-use crate::method::zraa::{Zraa, circle_bounds};
+use crate::method::zraa::{Square, Zraa, circle_bounds, circle_square};
 use crate::pose::Dof;
 use serde::Serialize;
 
@@ -37,6 +37,8 @@ pub enum ZraaFound {
         length_d: f64,
         /// Bounds of the length for the circle.
         circle_length_d: Option<[f64; 2]>,
+        /// The ONAA, counted in D: of one translation the length itself.
+        onaa_d: f64,
     },
     /// Both translations.
     Region {
@@ -44,6 +46,14 @@ pub enum ZraaFound {
         area_d2: f64,
         /// Bounds of the area for the circle.
         circle_area_d2: Option<[f64; 2]>,
+        /// The ONAA, counted in D: edge of the largest axis-parallel square inside.
+        onaa_d: f64,
+        /// Its middle.
+        onaa_center_d: [f64; 2],
+        /// Edge of the largest one around zero.
+        onaa_centered_d: f64,
+        /// Bounds of the edge for the circle.
+        circle_onaa_d: Option<[f64; 2]>,
         /// Convex polygons that tile it: x and y of their corners, counter-clockwise.
         polygons_d: Vec<Vec<[f64; 2]>>,
     },
@@ -55,7 +65,7 @@ impl Body for ZraaBody {
 
 impl ZraaReport {
     /// Of a design.
-    pub fn new(design: &Design, zraa: &Zraa) -> Self {
+    pub fn new(design: &Design, zraa: &Zraa, square: &Square) -> Self {
         let bounds = circle_bounds(design, zraa);
         let found = match zraa {
             Zraa::Interval { axis, from, to } => ZraaFound::Interval {
@@ -64,10 +74,15 @@ impl ZraaReport {
                 to_d: *to,
                 length_d: to - from,
                 circle_length_d: bounds,
+                onaa_d: square.edge,
             },
             Zraa::Region { polygons, area } => ZraaFound::Region {
                 area_d2: *area,
                 circle_area_d2: bounds,
+                onaa_d: square.edge,
+                onaa_center_d: square.center.to_array(),
+                onaa_centered_d: square.centered_edge,
+                circle_onaa_d: circle_square(design, zraa, square),
                 polygons_d: polygons.iter().map(|p| p.iter().map(|v| [v.x, v.y]).collect()).collect(),
             },
         };
@@ -86,17 +101,34 @@ impl ZraaReport {
             }
         };
         match &self.found {
-            ZraaFound::Interval { axis, from_d, to_d, length_d, circle_length_d } => {
+            ZraaFound::Interval { axis, from_d, to_d, length_d, circle_length_d, .. } => {
                 line(text, &format!("  offsets in {} corrected without rotation", axis.name()));
                 for (name, value) in [("from", from_d), ("to", to_d), ("length", length_d)] {
                     line(text, &format!("  {name:<6}  {value:.9} D{}", in_unit(design, *value, 1)));
                 }
                 circle(text, *circle_length_d, "D");
             }
-            ZraaFound::Region { area_d2, circle_area_d2, polygons_d } => {
+            ZraaFound::Region {
+                area_d2,
+                circle_area_d2,
+                onaa_d,
+                onaa_center_d: [x, y],
+                onaa_centered_d,
+                circle_onaa_d,
+                polygons_d,
+            } => {
                 line(text, "  offsets in x and y corrected without rotation");
                 line(text, &format!("  area    {area_d2:.9} D²{}", in_unit(design, *area_d2, 2)));
                 circle(text, *circle_area_d2, "D²");
+                // The edge is exact to 1e-8 D: more digits would be noise.
+                line(text, &format!("  onaa    {onaa_d:.7} D{}", in_unit(design, *onaa_d, 1)));
+                line(text, &format!("          edge of the largest square, {}", around(*x, *y)));
+                if onaa_d - onaa_centered_d > Square::TOLERANCE {
+                    line(text, &format!("          {onaa_centered_d:.7} D for the largest around zero"));
+                }
+                if let Some([lower, upper]) = circle_onaa_d {
+                    line(text, &format!("  circle  {lower:.7} … {upper:.7} D"));
+                }
                 line(text, &format!("  tiled by {} convex polygons", polygons_d.len()));
             }
         }
@@ -120,6 +152,15 @@ impl ZraaReport {
     }
 }
 
+/// Where a square lies.
+fn around(x: f64, y: f64) -> String {
+    if x.abs().max(y.abs()) < Square::TOLERANCE {
+        "around zero".to_owned()
+    } else {
+        format!("around x = {}, y = {} D", rounded(x), rounded(y))
+    }
+}
+
 /// ` = 25 mm`, where the design has a unit.
 fn in_unit(design: &Design, value: f64, power: i32) -> String {
     let square = if power == 2 { "²" } else { "" };
@@ -140,21 +181,33 @@ mod tests {
         let mut design = design(DofSet::ALL);
         design.name = "\u{1b}[2Jx".to_owned();
         let corners = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
-        let region = ZraaReport::new(&design, &Zraa::Region { polygons: vec![corners], area: 0.5 });
+        let center = DVec2::new(0.25, 0.25);
+        let square = Square { edge: 0.5, center, centered_edge: 0.0 };
+        let region = ZraaReport::new(&design, &Zraa::Region { polygons: vec![corners], area: 0.5 }, &square);
         let json: serde_json::Value = serde_json::from_str(&region.to_json().unwrap()).unwrap();
         assert_eq!(
             (&json["kind"], &json["area_d2"], &json["polygons_d"][0][1][0]),
             (&"zraa".into(), &0.5.into(), &1.0.into())
         );
         assert!(json["circle_area_d2"].is_null() && json.get("axis").is_none());
+        assert_eq!((&json["onaa_d"], &json["onaa_center_d"][1]), (&0.5.into(), &0.25.into()));
+        let told = region.table();
+        assert!(told.contains("onaa    0.5000000 D = 25.000000 mm\n"), "{told}");
+        assert!(
+            told.contains("around x = 0.25, y = 0.25 D\n          0.0000000 D for the largest around"),
+            "{told}"
+        );
         assert!(
             region.table().starts_with("?[2Jx\n")
                 && region.table().contains("0.500000000 D² = 1250.000000 mm²")
         );
         assert_eq!(region.records()[1..], [["0", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]);
-        let interval = ZraaReport::new(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 });
+        let square = Square { edge: 0.75, center: DVec2::ZERO, centered_edge: 0.5 };
+        let interval =
+            ZraaReport::new(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 }, &square);
         let json: serde_json::Value = serde_json::from_str(&interval.to_json().unwrap()).unwrap();
         assert_eq!((&json["axis"], &json["length_d"]), (&"x".into(), &0.75.into()));
+        assert_eq!(json["onaa_d"], json["length_d"]);
         assert_eq!(interval.records(), [["x"], ["-0.5"], ["0.25"]]);
     }
 }

@@ -20,8 +20,10 @@ mod flow;
 mod line;
 mod places;
 mod sheet;
+mod square;
 
 pub use circle::circle_bounds;
+pub use square::{Square, circle_square};
 
 use crate::contact::{Pair, Play, Seat, play};
 use crate::design::Alignment;

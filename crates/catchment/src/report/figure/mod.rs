@@ -14,7 +14,7 @@
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
 //!   trajectory  the moving half along its path, and the errors it still has
-//!   region      offsets that are corrected without any rotation
+//!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
 //!   partition   the contact space as polygons, and the exact outline of what is accepted
 //!   overview    the picture of a design: halves, acceptance, heights
@@ -65,7 +65,7 @@ pub use region::region;
 pub use section::{Placement, section};
 pub use sensitivity::sensitivity;
 pub use slices::slices;
-pub use solid::solids;
+pub use solid::{panel as solid_panel, solids};
 pub use sweep::{sweep_map, sweep_outlines};
 pub use trajectory::trajectory;
 

@@ -1,11 +1,12 @@
-//! Lateral offsets that contact corrects without any rotation: an area, or a stretch of one axis.
+//! Lateral offsets that contact corrects without any rotation: an area with the largest square in it, or a stretch of one axis.
 
+use super::super::text::significant;
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
 use crate::design::Design;
-use crate::method::zraa::Zraa;
+use crate::method::zraa::{Square, Zraa};
 use crate::pose::Dof;
 
 /// Half-range of the picture, in D, at least: the face itself.
@@ -14,12 +15,13 @@ const LEAST: f64 = 0.5;
 const MARGIN: f64 = 1.15;
 
 /// Draws a zero-rotation area of acceptance over x and y, or over its one axis.
-pub fn region(design: &Design, zraa: &Zraa) -> Picture {
+pub fn region(design: &Design, zraa: &Zraa, square: &Square) -> Picture {
     let units = Units::of(design);
     let left = 78.0;
     let (rect, measure) = match zraa {
         Zraa::Region { area, .. } => {
-            (Rect { x: left, y: 74.0, w: 420.0, h: 420.0 }, format!("{area:.6} D² accepted"))
+            let told = format!("{area:.6} D² accepted, ONAA {} D", significant(square.edge));
+            (Rect { x: left, y: 74.0, w: 420.0, h: 420.0 }, told)
         }
         Zraa::Interval { from, to, .. } => {
             (Rect { x: left, y: 74.0, w: 420.0, h: 60.0 }, format!("{:.6} D accepted", to - from))
@@ -27,7 +29,7 @@ pub fn region(design: &Design, zraa: &Zraa) -> Picture {
     };
     let mut svg = Svg::new(540.0, rect.y + rect.h + 56.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
-    let story = format!("offsets corrected without rotation: {measure}");
+    let story = format!("corrected without rotation: {measure}");
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
     svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
     let half = MARGIN * reach(zraa).max(LEAST);
@@ -48,6 +50,14 @@ pub fn region(design: &Design, zraa: &Zraa) -> Picture {
                 svg.path(&polyline(corners, true), &style);
             }
             svg.line([rect.x, frame.py(0.0)], [rect.x + rect.w, frame.py(0.0)], &dotted);
+            if square.edge > 0.0 {
+                let low = (square.center - square.edge / 2.0) * factor;
+                let high = (square.center + square.edge / 2.0) * factor;
+                let corners = [[low.x, low.y], [high.x, low.y], [high.x, high.y], [low.x, high.y]];
+                let outline =
+                    format!(r#"fill="none" stroke="{INK}" stroke-width="1.4" stroke-dasharray="6 3" {JOIN}"#);
+                svg.path(&polyline(corners.map(|c| frame.at(c)), true), &outline);
+            }
             frame
         }
         Zraa::Interval { axis, from, to } => {
@@ -90,11 +100,14 @@ mod tests {
             DVec2::new(0.5, 0.5),
             DVec2::new(-0.5, 0.5),
         ]];
-        let picture = region(&design(free), &Zraa::Region { polygons, area: 1.0 });
+        let square = Square { edge: 1.0, center: DVec2::ZERO, centered_edge: 1.0 };
+        let picture = region(&design(free), &Zraa::Region { polygons, area: 1.0 }, &square);
         look("zraa-region", &picture);
-        assert!(picture.svg().contains("1.000000 D² accepted") && picture.svg().contains("y [mm]"));
+        assert!(
+            picture.svg().contains("1.000000 D² accepted, ONAA 1.000 D") && picture.svg().contains("y [mm]")
+        );
         let zraa = Zraa::Interval { axis: Dof::X, from: -1.0, to: 1.0 };
-        let picture = region(&design(free), &zraa);
+        let picture = region(&design(free), &zraa, &Square { edge: 2.0, ..square });
         look("zraa-interval", &picture);
         assert!(picture.svg().contains("2.000000 D accepted") && !picture.svg().contains("NaN"));
     }

@@ -31,8 +31,11 @@ pub fn solids(design: &Design, connector: &Connector, placement: &Placement) -> 
     Ok(Picture::of(svg))
 }
 
-/// The image alone.
-pub(super) fn panel(
+/// The image alone, in a rectangle of another picture.
+///
+/// # Errors
+/// If neither half has a facet.
+pub fn panel(
     svg: &mut Svg,
     rect: Rect,
     design: &Design,

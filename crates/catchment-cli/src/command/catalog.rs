@@ -1,0 +1,201 @@
+//! `catchment catalog`: published docking systems.
+
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, OutputArgs, to_stdout};
+use catchment::problem::Problem;
+use catchment::report::{csv, figure as figures};
+use catchment_systems::catalog::report::{CatalogBody, SystemBody};
+use catchment_systems::catalog::{
+    Catalog, Condition, DESIGNS, DesignText, Order, Table, UnknownError, classify, figure,
+};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{ArgGroup, Args, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Published docking systems: their attributes and zero-rotation areas of acceptance
+///
+/// 27 systems with eleven attributes each, eleven published areas, and the 3-D X-Face. What the source prints is shown as
+/// printed; a value that it does not define has its normal form beside it. --csv, --json and --markdown have every
+/// attribute.
+#[derive(Debug, Args)]
+#[command(
+    args_conflicts_with_subcommands = true,
+    group = ArgGroup::new("form").args(["json", "csv", "markdown", "as_printed"]),
+    after_long_help = "Examples:\n  \
+    catchment catalog\n  \
+    catchment catalog --where gendering=Ungendered --where degree=High\n  \
+    catchment catalog --sort zraa --append mine.toml   a design of yours among them\n  \
+    catchment catalog --as-printed 1.1                 the source's table, byte for byte\n  \
+    catchment catalog show DRAGON                      every number, and where it comes from\n  \
+    catchment catalog design polybot -o polybot.toml   a design file to run\n  \
+    catchment catalog -o figure.svg                    the published figure of areas, drawn again\n\n\
+    A value of --where is one that is printed, or a normal form; several conditions hold together, and values of one \
+    attribute are alternatives."
+)]
+pub(crate) struct CatalogArgs {
+    #[command(subcommand)]
+    command: Option<CatalogCommand>,
+    /// Only systems with this value of an attribute, such as gendering=Ungendered; may be repeated
+    #[arg(long = "where", value_name = "ATTRIBUTE=VALUE")]
+    conditions: Vec<String>,
+    /// Order of the rows: by date, or by area, the largest first
+    #[arg(long, value_name = "BY", value_enum)]
+    sort: Option<Sort>,
+    /// Add a design of yours as a row, classified by its own geometry; may be repeated
+    #[arg(long, value_name = "DESIGN", value_hint = clap::ValueHint::FilePath)]
+    append: Vec<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Print CSV, every attribute as printed and in its normal form
+    #[arg(long)]
+    csv: bool,
+    /// Print a table in Markdown
+    #[arg(long)]
+    markdown: bool,
+    /// Print a table of the source as CSV, byte for byte
+    #[arg(long, value_name = "TABLE", value_enum, conflicts_with_all = ["conditions", "sort", "append"])]
+    as_printed: Option<Printed>,
+    /// Which figure -o draws
+    #[arg(long, value_name = "FIGURE", value_enum, requires = "output")]
+    figure: Option<Figure>,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+#[derive(Debug, Subcommand)]
+enum CatalogCommand {
+    /// One system: every attribute, every number with its provenance
+    Show(ShowArgs),
+    /// Write the design file of a published geometry
+    Design(CatalogDesignArgs),
+}
+
+#[derive(Debug, Args)]
+struct ShowArgs {
+    /// Its name in either table
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct CatalogDesignArgs {
+    /// Which geometry
+    #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(
+        DESIGNS.map(|design| PossibleValue::new(design.name).help(design.summary))
+    ))]
+    name: String,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Sort {
+    Introduced,
+    Zraa,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Printed {
+    #[value(name = "1.1")]
+    Connectors,
+    #[value(name = "2.1")]
+    Zraa,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Figure {
+    /// Geometry, cross-section and area of each, one scale
+    #[value(name = "2.1")]
+    Comparison,
+    /// The cone, around and inside the unit square, over the 3-D X-Face
+    #[value(name = "4.2")]
+    Cone,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
+    match &args.command {
+        None => list(args),
+        Some(CatalogCommand::Show(show)) => {
+            let catalog = Catalog::published()?;
+            let report = SystemBody::report(catalog.named(&show.name).map_err(|error| unknown(&error))?);
+            to_stdout(&if show.json { report.to_json()? } else { report.table() })?;
+            Ok(ExitStatus::Done)
+        }
+        Some(CatalogCommand::Design(design)) => {
+            let text = DesignText::named(&design.name).map_or("", |design| design.text);
+            design.output.write(text)?;
+            Ok(ExitStatus::Done)
+        }
+    }
+}
+
+fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
+    let kind = args.file.kind(&["svg", "png"])?;
+    let mut catalog = Catalog::published()?;
+    let conditions: Result<Vec<Condition>, UnknownError> =
+        args.conditions.iter().map(|text| catalog.condition(text)).collect();
+    let conditions = conditions.map_err(|error| unknown(&error))?;
+    let problems: Result<Vec<Problem>, _> = args.append.iter().map(Problem::open).collect();
+    let problems = problems?;
+    if kind.is_some() || !problems.is_empty() {
+        let running = args.exec.start()?;
+        for problem in &problems {
+            catalog.append(&classify(problem, &running.exec)?);
+        }
+        if let Some(kind) = kind {
+            figures::ensure_fits(0, &running.exec)?;
+            let picture = match args.figure.unwrap_or(Figure::Comparison) {
+                Figure::Comparison => figure::comparison(&catalog, &running.exec)?,
+                Figure::Cone => figure::cone_over_x_face(),
+            };
+            drop(running);
+            if kind == "svg" {
+                args.file.write(picture.svg().as_bytes())?;
+            } else {
+                args.file.write(&picture.png(PNG_SCALE)?)?;
+            }
+        }
+    }
+    if let Some(table) = args.as_printed {
+        let table = match table {
+            Printed::Connectors => Table::Connectors,
+            Printed::Zraa => Table::Zraa,
+        };
+        to_stdout(&String::from_utf8_lossy(&catalog.as_printed(table)?))?;
+        return Ok(ExitStatus::Done);
+    }
+    let catalog = catalog.filtered(&conditions);
+    let catalog = match args.sort {
+        None => catalog,
+        Some(Sort::Introduced) => catalog.sorted(Order::Introduced),
+        Some(Sort::Zraa) => catalog.sorted(Order::Zraa),
+    };
+    let report = CatalogBody::report(&catalog);
+    let text = if args.json {
+        report.to_json()?
+    } else if args.csv {
+        String::from_utf8_lossy(&csv(&report.records())?).into_owned()
+    } else if args.markdown {
+        report.markdown()
+    } else {
+        report.table()
+    };
+    to_stdout(&text)?;
+    Ok(ExitStatus::Done)
+}
+
+/// What the catalogue does not know, with what it knows as the advice.
+fn unknown(error: &UnknownError) -> Failure {
+    Failure::with_help(error.to_string(), error.help())
+}

@@ -1,0 +1,40 @@
+//! `catchment classify`: a design among the published systems.
+
+use crate::args::DesignArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::to_stdout;
+use catchment_systems::catalog::report::ClassifyBody;
+use catchment_systems::catalog::{Catalog, classify as classified};
+use clap::Args;
+
+/// Where a design stands among published systems: degree, gendering, ratios of areas
+///
+/// Its self-aligning degree by the published rule, from its own zero-rotation area of acceptance; whether its halves
+/// are alike; its area and the largest square inside beside those that were published.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment classify design.toml\n  \
+    catchment classify design.toml --json | jq .degree\n  \
+    catchment catalog --append design.toml   as a row of the catalogue")]
+pub(crate) struct ClassifyArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+pub(crate) fn run(args: &ClassifyArgs) -> Result<ExitStatus, Failure> {
+    let catalog = Catalog::published()?;
+    let problem = args.design.problem()?;
+    let running = args.exec.start()?;
+    let found = classified(&problem, &running.exec)?;
+    drop(running);
+    let report = ClassifyBody::report(problem.design(), &found, &catalog);
+    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
+    Ok(ExitStatus::Done)
+}

@@ -1,0 +1,175 @@
+//! The eleven attributes of table 1.1, and the values of it that the text does not define.
+
+use serde::Serialize;
+
+/// A column of table 1.1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Attribute {
+    /// Month of its publication.
+    Introduced,
+    /// How far contact or magnets align it, without any action.
+    SelfAligningDegree,
+    /// Whether a half pairs with any other, or with those of the other kind only.
+    Gendering,
+    /// Whether connecting needs an action by a module.
+    ConnectionActivity,
+    /// Whether disconnecting does.
+    DisconnectionActivity,
+    /// Which modules must act to connect.
+    ConnectionAgency,
+    /// Which must act to disconnect.
+    DisconnectionAgency,
+    /// What holds the halves together.
+    ConnectionType,
+    /// The power that staying connected takes.
+    ConnectionMaintenance,
+    /// Whether the connection gives way.
+    Compliance,
+    /// The usual direction of approach to the face.
+    ApproachAngle,
+}
+
+/// Attribute, name in the table's file, other names, what a person reads above it.
+type Named = (Attribute, &'static str, &'static [&'static str], &'static str);
+
+const NAMES: [Named; 11] = [
+    (Attribute::Introduced, "introduced", &["date"], "introduced"),
+    (Attribute::SelfAligningDegree, "self_aligning_degree", &["degree"], "self-aligning degree"),
+    (Attribute::Gendering, "gendering", &[], "gendering"),
+    (Attribute::ConnectionActivity, "connection_activity", &[], "connection activity"),
+    (Attribute::DisconnectionActivity, "disconnection_activity", &[], "disconnection activity"),
+    (Attribute::ConnectionAgency, "connection_agency", &[], "connection agency"),
+    (Attribute::DisconnectionAgency, "disconnection_agency", &[], "disconnection agency"),
+    (Attribute::ConnectionType, "connection_type", &["type"], "connection type"),
+    (Attribute::ConnectionMaintenance, "connection_maintenance", &["maintenance"], "connection maintenance"),
+    (Attribute::Compliance, "compliance", &[], "compliance"),
+    (Attribute::ApproachAngle, "approach_angle", &["approach"], "approach angle"),
+];
+
+impl Attribute {
+    /// All of them, in the order of the table.
+    pub const ALL: [Self; 11] = [
+        Self::Introduced,
+        Self::SelfAligningDegree,
+        Self::Gendering,
+        Self::ConnectionActivity,
+        Self::DisconnectionActivity,
+        Self::ConnectionAgency,
+        Self::DisconnectionAgency,
+        Self::ConnectionType,
+        Self::ConnectionMaintenance,
+        Self::Compliance,
+        Self::ApproachAngle,
+    ];
+
+    /// Its place in the table.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Its name in files and on the command line.
+    pub const fn key(self) -> &'static str {
+        NAMES[self.index()].1
+    }
+
+    /// Its name for people.
+    pub const fn title(self) -> &'static str {
+        NAMES[self.index()].3
+    }
+
+    /// The attribute of a name; short names count, upper and lower case do not.
+    pub fn named(name: &str) -> Option<Self> {
+        let is = |known: &str| known.eq_ignore_ascii_case(name);
+        NAMES.iter().find(|(_, key, others, _)| is(key) || others.iter().any(|o| is(o))).map(|named| named.0)
+    }
+
+    /// The value in the terms that the text defines: the printed one, but for [`ODDITIES`].
+    pub fn normal(self, printed: &str) -> &str {
+        self.oddity(printed).map_or(printed, |oddity| oddity.normal)
+    }
+
+    /// What is odd about a printed value.
+    pub fn oddity(self, printed: &str) -> Option<&'static Oddity> {
+        ODDITIES.iter().find(|oddity| oddity.attribute == self && oddity.printed == printed)
+    }
+}
+
+/// A printed value that the text does not define or that is spelt in two ways, and how we read it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Oddity {
+    /// Where it stands.
+    pub attribute: Attribute,
+    /// What is printed.
+    pub printed: &'static str,
+    /// Our reading.
+    pub normal: &'static str,
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// What a value is called that the table leaves open.
+const UNSTATED: &str = "unstated";
+/// What a value is called that the table says does not apply.
+const NOT_APPLICABLE: &str = "not applicable";
+const NO_AGENCY: &str = "a dash is printed, and the text does not say what it means";
+const PEBBLES: &str = "its row is a passive system that assembles itself";
+
+const fn odd(
+    attribute: Attribute,
+    printed: &'static str,
+    normal: &'static str,
+    reason: &'static str,
+) -> Oddity {
+    Oddity { attribute, printed, normal, reason }
+}
+
+/// Every printed value that has another normal form. The readings are ours.
+pub const ODDITIES: [Oddity; 11] = [
+    odd(
+        Attribute::SelfAligningDegree,
+        "Active",
+        "None",
+        "none of the three degrees that the text defines; a mechanism that aligns falls under its \"None\"",
+    ),
+    odd(Attribute::DisconnectionActivity, "Manual", "Passive", "a hand undoes it: no module acts"),
+    odd(
+        Attribute::ConnectionType,
+        "Magnet",
+        "Magnetic",
+        "the same mechanism is Magnetic in eight other rows",
+    ),
+    odd(
+        Attribute::ConnectionType,
+        "Mag/Latching",
+        "Magnetic and latching",
+        "both mechanisms; which of them carries the load is not said",
+    ),
+    odd(Attribute::ConnectionMaintenance, "Low Power", "Powered", "it needs power, if little"),
+    odd(
+        Attribute::ConnectionMaintenance,
+        "Single Pump per Cluster",
+        "Powered",
+        "the pump that holds it runs on power, once for all modules",
+    ),
+    odd(Attribute::ConnectionAgency, "-", UNSTATED, NO_AGENCY),
+    odd(Attribute::DisconnectionAgency, "-", UNSTATED, NO_AGENCY),
+    odd(Attribute::ConnectionActivity, "N/A", NOT_APPLICABLE, PEBBLES),
+    odd(Attribute::ConnectionAgency, "N/A", NOT_APPLICABLE, PEBBLES),
+    odd(Attribute::ApproachAngle, "N/A", NOT_APPLICABLE, PEBBLES),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_attribute_is_found_by_its_names() {
+        for (k, (attribute, key, others, _)) in NAMES.iter().enumerate() {
+            assert_eq!((attribute.index(), Attribute::ALL[k]), (k, *attribute));
+            assert_eq!(Attribute::named(&key.to_uppercase()), Some(*attribute));
+            assert!(others.iter().all(|other| Attribute::named(other) == Some(*attribute)));
+        }
+        assert_eq!(Attribute::named("colour"), None);
+    }
+}

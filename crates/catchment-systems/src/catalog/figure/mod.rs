@@ -1,0 +1,123 @@
+//! Figures 2.1 and 4.2, drawn again from geometry and numbers.
+//!
+//! ```text
+//!   comparison           a row per known region: the halves │ cross-section along the approach │ region, unit square, ONAA
+//!                        below: every published area on one scale; of most the shape is unknown
+//!   cone_over_x_face     the cone's circle around and inside the unit square, over the diamond of the X-Face
+//! ```
+//!
+//! Which rows the published figure 2.1 had is not known: here are those whose region is known. Regions of families are computed by the
+//! program, that of `PolyBot` is its closed form, and that of DRAGON is the circle of its printed number and says so. Everything is drawn with
+//! width D, but the cone around the unit square, which is √2 D wide.
+
+mod cells;
+mod rows;
+mod scale;
+
+pub use cells::cone_over_x_face;
+
+use super::data::Catalog;
+use super::designs::DesignText;
+use catchment::design::SourceText;
+use catchment::exec::{Cancelled, Exec};
+use catchment::method::zraa::ZraaError;
+use catchment::problem::{Draft, Problem, ProblemError};
+use catchment::report::figure::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
+use catchment::report::figure::{FigureError, Picture};
+
+/// Why a picture is not drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum DrawError {
+    /// A geometry could not be built.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// A region could not be computed.
+    #[error(transparent)]
+    Zraa(#[from] ZraaError),
+    /// Stopped on request.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A picture could not be made.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+}
+
+/// The problem of a design that the program writes.
+fn problem(name: &str) -> Result<Problem, ProblemError> {
+    let text = DesignText::named(name).map_or("", |design| design.text);
+    Draft::read(SourceText::new(format!("{name}.toml"), text))?.build()
+}
+
+/// Rows of a block, blocks side by side.
+const ROWS: usize = 5;
+/// Height of a row, width of a block.
+const ROW: f64 = 136.0;
+const BLOCK: f64 = 560.0;
+
+/// Figure 2.1: connectors, cross-sections and zero-rotation areas of acceptance, on one scale.
+///
+/// # Errors
+/// If a region cannot be computed, or it is cancelled.
+pub fn comparison(catalog: &Catalog, exec: &Exec) -> Result<Picture, DrawError> {
+    let rows = rows::all(catalog, exec)?;
+    let blocks = rows.len().div_ceil(ROWS);
+    let top = 96.0;
+    let below = top + ROW * ROWS as f64 + 30.0;
+    let width = 20.0 + BLOCK * blocks as f64;
+    let areas = scale::height(catalog);
+    let mut svg = Svg::new(width, below + areas + 20.0);
+    svg.bold(
+        [24.0, 30.0],
+        TITLE + 1.0,
+        Anchor::Start,
+        "Zero-rotation areas of acceptance of published connectors",
+    );
+    let story = "one scale; dotted: the unit square, of width D; dashed: the largest square in the area of acceptance (ONAA)";
+    svg.text([24.0, 51.0], LABEL, Anchor::Start, SOFT, story);
+    for block in 0..blocks {
+        let left = 24.0 + BLOCK * block as f64;
+        for (k, heading) in
+            ["the two halves", "along the approach", "area of acceptance"].into_iter().enumerate()
+        {
+            let x = left + rows::NAMES + (k as f64 + 0.5) * rows::CELL;
+            svg.text([x, top - 12.0], LABEL, Anchor::Middle, INK, heading);
+        }
+    }
+    for (k, row) in rows.iter().enumerate() {
+        let at = [24.0 + BLOCK * (k / ROWS) as f64, top + ROW * (k % ROWS) as f64];
+        row.draw(&mut svg, at)?;
+    }
+    scale::draw(&mut svg, catalog, Rect { x: 24.0, y: below, w: width - 48.0, h: areas });
+    Ok(Picture::of(svg))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_figures_are_drawn_with_their_numbers() {
+        let catalog = Catalog::published().unwrap();
+        let picture = comparison(&catalog, &Exec::new()).unwrap();
+        let svg = picture.svg();
+        for words in [
+            "1.570796 D²",
+            "π/2",
+            "PolyBot",
+            "DRAGON",
+            "1.99995 D²",
+            "SINGO Connector",
+            "shape unknown",
+            "0.0187*",
+        ] {
+            assert!(svg.contains(words), "{words}");
+        }
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        let picture = cone_over_x_face();
+        assert!(picture.svg().contains("1.5708") && picture.svg().contains("0.7854"));
+        if let Some(folder) = std::env::var_os("CATCHMENT_PICTURES") {
+            let folder = std::path::PathBuf::from(folder);
+            std::fs::write(folder.join("catalog-4.2.png"), picture.png(2.0).unwrap()).unwrap();
+        }
+    }
+}

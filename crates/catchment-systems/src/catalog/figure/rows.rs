@@ -1,0 +1,203 @@
+//! The rows of figure 2.1: connectors whose region is known.
+
+use super::super::data::PublishedZraa;
+use super::super::facts::{Fact, Shape};
+use super::super::{Catalog, GEOMETRY};
+use super::cells::{ACCEPTED, View, corners, dashed, dotted, face, filled};
+use super::{DrawError, problem};
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use catchment::exec::Exec;
+use catchment::method::zraa::{Settings, Square, Zraa, run};
+use catchment::pose::PoseError;
+use catchment::problem::Problem;
+use catchment::report::figure::draw::colour::{NOTHING, hex, mix};
+use catchment::report::figure::draw::svg::{Anchor, INK, Rect, SOFT, Svg};
+use catchment::report::figure::{Placement, solid_panel};
+use glam::DVec2;
+use std::f64::consts::SQRT_2;
+
+/// Width of the names, and of each of the three cells.
+pub(super) const NAMES: f64 = 152.0;
+pub(super) const CELL: f64 = 126.0;
+/// Room between cells.
+const GAP: f64 = 6.0;
+/// Offsets that a cell shows, in D.
+const REACH: f64 = 1.08;
+/// What a cross-section shows, in D: half of the widest.
+const SECTION: f64 = 0.76;
+/// How far apart the halves are drawn, in D.
+const APART: f64 = 0.9;
+/// Height of the strip that stands for an interval, in D.
+const STRIP: f64 = 0.16;
+
+/// A connector with its region.
+pub(super) struct Row {
+    name: &'static str,
+    words: Vec<String>,
+    problem: Option<Problem>,
+    /// How wide it is, in D.
+    width: f64,
+    region: Region,
+}
+
+enum Region {
+    Computed(Zraa, Square),
+    Closed(Shape),
+    /// The circle of a printed area.
+    OfNumber(Shape),
+}
+
+/// Families, their names here, and how wide they are drawn.
+const FAMILIES: [(Family, &str, f64, &str); 7] = [
+    (Family::Cone, "cone, around", SQRT_2, "around the unit square"),
+    (Family::Cone, "cone, inside", 1.0, "inside the unit square"),
+    (Family::Pyramid, "pyramid", 1.0, "square, gendered"),
+    (Family::XFace3d, "3-D X-Face", 1.0, "|x| + |y| < D"),
+    (Family::XFace3dLocking, "locking 3-D X-Face", 1.0, "a lip takes the corners"),
+    (Family::VFace, "V-Face", 1.0, "planar, ±D/2"),
+    (Family::XFace, "X-Face", 1.0, "planar, ±D"),
+];
+
+/// Every row, in order.
+pub(super) fn all(catalog: &Catalog, exec: &Exec) -> Result<Vec<Row>, DrawError> {
+    let mut rows = Vec::new();
+    for (family, name, width, words) in FAMILIES {
+        rows.push(of_family(family, name, width, words, exec)?);
+    }
+    let shape =
+        |system: &str| GEOMETRY.iter().find(|fact| fact.system == system).and_then(|f: &Fact| f.shape);
+    if let Some((shape, _)) = shape("Polybot G3") {
+        let words = ["π · (2/50)² D²", "4 pairs of pins, Ø 4 mm", "on a face of 50 mm"];
+        rows.insert(
+            5,
+            Row {
+                name: "PolyBot",
+                words: told(&words, shape.area(), shape.onaa()),
+                problem: Some(problem("polybot")?),
+                width: 1.0,
+                region: Region::Closed(shape),
+            },
+        );
+    }
+    let dragon = catalog.find("DRAGON").and_then(|system| system.published.as_ref());
+    if let Some(&PublishedZraa { area_d2, .. }) = dragon {
+        let shape = Shape::Disc((area_d2 / std::f64::consts::PI).sqrt());
+        let words = ["circle of the published", "area: drawn from the", "number, not from geometry"];
+        rows.insert(
+            6,
+            Row {
+                name: "DRAGON",
+                words: told(&words, area_d2, shape.onaa()),
+                problem: None,
+                width: 1.0,
+                region: Region::OfNumber(shape),
+            },
+        );
+    }
+    rows.push(of_family(Family::SFace, "S-Face", 1.0, "planar, ±D/3", exec)?);
+    Ok(rows)
+}
+
+/// The words of a row: what it is, its area and edge.
+fn told(words: &[&str], area: f64, edge: f64) -> Vec<String> {
+    let mut lines = vec![format!("{} D²", trimmed(area, 6)), format!("ONAA {} D", trimmed(edge, 4))];
+    lines.extend(words.iter().map(|&words| words.to_owned()));
+    lines
+}
+
+/// A number without zeros at its end.
+fn trimmed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn of_family(
+    family: Family,
+    name: &'static str,
+    width: f64,
+    words: &str,
+    exec: &Exec,
+) -> Result<Row, DrawError> {
+    /// Finer than the default, so that what is printed is the circle's to three digits.
+    const CHORD_ERROR: f64 = 0.0004;
+    let connector = ConnectorSpec::Family(FamilySpec::new(family).with_chord_error(CHORD_ERROR));
+    let alignment = Alignment::default_for(Some(family));
+    let design = Design { name: name.to_owned(), connector, width: 1.0, unit: None, alignment };
+    let problem = Problem::of(design)?;
+    let zraa = run(problem.pair(), &Settings::default(), exec)?;
+    let square = Square::of(&zraa, exec)?;
+    let words = match (&zraa, family) {
+        (Zraa::Interval { from, to, .. }, _) => {
+            vec![format!("{} D long", trimmed(to - from, 4)), words.to_owned()]
+        }
+        // What is printed is the circle's.
+        (Zraa::Region { .. }, Family::Cone) => {
+            let shape = Shape::Disc(0.5 * width);
+            let area = if width > 1.0 { "π/2, as amour is published" } else { "π/4" };
+            told(&[area, words], shape.area(), shape.onaa())
+        }
+        (Zraa::Region { area, .. }, _) => told(&[words], *area, square.edge),
+    };
+    Ok(Row { name, words, problem: Some(problem), width, region: Region::Computed(zraa, square) })
+}
+
+impl Row {
+    /// Draws the row with its upper left corner at a place.
+    pub(super) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2]) -> Result<(), DrawError> {
+        svg.bold([x, y + 22.0], 13.0, Anchor::Start, self.name);
+        for (k, words) in self.words.iter().enumerate() {
+            let (size, fill) = if k < 2 { (11.5, INK) } else { (10.0, SOFT) };
+            svg.text([x, y + 41.0 + 16.0 * k as f64], size, Anchor::Start, fill, words);
+        }
+        let side = CELL - GAP;
+        let cell = |k: usize| Rect { x: x + NAMES + CELL * k as f64, y, w: side, h: side };
+        match &self.problem {
+            Some(problem) => {
+                let height = APART - problem.alignment().center_of_rotation;
+                let placement = Placement { error: PoseError::default(), height };
+                solid_panel(svg, cell(0), problem.design(), problem.connector(), &placement)?;
+                let view = View::new(cell(1), SECTION);
+                face(svg, &view, &problem.connector().fixed, self.width);
+                view.square(svg, DVec2::ZERO, 1.0, &dotted());
+            }
+            None => {
+                for k in 0..2 {
+                    let place = cell(k);
+                    let middle = [place.x + side / 2.0, place.y + side / 2.0];
+                    svg.text(middle, 11.0, Anchor::Middle, SOFT, "not stated");
+                }
+            }
+        }
+        self.region(svg, cell(2));
+        Ok(())
+    }
+
+    fn region(&self, svg: &mut Svg, rect: Rect) {
+        svg.rect(rect, &format!(r#"fill="{}""#, hex(mix(NOTHING, [255; 3], 0.4))));
+        let view = View::new(rect, REACH);
+        let style = filled(ACCEPTED);
+        match &self.region {
+            Region::Computed(Zraa::Region { polygons, .. }, square) => {
+                for polygon in polygons {
+                    let corners: Vec<DVec2> = polygon.iter().map(|p| self.width * *p).collect();
+                    view.path(svg, &corners, &style);
+                }
+                view.square(svg, self.width * square.center, self.width * square.edge, &dashed());
+            }
+            Region::Computed(Zraa::Interval { from, to, .. }, _) => {
+                let half = STRIP / 2.0;
+                let corners = [(*from, -half), (*to, -half), (*to, half), (*from, half)].map(DVec2::from);
+                view.path(svg, &corners, &style);
+            }
+            Region::Closed(shape) => {
+                view.path(svg, &corners(*shape), &style);
+                view.square(svg, DVec2::ZERO, shape.onaa(), &dashed());
+            }
+            Region::OfNumber(shape) => {
+                view.path(svg, &corners(*shape), &filled(mix(ACCEPTED, [255; 3], 0.5)));
+                view.square(svg, DVec2::ZERO, shape.onaa(), &dashed());
+            }
+        }
+        view.square(svg, DVec2::ZERO, 1.0, &dotted());
+    }
+}

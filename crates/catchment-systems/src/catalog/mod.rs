@@ -1,0 +1,35 @@
+//! Published docking systems, what is known of their areas of acceptance, and where a design stands among them.
+//!
+//! ```text
+//!   table 1.1   27 systems × 11 attributes ─┐ joined by a list of names,
+//!   table 2.1   11 areas of acceptance ─────┤ never by likeness
+//!   section 4.1 the 3-D X-Face, 2.0 ────────┴──▶ Catalog ──▶ table, CSV, JSON, Markdown, figures 2.1 and 4.2
+//!                                                  ▲
+//!   a design ──▶ classify ── degree, gendering ────┘ a row of its own
+//! ```
+//!
+//! Areas are in D², D the characteristic length of the face, edges in D. What the tables print stays as it is: where a value is none of
+//! those that the text defines, a normal form stands beside it with its reason ([`Oddity`]). Every number says where it comes from
+//! ([`Provenance`]): stated by the dissertation, computed here from what it states, or our reading.
+//!
+//! Not promised: that an area computed here is that of the system that was built. Three geometries are given well enough to compute
+//! ([`GEOMETRY`]); for all others the printed number is all there is. Source: the dissertation, sections 1.1 (table 1.1), 2.1.1
+//! (table 2.1, figure 2.1) and 4.1 (figure 4.2).
+
+mod attribute;
+mod classify;
+mod data;
+mod designs;
+mod facts;
+pub mod figure;
+mod filter;
+pub mod report;
+mod rule;
+
+pub use attribute::{Attribute, ODDITIES, Oddity};
+pub use classify::{Classified, ClassifyError, Ratio, classify};
+pub use data::{ALIASES, Catalog, DataError, PublishedZraa, Source, System, Table};
+pub use designs::{DESIGNS, DesignText};
+pub use facts::{Fact, GEOMETRY, Number, Provenance, Shape, numbers};
+pub use filter::{Condition, Order, UnknownError};
+pub use rule::{Degree, Extents, HIGH};
