@@ -13,4 +13,5 @@
 //!
 //! Each stands by itself on `catchment`, which knows none of them. [`form`] reads their files.
 
+pub mod compose;
 pub mod form;

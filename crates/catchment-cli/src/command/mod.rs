@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod completions;
+mod compose;
 mod export;
 mod man;
 mod new;
@@ -29,6 +30,7 @@ pub(crate) enum Command {
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
+    Compose(Box<compose::ComposeArgs>),
     Export(Box<export::ExportArgs>),
     Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
@@ -48,6 +50,7 @@ impl Command {
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
+            Self::Compose(args) => compose::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),

@@ -6,6 +6,7 @@ mod area;
 mod bad_inputs;
 mod check;
 mod compare;
+mod compose;
 mod door;
 mod files;
 mod hostile;
