@@ -15,3 +15,4 @@
 
 pub mod compose;
 pub mod form;
+pub mod invert;

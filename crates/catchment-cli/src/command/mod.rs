@@ -5,6 +5,7 @@ mod compare;
 mod completions;
 mod compose;
 mod export;
+mod invert;
 mod man;
 mod new;
 mod outcome;
@@ -32,6 +33,7 @@ pub(crate) enum Command {
     Zraa(zraa::ZraaArgs),
     Compose(Box<compose::ComposeArgs>),
     Export(Box<export::ExportArgs>),
+    Invert(invert::InvertArgs),
     Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
     Completions(completions::CompletionsArgs),
@@ -52,6 +54,7 @@ impl Command {
             Self::Zraa(args) => zraa::run(&args),
             Self::Compose(args) => compose::run(&args),
             Self::Export(args) => export::run(&args),
+            Self::Invert(args) => invert::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),
             Self::Completions(args) => completions::run(&args),

@@ -248,7 +248,7 @@ fn map(halves: &[Read; 2], settings: &Settings, heading: f64, exec: &Exec) -> Re
     let (Some([la, ha]), Some([lb, hb])) = (first.bounds(), second.bounds()) else { return Ok(empty) };
     let (low, high) = (la + lb, ha + hb);
     let cell = (high - low).max_element() / settings.map_cells as f64;
-    if !(cell > 0.0) {
+    if cell <= 0.0 {
         return Ok(empty);
     }
     let cells = [high.x - low.x, high.y - low.y].map(|extent| ((extent / cell).ceil() as usize).max(1));

@@ -141,13 +141,13 @@ fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<(String, Ring)>, fou
     };
     for row in rows {
         let label = columns.ring.and_then(|k| row.fields.get(k)).map_or("", |(text, _)| text).to_owned();
-        let coordinates = [columns.x, columns.y].map(|k| match row.fields.get(k) {
-            Some((text, span)) => number(text, span).map_err(|finding| found.push(finding)).ok(),
-            None => {
+        let coordinates = [columns.x, columns.y].map(|k| {
+            let Some((text, span)) = row.fields.get(k) else {
                 let message = "a coordinate is missing in this line";
                 found.push(Finding::new(message, None).at(Some(row.span.clone())));
-                None
-            }
+                return None;
+            };
+            number(text, span).map_err(|finding| found.push(finding)).ok()
         });
         let [Some(x), Some(y)] = coordinates else { continue };
         let corner = (DVec2::new(x, y) * factor, row.span.clone());

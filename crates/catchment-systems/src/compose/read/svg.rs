@@ -134,7 +134,7 @@ fn path_rings(
         }
     };
     // Up is +y, and down the picture is not.
-    let corner = |p: kurbo::Point| (DVec2::new(p.x, -p.y) * factor, span.clone());
+    let corner = |p: kurbo::Point| (DVec2::new(p.x, 0.0 - p.y) * factor, span.clone());
     kurbo::flatten(path, CHORD_ERROR / factor, |element| match element {
         PathEl::MoveTo(p) => {
             ended(&mut ring, false);

@@ -162,7 +162,8 @@ fn polygon(form: &mut Form<'_>, table: &Section<'_>) -> Shape {
 fn angles(form: &mut Form<'_>, table: &Section<'_>) -> [f64; 2] {
     let from = form.angle(table, "from", ANGLES, None);
     let to = form.angle(table, "to", ANGLES, None);
-    if !(from < to && to - from <= TAU + 1e-9) && !form.is_refused() {
+    let sound = from < to && to - from <= TAU + 1e-9;
+    if !sound && !form.is_refused() {
         form.refuse(table.span_of("to"), "`to` must be larger than `from`, by at most a full turn", None);
     }
     [from, to.min(from + TAU)]

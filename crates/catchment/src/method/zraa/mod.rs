@@ -17,10 +17,12 @@
 mod cells;
 mod circle;
 mod flow;
+mod heights;
 mod line;
 mod sheet;
 
 pub use circle::circle_bounds;
+pub use heights::{HeightFacet, heights};
 
 use crate::contact::{Pair, Play, Seat, play};
 use crate::design::Alignment;
