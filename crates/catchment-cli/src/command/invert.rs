@@ -9,8 +9,10 @@ use crate::source::read_table;
 use catchment::design::{Design, Quantity};
 use catchment::exec::Exec;
 use catchment::problem::Problem;
+use catchment::report::figure::{FigureError, Picture, Placement, ensure_fits, solids};
 use catchment_systems::invert::{
-    Heights, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, report, wanted_from_table,
+    Heights, Inverse, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, report,
+    wanted_from_table,
 };
 use clap::Args;
 use glam::DMat3;
@@ -28,7 +30,7 @@ use std::path::{Path, PathBuf};
     catchment invert design.toml --heights wanted.csv  a grid: x,y,height, in D\n  \
     catchment invert design.toml --yaw \"-20 deg\" --yaw \"20 deg\"\n  \
     catchment run new.toml                             what the result accepts\n\n\
-    -o writes the pair as a design file (.toml): its halves as convex pieces.")]
+    -o writes the pair as a design file (.toml), its halves as convex pieces, or a picture of it (.svg, .png).")]
 pub(crate) struct InvertArgs {
     #[command(flatten)]
     design: DesignArgs,
@@ -56,8 +58,13 @@ pub(crate) struct InvertArgs {
     exec: ExecArgs,
 }
 
+/// How far apart the halves are drawn, in D.
+const APART: f64 = 0.9;
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
 pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
-    args.file.kind(&["toml"])?;
+    let kind = args.file.kind(&["toml", "svg", "png"])?;
     if !(0.0..=100.0).contains(&args.backing) || args.backing == 0.0 {
         let help = "a half needs material: give a number above 0".to_owned();
         return Err(Failure::with_help(format!("--backing {} is no thickness", args.backing), Some(help)));
@@ -70,6 +77,9 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
         .map_err(|complaint| Failure::with_help(format!("--min-feature: {complaint}"), complaint.help()))?;
     let running = args.exec.start()?;
     let exec = &running.exec;
+    if matches!(kind, Some("svg" | "png")) {
+        ensure_fits(0, exec)?;
+    }
     let wanted = match &args.heights {
         None => heights_of(design, connector, DMat3::IDENTITY, exec)?,
         Some(path) => wanted(path, design, exec)?,
@@ -78,16 +88,26 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     let found = invert(design, connector, wanted, &settings, exec)?;
     drop(running);
     let report = report(design, &found, Limits { feature_d, draft_rad: args.min_draft });
-    if report.pieces_d.len() > MAX_PIECES && args.file.kind(&["toml"])?.is_some() {
+    if report.pieces_d.len() > MAX_PIECES && kind == Some("toml") {
         let help = "want heights on a coarser grid".to_owned();
         let count = report.pieces_d.len();
         let message = format!("the new half has {count} convex pieces, and a design takes {MAX_PIECES}");
         return Err(Failure::with_help(message, Some(help)));
     }
-    args.file.write(design_file(design, &found).as_bytes())?;
+    match kind {
+        Some("toml") => args.file.write(design_file(design, &found).as_bytes())?,
+        Some("svg") => args.file.write(drawn(design, &found)?.svg().as_bytes())?,
+        Some(_) => args.file.write(&drawn(design, &found)?.png(PNG_SCALE)?)?,
+        None => {}
+    }
     let notes: Vec<String> =
         report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
     tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
+}
+
+/// Both halves in space, apart.
+fn drawn(design: &Design, found: &Inverse) -> Result<Picture, FigureError> {
+    solids(design, &found.connector, &Placement::mated(design, APART))
 }
 
 /// The heights that a file wants.

@@ -10,6 +10,7 @@ mod compose;
 mod door;
 mod files;
 mod hostile;
+mod invert;
 mod kills;
 mod limits;
 mod meshes;

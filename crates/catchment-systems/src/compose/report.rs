@@ -228,7 +228,7 @@ impl ComposeBody {
                     &format!("{} {unit} about x {x}, y {y}", significant(square.side)),
                 );
                 let [a, b, c, d] = reach.map(significant);
-                row(text, "from there", &format!("x −{a} … +{b}, y −{c} … +{d} {unit}"));
+                row(text, "from there", &format!("x -{a} … +{b}, y -{c} … +{d} {unit}"));
             }
             _ => row(text, "largest square", "none"),
         }

@@ -156,7 +156,7 @@ impl InvertBody {
         let share = percent(self.contact_patch_d2 / self.plan_d2);
         row(text, "contact", &format!("{} D², {share} of the plan", significant(self.contact_patch_d2)));
         row(text, "draft", &format!("{}° at least", significant(self.draft_rad.to_degrees())));
-        row(text, "narrowest facet", &format!("{} D", significant(self.narrowest_d)));
+        row(text, "least width", &format!("{} D, of a facet", significant(self.narrowest_d)));
         if !self.settings.yaw.is_empty() {
             let turns: Vec<String> = self.settings.yaw.iter().map(|v| significant(v.to_degrees())).collect();
             wrapped(
@@ -215,7 +215,7 @@ pub fn design_file(design: &Design, found: &Inverse) -> String {
         for piece in pieces {
             let corners: Vec<String> = piece
                 .iter()
-                .map(|p| format!("[{}]", (*p * design.width).to_array().map(number).join(", ")))
+                .map(|p| format!("[{}]", (*p * design.width).to_array().map(|v| number(v + 0.0)).join(", ")))
                 .collect();
             line(&mut text, &format!("  [{}],", corners.join(", ")));
         }
@@ -232,7 +232,7 @@ pub fn design_file(design: &Design, found: &Inverse) -> String {
     line(&mut text, &format!("center_of_rotation = {}", number(alignment.center_of_rotation)));
     line(&mut text, &format!("rotation_length = {}", number(alignment.rotation_length)));
     line(&mut text, "[errors]");
-    for dof in Dof::ALL {
+    for dof in Dof::ALL.into_iter().filter(|dof| alignment.free.contains(*dof)) {
         line(&mut text, &format!("{} = {}", dof.name(), number(alignment.half_range(dof))));
     }
     text
