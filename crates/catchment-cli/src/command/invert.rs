@@ -9,7 +9,7 @@ use crate::source::read_table;
 use catchment::design::{Design, Quantity};
 use catchment::exec::Exec;
 use catchment::problem::Problem;
-use catchment::report::figure::{FigureError, Picture, Placement, ensure_fits, solids};
+use catchment::report::figure::{FigureError, Picture, Placement, ensure_fits, section};
 use catchment_systems::invert::{
     Heights, Inverse, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, report,
     wanted_from_table,
@@ -59,7 +59,7 @@ pub(crate) struct InvertArgs {
 }
 
 /// How far apart the halves are drawn, in D.
-const APART: f64 = 0.9;
+const APART: f64 = 0.25;
 /// Pixels per unit of a picture.
 const PNG_SCALE: f32 = 2.0;
 
@@ -105,9 +105,9 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
 }
 
-/// Both halves in space, apart.
+/// Both halves cut along the approach axis, apart.
 fn drawn(design: &Design, found: &Inverse) -> Result<Picture, FigureError> {
-    solids(design, &found.connector, &Placement::mated(design, APART))
+    section(design, &found.connector, &Placement::mated(design, APART))
 }
 
 /// The heights that a file wants.

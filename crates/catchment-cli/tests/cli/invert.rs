@@ -30,7 +30,7 @@ fn what_cannot_be_reached_is_said_with_its_place() {
     let most = found["most_unattained_d"].as_f64().unwrap();
     assert_eq!(found["attained"], most == 0.0);
     // A bowl of slope 0.6 in a socket of slope 1: away from the middle the sides of the socket carry more than is wanted.
-    assert!(most > 0.01 && !found["unattained"][0]["polygon_d"].as_array().unwrap().is_empty(), "{most}");
+    assert!(most > 0.01 && !found["unattained"][0]["polygon"].as_array().unwrap().is_empty(), "{most}");
     let ran = run(home.path(), &["check", "q.toml"]);
     assert!(ran.starts_with("exit "), "{ran}");
 }

@@ -331,7 +331,7 @@ mod tests {
         let (near, far) = (3.0, 5.0f64.hypot(1.5));
         let mut area = 0.0;
         for k in 0..rings {
-            let r = near + (far - near) * (k as f64 + 0.5) / f64::from(rings);
+            let r = near + (far - near) * (f64::from(k) + 0.5) / f64::from(rings);
             let samples = 4000;
             let angle = |j: i32| -0.3 + (f64::from(j) + 0.5) / f64::from(samples);
             let inside = |j: &i32| {

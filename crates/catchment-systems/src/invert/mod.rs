@@ -55,6 +55,8 @@ use serde::{Deserialize, Serialize};
 
 /// Half the strip along x over which a planar design is asked, in D: narrower than half the gap between layers (0.1 D).
 const STRIP: f64 = 0.005;
+/// Beyond every offset at which halves touch, in D.
+const FAR: f64 = 100.0;
 /// What is nearer to zero, in D, is reached.
 pub const REACHED: f64 = 1e-9;
 
@@ -136,8 +138,6 @@ fn counted(design: &Design, heights: Heights) -> Heights {
     if !is_planar(design) {
         return heights;
     }
-    /// Beyond every offset at which halves touch, in D.
-    const FAR: f64 = 100.0;
     let strip = [(-FAR, -STRIP), (FAR, -STRIP), (FAR, STRIP), (-FAR, STRIP)].map(|(x, y)| DVec2::new(x, y));
     heights.within(&strip)
 }

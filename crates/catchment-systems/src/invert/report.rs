@@ -59,15 +59,15 @@ pub struct InvertBody {
     pub narrowest_d: f64,
 }
 
-/// One polygon of offsets at which the wanted height is not reached.
+/// One polygon of offsets at which the wanted height is not reached, in D.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ShortfallReport {
     /// Corners of the offsets.
-    pub polygon_d: Vec<[f64; 2]>,
+    pub polygon: Vec<[f64; 2]>,
     /// Largest h* − h over it.
-    pub most_d: f64,
+    pub most: f64,
     /// Where.
-    pub at_d: [f64; 2],
+    pub at: [f64; 2],
 }
 
 impl Body for InvertBody {
@@ -97,9 +97,9 @@ pub fn report(design: &Design, found: &Inverse, limits: Limits) -> InvertReport 
             .iter()
             .take(MOST_TOLD)
             .map(|s| ShortfallReport {
-                polygon_d: s.polygon.iter().map(DVec2::to_array).collect(),
-                most_d: s.most,
-                at_d: s.at.to_array(),
+                polygon: s.polygon.iter().map(DVec2::to_array).collect(),
+                most: s.most,
+                at: s.at.to_array(),
             })
             .collect(),
         mated_height_d: [found.wanted.at(at_zero), found.reached.at(at_zero)],
@@ -108,8 +108,7 @@ pub fn report(design: &Design, found: &Inverse, limits: Limits) -> InvertReport 
         draft_rad: (1.0 / found.steepest).atan(),
         narrowest_d: found.narrowest,
     };
-    let mut warnings: Vec<WarningReport> =
-        doubts(design, found).iter().map(|doubt| WarningReport::note(doubt)).collect();
+    let mut warnings: Vec<WarningReport> = doubts(design, found).iter().map(WarningReport::note).collect();
     if body.narrowest_d < limits.feature_d {
         let message = format!(
             "a facet of the new half is only {} D wide, less than the {} D that can be made",
@@ -144,8 +143,8 @@ impl InvertBody {
             let area = significant(self.unattained_area_d2);
             row(text, "unattained", &format!("up to {most} D lower, over {area} D² of offsets"));
             for short in self.unattained.iter().take(3) {
-                let [x, y] = short.at_d.map(significant);
-                row(text, "", &format!("{} D at x {x}, y {y}", significant(short.most_d)));
+                let [x, y] = short.at.map(significant);
+                row(text, "", &format!("{} D at x {x}, y {y}", significant(short.most)));
             }
         }
         if let [Some(wanted), Some(reached)] = self.mated_height_d {

@@ -59,12 +59,9 @@ fn rows(text: &str, found: &mut Vec<Finding>) -> Vec<(DVec3, Range<usize>)> {
 }
 
 fn grid(rows: &[(DVec3, Range<usize>)], found: &mut Vec<Finding>) -> Heights {
-    // Numbers of the same bits are the same place; the order of the bits of finite numbers above −∞ is made theirs.
-    let key = |v: f64| {
-        let bits = (v + 0.0).to_bits() as i64;
-        bits ^ (((bits >> 63) as u64) >> 1) as i64
-    };
-    let mut places: BTreeMap<(i64, i64), f64> = BTreeMap::new();
+    // Numbers of the same bits are the same place; −0 is 0.
+    let key = |v: f64| (v + 0.0).to_bits();
+    let mut places: BTreeMap<(u64, u64), f64> = BTreeMap::new();
     let (mut xs, mut ys): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     for (p, span) in rows {
         if places.insert((key(p.x), key(p.y)), p.z).is_some() {
