@@ -70,6 +70,13 @@ fn two_connectors_add_up() {
     // A convex region and itself: four times as much.
     let sum = both["acceptance"]["area"][0].as_f64().unwrap();
     assert!((sum - 4.0 * area).abs() < 1e-5, "{sum} {area}");
+    // A square of side 1 D and a diamond of half diagonal 1 D: 1 + 2 + 2·(1 + 1).
+    for name in ["pyramid.toml", "x-face-3d.toml"] {
+        fs::copy(designs().join(name), home.path().join(name)).unwrap();
+    }
+    let found = json(home.path(), &["compose", "pyramid.toml", "x-face-3d.toml", "--json"]);
+    let sum = found["acceptance"]["area"][0].as_f64().unwrap();
+    assert!((sum - 7.0).abs() < 1e-7 && found["unit"] == "D", "{sum}");
 }
 
 #[test]

@@ -34,6 +34,9 @@ pub struct Reach {
     pub y: [f64; 2],
 }
 
+/// Most distances from a cell to a side.
+const MOST_DISTANCES: usize = 400_000_000;
+
 /// A cell of the search, the most promising first.
 struct Cell {
     center: DVec2,
@@ -108,10 +111,11 @@ pub fn largest_square(region: &Region) -> Option<Square> {
     let mut center = first.center;
     let mut open = BinaryHeap::from([first]);
     let mut looked = 0;
+    let most = (MOST_DISTANCES / borders.sides.len()).min(MOST_CELLS);
     let mut bound = room;
     while let Some(next) = open.pop() {
         bound = next.bound;
-        if next.bound <= room + slack || looked > MOST_CELLS {
+        if next.bound <= room + slack || looked > most {
             break;
         }
         let half = next.half / 2.0;

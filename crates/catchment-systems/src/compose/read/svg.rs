@@ -102,6 +102,12 @@ fn element(
         found.push(Finding::new(message, Some(help)).at(Some(start..start + 1 + name.len())));
     }
     let Some(data) = node.attribute_node("d").filter(|_| name == "path") else { return };
+    if has_huge_numbers(data.value()) {
+        let message = "the path has a number that is far too large";
+        let help = "check the unit of the picture".to_owned();
+        found.push(Finding::new(message, Some(help)).at(Some(data.range_value())));
+        return;
+    }
     match BezPath::from_svg(data.value()) {
         Ok(path) => {
             *curved |= path.elements().iter().any(|e| matches!(e, PathEl::QuadTo(..) | PathEl::CurveTo(..)));
@@ -112,6 +118,21 @@ fn element(
             found.push(Finding::new(message, None).at(Some(data.range_value())));
         }
     }
+}
+
+/// Whether a number of the path is above anything that could be a length: arcs take longer the larger they are.
+fn has_huge_numbers(data: &str) -> bool {
+    /// Digits before the point, and tens of an exponent.
+    const MOST_DIGITS: usize = 9;
+    const MOST_TENS: i64 = 6;
+    let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    let long =
+        data.split(|c: char| !c.is_ascii_digit() && c != '.').any(|number| digits(number) > MOST_DIGITS);
+    let tens = |rest: &str| {
+        let unsigned = rest.trim_start_matches('+');
+        unsigned[..digits(unsigned)].parse::<i64>().unwrap_or(0)
+    };
+    long || data.split(['e', 'E']).skip(1).any(|rest| tens(rest) > MOST_TENS)
 }
 
 fn path_rings(

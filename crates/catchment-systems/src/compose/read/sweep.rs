@@ -19,6 +19,9 @@ const FACTORS: RangeInclusive<f64> = 0.0..=100.0;
 /// Chord error where none is given, in mm: finer than such parts are made.
 const CHORD_ERROR: f64 = 0.01;
 
+/// Most corners of a polygon in a form.
+const MOST_CORNERS: usize = 1000;
+
 /// The kinds of shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
@@ -137,6 +140,11 @@ fn polygon(form: &mut Form<'_>, table: &Section<'_>) -> Shape {
     if (x.len() != y.len() || x.len() < 3) && !form.is_refused() {
         let message = format!("the polygon has {} x and {} y", x.len(), y.len());
         form.refuse(table.span_of("y"), message, Some("it needs as many of each, at least three"));
+    }
+    if x.len() > MOST_CORNERS && !form.is_refused() {
+        let message =
+            format!("the polygon has {} corners, and more than {MOST_CORNERS} are too many", x.len());
+        form.refuse(table.span_of("x"), message, Some("give it as a .csv"));
     }
     let corners: Vec<DVec2> = x.iter().zip(y).map(|((x, _), (y, _))| DVec2::new(*x, *y)).collect();
     let shape = Shape::Polygon(corners.clone());
