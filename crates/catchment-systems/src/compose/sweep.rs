@@ -11,7 +11,7 @@
 //! With the distance r from the pivot and the angle θ, a turn adds to θ alone, so what a stretch of outline sweeps, along which r
 //! grows, is { (r, θ(r) + turn) : r from r₀ to r₁ } with turn in [from, to]: the stretch twice, and two arcs. On the inner
 //! polygon the far arc is made of chords and the near one of tangents, on the outer polygon the other way round, and no
-//! point of either is farther from the arc than the chord error. So **inner ⊆ swept ⊆ outer**, up to the lattice of [`super::region`].
+//! point of either is farther from the arc than the chord error. So **inner ⊆ swept ⊆ outer**, up to the lattice of [`super::Region`].
 //!
 //! Sums, unions and sweeps keep that order, and areas are given as brackets from end to end.
 
