@@ -18,9 +18,9 @@ use clap::Args;
 use glam::DMat3;
 use std::path::{Path, PathBuf};
 
-/// The moving half that a fixed half and wanted heights ask for: the Minkowski sum undone
+/// The moving half that a fixed half and wanted heights ask for
 ///
-/// Keeps the fixed half of DESIGN. Wanted are heights of first contact over lateral offsets: those of DESIGN itself, of
+/// The Minkowski sum undone. Keeps the fixed half of DESIGN. Wanted are heights of first contact over lateral offsets: those of DESIGN itself, of
 /// another design, or a table. The result is the lowest moving half that nowhere stops higher than wanted; where it
 /// stops lower, that height cannot be had with this fixed half, and the program says where.
 #[derive(Debug, Args)]

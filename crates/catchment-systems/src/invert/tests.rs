@@ -158,7 +158,7 @@ fn a_flat_wish_over_a_flat_plate_is_a_plate() {
 }
 
 #[test]
-fn turns_cost_heights() {
+fn turns_that_the_half_keeps_ask_for_nothing_more() {
     let problem = family("pyramid");
     let plain = inverted(&problem, own_heights(&problem), &Settings::default());
     let settings = Settings { yaw: vec![-0.3, 0.3], ..Settings::default() };
@@ -171,6 +171,37 @@ fn turns_cost_heights() {
         }
     }
     assert_eq!(turned.shortfalls, []);
+}
+
+/// Higher heights are wanted, and at a turn the old ones: without the turn the half comes out too deep for it.
+#[test]
+fn a_turn_is_kept_where_it_is_asked_for_and_not_where_it_is_not() {
+    let problem = family("pyramid");
+    let (turn, higher) = (0.3, 0.2);
+    let mut wanted = own_heights(&problem);
+    for facet in &mut wanted.facets {
+        facet.offset += higher;
+    }
+    let there = |connector: &Connector| {
+        heights_of(problem.design(), connector, DMat3::from_rotation_z(turn), &Exec::new()).unwrap()
+    };
+    let limit = there(problem.connector());
+    // Most that a half stops above the limit at the turn.
+    let excess = |yaw: &[f64]| {
+        let settings = Settings { yaw: yaw.to_vec(), ..Settings::default() };
+        let found = inverted(&problem, wanted.clone(), &settings);
+        let mut most = f64::NEG_INFINITY;
+        for want in &limit.facets {
+            for got in &there(&found.connector).facets {
+                if let Some(polygon) = common(&want.polygon, &got.polygon) {
+                    most = polygon.iter().map(|p| got.height(*p) - want.height(*p)).fold(most, f64::max);
+                }
+            }
+        }
+        most
+    };
+    assert!((excess(&[]) - higher).abs() < 1e-8, "{}", excess(&[]));
+    assert!(excess(&[turn]) < 1e-8, "{}", excess(&[turn]));
 }
 
 #[test]
