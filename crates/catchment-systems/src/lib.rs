@@ -13,7 +13,9 @@
 //!
 //! Each stands by itself on `catchment`, which knows none of them. [`form`] reads their files.
 
-pub mod chain;
 pub mod catalog;
+pub mod chain;
+pub mod compose;
 pub mod form;
+pub mod invert;
 pub mod latch;

@@ -1,12 +1,14 @@
 //! One file per subcommand.
 
-mod chain;
 mod catalog;
+mod chain;
 mod check;
 mod classify;
 mod compare;
 mod completions;
+mod compose;
 mod export;
+mod invert;
 mod latch;
 mod man;
 mod new;
@@ -28,7 +30,6 @@ use clap::Subcommand;
 pub(crate) enum Command {
     New(new::NewArgs),
     Check(check::CheckArgs),
-    Chain(Box<chain::ChainArgs>),
     Run(Box<run::RunArgs>),
     Compare(compare::CompareArgs),
     Slices(Box<slices::SlicesArgs>),
@@ -36,10 +37,13 @@ pub(crate) enum Command {
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Zraa(zraa::ZraaArgs),
-    Catalog(Box<catalog::CatalogArgs>),
-    Classify(classify::ClassifyArgs),
     Export(Box<export::ExportArgs>),
+    Classify(classify::ClassifyArgs),
+    Catalog(Box<catalog::CatalogArgs>),
+    Invert(invert::InvertArgs),
+    Compose(Box<compose::ComposeArgs>),
     Latch(latch::LatchArgs),
+    Chain(Box<chain::ChainArgs>),
     Reproduce(reproduce::ReproduceArgs),
     Schema(schema::SchemaArgs),
     Completions(completions::CompletionsArgs),
@@ -52,7 +56,6 @@ impl Command {
         match self {
             Self::New(args) => new::run(&args),
             Self::Check(args) => check::run(&args),
-            Self::Chain(args) => chain::run(&args),
             Self::Run(args) => run::run(&args),
             Self::Compare(args) => compare::run(&args),
             Self::Slices(args) => slices::run(&args),
@@ -60,10 +63,13 @@ impl Command {
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
-            Self::Catalog(args) => catalog::run(&args),
-            Self::Classify(args) => classify::run(&args),
             Self::Export(args) => export::run(&args),
+            Self::Classify(args) => classify::run(&args),
+            Self::Catalog(args) => catalog::run(&args),
+            Self::Invert(args) => invert::run(&args),
+            Self::Compose(args) => compose::run(&args),
             Self::Latch(args) => latch::run(&args),
+            Self::Chain(args) => chain::run(&args),
             Self::Reproduce(args) => reproduce::run(&args),
             Self::Schema(args) => schema::run(&args),
             Self::Completions(args) => completions::run(&args),

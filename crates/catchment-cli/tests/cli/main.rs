@@ -4,13 +4,15 @@
 
 mod area;
 mod bad_inputs;
-mod chain;
 mod catalog;
+mod chain;
 mod check;
 mod compare;
+mod compose;
 mod door;
 mod files;
 mod hostile;
+mod invert;
 mod kills;
 mod latch;
 mod limits;

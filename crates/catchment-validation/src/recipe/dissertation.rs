@@ -44,9 +44,12 @@ pub enum Errors {
     XRollYaw,
 }
 
+/// The rotation by an angle about one axis.
+type Turn = fn(f64) -> DMat3;
+
 impl Errors {
     /// What turns a half by the first and by the second of two rotations; `None` where there is only one.
-    fn turns(self) -> Option<[fn(f64) -> DMat3; 2]> {
+    fn turns(self) -> Option<[Turn; 2]> {
         match self {
             Self::XTheta | Self::XYPitch => None,
             Self::XPitchRoll => Some([DMat3::from_rotation_x, DMat3::from_rotation_y]),

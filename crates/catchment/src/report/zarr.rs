@@ -152,11 +152,11 @@ fn fill(
         };
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, finite)?);
     }
-    finish(folder, serde_json::to_value(report).map_err(storage)?, arrays)
+    finish(folder, &serde_json::to_value(report).map_err(storage)?, &arrays)
 }
 
 /// Writes the group's own metadata, with those of all its arrays.
-fn finish(folder: &Path, report: Value, arrays: Map<String, Value>) -> Result<(), ZarrError> {
+fn finish(folder: &Path, report: &Value, arrays: &Map<String, Value>) -> Result<(), ZarrError> {
     let root = json!({
         "zarr_format": 3,
         "node_type": "group",

@@ -17,12 +17,14 @@
 mod cells;
 mod circle;
 mod flow;
+mod heights;
 mod line;
 mod places;
 mod sheet;
 mod square;
 
 pub use circle::circle_bounds;
+pub use heights::{HeightFacet, heights};
 pub use square::{Square, circle_square};
 
 use crate::contact::{Pair, Play, Seat, play};

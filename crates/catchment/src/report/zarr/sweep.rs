@@ -91,7 +91,7 @@ pub(in crate::report) fn fill(folder: &Path, report: &SweepReport, exec: &Exec) 
         "smallest": found.smallest,
         "refused": found.designs.iter().filter(|trial| trial.found.figures().is_none()).collect::<Vec<_>>(),
     });
-    finish(folder, head, arrays)
+    finish(folder, &head, &arrays)
 }
 
 /// The axes as names of dimensions: their last words, or all of them where an error or another axis has that one.

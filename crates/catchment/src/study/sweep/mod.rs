@@ -112,14 +112,14 @@ pub struct Figures {
 #[serde(rename_all = "snake_case")]
 pub enum Found {
     /// It was computed.
-    Figures(Figures),
+    Figures(Box<Figures>),
     /// It cannot be, for this reason.
     Refused(String),
 }
 
 impl Found {
     /// Its figures, if it has any.
-    pub const fn figures(&self) -> Option<&Figures> {
+    pub fn figures(&self) -> Option<&Figures> {
         match self {
             Self::Figures(figures) => Some(figures),
             Self::Refused(_) => None,
@@ -187,7 +187,7 @@ pub enum SweepError {
         /// The key.
         key: String,
         /// What is wrong.
-        complaint: Complaint,
+        complaint: Box<Complaint>,
     },
     /// A key has two axes.
     #[error("{key} has two lists of values: write them as one")]
@@ -258,8 +258,10 @@ impl Plan {
         let drafts = (0..designs).map(|number| {
             let mut text = source.text.clone();
             for (axis, value) in axes.iter().zip(combination(axes, number)) {
-                text = with_key(&text, &axis.key, value)
-                    .map_err(|complaint| SweepError::Key { key: axis.key.clone(), complaint })?;
+                text = with_key(&text, &axis.key, value).map_err(|complaint| SweepError::Key {
+                    key: axis.key.clone(),
+                    complaint: Box::new(complaint),
+                })?;
             }
             let values =
                 combination(axes, number).zip(axes).map(|(value, axis)| format!("{} = {value}", axis.name()));
@@ -356,7 +358,7 @@ fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<Found, 
         return Ok(found);
     }
     let found = match run.on(&problem, exec) {
-        Ok(answer) => Found::Figures(figures(&answer)?),
+        Ok(answer) => Found::Figures(Box::new(figures(&answer)?)),
         Err(RunError::Cancelled(error)) => return Err(error.into()),
         Err(RunError::OutOfBudget(error)) => return Err(error.into()),
         Err(error @ (RunError::Resolution(_) | RunError::NotApplicable(_))) => return Err(error.into()),

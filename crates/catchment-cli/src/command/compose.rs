@@ -1,0 +1,140 @@
+//! `catchment compose`: where two halves meet that both move.
+
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, tell};
+use crate::source::read_table;
+use catchment::design::{Quantity, Unit};
+use catchment::exec::Exec;
+use catchment::report::csv;
+use catchment::report::figure::ensure_fits;
+use catchment_systems::compose::read::{Read, ReadError, read};
+use catchment_systems::compose::{Frames, Settings, compose, figure, outline_records, outline_svg, report};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Where two halves meet that both move: the Minkowski sum of what they sweep
+///
+/// A and B are the regions that the two halves reach by their own motion, in the plane in which the robots move (lateral
+/// offset and gap). The answer is every place of B's robot, seen from A's, from which the two regions meet.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment compose hook.toml loop.toml\n  \
+    catchment compose hook.toml loop.toml --keep-out bow.csv,stern.csv -o where.png\n  \
+    catchment compose hook.toml loop.toml --heading \"-20..20 deg\" --json | jq .volume\n  \
+    catchment compose diamond.toml square.toml    two connector designs: their ZRAA regions\n  \
+    catchment compose a.csv b.svg --outline -o sum.svg\n                                          the outline alone, to be read again\n\n\
+    A region is a table of corners (.csv: x,y or x,y,ring, in mm), the paths of a picture (.svg), a shape and how it \
+    moves (.toml with [sweep]: annular-sector, half-ellipse, disc, box, polygon; scale, slide, turn), or a connector \
+    design (.toml with [connector]).\n\n\
+    -o writes the picture (.svg, .png) or the outline (.csv).")]
+pub(crate) struct ComposeArgs {
+    /// What the first half sweeps: .csv, .svg, .toml
+    #[arg(value_name = "A", value_hint = clap::ValueHint::FilePath)]
+    first: PathBuf,
+    /// What the second half sweeps
+    #[arg(value_name = "B", value_hint = clap::ValueHint::FilePath)]
+    second: PathBuf,
+    /// own: each is drawn in its robot's frame, facing +y, and the second is mounted by a half turn. world: the second is
+    /// drawn as it stands before the first
+    #[arg(long, value_name = "FRAMES", default_value = "own", value_parser = ["own", "world"])]
+    frames: String,
+    /// Heading of the second robot relative to facing the first, such as "5 deg", or a range "-20..20 deg"
+    #[arg(long, value_name = "ANGLE", default_value = "0", value_parser = headings, allow_hyphen_values = true)]
+    heading: [f64; 2],
+    /// Headings of a range
+    #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u16).range(2..=721))]
+    headings: u16,
+    /// The bodies of the two robots, which may not overlap, in the frames of A and B
+    #[arg(long, value_name = "A,B", value_delimiter = ',', value_hint = clap::ValueHint::FilePath)]
+    keep_out: Vec<PathBuf>,
+    /// Write the outline rather than the picture: .svg or .csv
+    #[arg(long, requires = "output")]
+    outline: bool,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
+    let kind = args.file.kind(if args.outline { &["svg", "csv"] } else { &["svg", "png", "csv"] })?;
+    if !matches!(args.keep_out.len(), 0 | 2) {
+        let help = "name both bodies, A's first: --keep-out bow.csv,stern.csv".to_owned();
+        return Err(Failure::with_help("--keep-out needs two files".to_owned(), Some(help)));
+    }
+    let running = args.exec.start()?;
+    let exec = &running.exec;
+    if matches!(kind, Some("svg" | "png")) {
+        ensure_fits(0, exec)?;
+    }
+    let halves = [region(&args.first, exec)?, region(&args.second, exec)?];
+    let bodies = match &args.keep_out[..] {
+        [first, second] => Some([region(first, exec)?, region(second, exec)?]),
+        _ => None,
+    };
+    let settings = Settings {
+        frames: if args.frames == "world" { Frames::World } else { Frames::Own },
+        headings: spread(args.heading, args.headings),
+        ..Settings::default()
+    };
+    let found = compose(halves, bodies, &settings, exec)?;
+    drop(running);
+    let report = report(&found);
+    match kind {
+        Some("csv") => args.file.write(&csv(&outline_records(&found))?)?,
+        Some("svg") if args.outline => args.file.write(outline_svg(&found).as_bytes())?,
+        Some("svg") => args.file.write(figure(&found)?.svg().as_bytes())?,
+        Some(_) => args.file.write(&figure(&found)?.png(PNG_SCALE)?)?,
+        None => {}
+    }
+    let notes: Vec<String> =
+        report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
+    tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
+}
+
+fn region(path: &Path, exec: &Exec) -> Result<Read, Failure> {
+    read(read_table(path)?, exec).map_err(|error| match error {
+        ReadError::Findings(findings) => findings.into(),
+        ReadError::Problem(problem) => problem.into(),
+        error => Failure::with_help(format!("{}: {error}", path.display()), None),
+    })
+}
+
+/// Headings from one to the other, evenly spaced; one where there is no range.
+fn spread([from, to]: [f64; 2], count: u16) -> Vec<f64> {
+    if from == to {
+        return vec![from];
+    }
+    let steps = f64::from(count - 1);
+    (0..count).map(|k| from + (to - from) * f64::from(k) / steps).collect()
+}
+
+/// `5 deg`, `-20..20 deg`, `-0.3..0.3`.
+fn headings(text: &str) -> Result<[f64; 2], String> {
+    let angle = |part: &str, unit: Option<Unit>| -> Result<(f64, Unit), String> {
+        let mut quantity: Quantity = part.parse().map_err(|complaint| format!("{complaint}"))?;
+        if let (Unit::Bare, Some(unit)) = (quantity.unit, unit) {
+            quantity.unit = unit;
+        }
+        let angle = quantity.angle_rad().map_err(|complaint| format!("{complaint}"))?;
+        if angle.abs() > std::f64::consts::PI + 1e-9 {
+            return Err("a heading is at most half a turn".to_owned());
+        }
+        Ok((angle, quantity.unit))
+    };
+    let Some((from, to)) = text.split_once("..") else {
+        return angle(text, None).map(|(angle, _)| [angle; 2]);
+    };
+    // The unit stands at the end for both.
+    let (to, unit) = angle(to, None)?;
+    let (from, _) = angle(from, Some(unit))?;
+    if from < to { Ok([from, to]) } else { Err("the range runs backwards or is empty".to_owned()) }
+}

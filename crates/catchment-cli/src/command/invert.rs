@@ -1,0 +1,141 @@
+//! `catchment invert`: wanted heights and the fixed half give the moving half.
+
+use crate::args::DesignArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, tell};
+use crate::source::read_table;
+use catchment::design::{Design, Quantity};
+use catchment::exec::Exec;
+use catchment::problem::Problem;
+use catchment::report::figure::{FigureError, Picture, Placement, ensure_fits, section};
+use catchment_systems::invert::{
+    Heights, Inverse, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, report,
+    wanted_from_table,
+};
+use clap::Args;
+use glam::DMat3;
+use std::path::{Path, PathBuf};
+
+/// The moving half that a fixed half and wanted heights ask for
+///
+/// The Minkowski sum undone. Keeps the fixed half of DESIGN. Wanted are heights of first contact over lateral offsets: those of DESIGN itself, of
+/// another design, or a table. The result is the lowest moving half that nowhere stops higher than wanted; where it
+/// stops lower, that height cannot be had with this fixed half, and the program says where.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment invert design.toml                       the design's own moving half again\n  \
+    catchment invert design.toml --heights other.toml -o new.toml\n  \
+    catchment invert design.toml --heights wanted.csv  a grid: x,y,height, in D\n  \
+    catchment invert design.toml --yaw \"-20 deg\" --yaw \"20 deg\"\n  \
+    catchment run new.toml                             what the result accepts\n\n\
+    -o writes the pair as a design file (.toml), its halves as convex pieces, or a picture of it (.svg, .png).")]
+pub(crate) struct InvertArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Wanted heights: a design (.toml) or a table x,y,height in D (.csv) [default: the design's own]
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    heights: Option<PathBuf>,
+    /// A turn about z at which the design's own heights are wanted, too; may be given several times
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
+    yaw: Vec<f64>,
+    /// Material behind the deepest point of the new half, in D
+    #[arg(long, value_name = "D", default_value_t = 0.25)]
+    backing: f64,
+    /// Least width of a facet that can be made; a bare number is in D
+    #[arg(long, value_name = "LENGTH", default_value = "0.01", value_parser = quantity)]
+    min_feature: Quantity,
+    /// Least angle between the surface and the direction of pull
+    #[arg(long, value_name = "ANGLE", default_value = "3 deg", value_parser = angle)]
+    min_draft: f64,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// How far apart the halves are drawn, in D.
+const APART: f64 = 0.25;
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
+    let kind = args.file.kind(&["toml", "svg", "png"])?;
+    if !(0.0..=100.0).contains(&args.backing) || args.backing == 0.0 {
+        let help = "a half needs material: give a number above 0".to_owned();
+        return Err(Failure::with_help(format!("--backing {} is no thickness", args.backing), Some(help)));
+    }
+    let problem = args.design.problem()?;
+    let (design, connector) = (problem.design(), problem.connector());
+    let feature_d = args
+        .min_feature
+        .length_d(&design.scale())
+        .map_err(|complaint| Failure::with_help(format!("--min-feature: {complaint}"), complaint.help()))?;
+    let running = args.exec.start()?;
+    let exec = &running.exec;
+    if matches!(kind, Some("svg" | "png")) {
+        ensure_fits(0, exec)?;
+    }
+    let wanted = match &args.heights {
+        None => heights_of(design, connector, DMat3::IDENTITY, exec)?,
+        Some(path) => wanted(path, design, exec)?,
+    };
+    let settings = Settings { yaw: args.yaw.clone(), backing: args.backing };
+    let found = invert(design, connector, wanted, &settings, exec)?;
+    drop(running);
+    let report = report(design, &found, Limits { feature_d, draft_rad: args.min_draft });
+    if report.pieces_d.len() > MAX_PIECES && kind == Some("toml") {
+        let help = "want heights on a coarser grid".to_owned();
+        let count = report.pieces_d.len();
+        let message = format!("the new half has {count} convex pieces, and a design takes {MAX_PIECES}");
+        return Err(Failure::with_help(message, Some(help)));
+    }
+    match kind {
+        Some("toml") => args.file.write(design_file(design, &found).as_bytes())?,
+        Some("svg") => args.file.write(drawn(design, &found)?.svg().as_bytes())?,
+        Some(_) => args.file.write(&drawn(design, &found)?.png(PNG_SCALE)?)?,
+        None => {}
+    }
+    let notes: Vec<String> =
+        report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
+    tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
+}
+
+/// Both halves cut along the approach axis, apart.
+fn drawn(design: &Design, found: &Inverse) -> Result<Picture, FigureError> {
+    section(design, &found.connector, &Placement::mated(design, APART))
+}
+
+/// The heights that a file wants.
+fn wanted(path: &Path, design: &Design, exec: &Exec) -> Result<Heights, Failure> {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match ending.as_str() {
+        "csv" => Ok(wanted_from_table(read_table(path)?)?),
+        "toml" => {
+            let other = Problem::open(path)?;
+            if other.design().alignment.free.contains(catchment::pose::Dof::Y)
+                != design.alignment.free.contains(catchment::pose::Dof::Y)
+            {
+                let message = "a planar design and a spatial one have no heights in common".to_owned();
+                return Err(Failure::with_help(message, Some("free y in both, or in neither".to_owned())));
+            }
+            Ok(heights_of(other.design(), other.connector(), DMat3::IDENTITY, exec)?)
+        }
+        _ => {
+            let help = "heights are read from a design (.toml) or a table (.csv)".to_owned();
+            Err(Failure::with_help(format!("cannot tell what is in {}", path.display()), Some(help)))
+        }
+    }
+}
+
+fn quantity(text: &str) -> Result<Quantity, String> {
+    text.parse().map_err(|complaint| format!("{complaint}"))
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    quantity(text)?.angle_rad().map_err(|complaint| format!("{complaint}"))
+}

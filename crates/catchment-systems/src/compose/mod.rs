@@ -1,0 +1,264 @@
+//! Two halves that both move: the region over which they meet.
+//!
+//! ```text
+//!      B's reach, turned to face A              A ⊕ B: where B's robot may be
+//!         ╭───╮                                   ╭───────────╮
+//!         ╰───╯    d: from A's robot to B's       │     ·     │ ← d
+//!           ·                                     ╰───────────╯
+//!       ╭───────╮                                       ·
+//!       ╰───╳───╯  A's reach                            A's robot
+//! ```
+//!
+//! # Definition
+//!
+//! A and B are what the two halves sweep by their own motion, each in the frame of its robot. With B's robot at d from A's, they can
+//! dock if the two swept regions meet: A ∩ (B' + d) ≠ ∅, which is **d ∈ A ⊕ (−B')**, the Minkowski sum with one
+//! region reflected; B' is B as mounted.
+//!
+//! - [`Frames::Own`]: both are drawn facing +y, and B is mounted by a half turn, as everywhere in catchment: B' = −B, turned
+//!   by the heading, and the answer is **A ⊕ B**: nothing is left to reflect.
+//! - [`Frames::World`]: B is drawn as it stands before A: B' = B, and the answer is **A ⊕ (−B)**.
+//!
+//! The plane is the one the robots move in: lateral offset *and gap*. It is not the (x, y) of a pose error, because the
+//! approach is inside the region. With a relative heading ψ, B' is turned by ψ; over a range of headings the answer is a stack
+//! of regions, and its volume is their area integrated over ψ.
+//!
+//! **Bodies.** Where the robots' bodies overlap there is no docking: the interior of A's body ⊕ (−B's body) is taken away.
+//!
+//! **Quality.** The area of A ∩ (B' + d) is the convolution proper: 0 on the border of the region, and its integral over all d
+//! is area(A)·area(B). See [`Overlap`].
+//!
+//! # Units
+//!
+//! Millimetres, or D where both regions come from connectors without a unit; areas mm² or D², volumes times rad.
+//!
+//! # What is not promised
+//!
+//! One point in common counts as met: nothing is said of whether the halves then hold. Both motions are taken as swept
+//! completely, one after another: nothing is said of timing, nor of the bodies pushing each other away. Corners
+//! are rounded to 2⁻³² mm ([`UNIT`]); arcs lie between an inner and an outer polygon, and areas are given with both.
+//!
+//! Source: the dissertation, section 2.5 (p. 20–22) and figures 2.4–2.6: a hook that swings and a loop of string between two
+//! boats, the acceptance region as the convolution of the two regions. It gives no length, angle or area; the
+//! departures of its experiment it puts down to further constraints of the boats, and to their hulls.
+
+pub mod brute;
+mod figure;
+pub mod measure;
+pub mod read;
+mod region;
+mod report;
+mod sum;
+pub mod sweep;
+#[cfg(test)]
+mod tests;
+
+pub use figure::figure;
+pub use region::{REACH, Region, UNIT};
+pub use report::{ComposeBody, ComposeReport, outline_records, outline_svg, report};
+pub use sum::{Overlap, SumError, minkowski_sum};
+
+use catchment::exec::{Cancelled, Exec};
+use glam::DVec2;
+use measure::{Reach, Square, largest_square, reach, square_about};
+use rayon::prelude::*;
+use read::{Measure, Read};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use sweep::Bracket;
+
+/// In which frames the two regions are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
+#[serde(rename_all = "lowercase")]
+pub enum Frames {
+    /// Each in the frame of its own robot, facing +y; the second is mounted by a half turn.
+    #[default]
+    Own,
+    /// The second as it stands before the first.
+    World,
+}
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// In which frames the regions are drawn.
+    pub frames: Frames,
+    /// Relative headings of the second robot, in radians, counter-clockwise, evenly spaced; at least one.
+    pub headings: Vec<f64>,
+    /// Cells of the map of the overlap along the longer side of the region.
+    pub map_cells: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { frames: Frames::Own, headings: vec![0.0], map_cells: 96 }
+    }
+}
+
+/// Where the halves meet, at one heading.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slice {
+    /// Relative heading, in radians.
+    pub heading: f64,
+    /// Places of the second robot, seen from the first.
+    pub region: Bracket,
+}
+
+/// Area of the overlap over a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    /// Lower left corner of the first cell.
+    pub low: DVec2,
+    /// Side of a cell.
+    pub cell: f64,
+    /// Cells along x and y.
+    pub cells: [usize; 2],
+    /// Overlap at the cells' centres, row by row from below.
+    pub values: Vec<f64>,
+}
+
+/// Where two halves meet, and what that is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Composition {
+    /// The two halves.
+    pub halves: [Read; 2],
+    /// The robots' bodies, where they are known.
+    pub bodies: Option<[Read; 2]>,
+    /// What was asked.
+    pub settings: Settings,
+    /// One slice a heading.
+    pub slices: Vec<Slice>,
+    /// Which slice is described: the one nearest to heading 0.
+    pub shown: usize,
+    /// ∫ area dψ over the headings, in mm²·rad, by the trapezoidal rule; none with one heading.
+    pub volume: Option<[f64; 2]>,
+    /// The largest square in the inner region shown.
+    pub square: Option<Square>,
+    /// How far each axis may be off from its centre.
+    pub reach: Option<Reach>,
+    /// Side of the largest square about d = 0; none where that is outside.
+    pub square_about_zero: Option<f64>,
+    /// Overlap of the outer regions, at the heading shown; without the bodies.
+    pub map: Map,
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ComposeError {
+    /// Stopped on request.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The regions are too fine or too large.
+    #[error(transparent)]
+    Sum(#[from] SumError),
+    /// Lengths in mm and in D do not mix.
+    #[error(
+        "the units are mixed: {first} is in {} and {second} in {}; give the connector a unit (connector.unit)",
+        of_first.symbol(), of_second.symbol()
+    )]
+    MixedUnits {
+        /// Name of the first.
+        first: String,
+        /// Its unit.
+        of_first: Measure,
+        /// Name of the second.
+        second: String,
+        /// Its unit.
+        of_second: Measure,
+    },
+}
+
+/// −B', the second region as it is added to the first: mounted, turned, reflected.
+fn added(second: &Bracket, frames: Frames, heading: f64) -> Bracket {
+    let angle = match frames {
+        // The half turn of the mount and the reflection cancel.
+        Frames::Own => heading,
+        Frames::World => heading + PI,
+    };
+    second.map(|region| region.turned(angle))
+}
+
+/// Where the two halves meet.
+///
+/// # Errors
+/// Where lengths are in different units, regions too fine or too large, or the run was stopped.
+pub fn compose(
+    halves: [Read; 2],
+    bodies: Option<[Read; 2]>,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Composition, ComposeError> {
+    let all: Vec<&Read> = halves.iter().chain(bodies.iter().flatten()).collect();
+    if let Some(other) = all.iter().find(|read| read.measure != all[0].measure) {
+        return Err(ComposeError::MixedUnits {
+            first: all[0].name.clone(),
+            of_first: all[0].measure,
+            second: other.name.clone(),
+            of_second: other.measure,
+        });
+    }
+    let slice = |&heading: &f64| -> Result<Slice, ComposeError> {
+        exec.check()?;
+        let of = |pair: &[Read; 2]| pair[0].region.sum(&added(&pair[1].region, settings.frames, heading));
+        let mut region = of(&halves)?;
+        if let Some(bodies) = &bodies {
+            region = region.minus(&of(bodies)?);
+        }
+        Ok(Slice { heading, region })
+    };
+    let slices: Vec<Slice> =
+        exec.install(|| settings.headings.par_iter().map(slice).collect::<Result<_, _>>())?;
+    let shown = (0..slices.len())
+        .min_by(|a, b| slices[*a].heading.abs().total_cmp(&slices[*b].heading.abs()))
+        .unwrap_or_default();
+    let volume = (slices.len() > 1).then(|| {
+        let areas: Vec<[f64; 2]> = slices.iter().map(|slice| slice.region.area()).collect();
+        [0, 1].map(|k| {
+            let pairs = slices.windows(2).zip(areas.windows(2));
+            pairs.map(|(s, a)| (s[1].heading - s[0].heading) * (a[0][k] + a[1][k]) / 2.0).sum()
+        })
+    });
+    let inner = &slices[shown].region.inner;
+    exec.check()?;
+    let square = largest_square(inner);
+    let (reach, square_about_zero) = (
+        square.and_then(|square| reach(inner, square.center)),
+        square_about(inner, DVec2::ZERO).map(|h| 2.0 * h),
+    );
+    let map = map(&halves, settings, slices[shown].heading, exec)?;
+    Ok(Composition {
+        halves,
+        bodies,
+        settings: settings.clone(),
+        slices,
+        shown,
+        volume,
+        square,
+        reach,
+        square_about_zero,
+        map,
+    })
+}
+
+/// The overlap of the outer regions over a grid around all places where they meet.
+fn map(halves: &[Read; 2], settings: &Settings, heading: f64, exec: &Exec) -> Result<Map, ComposeError> {
+    let second = added(&halves[1].region, settings.frames, heading).outer;
+    let (first, stands) = (&halves[0].region.outer, second.reflected());
+    let empty = Map { low: DVec2::ZERO, cell: 0.0, cells: [0; 2], values: Vec::new() };
+    let (Some([la, ha]), Some([lb, hb])) = (first.bounds(), second.bounds()) else { return Ok(empty) };
+    let (low, high) = (la + lb, ha + hb);
+    let cell = (high - low).max_element() / settings.map_cells as f64;
+    if cell <= 0.0 {
+        return Ok(empty);
+    }
+    let cells = [high.x - low.x, high.y - low.y].map(|extent| ((extent / cell).ceil() as usize).max(1));
+    let overlap = Overlap::new(first, &stands);
+    let row = |j: usize| -> Result<Vec<f64>, Cancelled> {
+        exec.check()?;
+        let at = |i: usize| low + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * cell;
+        Ok((0..cells[0]).map(|i| overlap.at(at(i))).collect())
+    };
+    let rows: Vec<Vec<f64>> =
+        exec.install(|| (0..cells[1]).into_par_iter().map(row).collect::<Result<_, _>>())?;
+    Ok(Map { low, cell, cells, values: rows.concat() })
+}

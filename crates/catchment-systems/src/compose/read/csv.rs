@@ -1,0 +1,181 @@
+//! Rings as a table: `x,y` or `x,y,ring`, a corner a line. Lines that begin with `#` are left out.
+
+use super::rings::{Ring, region};
+use super::{Measure, Read, ReadError};
+use catchment::design::{Finding, LengthUnit, Quantity, SourceText, Unit, nearest};
+use glam::DVec2;
+use std::ops::Range;
+
+/// A record: its fields with their places.
+struct Record {
+    fields: Vec<(String, Range<usize>)>,
+    span: Range<usize>,
+}
+
+/// The records of a text.
+fn records(text: &str) -> Result<Vec<Record>, Finding> {
+    let mut reader = ::csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(::csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let mut records = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| Finding::new(error.to_string(), None))?;
+        let start = record.position().map_or(0, |p| p.byte() as usize);
+        // The reader may say where the line before ended.
+        let start = start + text[start..].len() - text[start..].trim_start_matches(['\r', '\n']).len();
+        let end = text[start..].find(['\r', '\n']).map_or(text.len(), |length| start + length);
+        let mut from = start;
+        let fields = record
+            .iter()
+            .map(|field| {
+                let at = text[from..end].find(field).map_or(from, |offset| from + offset);
+                from = (at + field.len()).min(end);
+                (field.to_owned(), at..from)
+            })
+            .collect();
+        records.push(Record { fields, span: start..end });
+    }
+    Ok(records)
+}
+
+/// What a column of coordinates is called, without its unit, and the unit.
+fn unit_of(name: &str) -> (String, Option<String>) {
+    let bracketed = |open: char, close: char| {
+        let (base, unit) = name.strip_suffix(close)?.split_once(open)?;
+        Some((base.trim().to_lowercase(), Some(unit.trim().to_owned())))
+    };
+    bracketed('[', ']')
+        .or_else(|| bracketed('(', ')'))
+        .or_else(|| name.split_once('_').map(|(base, unit)| (base.to_lowercase(), Some(unit.to_owned()))))
+        .unwrap_or_else(|| (name.to_lowercase(), None))
+}
+
+/// Columns of x, of y, of the ring, and the unit of the coordinates.
+struct Columns {
+    x: usize,
+    y: usize,
+    ring: Option<usize>,
+    unit: Unit,
+}
+
+fn columns(header: &Record, found: &mut Vec<Finding>) -> Option<Columns> {
+    const HELP: &str = "the first line names the columns: x,y or x,y,ring; units in brackets: x [cm], y [cm]";
+    let mut places: [Option<(usize, Option<String>)>; 3] = [const { None }; 3];
+    let before = found.len();
+    for (k, (name, span)) in header.fields.iter().enumerate() {
+        let (base, unit) = unit_of(name);
+        match ["x", "y", "ring"].iter().position(|known| *known == base) {
+            Some(which) if places[which].is_none() => places[which] = Some((k, unit)),
+            Some(_) => {
+                found.push(
+                    Finding::new(format!("`{name}` is a second column of {base}"), None)
+                        .at(Some(span.clone())),
+                );
+            }
+            None => {
+                let help = nearest(&base, ["x", "y", "ring"])
+                    .map_or_else(|| HELP.to_owned(), |meant| format!("did you mean `{meant}`?"));
+                found.push(
+                    Finding::new(format!("unknown column `{name}`"), Some(help)).at(Some(span.clone())),
+                );
+            }
+        }
+    }
+    if found.len() > before {
+        return None;
+    }
+    let [Some((x, first)), Some((y, second)), ring] = places else {
+        let message = "the table has no columns x and y";
+        found.push(Finding::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
+        return None;
+    };
+    let named = |unit: &Option<String>| match unit {
+        None => Some(Unit::Bare),
+        Some(text) => format!("1 {text}").parse::<Quantity>().ok().map(|q| q.unit),
+    };
+    let (Some(of_x), Some(of_y)) = (named(&first), named(&second)) else {
+        let message = "the unit of a column is none of mm, cm, m, um, in, D";
+        found.push(Finding::new(message, Some(HELP.to_owned())).at(Some(header.span.clone())));
+        return None;
+    };
+    if matches!(of_x, Unit::Degrees | Unit::Radians) || of_x != of_y {
+        let text = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "mm".to_owned());
+        let message = format!("the units are mixed: x is in {} and y in {}", text(&first), text(&second));
+        let help = "give both in one unit of length".to_owned();
+        found.push(Finding::new(message, Some(help)).at(Some(header.span.clone())));
+        return None;
+    }
+    Some(Columns { x, y, ring: ring.map(|(k, _)| k), unit: of_x })
+}
+
+pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
+    let mut found = Vec::new();
+    let mut rings: Vec<(String, Ring)> = Vec::new();
+    let mut measure = Measure::Millimetres;
+    let all = records(&source.text).unwrap_or_else(|finding| {
+        found.push(finding);
+        Vec::new()
+    });
+    if let Some((header, rows)) = all.split_first() {
+        if let Some(columns) = columns(header, &mut found) {
+            if columns.unit == Unit::D {
+                measure = Measure::Widths;
+            }
+            fill(rows, &columns, &mut rings, &mut found);
+        }
+    } else if found.is_empty() {
+        let help = Some("it has a line for the names of the columns and one for each corner".to_owned());
+        found.push(Finding::new("the table is empty", help));
+    }
+    let rings = rings.into_iter().map(|(_, ring)| ring).collect();
+    region(source, stem, measure, rings, found, Vec::new())
+}
+
+fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<(String, Ring)>, found: &mut Vec<Finding>) {
+    let factor = match columns.unit {
+        Unit::Length(unit) => unit.metres() / LengthUnit::Mm.metres(),
+        _ => 1.0,
+    };
+    for row in rows {
+        let label = columns.ring.and_then(|k| row.fields.get(k)).map_or("", |(text, _)| text).to_owned();
+        let coordinates = [columns.x, columns.y].map(|k| {
+            let Some((text, span)) = row.fields.get(k) else {
+                let message = "a coordinate is missing in this line";
+                found.push(Finding::new(message, None).at(Some(row.span.clone())));
+                return None;
+            };
+            number(text, span).map_err(|finding| found.push(finding)).ok()
+        });
+        let [Some(x), Some(y)] = coordinates else { continue };
+        let corner = (DVec2::new(x, y) * factor, row.span.clone());
+        match rings.iter_mut().position(|(name, _)| *name == label) {
+            Some(known) if known + 1 == rings.len() => rings[known].1.corners.push(corner),
+            Some(_) => {
+                let message =
+                    format!("ring `{label}` was left open: another ring began before it went on here");
+                let help = "the corners of a ring follow each other".to_owned();
+                found.push(Finding::new(message, Some(help)).at(Some(row.span.clone())));
+            }
+            None => rings.push((label, Ring { corners: vec![corner] })),
+        }
+    }
+    if found.is_empty() && rings.is_empty() {
+        found.push(Finding::new("the table has no corners", None));
+    }
+}
+
+fn number(text: &str, span: &Range<usize>) -> Result<f64, Finding> {
+    let finding =
+        |message: String, help: &str| Finding::new(message, Some(help.to_owned())).at(Some(span.clone()));
+    match text.parse::<Quantity>() {
+        Ok(Quantity { value, unit: Unit::Bare }) => Ok(value),
+        Ok(_) => Err(finding(
+            format!("the units are mixed: `{text}` has one of its own"),
+            "give the unit once, in the names of the columns: x [cm], y [cm]",
+        )),
+        Err(complaint) => Err(finding(complaint.to_string(), "a coordinate is a finite number")),
+    }
+}

@@ -1,0 +1,139 @@
+//! Closed rings of corners: what is wrong with them, and the region inside.
+
+use super::super::region::{REACH, Region, node, turn};
+use super::super::sweep::Bracket;
+use super::{Measure, Read, ReadError};
+use catchment::design::{Finding, Findings, SourceText};
+use glam::DVec2;
+use std::ops::Range;
+
+/// Most corners of a file: every two sides are compared.
+const MOST_CORNERS: usize = 10_000;
+/// Problems that are told; more are counted.
+const MOST_TOLD: usize = 20;
+
+/// A ring as written: its corners, each with its place in the text.
+#[derive(Debug, Default, Clone)]
+pub(super) struct Ring {
+    pub(super) corners: Vec<(DVec2, Range<usize>)>,
+}
+
+/// The region inside of rings, or everything that is wrong with them.
+pub(super) fn region(
+    source: SourceText,
+    name: String,
+    measure: Measure,
+    mut rings: Vec<Ring>,
+    mut found: Vec<Finding>,
+    notes: Vec<String>,
+) -> Result<Read, ReadError> {
+    if found.is_empty() {
+        for ring in &mut rings {
+            ring.corners.dedup_by(|a, b| node(a.0) == node(b.0));
+            while ring.corners.len() > 1
+                && node(ring.corners[0].0) == node(ring.corners[ring.corners.len() - 1].0)
+            {
+                ring.corners.pop();
+            }
+        }
+        found = wrong(&rings, measure);
+    }
+    let mut region = Region::default();
+    if found.is_empty() {
+        let outlines: Vec<Vec<DVec2>> =
+            rings.iter().map(|ring| ring.corners.iter().map(|(p, _)| *p).collect()).collect();
+        region = Region::of_outlines(&outlines);
+        if region.is_empty() {
+            let place = rings.first().and_then(|ring| ring.corners.first()).map(|(_, span)| span.clone());
+            let help = "give at least one ring around an area".to_owned();
+            found.push(Finding::new("the region has no area", Some(help)).at(place));
+        }
+    }
+    if found.is_empty() {
+        return Ok(Read { name, region: Bracket::exact(region), measure, notes });
+    }
+    found.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
+    let omitted = found.len().saturating_sub(MOST_TOLD);
+    found.truncate(MOST_TOLD);
+    Err(Findings { source: Some(source), list: found, omitted }.into())
+}
+
+fn shown(p: DVec2) -> String {
+    format!("({}, {})", p.x, p.y)
+}
+
+fn wrong(rings: &[Ring], measure: Measure) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let unit = measure.symbol();
+    let corners: usize = rings.iter().map(|ring| ring.corners.len()).sum();
+    if corners > MOST_CORNERS {
+        let message = format!("the outline has {corners} corners, and more than {MOST_CORNERS} are too many");
+        return vec![Finding::new(
+            message,
+            Some("leave corners out that a tenth of a mm does not need".to_owned()),
+        )];
+    }
+    for ring in rings {
+        for (p, span) in &ring.corners {
+            if p.abs().max_element() > REACH {
+                let message = format!("{} {unit} is farther from the origin than {REACH} {unit}", shown(*p));
+                found.push(Finding::new(message, Some("check the unit".to_owned())).at(Some(span.clone())));
+            }
+        }
+        if ring.corners.len() < 3 {
+            let place = ring.corners.first().map(|(_, span)| span.clone());
+            let message = format!("the ring is open: it has {} different corners", ring.corners.len());
+            found.push(Finding::new(message, Some("a ring has at least three".to_owned())).at(place));
+        }
+    }
+    if found.is_empty() { crossings(rings) } else { found }
+}
+
+/// Sides of which one passes through another, or a side that runs back along the one before it.
+fn crossings(rings: &[Ring]) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let side = |ring: &Ring, k: usize| {
+        let next = (k + 1) % ring.corners.len();
+        [ring.corners[k].0, ring.corners[next].0]
+    };
+    let all: Vec<(usize, usize)> =
+        rings.iter().enumerate().flat_map(|(r, ring)| (0..ring.corners.len()).map(move |k| (r, k))).collect();
+    for (later, &(r, k)) in all.iter().enumerate() {
+        let ends = side(&rings[r], k);
+        let [p, q] = ends.map(node);
+        let at = Some(rings[r].corners[k].1.clone());
+        let before = side(&rings[r], (k + rings[r].corners.len() - 1) % rings[r].corners.len()).map(node);
+        let dot = |[a, b]: [_; 2], [c, d]: [_; 2]| {
+            let v = |a: super::super::region::Node, b: super::super::region::Node| {
+                [i128::from(b.x) - i128::from(a.x), i128::from(b.y) - i128::from(a.y)]
+            };
+            let ([ax, ay], [bx, by]) = (v(a, b), v(c, d));
+            ax * bx + ay * by
+        };
+        if turn(before[0], p, q) == 0 && dot(before, [p, q]) < 0 {
+            let message = format!("the outline runs back along itself at {}", shown(ends[0]));
+            found.push(Finding::new(message, Some("leave the corner out".to_owned())).at(at.clone()));
+        }
+        for &(s, j) in &all[..later] {
+            let others = side(&rings[s], j);
+            let [c, d] = others.map(node);
+            if p.x.max(q.x) < c.x.min(d.x) || c.x.max(d.x) < p.x.min(q.x) {
+                continue;
+            }
+            let signs = |a, b, c, d| turn(a, b, c).signum() * turn(a, b, d).signum();
+            if signs(p, q, c, d) < 0 && signs(c, d, p, q) < 0 {
+                let whose = if r == s { "the outline crosses itself" } else { "two rings cross" };
+                let message = format!(
+                    "{whose}: the side from {} to {} passes through the one from {} to {}",
+                    shown(ends[0]),
+                    shown(ends[1]),
+                    shown(others[0]),
+                    shown(others[1])
+                );
+                let help = "rings may touch but not cross; give the parts of a set as rings of their own";
+                found.push(Finding::new(message, Some(help.to_owned())).at(at.clone()));
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,309 @@
+//! What is told of a composition: JSON, a table, outlines for other programs.
+
+use super::read::Read;
+use super::{Composition, Frames, Settings, Slice};
+use catchment::report::schema::WarningReport;
+use catchment::report::text::{line, row, significant, wrapped};
+use catchment::report::{Body, Envelope, number};
+use glam::DVec2;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A composition with its head.
+pub type ComposeReport = Envelope<ComposeBody>;
+
+/// Where two halves meet. Lengths in `unit`, angles in radians; areas as [inner, outer], between which the true one lies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComposeBody {
+    /// mm or D.
+    pub unit: &'static str,
+    /// What was asked.
+    pub settings: Settings,
+    /// The two halves.
+    pub halves: [HalfReport; 2],
+    /// The two bodies that are kept apart.
+    pub keep_out: Option<[HalfReport; 2]>,
+    /// The heading that is described.
+    pub heading_rad: f64,
+    /// The region at that heading.
+    pub acceptance: RegionReport,
+    /// The largest axis-parallel square in it.
+    pub largest_square: Option<SquareReport>,
+    /// How far −x, +x, −y, +y may be off from the centre of that square.
+    pub tolerance: Option<[f64; 4]>,
+    /// Side of the largest square about d = 0; null where the halves do not meet there.
+    pub square_about_zero: Option<f64>,
+    /// Area of every slice.
+    pub slices: Vec<SliceReport>,
+    /// ∫ area dψ by the trapezoidal rule.
+    pub volume: Option<[f64; 2]>,
+    /// The overlap of the two regions over the second robot's place.
+    pub overlap: OverlapReport,
+    /// Outlines of the inner region: outer ones counter-clockwise, holes clockwise.
+    pub outlines: Vec<Vec<[f64; 2]>>,
+}
+
+/// A region that went in.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HalfReport {
+    /// What it is called.
+    pub name: String,
+    /// What it measures.
+    #[serde(flatten)]
+    pub region: RegionReport,
+    /// What should be known about it.
+    pub notes: Vec<String>,
+}
+
+/// What a region measures.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RegionReport {
+    /// Area, within and around.
+    pub area: [f64; 2],
+    /// Lowest and highest corner of the outer region.
+    pub bounds: Option<[[f64; 2]; 2]>,
+    /// Connected polygons of the inner region.
+    pub parts: usize,
+    /// Holes of the inner region.
+    pub holes: usize,
+}
+
+/// A square.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SquareReport {
+    /// Its centre.
+    pub center: [f64; 2],
+    /// Its side.
+    pub side: f64,
+    /// No square in the region has a longer side.
+    pub side_at_most: f64,
+}
+
+/// One heading.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SliceReport {
+    /// Heading.
+    pub heading_rad: f64,
+    /// Area, within and around.
+    pub area: [f64; 2],
+}
+
+/// The overlap as a grid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OverlapReport {
+    /// Largest value on the grid.
+    pub largest: f64,
+    /// Where.
+    pub at: [f64; 2],
+    /// Lower left corner of the grid.
+    pub low: [f64; 2],
+    /// Side of a cell.
+    pub cell: f64,
+    /// Values at the centres of the cells, rows from below.
+    pub rows: Vec<Vec<f64>>,
+}
+
+impl Body for ComposeBody {
+    const KIND: &'static str = "compose";
+}
+
+fn region(bracket: &super::sweep::Bracket) -> RegionReport {
+    RegionReport {
+        area: bracket.area(),
+        bounds: bracket.outer.bounds().map(|ends| ends.map(|p| p.to_array())),
+        parts: bracket.inner.parts(),
+        holes: bracket.inner.holes(),
+    }
+}
+
+fn half(read: &Read) -> HalfReport {
+    HalfReport { name: read.name.clone(), region: region(&read.region), notes: read.notes.clone() }
+}
+
+impl ComposeBody {
+    fn new(found: &Composition) -> Self {
+        let map = &found.map;
+        let best =
+            (0..map.values.len()).max_by(|a, b| map.values[*a].total_cmp(&map.values[*b]).then(b.cmp(a)));
+        let at = |k: usize| {
+            let [i, j] = [k % map.cells[0], k / map.cells[0]].map(|v| v as f64 + 0.5);
+            (map.low + DVec2::new(i, j) * map.cell).to_array()
+        };
+        let slice = &found.slices[found.shown];
+        Self {
+            unit: found.halves[0].measure.symbol(),
+            settings: found.settings.clone(),
+            halves: [half(&found.halves[0]), half(&found.halves[1])],
+            keep_out: found.bodies.as_ref().map(|[a, b]| [half(a), half(b)]),
+            heading_rad: slice.heading,
+            acceptance: region(&slice.region),
+            largest_square: found.square.map(|square| SquareReport {
+                center: square.center.to_array(),
+                side: square.side,
+                side_at_most: square.at_most,
+            }),
+            tolerance: found.reach.map(|reach| [reach.x[0], reach.x[1], reach.y[0], reach.y[1]]),
+            square_about_zero: found.square_about_zero,
+            slices: found
+                .slices
+                .iter()
+                .map(|slice| SliceReport { heading_rad: slice.heading, area: slice.region.area() })
+                .collect(),
+            volume: found.volume,
+            overlap: OverlapReport {
+                largest: best.map_or(0.0, |k| map.values[k]),
+                at: best.map_or([0.0; 2], at),
+                low: map.low.to_array(),
+                cell: map.cell,
+                rows: map.values.chunks(map.cells[0].max(1)).map(<[f64]>::to_vec).collect(),
+            },
+            outlines: outlines(slice),
+        }
+    }
+}
+
+fn outlines(slice: &Slice) -> Vec<Vec<[f64; 2]>> {
+    let inner = slice.region.inner.outlines();
+    inner.into_iter().map(|outline| outline.into_iter().map(|p| p.to_array()).collect()).collect()
+}
+
+/// One number where both ends agree to four digits, else both.
+pub(super) fn bracket([inner, outer]: [f64; 2]) -> String {
+    let [a, b] = [inner, outer].map(|v| format!("{v:.1}"));
+    let [a, b] = if outer < 1000.0 { [inner, outer].map(significant) } else { [a, b] };
+    if a == b { a } else { format!("{a} … {b}") }
+}
+
+/// What is told of a composition.
+pub fn report(found: &Composition) -> ComposeReport {
+    let mut warnings: Vec<WarningReport> = Vec::new();
+    if found.slices[found.shown].region.inner.parts() == 0 {
+        let message = match found.bodies {
+            Some(_) => "the bodies keep the halves apart everywhere",
+            None => "the region has no area: the halves meet on a line at most",
+        };
+        warnings.push(WarningReport::note(message));
+    }
+    Envelope::of(ComposeBody::new(found), warnings, None)
+}
+
+impl ComposeBody {
+    /// The composition for a person.
+    pub fn table(&self) -> String {
+        let (text, unit) = (&mut String::new(), self.unit);
+        line(text, &format!("{} and {}: where they meet", self.halves[0].name, self.halves[1].name));
+        let frames = match self.settings.frames {
+            Frames::Own => "own: both face +y, the second is mounted by a half turn",
+            Frames::World => "world: the second is drawn as it stands before the first",
+        };
+        row(text, "frames", frames);
+        let shape = |region: &RegionReport| {
+            let plural = |n: usize, name: &str| format!("{n} {name}{}", if n == 1 { "" } else { "s" });
+            format!(
+                "{} {unit}²  in {} with {}",
+                bracket(region.area),
+                plural(region.parts, "part"),
+                plural(region.holes, "hole")
+            )
+        };
+        for (name, half) in ["A", "B"].into_iter().zip(&self.halves) {
+            row(text, name, &format!("{}  ({})", shape(&half.region), half.name));
+        }
+        for (name, body) in ["body of A", "body of B"].into_iter().zip(self.keep_out.iter().flatten()) {
+            row(text, name, &format!("{}  ({})", shape(&body.region), body.name));
+        }
+        let degrees = |angle: f64| format!("{}°", significant(angle.to_degrees()));
+        line(text, &format!("  at heading {}", degrees(self.heading_rad)));
+        row(text, "acceptance", &shape(&self.acceptance));
+        if let Some([[x0, y0], [x1, y1]]) = self.acceptance.bounds {
+            let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(significant);
+            row(text, "bounds", &format!("x {x0} … {x1}, y {y0} … {y1} {unit}"));
+        }
+        match (self.largest_square, self.tolerance) {
+            (Some(square), Some(reach)) => {
+                let [x, y] = square.center.map(significant);
+                row(
+                    text,
+                    "largest square",
+                    &format!("{} {unit} about x {x}, y {y}", significant(square.side)),
+                );
+                let [a, b, c, d] = reach.map(significant);
+                row(text, "from there", &format!("x -{a} … +{b}, y -{c} … +{d} {unit}"));
+            }
+            _ => row(text, "largest square", "none"),
+        }
+        if let Some(side) = self.square_about_zero {
+            row(text, "about d = 0", &format!("a square of {} {unit}", significant(side)));
+        }
+        let [x, y] = self.overlap.at.map(significant);
+        row(
+            text,
+            "overlap",
+            &format!("at most {} {unit}², at x {x}, y {y}", significant(self.overlap.largest)),
+        );
+        if let Some(volume) = self.volume {
+            let [from, to] =
+                [self.slices.first(), self.slices.last()].map(|s| s.map_or(0.0, |s| s.heading_rad));
+            line(
+                text,
+                &format!("  over {} headings, {} to {}", self.slices.len(), degrees(from), degrees(to)),
+            );
+            row(text, "volume", &format!("{} {unit}²·rad", bracket(volume)));
+        }
+        for half in &self.halves {
+            for note in &half.notes {
+                wrapped(text, "  note: ", &format!("{}: {note}", half.name));
+            }
+        }
+        std::mem::take(text)
+    }
+}
+
+/// Outlines of the inner region as records, to be read again: `x,y,ring`, and the heading where there are several.
+pub fn outline_records(found: &Composition) -> Vec<Vec<String>> {
+    let unit = found.halves[0].measure.symbol();
+    let mut names = vec![format!("x [{unit}]"), format!("y [{unit}]"), "ring".to_owned()];
+    let several = found.slices.len() > 1;
+    if several {
+        names.push("heading_deg".to_owned());
+    }
+    let mut records = vec![names];
+    let mut ring = 0;
+    for slice in &found.slices {
+        for outline in outlines(slice) {
+            for [x, y] in outline {
+                let mut record = vec![number(x), number(y), ring.to_string()];
+                if several {
+                    record.push(number(slice.heading.to_degrees()));
+                }
+                records.push(record);
+            }
+            ring += 1;
+        }
+    }
+    records
+}
+
+/// Outlines of the inner region at the heading shown as a drawing of that size, to be read again.
+pub fn outline_svg(found: &Composition) -> String {
+    let measure = found.halves[0].measure;
+    let [low, high] = found.slices[found.shown].region.inner.bounds().unwrap_or([DVec2::ZERO, DVec2::ONE]);
+    let (size, unit) = (high - low, measure.symbol());
+    let physical = if measure == super::Measure::Millimetres { unit } else { "" };
+    let mut data = String::new();
+    for outline in outlines(&found.slices[found.shown]) {
+        for (k, [x, y]) in outline.into_iter().enumerate() {
+            // Writing to a String cannot fail. Up is +y, and down the picture is not.
+            let _ = write!(data, "{}{} {}", if k == 0 { "M" } else { "L" }, number(x), number(-y));
+        }
+        data.push('Z');
+    }
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}{physical}\" height=\"{h}{physical}\" viewBox=\"{x} {y} {w} {h}\" \
+         data-unit=\"{unit}\">\n<path fill=\"#4b95c9\" fill-rule=\"evenodd\" d=\"{data}\"/>\n</svg>\n",
+        w = number(size.x),
+        h = number(size.y),
+        x = number(low.x),
+        y = number(-high.y),
+    )
+}

@@ -1,0 +1,176 @@
+//! Minkowski sums: where two regions can meet.
+//!
+//! ```text
+//!   A ⊕ B = { a + b },   d ∈ A ⊕ (−B)  ⇔  A meets B + d
+//! ```
+//!
+//! Both regions are cut into convex polygons without new corners; the sum of two convex polygons merges their sides by direction,
+//! exactly on the lattice; the union of all of them is the answer (`i_triangle`, which is `i_overlay`'s own room for
+//! this). [`super::brute`] is an independent judge that cuts nothing.
+
+use super::region::{Node, Region, place, turn};
+use glam::DVec2;
+use i_triangle::i_overlay::core::fill_rule::FillRule;
+use i_triangle::int::minkowski::{IntMinkowskiOperand, IntMinkowskiSolver};
+
+/// Most pairs of convex polygons of one sum: their union takes more than their number in time.
+const MOST_PAIRS: usize = 250_000;
+
+/// Why there is no sum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SumError {
+    /// The outlines are too fine.
+    #[error(
+        "the two outlines fall into {first} and {second} convex polygons, and more than {MOST_PAIRS} pairs are too many; give the \
+         outlines fewer corners, or their arcs a larger chord_error"
+    )]
+    TooFine {
+        /// Convex polygons of the first.
+        first: usize,
+        /// Of the second.
+        second: usize,
+    },
+    /// The sum would leave the lattice.
+    #[error("the sum reaches farther than 1000000 from the origin")]
+    TooLarge,
+}
+
+/// A region in convex polygons.
+pub(super) fn convex_parts(region: &Region) -> Vec<Vec<Node>> {
+    operand(region).map_or_else(Vec::new, |operand| operand.convex_polygons().to_vec())
+}
+
+fn operand(region: &Region) -> Option<IntMinkowskiOperand<i64>> {
+    let outlines: Vec<Vec<Node>> = region.nodes().map(<[Node]>::to_vec).collect();
+    IntMinkowskiOperand::with_source(&outlines, FillRule::NonZero)
+}
+
+/// The Minkowski sum of two regions. The sum of a region with a point is the region moved there; with nothing, nothing.
+///
+/// # Errors
+/// Where it would take too long, or reach too far.
+pub fn minkowski_sum(a: &Region, b: &Region) -> Result<Region, SumError> {
+    let (first, second) = (operand(a), operand(b));
+    let parts = |operand: &Option<IntMinkowskiOperand<i64>>| -> Vec<Vec<Node>> {
+        operand.as_ref().map_or_else(Vec::new, |operand| operand.convex_polygons().to_vec())
+    };
+    let (of_a, of_b) = (parts(&first), parts(&second));
+    if of_a.len() * of_b.len() > MOST_PAIRS {
+        return Err(SumError::TooFine { first: of_a.len(), second: of_b.len() });
+    }
+    let mut sum = Region::default();
+    if let (Some(first), Some(second)) = (&first, &second) {
+        let outlines = IntMinkowskiSolver::default().sum(first, second).map_err(|_| SumError::TooLarge)?;
+        sum = Region::of_parts(outlines);
+    }
+    if a.thin.is_empty() && b.thin.is_empty() {
+        return Ok(sum);
+    }
+    let mut outlines = Vec::new();
+    for (thin, parts) in [(&a.thin, &of_b), (&b.thin, &of_a)] {
+        for segment in thin {
+            outlines.extend(parts.iter().map(|part| convex_sum(segment, part)));
+        }
+    }
+    let mut thin = Vec::new();
+    for first in &a.thin {
+        for second in &b.thin {
+            let hull = convex_sum(first, second);
+            match hull[..] {
+                [one] => thin.push([one; 2]),
+                [one, other] => thin.push([one, other]),
+                _ => outlines.push(hull),
+            }
+        }
+    }
+    let mut all = Region::union([&sum, &Region::of_nodes(&outlines)]);
+    all.thin = thin;
+    Ok(all)
+}
+
+/// Corners of the convex hull of all sums, counter-clockwise; one or two where it has no area.
+pub(super) fn convex_sum(a: &[Node], b: &[Node]) -> Vec<Node> {
+    let mut points: Vec<Node> =
+        a.iter().flat_map(|p| b.iter().map(move |q| Node::new(p.x + q.x, p.y + q.y))).collect();
+    points.sort_unstable_by_key(|p| (p.x, p.y));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let chain = |points: &mut dyn Iterator<Item = &Node>| {
+        let mut hull: Vec<Node> = Vec::new();
+        for &p in points {
+            while hull.len() > 1 && turn(hull[hull.len() - 2], hull[hull.len() - 1], p) <= 0 {
+                hull.pop();
+            }
+            hull.push(p);
+        }
+        hull.pop();
+        hull
+    };
+    let mut hull = chain(&mut points.iter());
+    hull.extend(chain(&mut points.iter().rev()));
+    hull
+}
+
+/// The overlap of the two regions when the second is moved by d: area of A ∩ (B + d), from their convex polygons.
+///
+/// It is the convolution of the indicator functions of A and −B: 0 outside the Minkowski sum of the two, and its integral over
+/// all d is area(A)·area(B).
+#[derive(Debug, Clone)]
+pub struct Overlap {
+    first: Vec<Vec<DVec2>>,
+    second: Vec<Vec<DVec2>>,
+}
+
+impl Overlap {
+    /// Of two regions.
+    pub fn new(a: &Region, b: &Region) -> Self {
+        let places = |region: &Region| -> Vec<Vec<DVec2>> {
+            convex_parts(region).iter().map(|part| part.iter().map(|p| place(*p)).collect()).collect()
+        };
+        Self { first: places(a), second: places(b) }
+    }
+
+    /// Area of A ∩ (B + d).
+    pub fn at(&self, d: DVec2) -> f64 {
+        let mut area = 0.0;
+        for b in &self.second {
+            let moved: Vec<DVec2> = b.iter().map(|p| *p + d).collect();
+            area += self.first.iter().map(|a| common(a, &moved)).sum::<f64>();
+        }
+        area
+    }
+}
+
+/// Area of the intersection of two convex polygons, both counter-clockwise.
+fn common(a: &[DVec2], b: &[DVec2]) -> f64 {
+    let bounds = |p: &[DVec2]| {
+        p.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)))
+    };
+    let ((la, ha), (lb, hb)) = (bounds(a), bounds(b));
+    if la.cmpgt(hb).any() || lb.cmpgt(ha).any() {
+        return 0.0;
+    }
+    let mut rest = a.to_vec();
+    for (k, &from) in b.iter().enumerate() {
+        let along = b[(k + 1) % b.len()] - from;
+        let inside = |p: DVec2| along.perp_dot(p - from);
+        let mut cut = Vec::with_capacity(rest.len() + 1);
+        for (j, &p) in rest.iter().enumerate() {
+            let q = rest[(j + 1) % rest.len()];
+            let (dp, dq) = (inside(p), inside(q));
+            if dp >= 0.0 {
+                cut.push(p);
+            }
+            if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
+                cut.push(p.lerp(q, dp / (dp - dq)));
+            }
+        }
+        rest = cut;
+        if rest.len() < 3 {
+            return 0.0;
+        }
+    }
+    rest.windows(2).map(|w| (w[0] - rest[0]).perp_dot(w[1] - rest[0])).sum::<f64>() / 2.0
+}
