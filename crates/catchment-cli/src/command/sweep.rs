@@ -37,7 +37,7 @@ use std::time::Instant;
 pub(crate) struct SweepArgs {
     #[command(flatten)]
     design: DesignArgs,
-    /// A key of the design file and its values, such as aspect_ratio=0.5,1 or cor=-1..1/5; may be repeated
+    /// A key of the design file and its values, such as cor=-1..1/5 or errors.x=1,2; may be repeated
     #[arg(long, value_name = "KEY=VALUE,…", required = true, allow_hyphen_values = true, value_parser = axis)]
     over: Vec<Axis>,
     #[command(flatten)]
