@@ -18,7 +18,7 @@ use std::time::Instant;
 
 /// Compute published tables and set them beside the printed ones
 ///
-/// The kinematic bounds (3.3, 3.4) are exact. The discrete tables (5.4 to 5.9) are computed with conventions
+/// The kinematic bounds (3.3, 3.4) are exact. The discrete tables (5.4 to 5.11) are computed with conventions
 /// that were fitted to these very tables: that they agree shows that the conventions are understood, not that
 /// the numbers are right as physics. --exact puts what frictionless motion gives beside both.
 #[derive(Debug, Args)]

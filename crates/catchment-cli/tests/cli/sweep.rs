@@ -82,10 +82,10 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 fn stopped_and_resumed_it_writes_what_it_would_have_written() {
     let home = home();
     let sweep = |out: &'static str| {
-        let axes = ["--over", "aspect_ratio=0.5,1,2,4", "--over", "cor=-1..1/8", "--resolution", "12"];
+        let axes = ["--over", "aspect_ratio=0.5,1", "--over", "cor=-1..1/8", "--resolution", "12"];
         let mut command = catchment(home.path());
         command.args(
-            [&["sweep", "v.toml"], &axes[..], &["--samples", "4000", "--threads", "2", "-o", out]].concat(),
+            [&["sweep", "v.toml"], &axes[..], &["--samples", "1500", "--threads", "2", "-o", out]].concat(),
         );
         command
     };
@@ -108,10 +108,10 @@ fn stopped_and_resumed_it_writes_what_it_would_have_written() {
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), code, "{stderr}");
-        assert!(count() >= had + 2 && count() < 32 && !home.path().join("out").exists(), "{} of 32", count());
+        assert!(count() >= had + 2 && count() < 16 && !home.path().join("out").exists(), "{} of 16", count());
         if code.is_some() {
             assert!(
-                stderr.contains("of 32 designs in out.parts, from where the same command goes on"),
+                stderr.contains("of 16 designs in out.parts, from where the same command goes on"),
                 "{stderr}"
             );
         }
@@ -124,7 +124,10 @@ fn stopped_and_resumed_it_writes_what_it_would_have_written() {
         .unwrap();
     fs::write(one, "{").unwrap();
     assert_eq!(sweep("out").output().unwrap().status.code(), Some(0));
-    assert!(contents(&home.path().join("out")) == contents(&home.path().join("whole")));
+    let [out, whole] = ["out", "whole"].map(|name| contents(&home.path().join(name)));
+    let differing: Vec<_> =
+        whole.iter().filter(|(name, bytes)| out.get(*name) != Some(bytes)).map(|(name, _)| name).collect();
+    assert!(differing.is_empty() && out.len() == whole.len(), "{differing:?}");
     assert_eq!(entries(home.path()), ["out", "v.toml", "whole"]);
 }
 

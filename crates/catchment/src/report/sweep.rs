@@ -130,7 +130,7 @@ impl SweepReport {
         }
         let more = self.found.designs.len().saturating_sub(LONGEST_LIST);
         if more > 0 {
-            line(text, &format!("  … and {} more, which --json and -o have", grouped(more)));
+            line(text, &format!("  … and {} more, in JSON and CSV", grouped(more)));
         }
     }
 
@@ -164,7 +164,7 @@ impl SweepReport {
             wrapped(text, first, &format!("{}{more}: {sentence}", designs[0]));
         }
         if omitted > 0 {
-            line(text, &format!("and {} more, which --json and -o have", grouped(omitted)));
+            line(text, &format!("and {} more, in JSON and CSV", grouped(omitted)));
         }
     }
 

@@ -10,7 +10,7 @@
 //! Beside both stands the exact value, where there is one: the same solids and rotation point, followed exactly
 //! ([`Exact`]).
 //!
-//! The kinematic bounds (3.3, 3.4) are exact reproductions. The discrete tables (5.4 to 5.9) are computed with conventions that were
+//! The kinematic bounds (3.3, 3.4) are exact reproductions. The discrete tables (5.4 to 5.11) are computed with conventions that were
 //! fitted to these very tables ([`crate::recipe::dissertation`]): agreement shows that the conventions are
 //! understood, not that the numbers are right as physics.
 

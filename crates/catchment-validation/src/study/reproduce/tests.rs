@@ -61,9 +61,9 @@ fn the_pyramid_tables_are_reproduced_as_far_as_their_conventions_are_known() {
     let summary = comparison("5.9").summary;
     assert!(summary.matching >= 11 && summary.mean_log_ratio.unwrap() < 0.43, "{summary:?}");
     let summary = comparison("5.10").summary;
-    assert!(summary.matching >= 99, "{summary:?}");
+    assert!(summary.matching >= 14 && summary.median_error.unwrap() < 0.042, "{summary:?}");
     let summary = comparison("5.11").summary;
-    assert!(summary.matching >= 99, "{summary:?}");
+    assert!(summary.matching >= 7 && summary.median_error.unwrap() < 0.073, "{summary:?}");
 }
 
 /// What chapter 5 says of its own tables, asked of their printed numbers.

@@ -394,13 +394,12 @@ const LAYOUT: u8 = 1;
 /// The figures of an answer.
 fn figures(answer: &Answer) -> Result<Figures, SweepError> {
     let merits = &answer.merits;
-    let sum = answer.sum();
     let along = |t: &crate::merit::tolerance::Tolerance| Along { axis: t.dof, minus: t.minus, plus: t.plus };
     Ok(Figures {
-        sum,
+        sum: answer.sum(),
         sum_ci95: answer.sum_ci95(),
         unit: answer.unit(),
-        fraction: answer.grid().map_or(merits.sum.fraction, |grid| sum / grid.measure()),
+        fraction: answer.corrected.as_ref().map_or(merits.sum.fraction, |corrected| corrected.found.fraction),
         onaa_edge: merits.onaa.as_ref().map(|onaa| onaa.edge),
         centered_edge: merits.centered.as_ref().map(|centered| centered.scale),
         tolerances: merits.tolerances.iter().map(along).collect(),
