@@ -8,7 +8,7 @@ use glam::DVec2;
 use std::ops::Range;
 
 /// Most corners of a file: every two sides are compared.
-const MOST_CORNERS: usize = 10_000;
+pub(super) const MOST_CORNERS: usize = 10_000;
 /// Problems that are told; more are counted.
 const MOST_TOLD: usize = 20;
 

@@ -1,6 +1,7 @@
 //! The paths of a picture.
 
-use super::rings::{Ring, region};
+use super::super::region::REACH;
+use super::rings::{MOST_CORNERS, Ring, region};
 use super::{Measure, Read, ReadError};
 use catchment::design::{Finding, LengthUnit, Quantity, SourceText, Unit};
 use glam::DVec2;
@@ -109,6 +110,11 @@ fn element(
         return;
     }
     match BezPath::from_svg(data.value()) {
+        Ok(path) if !within_reach(&path, factor) => {
+            let message = format!("the path goes farther from the origin than {REACH} mm");
+            let help = "check the width and the viewBox of the picture".to_owned();
+            found.push(Finding::new(message, Some(help)).at(Some(data.range_value())));
+        }
         Ok(path) => {
             *curved |= path.elements().iter().any(|e| matches!(e, PathEl::QuadTo(..) | PathEl::CurveTo(..)));
             path_rings(&path, factor, &data.range_value(), rings, found);
@@ -133,6 +139,17 @@ fn has_huge_numbers(data: &str) -> bool {
         unsigned[..digits(unsigned)].parse::<i64>().unwrap_or(0)
     };
     long || data.split(['e', 'E']).skip(1).any(|rest| tens(rest) > MOST_TENS)
+}
+
+/// Whether everything that a path passes lies where regions may be: what does not would take any number of chords.
+fn within_reach(path: &BezPath, factor: f64) -> bool {
+    let near = |p: &kurbo::Point| (p.x.abs().max(p.y.abs()) * factor) <= REACH;
+    path.elements().iter().all(|element| match element {
+        PathEl::MoveTo(p) | PathEl::LineTo(p) => near(p),
+        PathEl::QuadTo(p, q) => near(p) && near(q),
+        PathEl::CurveTo(p, q, r) => near(p) && near(q) && near(r),
+        PathEl::ClosePath => true,
+    })
 }
 
 fn path_rings(
@@ -161,10 +178,11 @@ fn path_rings(
             ended(&mut ring, false);
             ring.corners.push(corner(p));
         }
-        PathEl::LineTo(p) => ring.corners.push(corner(p)),
+        // One too many is refused, and more need not be held.
+        PathEl::LineTo(p) if ring.corners.len() <= MOST_CORNERS => ring.corners.push(corner(p)),
         PathEl::ClosePath => ended(&mut ring, true),
-        // Flattened paths have none.
-        PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
+        // Flattened paths have no curves.
+        PathEl::LineTo(_) | PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
     });
     ended(&mut ring, false);
 }

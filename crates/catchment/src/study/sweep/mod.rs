@@ -359,10 +359,10 @@ fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<Found, 
     }
     let found = match run.on(&problem, exec) {
         Ok(answer) => Found::Figures(Box::new(figures(&answer)?)),
-        Err(RunError::Cancelled(error)) => return Err(error.into()),
-        Err(RunError::OutOfBudget(error)) => return Err(error.into()),
-        Err(error @ (RunError::Resolution(_) | RunError::NotApplicable(_))) => return Err(error.into()),
-        Err(error) => Found::Refused(error.to_string()),
+        // Of a design, only what the method says against it; a stop may come as an error of any room.
+        Err(RunError::Decide(error)) if !exec.is_cancelled() => Found::Refused(error.to_string()),
+        Err(_) if exec.is_cancelled() => return Err(Cancelled.into()),
+        Err(error) => return Err(error.into()),
     };
     keep.keep(&key, &found).map_err(SweepError::Keep)?;
     Ok(found)
