@@ -12,9 +12,12 @@
 
 mod outcomes;
 mod read;
+// What writes folders also draws.
+#[cfg(feature = "figure")]
 mod sweep;
 
 pub use read::read;
+#[cfg(feature = "figure")]
 pub(super) use sweep::fill as fill_sweep;
 
 use super::schema::{Report, Unit};
