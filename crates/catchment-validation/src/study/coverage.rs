@@ -24,7 +24,6 @@ use catchment::method::correction::{self, ByFraction, ByNeighbours, CorrectionEr
 use catchment::method::descent;
 use catchment::method::transport::{self, TransportError};
 use catchment::pose::Dof;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// What changes the answer.
@@ -204,14 +203,12 @@ impl Trial<'_> {
     fn row(&self, strata: &'static str, by: &impl Stratify, at: f64) -> Result<Row, CoverageError> {
         let Settings { repeats, descents, exact: plain } = *self.settings;
         let silent = self.exec.part([at; 2], STAGE);
-        silent.report(0.0, STAGE);
-        let one = |seed| {
-            let stop = Stop::Samples(descents);
-            let settings = correction::Settings { seed, stop };
-            correction::correct(self.pair, self.grid, by, &settings, &descent::Settings::default(), &silent)
+        let one = |number: usize, exec: &Exec| {
+            let settings = correction::Settings { seed: number as u64 + 1, stop: Stop::Samples(descents) };
+            correction::correct(self.pair, self.grid, by, &settings, &descent::Settings::default(), exec)
         };
-        let found: Vec<_> =
-            self.exec.install(|| (1..=repeats).into_par_iter().map(one).collect::<Result<_, _>>())?;
+        let found = silent.each(repeats as usize, usize::MAX, STAGE, one);
+        let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
         let exact = self.exact;
         let exact_error = Z95 * (exact * (1.0 - exact) / plain as f64).sqrt();
         let measure = self.grid.measure();

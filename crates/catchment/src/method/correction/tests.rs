@@ -45,9 +45,9 @@ impl Case {
         Self { name, radius, fraction, outcomes, grid, nearly_pure: false }
     }
 
-    fn estimate(&self, stop: Stop, seed: u64) -> Corrected {
+    fn estimate(&self, stop: Stop, seed: u64, exec: &Exec) -> Corrected {
         let by = ByNeighbours::new(&self.outcomes, self.grid.shape());
-        estimate(&self.grid, &by, &Settings { seed, stop }, &Exec::new(), |poses, _| {
+        estimate(&self.grid, &by, &Settings { seed, stop }, exec, |poses, _| {
             let inside = |p: &PoseError| distance(p, 0.0) < self.radius;
             Ok(poses.iter().map(|p| if inside(p) { Outcome::Aligned } else { Outcome::Jammed }).collect())
         })
@@ -73,7 +73,9 @@ fn cases() -> Vec<Case> {
 /// Share of intervals that hold the truth; bias in standard errors of the mean; mean half-width as a share of the
 /// Sum; mean number of descents, and of plain ones that would tell as much.
 fn repeated(case: &Case, stop: Stop, repeats: u64) -> [f64; 5] {
-    let found: Vec<Corrected> = (0..repeats).into_par_iter().map(|seed| case.estimate(stop, seed)).collect();
+    // Not by one pool: a thread that waits in one repeat would begin another, and another in that.
+    let one = |seed: usize, exec: &Exec| case.estimate(stop, seed as u64, exec);
+    let found: Vec<Corrected> = Exec::new().each(repeats as usize, usize::MAX, "repeats", one);
     let n = repeats as f64;
     let mean = |f: &dyn Fn(&Corrected) -> f64| found.iter().map(f).sum::<f64>() / n;
     let measure = case.grid.measure();
@@ -123,7 +125,7 @@ fn a_tolerance_is_met_and_its_interval_still_holds() {
 #[test]
 fn nothing_accepted_ends_too_and_leaves_room_for_what_was_not_seen() {
     let case = Case::new("nothing", &[9, 9], 0.0, |_, _| false);
-    let found = case.estimate(Stop::Tolerance(0.5), 1);
+    let found = case.estimate(Stop::Tolerance(0.5), 1, &Exec::new());
     assert!(found.sum == 0.0 && found.ci95[0] == 0.0 && found.ci95[1] > 0.0, "{found:?}");
     assert!(found.ci95[1] <= 2.0 * 0.5 * FAINT * case.grid.measure());
 }
@@ -151,10 +153,11 @@ fn a_seed_gives_one_result_and_longer_samples_begin_with_shorter_ones() {
     different.sort_by(|a, b| a.x.total_cmp(&b.x));
     different.dedup();
     assert_eq!(different.len(), 500);
-    assert_ne!(case.estimate(Stop::Samples(200), 1), case.estimate(Stop::Samples(200), 2));
+    let exec = Exec::new();
+    assert_ne!(case.estimate(Stop::Samples(200), 1, &exec), case.estimate(Stop::Samples(200), 2, &exec));
     // A time too short for anything still gives the first batch, and that many poses give the same again.
-    let timed = case.estimate(Stop::Budget(std::time::Duration::from_nanos(1)), 1);
-    assert_eq!(case.estimate(Stop::Samples(timed.descents), 1), timed);
+    let timed = case.estimate(Stop::Budget(std::time::Duration::from_nanos(1)), 1, &exec);
+    assert_eq!(case.estimate(Stop::Samples(timed.descents), 1, &exec), timed);
 }
 
 #[test]
