@@ -31,9 +31,11 @@ fn records(text: &str) -> Result<Vec<Record>, Finding> {
         let fields = record
             .iter()
             .map(|field| {
-                let at = text[from..end].find(field).map_or(from, |offset| from + offset);
-                from = (at + field.len()).min(end);
-                (field.to_owned(), at..from)
+                // A field with quotes in it is written otherwise than it reads: its place is that of the record.
+                let place =
+                    text[from..end].find(field).map(|offset| from + offset..from + offset + field.len());
+                from = place.as_ref().map_or(from, |place| place.end);
+                (field.to_owned(), place.unwrap_or(start..end))
             })
             .collect();
         records.push(Record { fields, span: start..end });
