@@ -35,7 +35,7 @@ use flow::Flow;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// Most sheets: half a minute of cutting, and 100 MB.
+/// Most sheets: minutes of cutting, and 100 MB.
 const MAX_SHEETS: usize = 400_000;
 
 /// What changes the answer.
