@@ -152,7 +152,8 @@ impl Run {
         Self { method, ..Self::default() }
     }
 
-    /// Computes the run.
+    /// Computes the run. Many of them at once: by [`Exec::each`], and not as tasks of one pool of `rayon`, whose waiting threads begin one
+    /// inside of another until the stack is full.
     ///
     /// # Errors
     /// See [`RunError`]; nothing is left behind.
