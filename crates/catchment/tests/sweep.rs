@@ -2,7 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::design::SourceText;
+use catchment::design::{Finding, SourceText};
+use catchment::exec::OutOfBudget;
 use catchment::prelude::*;
 use catchment::report::SweepReport;
 use catchment::study::sweep::{Found, Keep, Nowhere, Plan, Settings, Sweep, SweepError};
@@ -10,6 +11,9 @@ use std::collections::BTreeMap;
 use std::io;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Enough for what a sweep of two designs holds, and for no grid.
+const FIGURES: u64 = 2 * 2048;
 
 const RATIOS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
@@ -154,22 +158,39 @@ fn a_design_of_a_sweep_is_a_run() {
     assert_eq!(outline.outcomes, digits);
 }
 
+/// Two designs do not fit into this memory together, one alone does; and one that fits nowhere is an error, not a design refused.
+#[test]
+fn what_does_not_fit_side_by_side_is_computed_alone() {
+    let fine = || plan(&family("x-face", "['x', 'pitch']"), &["cor=-1,0.5"], "40", 50).unwrap();
+    let ample = run(fine(), &Nowhere, 1);
+    let within = |bytes: u64, threads: usize| {
+        let exec = Exec::new().with_threads(threads).unwrap().with_memory_budget(bytes);
+        fine().run(&Nowhere, &exec)
+    };
+    let refused = within(FIGURES, 1).unwrap_err();
+    let SweepError::Run(RunError::OutOfBudget(OutOfBudget { needed, .. })) = refused else {
+        panic!("{refused}")
+    };
+    assert_eq!(within(needed * 3 / 2, 2).unwrap(), ample);
+    assert!(matches!(within(needed - 1, 2), Err(SweepError::Run(RunError::OutOfBudget(_)))));
+}
+
 #[test]
 fn what_cannot_be_built_is_told_and_stops_nothing() {
-    let text = family("pin-hole", "['x']");
-    let plan = plan(&text, &["pin_radius=0.08,0.9"], "5", 10).unwrap();
+    let text = family("pyramid", "['x', 'yaw']");
+    let plan = plan(&text, &["family=pyramid,cone"], "5", 10).unwrap();
     let base = plan.base().clone();
     let sweep = run(plan, &Nowhere, 2);
     assert!(sweep.designs[0].found.figures().is_some());
     let Found::Refused(reason) = &sweep.designs[1].found else { panic!("{:?}", sweep.designs[1]) };
+    let alone = Draft::read(SourceText::new("d.toml", text.replace("pyramid", "cone")));
+    let Err(ProblemError::Findings(findings)) = alone.unwrap().build() else { panic!("it builds") };
+    let Finding { message, help, .. } = &findings.list[0];
+    assert_eq!(*reason, format!("{message}; {}", help.as_ref().unwrap()), "what is wrong, and what helps");
     assert_eq!((sweep.largest, sweep.smallest), (Some(0), Some(0)));
     let report = SweepReport::new(&base, sweep.clone(), None);
     let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        flat(&report.table()).contains(&flat(&format!("pin_radius 0.9: {reason}"))),
-        "{}",
-        report.table()
-    );
+    assert!(flat(&report.table()).contains(&flat(&format!("family cone: {reason}"))), "{}", report.table());
     assert_eq!(report.records()[2].last(), Some(reason));
     assert!(report.records().iter().all(|record| record.len() == report.records()[0].len()));
 }

@@ -20,7 +20,7 @@ mod axis;
 pub use axis::{Axis, AxisError};
 
 use crate::acceptance::Outcome;
-use crate::design::{Complaint, Design, Finding, Findings, SourceText, with_key};
+use crate::design::{Complaint, Design, Finding, SourceText, with_key};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::merit::slice::Slice;
 use crate::method::NotApplicable;
@@ -299,12 +299,24 @@ impl Plan {
         let Self { settings, drafts, .. } = self;
         let count = drafts.len();
         exec.ensure_fits("the figures of the designs", count as u64 * FIGURES_BYTES, |_| Vec::new())?;
-        let lanes = side_by_side(&settings.run, &drafts, exec);
-        let found = exec.each(count, lanes, "designs", |number, exec| {
+        let one = |number: usize, exec: &Exec| {
             exec.check()?;
             one(&drafts[number], &settings.run, keep, exec)
+        };
+        // Side by side each has its share of the memory; what needs more is computed afterwards, alone.
+        let lanes = exec.threads();
+        let shared = exec.clone().with_memory_budget(exec.memory_budget() / lanes as u64);
+        let first = shared.each(count, lanes, "designs", |number, exec| match one(number, exec) {
+            Err(SweepError::Run(RunError::OutOfBudget(_))) => Ok(None),
+            found => found.map(Some),
         });
-        let found = found.into_iter().collect::<Result<Vec<Found>, SweepError>>()?;
+        let mut found = first.into_iter().collect::<Result<Vec<Option<Found>>, SweepError>>()?;
+        let large: Vec<usize> = (0..count).filter(|&number| found[number].is_none()).collect();
+        let alone = exec.each(large.len(), 1, "large designs", |k, exec| one(large[k], exec));
+        for (number, design) in large.into_iter().zip(alone) {
+            found[number] = Some(design?);
+        }
+        let found: Vec<Found> = found.into_iter().flatten().collect();
         let sums: Vec<(usize, f64)> =
             found.iter().enumerate().filter_map(|(k, f)| Some((k, f.figures()?.sum))).collect();
         if let (true, Some(Found::Refused(reason))) = (sums.is_empty(), found.first()) {
@@ -338,22 +350,13 @@ fn combination(axes: &[Axis], number: usize) -> impl Iterator<Item = &str> {
     })
 }
 
-/// How many designs fit into memory at once: as many as there are threads, or one, which then has them all.
-fn side_by_side(run: &Run, drafts: &[Draft], exec: &Exec) -> usize {
-    let threads = exec.threads();
-    let Some(problem) = drafts.iter().find_map(|draft| draft.clone().build().ok()) else { return 1 };
-    let Ok(plan) = run.plan(&problem) else { return 1 };
-    let together = exec.memory_budget() / threads.max(1) as u64;
-    if plan.ensure_fits(&exec.clone().with_memory_budget(together)).is_ok() { threads } else { 1 }
-}
-
 /// One design, computed or taken from what is kept.
 fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<Found, SweepError> {
     let problem = match draft.clone().build() {
         Ok(problem) => problem,
         Err(error) => return Ok(Found::Refused(reason(&error))),
     };
-    let key = key(&problem, run);
+    let key = key(&problem, run).map_err(SweepError::Keep)?;
     if let Some(found) = keep.find(&key) {
         return Ok(found);
     }
@@ -368,24 +371,26 @@ fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<Found, 
     Ok(found)
 }
 
-/// What is wrong with a design, in one line.
+/// What is wrong with a design and what helps, in one line.
 fn reason(error: &ProblemError) -> String {
-    let first = |findings: &Findings| findings.list.first().map(|Finding { message, .. }| message.clone());
+    let said = |Finding { message, help, .. }: &Finding| match help {
+        Some(help) => format!("{message}; {help}"),
+        None => message.clone(),
+    };
     match error {
-        ProblemError::Findings(findings) => first(findings).unwrap_or_default(),
+        ProblemError::Findings(findings) => findings.list.first().map(said).unwrap_or_default(),
         ProblemError::Load(error) => error.to_string(),
     }
 }
 
 /// A digest of everything that the figures depend on.
-fn key(problem: &Problem, run: &Run) -> String {
+fn key(problem: &Problem, run: &Run) -> io::Result<String> {
     let mut digest = Sha256::new();
     digest.update(env!("CARGO_PKG_VERSION"));
     digest.update([LAYOUT]);
     digest.update(problem.digest());
-    // A run is plain data: it has a JSON form.
-    digest.update(serde_json::to_vec(run).unwrap_or_default());
-    crate::design::hex(&digest.finalize())
+    digest.update(serde_json::to_vec(run)?);
+    Ok(crate::design::hex(&digest.finalize()))
 }
 
 /// Rises when figures change their meaning.
