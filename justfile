@@ -44,6 +44,7 @@ reproducible:
     tests/reproducible
 
 # a list of what the program is made of (CycloneDX), beside it (needs cargo-cyclonedx)
+# the bill of materials of the program (CycloneDX), beside its Cargo.toml; needs `cargo install cargo-cyclonedx`
 sbom:
     cargo cyclonedx --manifest-path crates/catchment-cli/Cargo.toml --all-features --format json --describe binaries
 

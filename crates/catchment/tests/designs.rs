@@ -1,8 +1,9 @@
 //! Every committed design builds, and its mated pose holds.
 
-use catchment::connector::Connector;
-use catchment::contact::{Pair, mated};
-use catchment::design;
+use catchment::design::SourceText;
+use catchment::pose::CorPose;
+use catchment::prelude::*;
+use catchment::report::CheckReport;
 use std::path::Path;
 
 #[test]
@@ -16,11 +17,8 @@ fn every_committed_design_is_mated() {
     files.sort();
     assert!(files.len() >= 8, "{files:?}");
     for file in files {
-        let text = std::fs::read_to_string(&file).unwrap();
-        let design =
-            design::read(&text, &folder).unwrap_or_else(|e| panic!("{}: {e:?}", file.display())).design;
-        let connector = Connector::build(&design).unwrap_or_else(|e| panic!("{}: {e:?}", file.display()));
-        assert_eq!(mated::problems(&Pair::new(&connector, &design.alignment)), [], "{}", file.display());
+        let problem = Problem::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        assert_eq!(problem.doubts(), [], "{}", file.display());
     }
 }
 
@@ -30,7 +28,30 @@ fn the_design_in_the_readme_is_mated() {
     let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
     let (_, rest) = readme.split_once("```toml\n").unwrap();
     let (text, _) = rest.split_once("```").unwrap();
-    let design = design::read(text, &root.join("designs/meshes")).unwrap_or_else(|e| panic!("{e:?}")).design;
-    let connector = Connector::build(&design).unwrap_or_else(|e| panic!("{e:?}"));
-    assert_eq!(mated::problems(&Pair::new(&connector, &design.alignment)), []);
+    let draft = Draft::read(SourceText::new(root.join("designs/meshes/readme.toml"), text));
+    assert_eq!(draft.and_then(Draft::build).unwrap().doubts(), []);
+}
+
+/// Drawn docked in one frame, as OBJ and PLY, the pyramid is the one that is drawn half by half.
+#[test]
+fn the_assembled_pyramid_is_the_pyramid() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs");
+    let [assembled, facing] =
+        ["pyramid-assembled.toml", "pyramid-stl.toml"].map(|name| Problem::open(folder.join(name)).unwrap());
+    for k in 0..50 {
+        let part = |step: f64| (f64::from(k) * step).fract() - 0.5;
+        let error =
+            PoseError { x: part(0.83), y: part(0.69), roll: part(0.58), pitch: part(0.48), yaw: part(0.4) };
+        let heights = [&assembled, &facing].map(|problem| {
+            let pose = CorPose::from_error(&error, problem.alignment().center_of_rotation, DofSet::ALL);
+            problem.pair().height(&pose).unwrap()
+        });
+        assert!((heights[0] - heights[1]).abs() < 1e-9, "{error:?}: {heights:?}");
+    }
+    let drawing = CheckReport::good(&assembled).drawing.unwrap();
+    let near = |a: [f64; 3], b: [f64; 3]| DVec3::from_array(a).abs_diff_eq(DVec3::from_array(b), 1e-6);
+    // The middle of the assembly's pyramid; the centre of rotation 25 mm along the approach; y of an error is the assembly's z.
+    assert!(near(drawing.fixed.face_center, [120.0, 40.0, 15.0]), "{drawing:?}");
+    assert!(near(drawing.moving.center_of_rotation, [120.0, 65.0, 15.0]), "{drawing:?}");
+    assert_eq!((drawing.fixed.x, drawing.fixed.y), ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]));
 }

@@ -42,11 +42,7 @@ fn meshes(format: stl::Format, folder: &Path, size: f64) -> Design {
         scale: 1.0 / size,
         content: None,
     };
-    let own = OwnSpec {
-        face_height: 0.0,
-        fixed: mesh(&connector.fixed, "socket.stl"),
-        moving: mesh(&drawn, "plug.stl"),
-    };
+    let own = OwnSpec::new(0.0, mesh(&connector.fixed, "socket.stl"), mesh(&drawn, "plug.stl"));
     design(ConnectorSpec::Own(own))
 }
 
@@ -59,11 +55,8 @@ fn pieces() -> Design {
         vec![[0.0, 0.0, 0.0], [0.0, 0.0, b], [px, py, b], [qx, qy, b], [px, py, h], [qx, qy, h]]
     };
     let plug = rim.iter().map(|[x, y]| [*x, *y, 0.0]).chain([[0.0, 0.0, h]]).collect();
-    let own = OwnSpec {
-        face_height: h / 2.0,
-        fixed: HalfSpec::Pieces((0..4).map(wedge).collect()),
-        moving: HalfSpec::Pieces(vec![plug]),
-    };
+    let own =
+        OwnSpec::new(h / 2.0, HalfSpec::Pieces((0..4).map(wedge).collect()), HalfSpec::Pieces(vec![plug]));
     design(ConnectorSpec::Own(own))
 }
 
@@ -114,11 +107,11 @@ fn stl_files_have_the_familys_heights() {
 
 #[test]
 fn all_problems_of_both_halves_come_at_once() {
-    let own = OwnSpec {
-        face_height: 0.0,
-        fixed: HalfSpec::Pieces(vec![vec![[0.0; 3]; 3], vec![[0.0, f64::NAN, 0.0]; 4]]),
-        moving: HalfSpec::Mesh { path: "no/such.stl".into(), scale: 1.0, content: None },
-    };
+    let own = OwnSpec::new(
+        0.0,
+        HalfSpec::Pieces(vec![vec![[0.0; 3]; 3], vec![[0.0, f64::NAN, 0.0]; 4]]),
+        HalfSpec::Mesh { path: "no/such.stl".into(), scale: 1.0, content: None },
+    );
     let problems = Connector::build(&design(ConnectorSpec::Own(own))).unwrap_err();
     let places: Vec<_> = problems
         .iter()

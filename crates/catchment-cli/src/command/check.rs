@@ -3,15 +3,20 @@
 use crate::args::DesignArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::to_stdout;
+use crate::output::{FileArgs, to_stdout};
+use catchment::exec::Exec;
 use catchment::problem::{Draft, Problem, ProblemError};
-use catchment::report::CheckReport;
+use catchment::report::{CheckReport, figure};
 use clap::Args;
 
 /// Check a design file: all problems at once, with their places
+///
+/// Where nothing is wrong it says how the design was understood: of halves from files also where the face centre and the centre of rotation
+/// are in the coordinates of each file. With -o it draws the two halves, apart and mated.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment check design.toml\n  \
+    catchment check design.toml -o pair.svg       with a picture of the halves (.svg, .png)\n  \
     catchment check design.toml --json | jq .problems")]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
@@ -19,10 +24,26 @@ pub(crate) struct CheckArgs {
     /// Print problems, or the design as understood, as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    file: FileArgs,
 }
 
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
+    let kind = args.file.kind(&["svg", "png"])?;
+    if kind.is_some() {
+        figure::ensure_fits(0, &Exec::new())?;
+    }
     let checked = args.design.draft().and_then(Draft::build).and_then(Problem::checked);
+    if let (Some(kind), Ok(problem)) = (kind, &checked) {
+        let picture = figure::pair(problem)?;
+        match kind {
+            "png" => args.file.write(&picture.png(PNG_SCALE)?)?,
+            _ => args.file.write(picture.svg().as_bytes())?,
+        }
+    }
     if !args.json {
         to_stdout(&CheckReport::good(&checked?).table())?;
         return Ok(ExitStatus::Done);

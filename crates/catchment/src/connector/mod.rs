@@ -13,6 +13,9 @@
 mod family;
 mod hull;
 pub mod mesh;
+mod obj;
+mod place;
+mod ply;
 mod problem;
 mod round;
 mod source;
@@ -26,9 +29,9 @@ pub use problem::{Problem, Side};
 pub use source::{FileBytes, Read, Source};
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
-use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, MeshContent};
+use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, HalfSpec, MeshContent, OwnSpec};
 use crate::pose::Mount;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 /// One half of a connector: the union of closed surfaces.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -57,12 +60,31 @@ pub struct Connector {
     pub moving: Half,
     /// What the meshes held that the halves were built from.
     pub contents: Contents,
+    /// Where they came from.
+    pub origin: Origin,
+}
+
+/// Where the halves came from: what leads from the coordinates in which each was drawn to its frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Origin {
+    /// From the coordinates of the fixed half's file, or of its pieces, to its frame in D.
+    pub fixed: DAffine3,
+    /// The same of the moving half.
+    pub moving: DAffine3,
+    /// How far apart the aligned halves are as drawn, along the approach, in D; negative where they overlap. `None` where nothing was moved.
+    pub apart: Option<f64>,
+}
+
+impl Origin {
+    /// Halves that were drawn in their frames.
+    pub const HERE: Self = Self { fixed: DAffine3::IDENTITY, moving: DAffine3::IDENTITY, apart: None };
 }
 
 impl Connector {
     /// Two halves that already are in these frames.
     pub const fn from_halves(fixed: Half, moving: Half) -> Self {
-        Self { fixed, moving, contents: Contents { fixed: None, moving: None } }
+        let contents = Contents { fixed: None, moving: None };
+        Self { fixed, moving, contents, origin: Origin::HERE }
     }
 
     /// Builds the halves of a design, mesh files read from disk, and places them in the frames of the contact room.
@@ -84,11 +106,7 @@ impl Connector {
             ConnectorSpec::Own(own) => {
                 let half =
                     |spec, side| Source::of(spec, side, read).map_err(|problem| vec![problem])?.build(side);
-                Self::of_own(
-                    [half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)],
-                    own.face_height,
-                    mount,
-                )
+                Self::of_own([half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)], own, mount)
             }
         }
     }
@@ -111,18 +129,46 @@ impl Connector {
         face_height: f64,
         mount: Mount,
     ) -> Result<Self, Vec<Problem>> {
-        Self::of_own([fixed.build(Side::Fixed), moving.build(Side::Moving)], face_height, mount)
+        let nothing = || HalfSpec::Pieces(Vec::new());
+        let own = OwnSpec::new(face_height, nothing(), nothing());
+        Self::of_own([fixed.build(Side::Fixed), moving.build(Side::Moving)], &own, mount)
     }
 
-    fn of_own([fixed, moving]: [Sourced; 2], face_height: f64, mount: Mount) -> Result<Self, Vec<Problem>> {
+    /// Places halves that were built; where the face centre is to be found, at the origin of the drawing.
+    fn of_own([fixed, moving]: [Sourced; 2], own: &OwnSpec, mount: Mount) -> Result<Self, Vec<Problem>> {
         match (fixed, moving) {
             (Ok((fixed, of_fixed)), Ok((moving, of_moving))) => {
+                let frames = place::frames(own, mount);
+                let [fixed, moving] = [(fixed, frames[0]), (moving, frames[1])]
+                    .map(|(h, f)| h.mapped(|p| f.transform_point3(p)));
+                let scale = |half: &HalfSpec| match half {
+                    HalfSpec::Mesh { scale, .. } => DAffine3::from_scale(DVec3::splat(*scale)),
+                    HalfSpec::Pieces(_) | HalfSpec::Memory { .. } => DAffine3::IDENTITY,
+                };
+                let origin = Origin {
+                    fixed: frames[0] * scale(&own.fixed),
+                    moving: frames[1] * scale(&own.moving),
+                    apart: None,
+                };
                 let contents = Contents { fixed: of_fixed, moving: of_moving };
-                let drawn = family::Drawn { fixed, moving, face_height };
-                Ok(Self { contents, ..Self::placed(&drawn, mount) })
+                Ok(Self { fixed, moving, contents, origin })
             }
             (fixed, moving) => Err([fixed, moving].into_iter().filter_map(Result::err).flatten().collect()),
         }
+    }
+
+    /// The same halves, moved on in their frames.
+    #[must_use]
+    pub(crate) fn moved(mut self, fixed: DVec3, moving: DVec3, apart: f64) -> Self {
+        self.fixed = self.fixed.mapped(|p| p + fixed);
+        self.moving = self.moving.mapped(|p| p + moving);
+        let Origin { fixed: of_fixed, moving: of_moving, .. } = self.origin;
+        self.origin = Origin {
+            fixed: DAffine3::from_translation(fixed) * of_fixed,
+            moving: DAffine3::from_translation(moving) * of_moving,
+            apart: Some(apart),
+        };
+        self
     }
 
     /// Moves both face centres to the origin and mounts the moving half.

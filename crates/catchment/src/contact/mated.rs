@@ -45,6 +45,24 @@ pub enum MatedProblem {
         /// How far they are apart, in D.
         gap: f64,
     },
+    /// Halves that are drawn docked do not touch there.
+    #[error(
+        "as drawn the halves are {gap:.3e} D apart along the approach, which is not docked: draw them docked, check the approach, or draw \
+         each half facing +z in a frame of its own"
+    )]
+    DrawnApart {
+        /// How far they are apart, in D.
+        gap: f64,
+    },
+    /// Halves that are drawn docked are stopped before.
+    #[error(
+        "as drawn the moving half is {overlap:.3e} D deeper than it gets by a straight approach: check the approach, whether something is in \
+         the way, and whether the halves overlap"
+    )]
+    DrawnDeeper {
+        /// How much deeper, in D.
+        overlap: f64,
+    },
     /// No vertical line meets both halves.
     #[error(
         "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis"
@@ -256,7 +274,7 @@ mod tests {
             HalfSpec::Pieces(vec![(0..8).map(corner).collect()])
         };
         for (face_height, expected) in [(0.2, 0.2), (0.3, 0.0), (0.4, -0.2)] {
-            let own = OwnSpec { face_height, fixed: block(0.3), moving: block(0.3) };
+            let own = OwnSpec::new(face_height, block(0.3), block(0.3));
             let free = DofSet::EMPTY.with(Dof::X);
             let found = problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, free, 0.0)));
             match found[..] {
@@ -290,7 +308,7 @@ mod tests {
                 [0.0, 0.0, 0.5],
             ]])
         };
-        let own = OwnSpec { face_height: 0.5, fixed: tip(), moving: tip() };
+        let own = OwnSpec::new(0.5, tip(), tip());
         let found = problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, DofSet::ALL, 0.0)));
         assert!(matches!(found[..], [MatedProblem::NotMinimum { .. }]), "{found:?}");
     }
@@ -302,7 +320,7 @@ mod tests {
                 |i: u8| [x + 0.2 * f64::from(i & 1), f64::from(i >> 1 & 1) - 0.5, 0.3 * f64::from(i >> 2)];
             HalfSpec::Pieces(vec![(0..8).map(corner).collect()])
         };
-        let own = OwnSpec { face_height: 0.3, fixed: block(-0.5), moving: block(0.3) };
+        let own = OwnSpec::new(0.3, block(-0.5), block(0.3));
         let found = problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, DofSet::ALL, 0.0)));
         assert_eq!(found, [MatedProblem::Apart]);
     }

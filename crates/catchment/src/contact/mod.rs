@@ -15,6 +15,7 @@ pub mod brute;
 mod candidates;
 mod element;
 mod envelope;
+pub(crate) mod face;
 mod hold;
 pub mod mated;
 mod mirror;

@@ -76,7 +76,7 @@ fn flush(sides: u32, digits: i32) -> Pair {
     let spec = |pieces: Vec<Vec<DVec3>>| {
         HalfSpec::Pieces(pieces.iter().map(|p| p.iter().map(DVec3::to_array).collect()).collect())
     };
-    let own = OwnSpec { face_height: 0.0, fixed: spec(fixed), moving: spec(moving) };
+    let own = OwnSpec::new(0.0, spec(fixed), spec(moving));
     let connector = ConnectorSpec::Own(own);
     let design = Design { name: "flush".into(), connector, width: 1.0, unit: None, alignment };
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)

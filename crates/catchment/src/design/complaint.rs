@@ -151,12 +151,18 @@ pub enum Complaint {
         found: usize,
     },
     /// A list that is no point.
-    #[error("a point of `{key}` has {found} coordinates instead of 3")]
+    #[error("`{key}` has {found} numbers where three are needed: [x, y, z]")]
     NotAPoint {
-        /// The piece.
+        /// The key.
         key: String,
         /// Its coordinates.
         found: usize,
+    },
+    /// Three zeros, or too small to tell where they point.
+    #[error("`{key}` points nowhere")]
+    NoDirection {
+        /// The key.
+        key: String,
     },
     /// One of a few words was expected.
     #[error("unknown {what} `{name}`")]
@@ -342,6 +348,7 @@ impl Complaint {
             | Self::NotFinite { .. }
             | Self::TooFewPoints { .. }
             | Self::NotAPoint { .. }
+            | Self::NoDirection { .. }
             | Self::NotARatio { .. }
             | Self::NotALine { .. }
             | Self::Repeated { .. }

@@ -9,7 +9,7 @@
 //! their bytes.
 
 use super::family::Value;
-use super::{Alignment, ConnectorSpec, Design, Docked, HalfSpec};
+use super::{Alignment, ConnectorSpec, Design, Docked, Drawn, HalfSpec, OwnSpec, Placement};
 use crate::pose::{Dof, DofSet, Mount};
 use sha2::{Digest, Sha256};
 
@@ -38,7 +38,7 @@ impl Design {
             }
             ConnectorSpec::Own(own) => {
                 hash.text("own");
-                hash.number(own.face_height);
+                hash.drawn(own);
                 hash.half(&own.fixed)?;
                 hash.half(&own.moving)?;
             }
@@ -62,6 +62,33 @@ impl Hash {
     fn text(&mut self, text: &str) {
         self.count(text.len() as u64);
         self.0.update(text.as_bytes());
+    }
+
+    fn numbers(&mut self, numbers: &[f64]) {
+        for number in numbers {
+            self.number(*number);
+        }
+    }
+
+    /// What moves the halves, where anything does.
+    fn drawn(&mut self, own: &OwnSpec) {
+        match own.face_height {
+            Some(height) => self.number(height),
+            None => self.text("face height found"),
+        }
+        if let Drawn::Assembled { approach, face_center } = &own.drawn {
+            self.text("assembled");
+            self.numbers(approach);
+            self.count(u64::from(face_center.is_some()));
+            self.numbers(face_center.as_ref().map_or(&[], |center| center.as_slice()));
+        }
+        for (side, placement) in [("fixed", &own.fixed_placement), ("moving", &own.moving_placement)] {
+            if !placement.is_none() {
+                let Placement { facing, rotate, translate } = placement;
+                self.text(side);
+                self.numbers(&[*facing, *rotate, *translate].concat());
+            }
+        }
     }
 
     fn half(&mut self, half: &HalfSpec) -> Option<()> {
@@ -177,7 +204,7 @@ mod tests {
         let mesh = |path: &str, scale, held: Option<&[u8]>| {
             let content = held.map(|bytes| MeshContent::of(bytes, 4));
             let half = HalfSpec::Mesh { path: path.into(), scale, content };
-            let own = OwnSpec { face_height: 0.0, fixed: half.clone(), moving: half };
+            let own = OwnSpec::new(0.0, half.clone(), half);
             Design { connector: ConnectorSpec::Own(own), ..family(Family::Pyramid) }.digest()
         };
         assert_eq!(mesh("a", 1.0, None), None);

@@ -76,6 +76,14 @@ pub enum Kind {
     Family,
     /// `"x"` or `"y"`.
     Mount,
+    /// `"facing"` or `"assembled"`.
+    Drawn,
+    /// A direction: `"+x"` … `"-z"`, or three numbers.
+    Direction,
+    /// Three lengths, bare in the unit of the design.
+    Point(Range),
+    /// Three angles, bare in radians: turns about x, y and z.
+    Turns(Range),
     /// A list of degrees of freedom.
     Dofs,
     /// The path of a file.
@@ -182,6 +190,17 @@ pub struct Key {
 }
 
 impl Key {
+    /// The key that each of the three values of this one is checked by.
+    #[must_use]
+    pub const fn element(self) -> Self {
+        let kind = match self.kind {
+            Kind::Point(range) => Kind::DrawnLength(range),
+            Kind::Turns(range) => Kind::Angle(range),
+            kind => kind,
+        };
+        Self { kind, ..self }
+    }
+
     /// The quantity in the unit of this key's range (D, radians or none), if it lies in the range. `None` when
     /// that takes a `scale` and there is none.
     ///
@@ -303,9 +322,20 @@ keys! {
     /// `connector.circle_radius`
     CIRCLE_RADIUS = parameter("circle_radius", PINS_ONLY, Kind::Length(Range::new(0.0, 2.0, "D")),
         "Radius of the circle on which pins and holes sit.");
+    /// `connector.drawn`
+    DRAWN = parameter("drawn", Applies::OwnHalves, Kind::Drawn,
+        "facing: each half in a frame of its own, facing +z, which is the default; assembled: both in one frame, docked.");
+    /// `connector.approach`
+    APPROACH = parameter("approach", Applies::OwnHalves, Kind::Direction,
+        "Where halves are drawn assembled: the direction in which the moving half comes, -z without it.");
     /// `connector.face_height`
     FACE_HEIGHT = parameter("face_height", Applies::OwnHalves, Kind::DrawnLength(Range::new(-1e3, 1e3, "D")),
-        "z of the face centre in each half's own frame, in the unit of the design.");
+        "z of the face centre in each half's own frame, in the unit of the design. Without it the halves are mated where they first \
+         touch, and the face centre is at mid height of what they share.");
+    /// `connector.face_center`
+    FACE_CENTER = parameter("face_center", Applies::OwnHalves, Kind::Point(Range::new(-1e3, 1e3, "D")),
+        "Where halves are drawn assembled: the face centre [x, y, z] in their frame, in the unit of the design. Without it: the middle of \
+         the box around what they share.");
     /// `[connector.fixed]`
     FIXED = parameter("fixed", Applies::OwnHalves, Kind::Table(Table::Half),
         "The fixed half, drawn facing +z.");
@@ -322,6 +352,15 @@ keys! {
     /// `unit` of a half
     MESH_UNIT = key(Table::Half, "unit", Kind::Unit,
         "Unit of the mesh file, which cannot say it itself: um, mm, cm, m or in.");
+    /// `facing` of a half
+    FACING = key(Table::Half, "facing", Kind::Direction,
+        "The direction in which the part faces in its file: +x, -x, +y, -y, +z, -z or [x, y, z]. It is turned to +z.");
+    /// `rotate` of a half
+    ROTATE = key(Table::Half, "rotate", Kind::Turns(Range::new(-2.0 * PI, 2.0 * PI, "rad")),
+        "Turns about x, then y, then z, after `facing`.");
+    /// `translate` of a half
+    TRANSLATE = key(Table::Half, "translate", Kind::Point(Range::new(-1e3, 1e3, "D")),
+        "Moves the part, after it was turned: [x, y, z] in the unit of the design.");
     /// `profile` of a half
     PROFILE = key(Table::Half, "profile", Kind::Later,
         "Not yet supported: a profile in the x-z plane.");

@@ -1,6 +1,6 @@
 //! The resolved design: no units, no defaults left open.
 
-use super::{Alignment, FamilySpec, MeshContent};
+use super::{Alignment, Drawn, FamilySpec, MeshContent, Placement};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -65,6 +65,7 @@ impl LengthUnit {
 /// Where the geometry comes from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[expect(clippy::large_enum_variant, reason = "a design has one")]
 pub enum ConnectorSpec {
     /// A built-in family.
     Family(FamilySpec),
@@ -72,15 +73,42 @@ pub enum ConnectorSpec {
     Own(OwnSpec),
 }
 
-/// The person's own halves, both drawn facing +z.
+/// The person's own halves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OwnSpec {
-    /// z of the face centre in each half's own frame, in D.
-    pub face_height: f64,
+    /// z of the face centre in the frame of each half that faces +z, in D; `None`: found from where they first touch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face_height: Option<f64>,
+    /// In which frames they are drawn.
+    #[serde(default, skip_serializing_if = "Drawn::is_facing")]
+    pub drawn: Drawn,
     /// The fixed half.
     pub fixed: HalfSpec,
     /// The moving half.
     pub moving: HalfSpec,
+    /// How the fixed half is placed.
+    #[serde(default, skip_serializing_if = "Placement::is_none")]
+    pub fixed_placement: Placement,
+    /// How the moving half is placed.
+    #[serde(default, skip_serializing_if = "Placement::is_none")]
+    pub moving_placement: Placement,
+}
+
+impl OwnSpec {
+    /// Two halves drawn facing +z, their face centres on the z axis at `face_height`.
+    pub const fn new(face_height: f64, fixed: HalfSpec, moving: HalfSpec) -> Self {
+        let (drawn, none) = (Drawn::Facing, Placement::NONE);
+        let face_height = Some(face_height);
+        Self { face_height, drawn, fixed, moving, fixed_placement: none, moving_placement: none }
+    }
+
+    /// Whether where the face centre is has to be found.
+    pub const fn is_face_unknown(&self) -> bool {
+        match self.drawn {
+            Drawn::Facing => self.face_height.is_none(),
+            Drawn::Assembled { .. } => true,
+        }
+    }
 }
 
 /// One half of the person's own.

@@ -6,7 +6,7 @@ use super::keys::{self, Applies, Key, Kind, Table};
 use super::problem::{Problems, Sources};
 use super::quantity::Scale;
 use super::reader::{Reader, Section};
-use super::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
+use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, HalfSpec, OwnSpec, Placement};
 use crate::pose::{Dof, DofSet};
 use std::path::Path;
 use toml::Spanned;
@@ -188,17 +188,33 @@ impl<'t> Walk<'t> {
     }
 
     fn own_spec(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<OwnSpec> {
+        let is_assembled = self.reader.is_assembled(section, &keys::DRAWN).unwrap_or_default();
+        let approach = self.reader.direction(section, &keys::APPROACH);
+        let face_center = self.reader.triple(section, &keys::FACE_CENTER, scale);
         let face_height = self.reader.number(section, &keys::FACE_HEIGHT, scale);
-        if !section.has(&keys::FACE_HEIGHT) {
-            let advice = "give the height of the face centre over each half's own origin: face_height = 0.25";
-            self.reader.missing(section, &keys::FACE_HEIGHT, advice);
+        let (drawn, not_its_own) = if is_assembled {
+            let approach = approach.unwrap_or([0.0, 0.0, -1.0]);
+            (Drawn::Assembled { approach, face_center }, &[keys::FACE_HEIGHT][..])
+        } else {
+            (Drawn::Facing, &[keys::APPROACH, keys::FACE_CENTER][..])
+        };
+        for key in not_its_own {
+            self.reader.not_drawn_so(section, key, is_assembled);
         }
-        let fixed = self.half(section, &keys::FIXED, scale);
-        let moving = self.half(section, &keys::MOVING, scale);
-        Some(OwnSpec { face_height: face_height?, fixed: fixed?, moving: moving? })
+        let fixed = self.half(section, &keys::FIXED, is_assembled, scale);
+        let moving = self.half(section, &keys::MOVING, is_assembled, scale);
+        let ((fixed, fixed_placement), (moving, moving_placement)) = (fixed?, moving?);
+        Some(OwnSpec { face_height, drawn, fixed, moving, fixed_placement, moving_placement })
     }
 
-    fn half(&mut self, parent: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<HalfSpec> {
+    /// A half and how it is placed.
+    fn half(
+        &mut self,
+        parent: &Section<'t>,
+        key: &Key,
+        is_assembled: bool,
+        scale: Option<&Scale>,
+    ) -> Option<(HalfSpec, Placement)> {
         const ADVICE: &str = "give convex pieces = [[[x, y, z], …], …] or mesh = \"half.stl\"";
         let Some(section) = self.reader.section(parent, key) else {
             if !parent.has(key) {
@@ -207,6 +223,25 @@ impl<'t> Walk<'t> {
             return None;
         };
         self.reader.refuse_unknown_keys(&section, Table::Half);
+        let spec = self.half_spec(&section, ADVICE, scale);
+        if is_assembled {
+            self.reader.not_drawn_so(&section, &keys::FACING, is_assembled);
+        }
+        let none = Placement::NONE;
+        let placement = Placement {
+            facing: self.reader.direction(&section, &keys::FACING).unwrap_or(none.facing),
+            rotate: self.reader.triple(&section, &keys::ROTATE, scale).unwrap_or(none.rotate),
+            translate: self.reader.triple(&section, &keys::TRANSLATE, scale).unwrap_or(none.translate),
+        };
+        Some((spec?, placement))
+    }
+
+    fn half_spec(
+        &mut self,
+        section: &Section<'t>,
+        advice: &'static str,
+        scale: Option<&Scale>,
+    ) -> Option<HalfSpec> {
         let later = [keys::PROFILE, keys::HEIGHTFIELD];
         for key in &later {
             if let Some(span) = section.key_span(key) {
@@ -231,13 +266,13 @@ impl<'t> Walk<'t> {
                 };
                 self.reader.complain(complaint, span);
             }
-            return self.pieces(&section, scale).map(HalfSpec::Pieces);
+            return self.pieces(section, scale).map(HalfSpec::Pieces);
         }
         if section.has(&keys::MESH) {
-            return self.mesh(&section, scale);
+            return self.mesh(section, scale);
         }
         if !later.iter().any(|key| section.has(key)) {
-            self.reader.missing(&section, &keys::PIECES, ADVICE);
+            self.reader.missing(section, &keys::PIECES, advice);
         }
         None
     }
@@ -313,24 +348,9 @@ impl<'t> Walk<'t> {
         value: &'t Spanned<DeValue<'t>>,
         scale: Option<&Scale>,
     ) -> Option<[f64; 3]> {
-        let coordinates = self.reader.array(place, "a point [x, y, z]", value)?;
-        let [x, y, z] = coordinates else {
-            let complaint = Complaint::NotAPoint { key: place.to_owned(), found: coordinates.len() };
-            self.reader.complain(complaint, value.span());
-            return None;
-        };
-        let mut coordinate = |value: &'t Spanned<DeValue<'t>>| {
-            let quantity = self.reader.quantity(place, value)?;
-            match keys::COORDINATE.checked(quantity, scale) {
-                Ok(number) => number,
-                Err(complaint) => {
-                    self.reader.complain(complaint, value.span());
-                    None
-                }
-            }
-        };
-        let (x, y, z) = (coordinate(x), coordinate(y), coordinate(z));
-        Some([x?, y?, z?])
+        self.reader.three(place, "a point [x, y, z]", value, |reader, place, value| {
+            reader.checked(place, &keys::COORDINATE, value, scale)
+        })
     }
 
     fn alignment(&mut self, root: &Section<'t>, owner: Owner, scale: Option<&Scale>) -> Alignment {

@@ -10,6 +10,7 @@ use super::quantity::{Quantity, Scale, Unit, shortened};
 use super::{Family, LengthUnit};
 use crate::pose::{Dof, Mount};
 use crate::suggest::nearest;
+use glam::DVec3;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
@@ -47,6 +48,19 @@ impl<'t> Section<'t> {
         self.table.contains_key(key.name)
     }
 }
+
+/// The ways to draw halves, and whether they are drawn assembled.
+pub(super) const DRAWN: [(&str, bool); 2] = [("facing", false), ("assembled", true)];
+
+/// Directions by name.
+pub(super) const DIRECTIONS: [(&str, [f64; 3]); 6] = [
+    ("+x", [1.0, 0.0, 0.0]),
+    ("-x", [-1.0, 0.0, 0.0]),
+    ("+y", [0.0, 1.0, 0.0]),
+    ("-y", [0.0, -1.0, 0.0]),
+    ("+z", [0.0, 0.0, 1.0]),
+    ("-z", [0.0, 0.0, -1.0]),
+];
 
 /// Collects problems and sources.
 pub(super) struct Reader<'t> {
@@ -247,7 +261,18 @@ impl<'t> Reader<'t> {
     /// the unit of the design is wrong: what needs them is then let pass.
     pub(super) fn number(&mut self, section: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<f64> {
         let value = self.value(section, key)?;
-        let quantity = self.quantity(&section.place(key.name), value)?;
+        self.checked(&section.place(key.name), key, value, scale)
+    }
+
+    /// A value as the number of a key.
+    pub(super) fn checked(
+        &mut self,
+        place: &str,
+        key: &Key,
+        value: &Spanned<DeValue<'t>>,
+        scale: Option<&Scale>,
+    ) -> Option<f64> {
+        let quantity = self.quantity(place, value)?;
         match key.checked(quantity, scale) {
             Ok(number) => number,
             Err(complaint) => {
@@ -283,6 +308,79 @@ impl<'t> Reader<'t> {
     pub(super) fn mount(&mut self, section: &Section<'t>, key: &Key) -> Option<Mount> {
         let written = self.string(section, key)?;
         self.name("mount", &[("x", Mount::X), ("y", Mount::Y)], written)
+    }
+
+    /// Whether halves are drawn assembled.
+    pub(super) fn is_assembled(&mut self, section: &Section<'t>, key: &Key) -> Option<bool> {
+        let written = self.string(section, key)?;
+        self.name("way to draw halves", &DRAWN, written)
+    }
+
+    /// Complains about a key of halves that are drawn the other way.
+    pub(super) fn not_drawn_so(&mut self, section: &Section<'t>, key: &Key, is_assembled: bool) {
+        if let Some(span) = section.key_span(key) {
+            let [facing, assembled] = ["halves that are drawn facing +z", "halves that are drawn assembled"];
+            let (owner, belongs_to) = if is_assembled { (assembled, facing) } else { (facing, assembled) };
+            let belongs_to = belongs_to.to_owned();
+            let complaint = Complaint::NotAParameter { key: key.name.to_owned(), owner, belongs_to };
+            self.complain(complaint, span);
+        }
+    }
+
+    /// A unit vector.
+    pub(super) fn direction(&mut self, section: &Section<'t>, key: &Key) -> Option<[f64; 3]> {
+        let value = self.value(section, key)?;
+        let place = section.place(key.name);
+        if let DeValue::String(text) = value.get_ref() {
+            return self.name("direction", &DIRECTIONS, (text, value.span()));
+        }
+        let expected = "a direction such as \"-z\", or [x, y, z]";
+        let number = |reader: &mut Self, place: &str, element: &Spanned<DeValue<'t>>| {
+            let Quantity { value, unit } = reader.quantity(place, element)?;
+            if unit == Unit::Bare {
+                return Some(value);
+            }
+            reader.wrong_type(place.to_owned(), "a bare number", element);
+            None
+        };
+        let vector = DVec3::from_array(self.three(&place, expected, value, number)?);
+        let unit = vector.try_normalize();
+        if unit.is_none() {
+            self.complain(Complaint::NoDirection { key: place }, value.span());
+        }
+        Some(unit?.to_array())
+    }
+
+    /// Three numbers in the unit of the key's range.
+    pub(super) fn triple(
+        &mut self,
+        section: &Section<'t>,
+        key: &Key,
+        scale: Option<&Scale>,
+    ) -> Option<[f64; 3]> {
+        let value = self.value(section, key)?;
+        let place = section.place(key.name);
+        let element = key.element();
+        self.three(&place, "a list [x, y, z]", value, |reader, place, value| {
+            reader.checked(place, &element, value, scale)
+        })
+    }
+
+    /// A list of three, each read by `one`; every one is looked at, also behind a wrong one.
+    pub(super) fn three<T>(
+        &mut self,
+        place: &str,
+        expected: &'static str,
+        value: &'t Spanned<DeValue<'t>>,
+        mut one: impl FnMut(&mut Self, &str, &'t Spanned<DeValue<'t>>) -> Option<T>,
+    ) -> Option<[T; 3]> {
+        let [x, y, z] = self.array(place, expected, value)? else {
+            let found = self.array(place, expected, value)?.len();
+            self.complain(Complaint::NotAPoint { key: place.to_owned(), found }, value.span());
+            return None;
+        };
+        let (x, y, z) = (one(self, place, x), one(self, place, y), one(self, place, z));
+        Some([x?, y?, z?])
     }
 
     /// The elements of an array.

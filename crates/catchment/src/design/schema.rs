@@ -1,6 +1,7 @@
 //! The JSON schema of design files, for completion and checks in editors.
 
 use super::keys::{self, Applies, Key, Kind, Table};
+use super::reader::{DIRECTIONS, DRAWN};
 use super::{Family, LengthUnit};
 use crate::pose::Dof;
 use serde_json::{Map, Value, json};
@@ -47,6 +48,14 @@ fn property(key: &Key) -> Value {
         Kind::Unit => json!({ "enum": LengthUnit::ALL.map(LengthUnit::symbol) }),
         Kind::Family => json!({ "enum": Family::ALL.map(Family::name) }),
         Kind::Mount => json!({ "enum": ["x", "y"] }),
+        Kind::Drawn => json!({ "enum": DRAWN.map(|(name, _)| name) }),
+        Kind::Direction => json!({ "anyOf": [
+            { "enum": DIRECTIONS.map(|(name, _)| name) },
+            three(&json!({ "type": "number" })),
+        ]}),
+        Kind::Point(_) | Kind::Turns(_) => {
+            three(&json!({ "anyOf": [{ "type": "number" }, with_unit(key.element().kind)] }))
+        }
         Kind::Dofs => json!({
             "type": "array",
             "uniqueItems": true,
@@ -58,12 +67,7 @@ fn property(key: &Key) -> Value {
             "items": {
                 "type": "array",
                 "minItems": 4,
-                "items": {
-                    "type": "array",
-                    "minItems": 3,
-                    "maxItems": 3,
-                    "items": { "anyOf": [{ "type": "number" }, with_unit(key.kind)] },
-                },
+                "items": three(&json!({ "anyOf": [{ "type": "number" }, with_unit(key.kind)] })),
             },
         }),
         Kind::Later => json!(false),
@@ -74,6 +78,11 @@ fn property(key: &Key) -> Value {
     };
     schema["description"] = json!(doc);
     schema
+}
+
+/// A list of three.
+fn three(items: &Value) -> Value {
+    json!({ "type": "array", "minItems": 3, "maxItems": 3, "items": items })
 }
 
 /// A string that carries a unit.

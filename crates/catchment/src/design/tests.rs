@@ -72,7 +72,7 @@ const TETRAHEDRA: &str = "face_height = 5\nfixed.pieces = [[[0, 0, 0], [10, 0, 0
 fn own_pieces_are_divided_by_the_width() {
     let design = design(&format!("[connector]\nwidth = 20\nunit = \"mm\"\n{TETRAHEDRA}"));
     let ConnectorSpec::Own(own) = &design.connector else { panic!("own halves") };
-    assert_eq!(own.face_height, 0.25);
+    assert_eq!(own.face_height, Some(0.25));
     let HalfSpec::Pieces(pieces) = &own.fixed else { panic!("pieces") };
     assert_eq!(pieces[0][1], [0.5, 0.0, 0.0]);
     assert!((pieces[0][2][1] - 0.5).abs() < 4.0 * f64::EPSILON);

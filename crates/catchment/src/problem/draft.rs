@@ -2,9 +2,9 @@
 
 use super::{Problem, ProblemError, places};
 use crate::connector::Connector;
-use crate::contact::Pair;
 use crate::contact::mated::{self, MatedProblem};
-use crate::design::{Complaint, Design, Finding, Findings, SourceText, Sources, load, read};
+use crate::contact::{Pair, face};
+use crate::design::{Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, load, read};
 use std::path::Path;
 
 /// A design, its text, and the places of its keys.
@@ -101,7 +101,13 @@ impl Draft {
     /// meets but does not hold is a doubt ([`Problem::doubts`]).
     pub fn build(self) -> Result<Problem, ProblemError> {
         match Connector::build(&self.design) {
-            Ok(connector) => self.with_halves(connector),
+            Ok(connector) => {
+                let connector = match &self.design.connector {
+                    ConnectorSpec::Own(own) => face::found(connector, own),
+                    ConnectorSpec::Family(_) => connector,
+                };
+                self.with_halves(connector)
+            }
             Err(problems) => {
                 let list = places::of_geometry(&problems)
                     .into_iter()
@@ -121,7 +127,9 @@ impl Draft {
     pub(super) fn with_halves(mut self, connector: Connector) -> Result<Problem, ProblemError> {
         self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
-        let (apart, doubts): (Vec<_>, Vec<_>) = mated::problems(&pair).into_iter().partition(Self::is_apart);
+        let misdrawn = face::misdrawn(&connector, &self.design.connector);
+        let problems = misdrawn.map_or_else(|| mated::problems(&pair), |problem| vec![problem]);
+        let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         if !apart.is_empty() {
             let list = apart
                 .iter()

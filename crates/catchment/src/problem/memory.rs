@@ -15,11 +15,11 @@ impl Problem {
         let connector = Connector::from_sources(&fixed, &moving, FACE_HEIGHT, alignment.mount)
             .map_err(|problems| places::findings(&problems))?;
         let contents = connector.contents.clone();
-        let own = OwnSpec {
-            face_height: FACE_HEIGHT,
-            fixed: spec(fixed, contents.fixed, &connector.fixed),
-            moving: spec(moving, contents.moving, &connector.moving),
-        };
+        let own = OwnSpec::new(
+            FACE_HEIGHT,
+            spec(fixed, contents.fixed, &connector.fixed),
+            spec(moving, contents.moving, &connector.moving),
+        );
         let name = "in memory".to_owned();
         let design = Design { name, connector: ConnectorSpec::Own(own), width: 1.0, unit: None, alignment };
         Draft::from(design).with_halves(connector)

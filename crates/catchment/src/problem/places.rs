@@ -19,6 +19,7 @@ pub(super) const fn of_change(complaint: &Complaint) -> &'static str {
 pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
     match problem {
         MatedProblem::Collision { .. } | MatedProblem::Gap { .. } => "connector.face_height",
+        MatedProblem::DrawnApart { .. } | MatedProblem::DrawnDeeper { .. } => "connector.drawn",
         MatedProblem::Apart => "connector",
         MatedProblem::NotMinimum { .. } | MatedProblem::Free { .. } | MatedProblem::Round { .. } => {
             "alignment.free"

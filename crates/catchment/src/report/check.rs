@@ -2,9 +2,11 @@
 
 use super::envelope::{Body, Envelope};
 use super::text::line;
-use crate::design::{ConnectorSpec, Design, Finding, Findings, HalfSpec, SourceText};
+use crate::connector::Origin;
+use crate::design::{ConnectorSpec, Design, Drawn, Finding, Findings, HalfSpec, OwnSpec, SourceText};
 use crate::pose::{Dof, DofSet};
 use crate::problem::Problem;
+use glam::{DAffine3, DVec3};
 use serde::Serialize;
 
 /// What a check has to say, with its head.
@@ -20,6 +22,10 @@ pub struct CheckBody {
     /// The design, resolved: lengths in D, angles in radians; only where nothing is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub design: Option<Design>,
+    /// Where the face centre and the centre of rotation are in the coordinates in which each half is drawn; only of own halves in which
+    /// nothing is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawing: Option<DrawingReport>,
     /// Whether both halves have the same shape; only where nothing is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ungendered: Option<bool>,
@@ -27,6 +33,50 @@ pub struct CheckBody {
     pub problems: Vec<ProblemReport>,
     /// How many more problems there are.
     pub omitted: usize,
+}
+
+/// Where what the answers are about is in the coordinates of the files.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DrawingReport {
+    /// In those of the fixed half.
+    pub fixed: DrawnReport,
+    /// In those of the moving half.
+    pub moving: DrawnReport,
+    /// How far apart the halves are drawn along the approach, in D, where they were moved to where they first touch.
+    pub apart: Option<f64>,
+}
+
+/// Places in the coordinates in which a half is drawn: those of its mesh file; of pieces and of triangles in memory, D.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DrawnReport {
+    /// The face centre.
+    pub face_center: [f64; 3],
+    /// The centre of rotation, in the mated pose.
+    pub center_of_rotation: [f64; 3],
+    /// Unit vector along which errors in x are counted.
+    pub x: [f64; 3],
+    /// Unit vector along which errors in y are counted.
+    pub y: [f64; 3],
+}
+
+impl DrawingReport {
+    fn of(origin: &Origin, center_of_rotation: f64) -> Self {
+        let drawn = |frame: &DAffine3| {
+            let back = frame.inverse();
+            let place = |z: f64| back.transform_point3(DVec3::new(0.0, 0.0, z)).to_array();
+            // No −0, and no 1e-17 beside a 1.
+            let along =
+                |axis| back.transform_vector3(axis).normalize_or_zero().map(|c| rounded(c) + 0.0).to_array();
+            DrawnReport {
+                face_center: place(0.0),
+                // In front of the moving face, which faces down.
+                center_of_rotation: place(-center_of_rotation),
+                x: along(DVec3::X),
+                y: along(DVec3::Y),
+            }
+        };
+        Self { fixed: drawn(&origin.fixed), moving: drawn(&origin.moving), apart: origin.apart }
+    }
 }
 
 /// Something wrong with a design file.
@@ -63,6 +113,8 @@ impl CheckReport {
             file: shown(problem.source()),
             ok: true,
             design: Some(design.clone()),
+            drawing: matches!(design.connector, ConnectorSpec::Own(_))
+                .then(|| DrawingReport::of(&problem.connector().origin, design.alignment.center_of_rotation)),
             ungendered: Some(problem.connector().ungendered(design.alignment.mount)),
             problems: Vec::new(),
             omitted: 0,
@@ -85,6 +137,7 @@ impl CheckReport {
             file: shown(source),
             ok: false,
             design: None,
+            drawing: None,
             ungendered: None,
             problems: findings.list.iter().map(problem).collect(),
             omitted: findings.omitted,
@@ -97,7 +150,7 @@ impl CheckReport {
         let mut text = String::new();
         if let Some(design) = &self.design {
             line(&mut text, &format!("{}: no problems", self.file));
-            understood(&mut text, design, self.ungendered == Some(true));
+            understood(&mut text, design, self.drawing.as_ref(), self.ungendered == Some(true));
         }
         for problem in &self.problems {
             let place = problem.place.map_or_else(String::new, |p| format!("{}:{}:", p.line, p.column));
@@ -115,7 +168,7 @@ fn shown(source: Option<&SourceText>) -> String {
     source.map_or_else(String::new, |source| source.path.display().to_string())
 }
 
-fn understood(text: &mut String, design: &Design, ungendered: bool) {
+fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport>, ungendered: bool) {
     let alignment = &design.alignment;
     let length = |d: f64| match design.unit {
         Some(unit) => format!("{d} D = {} {}", rounded(d * design.width), unit.symbol()),
@@ -132,6 +185,26 @@ fn understood(text: &mut String, design: &Design, ungendered: bool) {
             row("moving half", &half(&own.moving));
         }
     }
+    if let Some(DrawingReport { fixed, moving, apart }) = drawing {
+        let point = |p: [f64; 3]| {
+            let [x, y, z] = p.map(|c| rounded(c) + 0.0);
+            format!("({x}, {y}, {z})")
+        };
+        let mut places = |name: &str, fixed: [f64; 3], moving: [f64; 3]| {
+            row(name, &format!("{} as the fixed half is drawn,", point(fixed)));
+            row("", &format!("{} as the moving half is drawn", point(moving)));
+        };
+        places("face centre", fixed.face_center, moving.face_center);
+        places("centre of rotation", fixed.center_of_rotation, moving.center_of_rotation);
+        let along = format!("{} and {} as the fixed half is drawn", direction(fixed.x), direction(fixed.y));
+        row("errors in x and y", &format!("along {along}"));
+        if let (Some(apart), ConnectorSpec::Own(OwnSpec { drawn: Drawn::Assembled { .. }, .. })) =
+            (apart, &design.connector)
+        {
+            let way = if *apart > 0.0 { "apart" } else { "into each other" };
+            row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
+        }
+    }
     row("halves", if ungendered { "alike (ungendered)" } else { "different" });
     let unit = design.unit.map_or("(dimensionless)", |unit| unit.symbol());
     row("width D", &format!("{} {unit}", design.width));
@@ -139,7 +212,10 @@ fn understood(text: &mut String, design: &Design, ungendered: bool) {
     if !alignment.dont_care.is_empty() {
         row("does not matter", &names(alignment.dont_care));
     }
-    row("centre of rotation", &length(alignment.center_of_rotation));
+    row(
+        "centre of rotation",
+        &format!("{} in front of the face centre", length(alignment.center_of_rotation)),
+    );
     row("rotation length", &length(alignment.rotation_length));
     if alignment.symmetry > 1 {
         row("symmetry", &format!("{}-fold", alignment.symmetry));
@@ -153,6 +229,16 @@ fn understood(text: &mut String, design: &Design, ungendered: bool) {
         };
         row(&format!("error in {}", dof.name()), &format!("up to {range}"));
     }
+}
+
+/// A unit vector by its name, if it has one.
+fn direction(vector: [f64; 3]) -> String {
+    let axis = ["x", "y", "z"].into_iter().zip(vector).find(|(_, c)| c.abs() == 1.0);
+    if let Some((name, c)) = axis {
+        return format!("{}{name}", if c > 0.0 { "+" } else { "-" });
+    }
+    let [x, y, z] = vector;
+    format!("({x:.4}, {y:.4}, {z:.4})")
 }
 
 fn half(half: &HalfSpec) -> String {

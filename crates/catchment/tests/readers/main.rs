@@ -67,6 +67,16 @@ fn stl_files() {
 }
 
 #[test]
+fn obj_files() {
+    replay("obj", targets::obj_file);
+}
+
+#[test]
+fn ply_files() {
+    replay("ply", targets::ply_file);
+}
+
+#[test]
 fn tables_of_poses() {
     replay("poses", targets::pose_table);
 }

@@ -3,10 +3,10 @@
 
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
-use catchment::connector::stl;
+use catchment::connector::{Connector, FileBytes, Source, stl};
 use catchment::design::{Design, Problems, Quantity, keys, parse_dofs, read};
 use catchment::landscape::Resolution;
-use catchment::pose::Dof;
+use catchment::pose::{Dof, Mount};
 use catchment::poses::{Distribution, OffsetsAt, PoseTable, parse_pose};
 use catchment::report::{Report, table};
 use catchment::run::Requirement;
@@ -56,6 +56,29 @@ pub(crate) fn stl_file(bytes: &[u8]) {
             assert!(surface.vertices.iter().all(|v| v.is_finite()));
         }
         Err(problems) => assert!((1..60).contains(&problems.len()), "{} problems", problems.len()),
+    }
+}
+
+/// What the reader of OBJ files accepts is a closed solid, and what it refuses has few reasons.
+pub(crate) fn obj_file(bytes: &[u8]) {
+    mesh_file("half.obj", bytes);
+}
+
+/// The same of PLY files.
+pub(crate) fn ply_file(bytes: &[u8]) {
+    mesh_file("half.ply", bytes);
+}
+
+fn mesh_file(name: &str, bytes: &[u8]) {
+    let mesh = || Source::Mesh { path: name.into(), file: FileBytes::whole(bytes.to_vec()), scale: 1.0 };
+    match Connector::from_sources(&mesh(), &mesh(), 0.0, Mount::X) {
+        Ok(connector) => {
+            for surface in connector.fixed.surfaces.iter().chain(&connector.moving.surfaces) {
+                assert!(surface.volume() > 0.0);
+                assert!(surface.vertices.iter().all(|v| v.is_finite()));
+            }
+        }
+        Err(problems) => assert!((2..120).contains(&problems.len()), "{} problems", problems.len()),
     }
 }
 

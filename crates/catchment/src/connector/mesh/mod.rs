@@ -127,6 +127,24 @@ pub enum MeshProblem {
         /// What stands there, shortened.
         found: String,
     },
+    /// No PLY, or a broken one.
+    #[error("cannot be read as PLY: {message}")]
+    NotPly {
+        /// Where and why.
+        message: String,
+    },
+    /// Something else, which the first bytes tell.
+    #[error("this is {what}")]
+    Foreign {
+        /// What it is, and what to do about it.
+        what: &'static str,
+    },
+    /// A face of more than three corners whose triangles would depend on how it is cut.
+    #[error("the face of triangle {triangle} is not convex: triangulate the mesh when it is exported")]
+    NotConvex {
+        /// The number that its first triangle would have.
+        triangle: usize,
+    },
     /// A file without triangles.
     #[error("the file holds no triangles")]
     NoTriangles,
@@ -213,6 +231,36 @@ pub enum MeshProblem {
         /// How many.
         count: usize,
     },
+}
+
+/// The triangles of a file of faces, numbered in their order.
+#[derive(Debug, Default)]
+pub(super) struct Triangles {
+    pub(super) list: Vec<Triangle>,
+}
+
+impl Triangles {
+    /// Appends a face, cut into triangles from its first corner.
+    pub(super) fn push(&mut self, corners: &[DVec3]) -> Result<(), Vec<MeshProblem>> {
+        let count = corners.len();
+        let normal: DVec3 = (0..count).map(|k| corners[k].cross(corners[(k + 1) % count])).sum();
+        let turns = |k: usize| {
+            let [a, b, c] = [corners[k], corners[(k + 1) % count], corners[(k + 2) % count]];
+            normal.dot((b - a).cross(c - b)) / (normal.length() * (b - a).length() * (c - b).length())
+        };
+        // What lies on a line turns neither way; numbers that are none are found by their own check.
+        if count > 3 && (0..count).any(|k| turns(k) < -WELD) {
+            return Err(vec![MeshProblem::NotConvex { triangle: self.list.len() }]);
+        }
+        for k in 1..count.saturating_sub(1) {
+            let place = Place { triangle: self.list.len(), start: Start::Memory };
+            self.list.push(Triangle { corners: [corners[0], corners[k], corners[k + 1]], place });
+        }
+        if self.list.len() > MAX_TRIANGLES {
+            return Err(vec![MeshProblem::TooMany { count: self.list.len() as u64 }]);
+        }
+        Ok(())
+    }
 }
 
 /// A closed surface from triangles (in D), by the rules of every mesh file.

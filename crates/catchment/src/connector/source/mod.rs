@@ -11,9 +11,10 @@
 
 mod content;
 pub(super) mod disk;
+mod foreign;
 
 use super::mesh::{self, MeshProblem};
-use super::{Half, Problem, Side, Surface, convex_hull, family, stl};
+use super::{Half, Problem, Side, Surface, convex_hull, family, obj, ply, stl};
 use crate::design::{FamilySpec, HalfSpec, MeshContent};
 use glam::DVec3;
 use std::io;
@@ -53,7 +54,11 @@ struct Format {
 }
 
 /// The table of mesh formats. A file whose ending none of them has is read as the first.
-const FORMATS: [Format; 1] = [Format { endings: &["stl"], most: stl::MAX_BYTES, read: stl::read }];
+const FORMATS: [Format; 3] = [
+    Format { endings: &["stl"], most: stl::MAX_BYTES, read: stl::read },
+    Format { endings: &["obj"], most: obj::MAX_BYTES, read: obj::read },
+    Format { endings: &["ply"], most: ply::MAX_BYTES, read: ply::read },
+];
 
 impl Format {
     fn of(path: &Path) -> &'static Self {
@@ -116,7 +121,8 @@ impl Source {
             Self::Pieces(pieces) => Ok((from_pieces(pieces, side)?, None)),
             Self::Mesh { path, file, scale } => {
                 let refused = |error| Problem::Mesh { side, path: path.clone(), error };
-                let surface = (Format::of(path).read)(file, *scale)
+                let surface = foreign::refuse(&file.bytes)
+                    .and_then(|()| (Format::of(path).read)(file, *scale))
                     .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
                 let content = MeshContent::of(&file.bytes, surface.facets.len());
                 Ok((Half { surfaces: vec![surface] }, Some(content)))

@@ -68,7 +68,7 @@ fn triangles_in_memory_are_complained_about_by_number() {
 /// A design of two meshes of the same cube under the given names, read from memory.
 fn mesh_design(path: &str, file: &[u8]) -> Design {
     let half = || HalfSpec::Mesh { path: path.into(), scale: 1.0, content: None };
-    let own = OwnSpec { face_height: 0.5, fixed: half(), moving: half() };
+    let own = OwnSpec::new(0.5, half(), half());
     let design = Design {
         name: path.to_owned(),
         connector: ConnectorSpec::Own(own),

@@ -205,11 +205,7 @@ proptest! {
         // The plug is mounted by a half turn about x.
         let flipped = |p: &DVec2| DVec2::new(p.x, -p.y);
         let plug = rim.iter().map(|p| at(flipped(p), 0.0)).chain([at(DVec2::ZERO, height)]).collect();
-        let own = OwnSpec {
-            face_height: height / 2.0,
-            fixed: HalfSpec::Pieces((0..n).map(wedge).collect()),
-            moving: HalfSpec::Pieces(vec![plug]),
-        };
+        let own = OwnSpec::new(height / 2.0, HalfSpec::Pieces((0..n).map(wedge).collect()), HalfSpec::Pieces(vec![plug]));
         let Zraa::Region { area, .. } =
             run(&pair_of(ConnectorSpec::Own(own), false), &Settings::default(), &Exec::new()).unwrap()
         else { panic!() };

@@ -13,6 +13,7 @@
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
+//!   pair        both halves as they were understood: apart in space, mated in section
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
@@ -39,6 +40,7 @@ mod matrix;
 mod memory;
 mod number_map;
 mod overview;
+mod pair;
 mod partition;
 mod raster;
 mod region;
@@ -60,6 +62,7 @@ pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};
 pub use number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
 pub use overview::overview;
+pub use pair::pair;
 pub use partition::partition;
 pub use region::region;
 pub use section::{Placement, section};

@@ -1,0 +1,146 @@
+//! Wavefront OBJ files: the faces of all objects of a file together, colours and textures left out.
+//!
+//! Read by `tobj`; faces of more than three corners are cut into triangles and must be convex. The unit stands beside the file, as for STL.
+
+use super::Surface;
+use super::mesh::{self, MeshProblem, Triangle};
+use super::source::FileBytes;
+use glam::DVec3;
+use std::io::{self, BufRead, Read};
+use tobj::{LoadError, LoadOptions};
+
+/// Longest file that is read.
+pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
+
+/// As the table of formats wants it.
+pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
+    mesh::check_scale(scale)?;
+    if file.size > MAX_BYTES {
+        return Err(vec![MeshProblem::TooLong { bytes: file.size }]);
+    }
+    let triangles = parse(&file.bytes)?;
+    mesh::sound_numbers(&triangles)?;
+    mesh::from_file(&triangles, scale)
+}
+
+fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+    let mut lines = Lines { rest: bytes, line: 0 };
+    let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);
+    let (models, _) =
+        tobj::load_obj_buf(&mut lines, &LoadOptions::default(), no_materials).map_err(|error| {
+            let (line, found) = (lines.line, shown(bytes, lines.line));
+            vec![MeshProblem::Syntax { line, expected: expected(error), found }]
+        })?;
+    let mut triangles = mesh::Triangles::default();
+    for mesh in models.iter().map(|model| &model.mesh) {
+        let corner = |k: &u32| {
+            let at = 3 * *k as usize;
+            DVec3::from_slice(&mesh.positions[at..at + 3])
+        };
+        let mut rest = mesh.indices.as_slice();
+        let faces = mesh.indices.len() / 3;
+        // Without arities all faces are triangles.
+        let arities = (0..faces).map(|_| 3).take(if mesh.face_arities.is_empty() { faces } else { 0 });
+        for arity in arities.chain(mesh.face_arities.iter().map(|arity| *arity as usize)) {
+            let (face, others) = rest.split_at(arity);
+            rest = others;
+            let corners: Vec<DVec3> = face.iter().map(corner).collect();
+            triangles.push(&corners)?;
+        }
+    }
+    Ok(triangles.list)
+}
+
+/// What the format wants where `tobj` gave up.
+const fn expected(error: LoadError) -> &'static str {
+    match error {
+        LoadError::PositionParseError => "`v` and three numbers",
+        LoadError::FaceParseError | LoadError::InvalidPolygon => "`f` and at least three corners",
+        LoadError::FaceVertexOutOfBounds => "corners of a face that were defined before it",
+        LoadError::FaceTexCoordOutOfBounds | LoadError::FaceNormalOutOfBounds => {
+            "normals and textures of a face that were defined before it"
+        }
+        LoadError::ReadError => "text",
+        _ => "a line of an OBJ file",
+    }
+}
+
+/// A line of a file, shortened.
+fn shown(bytes: &[u8], line: usize) -> String {
+    const MOST: usize = 24;
+    let text = bytes.split(|b| *b == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text[..text.len().min(MOST)]).trim().to_owned();
+    if text.is_empty() { "an empty line".to_owned() } else { format!("`{text}`") }
+}
+
+/// Bytes that count their lines as they are read: `tobj` does not say where it gave up.
+struct Lines<'a> {
+    rest: &'a [u8],
+    line: usize,
+}
+
+impl Read for Lines<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let read = self.rest.len().min(into.len());
+        into[..read].copy_from_slice(&self.rest[..read]);
+        self.consume(read);
+        Ok(read)
+    }
+}
+
+impl BufRead for Lines<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        Ok(self.rest)
+    }
+
+    fn consume(&mut self, count: usize) {
+        // Whoever reads lines takes one at a time, because all of them are offered.
+        self.line += usize::from(count > 0);
+        self.rest = &self.rest[count..];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CUBE: &str = "# a cube\nmtllib none.mtl\no cube\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+                        vn 0 0 1\nusemtl red\nf 4 3 2 1\nf 5//1 6//1 7//1 8//1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\ng back\nf -8 -4 -1 -5\n";
+
+    fn read(text: &str) -> Result<Surface, Vec<MeshProblem>> {
+        super::read(&FileBytes::whole(text.as_bytes().to_vec()), 0.5)
+    }
+
+    #[test]
+    fn quads_of_several_groups_make_one_cube() {
+        let cube = read(CUBE).unwrap();
+        assert_eq!((cube.vertices.len(), cube.facets.len()), (8, 6));
+        assert!(cube.vertices.contains(&DVec3::splat(0.5)), "scaled");
+    }
+
+    #[test]
+    fn what_is_wrong_has_its_line() {
+        let refused = |from: &str, to: &str| match read(&CUBE.replace(from, to)) {
+            Err(problems) => problems[0].to_string(),
+            Ok(surface) => panic!("{surface:?}"),
+        };
+        assert_eq!(refused("v 1 1 0", "v 1 x 0"), "line 6: expected `v` and three numbers, found `v 1 x 0`");
+        assert!(
+            refused("f 1 2 6 5", "f 1 2 60 5").contains("line 16: expected corners of a face"),
+            "{}",
+            refused("f 1 2 6 5", "f 1 2 60 5")
+        );
+        assert!(refused("f 1 2 6 5\n", "").contains("open along the edge"));
+        assert!(
+            refused("v 1 1 0", "v 1 1 nan").contains("not finite"),
+            "{}",
+            refused("v 1 1 0", "v 1 1 nan")
+        );
+        assert_eq!(read("# nothing\n").unwrap_err(), [MeshProblem::NoTriangles]);
+        let arrow = "v 0 0 0\nv 1 1 0\nv 0 .2 0\nv -1 1 0\nf 1 2 3 4\n";
+        assert_eq!(
+            read(arrow).unwrap_err()[0].to_string(),
+            "the face of triangle 0 is not convex: triangulate the mesh when it is exported"
+        );
+    }
+}

@@ -1,0 +1,42 @@
+//! Files that are no mesh, told by their first bytes: an ending alone says little, and what a reader of meshes would say of them
+//! helps nobody.
+
+use crate::connector::mesh::MeshProblem;
+
+/// How files of other kinds begin, and what they are.
+const KINDS: [(&[u8], &str); 12] = [
+    (
+        b"version https://git-lfs",
+        "a Git LFS pointer, not the file it stands for: fetch that with `git lfs pull`, or download it from the repository's page",
+    ),
+    (
+        b"ISO-10303-21",
+        "a STEP file, which holds curved faces and no triangles: export the part as STL, OBJ or PLY from the CAD program, with a chord tolerance \
+         of 0.01 mm",
+    ),
+    (
+        b"PK\x03\x04",
+        "a ZIP archive, such as a 3MF, FreeCAD or Fusion file: export the part as STL, OBJ or PLY, or unpack it",
+    ),
+    (b"\x1f\x8b", "a file packed by gzip: unpack it"),
+    (b"7z\xbc\xaf\x27\x1c", "a 7z archive: unpack it"),
+    (b"glTF", "a glTF file: export the part as STL, OBJ or PLY"),
+    (b"\xd0\xcf\x11\xe0", "a document of a CAD or office program: export the part as STL, OBJ or PLY"),
+    (
+        b"DBRep_DrawableShape",
+        "an OpenCASCADE BREP file, which holds curved faces and no triangles: export the part as STL, OBJ or PLY",
+    ),
+    (b"<!DOCTYPE html", "a web page: what was downloaded is not the file itself"),
+    (b"<!doctype html", "a web page: what was downloaded is not the file itself"),
+    (b"<html", "a web page: what was downloaded is not the file itself"),
+    (b"%PDF", "a PDF: drawings have no solid"),
+];
+
+/// Refuses what begins like no mesh.
+pub(super) fn refuse(bytes: &[u8]) -> Result<(), Vec<MeshProblem>> {
+    let bytes = bytes.trim_ascii_start();
+    match KINDS.iter().find(|(start, _)| bytes.starts_with(start)) {
+        Some((_, what)) => Err(vec![MeshProblem::Foreign { what }]),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,65 @@
+//! How parts stand in their files, and how they come from there face to face.
+//!
+//! ```text
+//!   drawn = "facing"                              drawn = "assembled"
+//!     each part in a frame of its own:              both parts in one frame, docked:
+//!     facing ──▶ +z, then rotate, then translate    rotate, translate, then approach ──▶ −z
+//!        ▲ its face centre on the z axis               ▲ fixed and moving share their face centre
+//! ```
+//!
+//! The face centre is where the mated halves' face centres fall together; pose errors are offsets of it, and the centre of rotation is measured
+//! from it. Where its height is not given, it is mid height of what the mated halves share along the approach, and the halves are mated
+//! where they first touch without any error.
+
+use serde::{Deserialize, Serialize};
+
+/// In which frames the two parts are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Drawn {
+    /// Each in its own, facing +z once it is placed; a half turn brings the moving half face to face with the fixed one.
+    #[default]
+    Facing,
+    /// Both in one, docked.
+    Assembled {
+        /// Unit vector along which the moving half comes.
+        approach: [f64; 3],
+        /// The face centre in that frame, in D; `None`: in the middle of the box around what the mated halves share.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        face_center: Option<[f64; 3]>,
+    },
+}
+
+impl Drawn {
+    /// Whether it is the way that needs no word.
+    pub(super) fn is_facing(&self) -> bool {
+        *self == Self::Facing
+    }
+}
+
+/// How a part is turned and moved from its file; in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Placement {
+    /// Unit vector in which the part faces in its file: turned to +z by the shortest turn, about x where it faces −z.
+    pub facing: [f64; 3],
+    /// Turns about x, then y, then z, in radians.
+    pub rotate: [f64; 3],
+    /// Moved by, in D.
+    pub translate: [f64; 3],
+}
+
+impl Placement {
+    /// As the file has it.
+    pub const NONE: Self = Self { facing: [0.0, 0.0, 1.0], rotate: [0.0; 3], translate: [0.0; 3] };
+
+    /// Whether the part stays as its file has it.
+    pub(super) fn is_none(&self) -> bool {
+        *self == Self::NONE
+    }
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self::NONE
+    }
+}

@@ -1,0 +1,203 @@
+//! Halves as their files have them: whichever way they are drawn, the same problem; and where they are not what they are said to be, why.
+
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
+use catchment::design::{ConnectorSpec, Drawn, HalfSpec, OwnSpec, Placement};
+use catchment::pose::CorPose;
+use catchment::prelude::*;
+use catchment::report::CheckReport;
+use glam::{DAffine3, DMat3, DVec2};
+use proptest::prelude::*;
+
+const HEIGHT: f64 = 0.7;
+const COR: f64 = 0.3;
+
+type Pieces = Vec<Vec<[f64; 3]>>;
+
+/// A pyramid socket as four wedges, and its plug; both facing +z, the face centres at half of [`HEIGHT`].
+fn drawn() -> [Pieces; 2] {
+    let (h, b) = (HEIGHT, -0.25);
+    let rim = [[0.5, -0.5], [0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5]];
+    let wedge = |k: usize| {
+        let ([px, py], [qx, qy]) = (rim[k], rim[(k + 1) % 4]);
+        vec![[0.0, 0.0, 0.0], [0.0, 0.0, b], [px, py, b], [qx, qy, b], [px, py, h], [qx, qy, h]]
+    };
+    let plug = rim.iter().map(|[x, y]| [*x, *y, 0.0]).chain([[0.0, 0.0, h]]).collect();
+    [(0..4).map(wedge).collect(), vec![plug]]
+}
+
+fn moved(pieces: &Pieces, by: &DAffine3) -> HalfSpec {
+    let map = |p: &[f64; 3]| by.transform_point3(DVec3::from_array(*p)).to_array();
+    HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(map).collect()).collect())
+}
+
+fn problem(own: OwnSpec) -> Result<Problem, ProblemError> {
+    let alignment = Alignment { center_of_rotation: COR, ..Alignment::new(DofSet::ALL, Mount::X) };
+    let connector = ConnectorSpec::Own(own);
+    Problem::of(Design { name: "pyramid".into(), connector, width: 1.0, unit: None, alignment })
+}
+
+/// Both drawn facing +z, the heights of their face centres given.
+fn plain() -> OwnSpec {
+    let [fixed, moving] = drawn().map(|pieces| moved(&pieces, &DAffine3::IDENTITY));
+    OwnSpec::new(HEIGHT / 2.0, fixed, moving)
+}
+
+/// Both in one frame, docked, `apart` along the approach, seen from the world by `world`.
+fn assembled(world: &DAffine3, apart: f64) -> OwnSpec {
+    let face = DAffine3::from_translation(DVec3::new(0.0, 0.0, -HEIGHT / 2.0));
+    let half_turn = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)));
+    let lifted = DAffine3::from_translation(DVec3::new(0.0, 0.0, apart));
+    let [fixed, moving] = drawn();
+    let approach = world.transform_vector3(DVec3::NEG_Z).to_array();
+    OwnSpec {
+        face_height: None,
+        drawn: Drawn::Assembled { approach, face_center: None },
+        ..OwnSpec::new(
+            0.0,
+            moved(&fixed, &(*world * face)),
+            moved(&moving, &(*world * lifted * half_turn * face)),
+        )
+    }
+}
+
+/// Largest difference of the heights over poses spread over the error box; `turned` about z is how the second differs.
+fn difference(a: &Problem, b: &Problem, turned: f64) -> f64 {
+    let spread = |k: u32, step: f64, half: f64| ((f64::from(k) * step).fract() * 2.0 - 1.0) * half;
+    let mut largest = 0.0f64;
+    let mut met = 0;
+    let turn = DMat3::from_rotation_z(turned);
+    for k in 1..60 {
+        let rotation = catchment::pose::rotation(
+            spread(k, 0.581_1, 0.8),
+            spread(k, 0.484_9, 0.8),
+            spread(k, 0.404_7, 1.2),
+        );
+        let lateral = DVec2::new(spread(k, 0.834_5, 0.5), spread(k, 0.696_4, 0.5));
+        let seen = CorPose {
+            lateral: turn.transform_vector3(lateral.extend(0.0)).truncate(),
+            rotation: turn * rotation * turn.transpose(),
+        };
+        match (a.pair().height(&CorPose { lateral, rotation }), b.pair().height(&seen)) {
+            (Some(a), Some(b)) => {
+                met += 1;
+                largest = largest.max((a - b).abs());
+            }
+            (None, None) => {}
+            _ => largest = f64::INFINITY,
+        }
+    }
+    assert!(met > 20, "{met}");
+    largest
+}
+
+fn turn() -> impl Strategy<Value = [f64; 3]> {
+    prop::array::uniform3(-3.0..3.0f64)
+}
+
+fn affine([x, y, z]: [f64; 3], translation: [f64; 3]) -> DAffine3 {
+    let turn = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+    DAffine3 { matrix3: turn, translation: DVec3::from_array(translation) }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// A part that its file has turned and far off comes back by `rotate` and `translate`.
+    #[test]
+    fn a_placed_half_is_where_it_was(a in turn(), s in prop::array::uniform3(-20.0..20.0f64)) {
+        let place = affine(a, s);
+        let placement = Placement { rotate: a, translate: s, ..Placement::NONE };
+        let [fixed, moving] = drawn();
+        let away = place.inverse();
+        let own = OwnSpec {
+            fixed_placement: placement,
+            moving_placement: placement,
+            ..OwnSpec::new(HEIGHT / 2.0, moved(&fixed, &away), moved(&moving, &away))
+        };
+        let own = problem(own).unwrap();
+        // Coordinates of 20 D are rounded to 4e-15 D, and convex hulls to a lattice that is finer than 1e-9 of their size.
+        prop_assert!(difference(&problem(plain()).unwrap(), &own, 0.0) < 1e-7);
+        let origin = own.connector().origin;
+        let face = away.transform_point3(DVec3::new(0.0, 0.0, HEIGHT / 2.0));
+        prop_assert!(origin.fixed.transform_point3(face).length() < 1e-9);
+        prop_assert!(origin.moving.transform_point3(face).length() < 1e-9);
+    }
+
+    /// An assembly in any frame, drawn a little apart or into each other: mated where the halves first touch, the face centre found.
+    #[test]
+    fn an_assembly_is_found_in_any_frame(a in turn(), s in prop::array::uniform3(-20.0..20.0f64), apart in -0.04..0.04f64) {
+        let world = affine(a, s);
+        let own = problem(assembled(&world, apart)).unwrap();
+        let origin = own.connector().origin;
+        prop_assert!((origin.apart.unwrap() - apart).abs() < 1e-9);
+        // The frame that is found may be turned about the approach.
+        let seen = origin.fixed * world;
+        let turned = seen.transform_vector3(DVec3::X).truncate().to_angle();
+        prop_assert!(seen.transform_vector3(DVec3::Z).abs_diff_eq(DVec3::Z, 1e-9));
+        prop_assert!(difference(&problem(plain()).unwrap(), &own, turned) < 1e-7);
+        prop_assert!(own.pair().mated_height() + COR < 1e-9);
+        prop_assert!(origin.fixed.transform_point3(world.translation).truncate().length() < 1e-9);
+    }
+}
+
+/// Facing +z, the heights of the face centres are found; so they are where the two files have them at different heights.
+#[test]
+fn the_face_height_is_found() {
+    let [fixed, moving] = drawn();
+    let up = |z: f64| DAffine3::from_translation(DVec3::new(0.0, 0.0, z));
+    let own = OwnSpec {
+        face_height: None,
+        ..OwnSpec::new(0.0, moved(&fixed, &up(3.0)), moved(&moving, &up(-7.0)))
+    };
+    let found = problem(own).unwrap();
+    let plain = problem(plain()).unwrap();
+    assert!(difference(&plain, &found, 0.0) < 1e-12);
+    assert_ne!(plain.digest(), found.digest());
+    let report = CheckReport::good(&found);
+    let drawing = report.drawing.unwrap();
+    // The socket has material behind it, which the plug does not reach.
+    for (found, true_) in [(drawing.fixed.face_center[2], 3.35), (drawing.moving.face_center[2], -6.65)] {
+        assert!((found - true_).abs() < 1e-9, "{found} {true_}");
+    }
+    // In front of the moving face, inside of the fixed half.
+    assert!((drawing.fixed.center_of_rotation[2] - (3.35 - COR)).abs() < 1e-9);
+    assert!((drawing.moving.center_of_rotation[2] - (-6.65 + COR)).abs() < 1e-9);
+}
+
+#[test]
+fn an_assembly_that_is_not_docked_is_refused() {
+    let refused = |apart: f64| problem(assembled(&DAffine3::IDENTITY, apart)).unwrap_err().to_string();
+    assert!(refused(0.3).contains("3.000e-1 D apart along the approach"), "{}", refused(0.3));
+    assert!(refused(-0.3).contains("3.000e-1 D deeper than it gets"), "{}", refused(-0.3));
+}
+
+#[test]
+fn whatever_places_a_half_changes_the_digest() {
+    let digest = |change: &dyn Fn(&mut OwnSpec)| {
+        let mut own = plain();
+        change(&mut own);
+        let alignment = Alignment::new(DofSet::ALL, Mount::X);
+        let connector = ConnectorSpec::Own(own);
+        let design = Design { name: "d".into(), connector, width: 1.0, unit: None, alignment };
+        let text = serde_json::to_string(&design).unwrap();
+        assert_eq!(serde_json::from_str::<Design>(&text).unwrap(), design, "a stored design reads back");
+        design.digest().unwrap()
+    };
+    let down = [0.0, 0.0, -1.0];
+    let mut digests = vec![
+        digest(&|_| ()),
+        digest(&|own| own.face_height = None),
+        digest(&|own| own.fixed_placement.facing = down),
+        digest(&|own| own.moving_placement.facing = down),
+        digest(&|own| own.fixed_placement.rotate[0] = 1.0),
+        digest(&|own| own.fixed_placement.translate[0] = 1.0),
+        digest(&|own| own.drawn = Drawn::Assembled { approach: down, face_center: None }),
+        digest(&|own| own.drawn = Drawn::Assembled { approach: [1.0, 0.0, 0.0], face_center: None }),
+        digest(&|own| own.drawn = Drawn::Assembled { approach: down, face_center: Some([0.0; 3]) }),
+    ];
+    let all = digests.len();
+    digests.sort_unstable();
+    digests.dedup();
+    assert_eq!(digests.len(), all);
+}
