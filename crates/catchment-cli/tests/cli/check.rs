@@ -1,6 +1,6 @@
 //! `catchment check` on designs that are not.
 
-use super::run;
+use super::{designs, json, run};
 use std::fs;
 
 /// The report on a file with this content.
@@ -52,6 +52,36 @@ fn own_halves_are_checked() {
                 fixed = { mesh = \"socket.stl\" }\n\
                 moving = { pieces = [[[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, \"1 deg\"]], [[1, 2]]] }\n";
     insta::assert_snapshot!("own_halves", check(text.as_bytes(), &[]));
+}
+
+/// Two parts drawn docked in one frame, one as OBJ and one as PLY: what was understood, in their own coordinates, and a picture of it.
+#[test]
+fn an_assembly_is_shown_as_it_was_understood() {
+    insta::assert_snapshot!("assembled", run(&designs(), &["check", "pyramid-assembled.toml"]));
+    let report = json(&designs(), &["check", "pyramid-assembled.toml", "--json"]);
+    let face = report["drawing"]["fixed"]["face_center"].as_array().unwrap();
+    for (found, drawn) in face.iter().zip([120.0, 40.0, 15.0]) {
+        assert!((found.as_f64().unwrap() - drawn).abs() < 1e-6, "{report}");
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let design = designs().join("pyramid-assembled.toml");
+    for file in ["a.svg", "a.png"] {
+        let said = run(dir.path(), &["check", design.to_str().unwrap(), "-o", file]);
+        assert!(said.starts_with("exit 0\n"), "{said}");
+    }
+    let svg = fs::read_to_string(dir.path().join("a.svg")).unwrap();
+    assert!(svg.contains("pyramid from an assembly") && svg.contains("mated, cut along the approach"));
+    assert!(fs::read(dir.path().join("a.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+/// What cannot be understood is not drawn.
+#[test]
+fn a_design_with_problems_has_no_picture() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("design.toml"), SIX_PROBLEMS).unwrap();
+    let said = run(dir.path(), &["check", "design.toml", "-o", "a.svg"]);
+    assert!(said.starts_with("exit 2\n"), "{said}");
+    assert!(!dir.path().join("a.svg").exists());
 }
 
 const BOX: &str = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]]";

@@ -15,7 +15,7 @@ fn closed_forms_of_the_zero_rotation_area() {
     let area = |design, more: &[&str]| zraa(design, more)["area_d2"].as_f64().unwrap();
     // Sums of a few polygon areas, cut with a seam of 1e-11 D.
     assert!((area("x-face-3d.toml", &[]) - 2.0).abs() < 1e-9);
-    for pyramid in ["pyramid.toml", "pyramid-stl.toml", "pyramid-pieces.toml"] {
+    for pyramid in ["pyramid.toml", "pyramid-stl.toml", "pyramid-pieces.toml", "pyramid-assembled.toml"] {
         assert!((area(pyramid, &[]) - 1.0).abs() < 1e-9, "{pyramid}");
     }
     let circle = &zraa("cone.toml", &[])["circle_area_d2"];
