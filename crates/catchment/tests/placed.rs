@@ -1,7 +1,5 @@
 //! Halves as their files have them: whichever way they are drawn, the same problem; and where they are not what they are said to be, why.
 
-#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
-
 use catchment::design::{ConnectorSpec, Drawn, HalfSpec, OwnSpec, Placement};
 use catchment::pose::CorPose;
 use catchment::prelude::*;
@@ -75,7 +73,7 @@ fn difference(a: &Problem, b: &Problem, turned: f64) -> f64 {
         );
         let lateral = DVec2::new(spread(k, 0.834_5, 0.5), spread(k, 0.696_4, 0.5));
         let seen = CorPose {
-            lateral: turn.transform_vector3(lateral.extend(0.0)).truncate(),
+            lateral: (turn * lateral.extend(0.0)).truncate(),
             rotation: turn * rotation * turn.transpose(),
         };
         match (a.pair().height(&CorPose { lateral, rotation }), b.pair().height(&seen)) {

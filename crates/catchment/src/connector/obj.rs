@@ -28,8 +28,12 @@ fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);
     let (models, _) =
         tobj::load_obj_buf(&mut lines, &LoadOptions::default(), no_materials).map_err(|error| {
-            let (line, found) = (lines.line, shown(bytes, lines.line));
-            vec![MeshProblem::Syntax { line, expected: expected(error), found }]
+            // Corners of faces are looked for at the end of their object only.
+            let line = match error {
+                LoadError::FaceVertexOutOfBounds => bad_face(bytes).unwrap_or(lines.line),
+                _ => lines.line,
+            };
+            vec![MeshProblem::Syntax { line, expected: expected(error), found: shown(bytes, line) }]
         })?;
     let mut triangles = mesh::Triangles::default();
     for mesh in models.iter().map(|model| &model.mesh) {
@@ -63,6 +67,25 @@ const fn expected(error: LoadError) -> &'static str {
         LoadError::ReadError => "text",
         _ => "a line of an OBJ file",
     }
+}
+
+/// The line of the first face with a corner that was not defined before it.
+fn bad_face(bytes: &[u8]) -> Option<usize> {
+    let mut corners = 0i64;
+    let mut is_bad = |line: &[u8]| {
+        let text = String::from_utf8_lossy(line);
+        let mut words = text.split_whitespace();
+        match words.next() {
+            Some("v") => corners += 1,
+            Some("f") => {
+                let numbers = words.filter_map(|word| word.split('/').next()?.parse::<i64>().ok());
+                return numbers.map(i64::unsigned_abs).any(|k| k == 0 || k > corners.unsigned_abs());
+            }
+            _ => {}
+        }
+        false
+    };
+    bytes.split(|b| *b == b'\n').position(&mut is_bad).map(|line| line + 1)
 }
 
 /// A line of a file, shortened.
@@ -114,7 +137,7 @@ mod tests {
     #[test]
     fn quads_of_several_groups_make_one_cube() {
         let cube = read(CUBE).unwrap();
-        assert_eq!((cube.vertices.len(), cube.facets.len()), (8, 6));
+        assert_eq!((cube.vertices.len(), cube.facets.len()), (8, 12));
         assert!(cube.vertices.contains(&DVec3::splat(0.5)), "scaled");
     }
 

@@ -198,10 +198,11 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
         places("centre of rotation", fixed.center_of_rotation, moving.center_of_rotation);
         let along = format!("{} and {} as the fixed half is drawn", direction(fixed.x), direction(fixed.y));
         row("errors in x and y", &format!("along {along}"));
-        if let (Some(apart), ConnectorSpec::Own(OwnSpec { drawn: Drawn::Assembled { .. }, .. })) =
-            (apart, &design.connector)
-        {
-            let way = if *apart > 0.0 { "apart" } else { "into each other" };
+        let is_assembled =
+            matches!(&design.connector, ConnectorSpec::Own(OwnSpec { drawn: Drawn::Assembled { .. }, .. }));
+        let moved = apart.filter(|apart| is_assembled && rounded(apart.abs()) > 0.0);
+        if let Some(apart) = moved {
+            let way = if apart > 0.0 { "apart" } else { "into each other" };
             row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
         }
     }
