@@ -19,7 +19,8 @@ fn own_heights(problem: &Problem) -> Heights {
 }
 
 fn inverted(problem: &Problem, wanted: Heights, settings: &Settings) -> Inverse {
-    invert(problem.design(), problem.connector(), wanted, settings, &Exec::new()).unwrap()
+    let own = problem.connector();
+    invert(problem.design(), own, wanted, own, settings, &Exec::new()).unwrap()
 }
 
 const FAMILIES: [&str; 5] = ["v-face", "s-face", "x-face", "pyramid", "x-face-3d"];
