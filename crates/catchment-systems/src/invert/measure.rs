@@ -2,7 +2,7 @@
 
 use super::heights::{Heights, apart, common, width};
 use super::tidy::steepness;
-use super::{REACHED, ROUNDED, SIDEWAYS};
+use super::{REACHED, SIDEWAYS};
 use catchment::connector::Half;
 use catchment::method::zraa::area;
 use glam::{DVec2, DVec3};
@@ -67,7 +67,10 @@ pub(super) fn patch(fixed: &Half, moving: &Heights, height: Option<f64>) -> f64 
             let top = |p: DVec2| (level - facet.normal.truncate().dot(p)) / facet.normal.z;
             for own in &moving.facets {
                 let Some(polygon) = common(&own.polygon, &plan) else { continue };
-                if polygon.iter().all(|p| (top(*p) - own.height(*p) - height).abs() <= 10.0 * ROUNDED) {
+                if polygon
+                    .iter()
+                    .all(|p| (top(*p) - own.height(*p) - height).abs() <= REACHED * steepness(own, own))
+                {
                     touching += area(&polygon);
                 }
             }

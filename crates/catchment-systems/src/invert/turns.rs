@@ -213,3 +213,6 @@ pub(super) fn most_above(high: &Heights, low: &Heights) -> Option<(DVec2, f64)> 
     }
     most
 }
+
+#[cfg(test)]
+mod tests;
