@@ -1,6 +1,6 @@
 //! Heights over the plane as pieces of planes, and the solids under and over them.
 
-use super::ROUNDED;
+use super::{NARROW, ROUNDED};
 use catchment::connector::{Half, Surface};
 use catchment::method::zraa::{HeightFacet, area, clip};
 use glam::{DVec2, DVec3};
@@ -70,6 +70,13 @@ impl Heights {
             common(&facet.polygon, polygon).map(|polygon| HeightFacet { polygon, ..facet.clone() })
         };
         Self { facets: self.facets.iter().filter_map(part).collect() }
+    }
+
+    /// The function without its pieces narrower than [`NARROW`]: where two contacts meet rounding can leave a crack between them, in which
+    /// something far below shows. A wish so low at a single place would ask for much of the other half.
+    pub(super) fn without_cracks(&self) -> Self {
+        let wide = |facet: &&HeightFacet| width(&facet.polygon) > NARROW;
+        Self { facets: self.facets.iter().filter(wide).cloned().collect() }
     }
 
     /// All corners with their heights.

@@ -2,7 +2,7 @@
 
 use super::heights::{Heights, apart, common, width};
 use super::tidy::steepness;
-use super::{REACHED, SIDEWAYS};
+use super::{NARROW, REACHED, SIDEWAYS};
 use catchment::connector::Half;
 use catchment::method::zraa::area;
 use glam::{DVec2, DVec3};
@@ -20,8 +20,8 @@ pub struct Shortfall {
 
 /// Where the heights that are reached stay below those that are wanted, polygon by polygon, the deepest first.
 ///
-/// What is narrower than [`SIDEWAYS`] is the side of a piece that was moved by rounding, and no shortfall; nor is what moving
-/// a slope by as much makes of its height.
+/// What is narrower than [`NARROW`] is a side that was moved by rounding, and no shortfall; nor is what moving a slope by
+/// [`SIDEWAYS`] makes of its height.
 pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> {
     let mut found = Vec::new();
     for want in &wanted.facets {
@@ -32,7 +32,7 @@ pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> 
                 polygon.iter().map(|p| (*p, short(p))).fold((polygon[0], f64::NEG_INFINITY), |best, next| {
                     if next.1 > best.1 { next } else { best }
                 });
-            if most > REACHED * steepness(want, got) && width(&polygon) > 2.0 * SIDEWAYS {
+            if most > REACHED * steepness(want, got) && width(&polygon) > NARROW {
                 found.push(Shortfall { polygon, most, at });
             }
         }

@@ -29,7 +29,7 @@
 //!
 //! The given half of a pair comes back from its own heights, at any rotations, where it is solid above its lower surface; a fixed half that
 //! reaches over its back when tilted makes g higher at the rim, as the new half is taken without a back. Sides of pieces are known
-//! to [`SIDEWAYS`], and pieces that are no more than rounding are taken out.
+//! to [`SIDEWAYS`], walls of a mesh to [`NARROW`]; what is wanted in a strip narrower than that is not asked for, and pieces that are no more than rounding are taken out.
 //!
 //! g is a surface without undercuts, on the plan of the design's own moving half. It is the lowest surface, not a
 //! good part: slopes, widths and what the result accepts are reported, not improved. Where nothing is wanted, nothing is kept.
@@ -72,7 +72,9 @@ const FAR: f64 = 100.0;
 /// Heights that are nearer than this, in D, are the same: reached.
 pub const REACHED: f64 = 1e-9;
 /// Sides of pieces are known to this, in D.
-pub const SIDEWAYS: f64 = 1e-9;
+pub const SIDEWAYS: f64 = 2.5e-10;
+/// Narrower than this, in D, a piece is rounding of a mesh and no feature of it: 0.2 µm of 40 mm.
+pub const NARROW: f64 = 5e-6;
 /// What tidying may change a height by, in D, where that does not come of moving a side.
 const LEVEL: f64 = 2.5e-10;
 /// Places and planes nearer than this, in D, differ by rounding.

@@ -6,25 +6,26 @@
 //!   └───────┴┴──────┘        └────────┴──────┘
 //! ```
 //!
-//! A mesh has many facets that were one plane before its corners were rounded. Where two nearly equal planes cross is then
-//! decided by the last digits, and the pieces of an envelope come out with slivers and corners 10⁻⁸ D apart, which no reader
-//! takes for a solid. Three steps, each of which changes the function by no more than [`LEVEL`] in height or [`SIDEWAYS`] to the side:
+//! A mesh has many facets that were one plane before its corners were rounded, and upright walls that lean. Where two nearly
+//! equal planes cross is then decided by the last digits, and the pieces of an envelope come out with slivers and corners
+//! 10⁻⁸ D apart, which no reader takes for a solid. Three steps:
 //!
 //! 1. Neighbours of one plane become one where that is convex.
-//! 2. A sliver goes to the neighbours along it, whose sides move over it.
+//! 2. A sliver, narrower than [`NARROW`], goes to the neighbours along it, whose sides move over it: those whose planes differ there by
+//!    no more than [`LEVEL`]; where they do not cover it, those that are higher, too; and at the rim nothing may be left.
 //! 3. A side that ends before it begins goes, where its neighbours meet just beyond it.
+//!
+//! So the function changes by no more than [`LEVEL`] in height or [`SIDEWAYS`] to the side, but for slivers of another height than all
+//! around them, such as leaning walls: there it rises, in a strip narrower than [`NARROW`], and what rises stops no higher.
 //!
 //! Sides move outward only: the columns over the pieces overlap by as little as they moved, and no gap opens. Where columns overlap
 //! the lower one counts, so a side moves over another piece only where that is not higher.
 
 use super::heights::{Heights, apart, common, width};
-use super::{LEVEL, ROUNDED, SIDEWAYS};
+use super::{LEVEL, NARROW, ROUNDED, SIDEWAYS};
 use catchment::method::zraa::{HeightFacet, area, clip};
 use catchment::polytope::planar_hull;
 use glam::DVec2;
-
-/// Narrower than this, in D, a piece is a sliver that may be rounding: where nearly equal planes cross is known no better.
-const SLIVER: f64 = 1e-6;
 
 impl Heights {
     /// The same function, to [`LEVEL`] in height and [`SIDEWAYS`] to the side, without the pieces that rounding made.
@@ -57,13 +58,12 @@ impl Heights {
         let mut kept = vec![true; self.facets.len()];
         let mut narrow: Vec<(f64, usize)> =
             self.facets.iter().enumerate().map(|(k, facet)| (width(&facet.polygon), k)).collect();
-        narrow.retain(|(width, _)| *width < SLIVER);
+        narrow.retain(|(width, _)| *width < NARROW);
         narrow.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (width, k) in narrow {
+        for (_, k) in narrow {
             kept[k] = false;
-            match self.taken_over(k, width, &kept) {
-                Some(grown) => grown.into_iter().for_each(|(j, polygon)| self.facets[j].polygon = polygon),
-                None => kept[k] = true,
+            for (j, polygon) in self.taken_over(k, &kept) {
+                self.facets[j].polygon = polygon;
             }
         }
         let mut kept = kept.into_iter();
@@ -71,34 +71,40 @@ impl Heights {
         self
     }
 
-    /// The neighbours of a sliver with their sides moved over it; none where they do not cover it.
-    fn taken_over(&self, sliver: usize, width: f64, kept: &[bool]) -> Option<Vec<(usize, Vec<DVec2>)>> {
+    /// The neighbours of a sliver with their sides moved over it: level ones, and higher ones where those do not cover it.
+    fn taken_over(&self, sliver: usize, kept: &[bool]) -> Vec<(usize, Vec<DVec2>)> {
         let thin = &self.facets[sliver];
         let long = longest_side(&thin.polygon);
         let reach = |polygon: &[DVec2]| {
             let along = polygon.iter().map(|p| long.dot(*p));
             along.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), t| (lo.min(t), hi.max(t)))
         };
-        let mut grown = Vec::new();
-        let mut covered = Vec::new();
-        for (j, facet) in self.facets.iter().enumerate().filter(|(j, _)| kept[*j]) {
-            if !near(&facet.polygon, &thin.polygon) {
+        let (start, end) = reach(&thin.polygon);
+        let (mut level, mut higher, mut covered) = (Vec::new(), Vec::new(), Vec::new());
+        for (j, facet) in self.facets.iter().enumerate() {
+            if !kept[j] || !near(&facet.polygon, &thin.polygon) {
                 continue;
             }
             let Some((polygon, part)) = moved_over(&facet.polygon, &thin.polygon) else { continue };
-            let level = part
-                .iter()
-                .all(|p| (facet.height(*p) - thin.height(*p)).abs() <= LEVEL * steepness(facet, thin));
-            if (level || width <= SIDEWAYS) && self.may_become(j, &polygon, kept) {
+            let most = LEVEL * steepness(facet, thin);
+            let above = |p: &DVec2| facet.height(*p) - thin.height(*p);
+            if part.iter().any(|p| above(p) < -most) || !self.may_become(j, &polygon, kept) {
+                continue;
+            }
+            if part.iter().all(|p| above(p) <= most) {
                 covered.push(reach(&part));
-                grown.push((j, polygon));
+                level.push((j, polygon));
+            } else {
+                higher.push((j, polygon));
             }
         }
         covered.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (start, end) = reach(&thin.polygon);
         let reached =
             covered.iter().fold(start, |to, (lo, hi)| if *lo <= to + SIDEWAYS { to.max(*hi) } else { to });
-        (reached >= end - SIDEWAYS).then_some(grown)
+        if reached < end - SIDEWAYS {
+            level.append(&mut higher);
+        }
+        level
     }
 
     /// Whether a piece may grow to a polygon: no more than [`SIDEWAYS`], or over nothing that it would lower.
@@ -159,7 +165,7 @@ fn moved_over(polygon: &[DVec2], sliver: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DV
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(out(*p)), h.max(out(*p))));
         let spread = part.iter().map(|p| along.dot(*p - part[0]));
         let (lo, hi) = spread.fold((0.0f64, 0.0f64), |(l, h), t| (l.min(t), h.max(t)));
-        let in_front = part.len() > 1 && least.abs() <= SIDEWAYS && most <= SLIVER && hi - lo > SIDEWAYS;
+        let in_front = part.len() > 1 && least.abs() <= SIDEWAYS && most <= NARROW && hi - lo > SIDEWAYS;
         in_front.then(|| Some((moved(polygon, k, most)?, part)))?
     })
 }
@@ -206,8 +212,8 @@ fn fewer_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
         let corner = from + u * ((to - from).perp_dot(v) / turn);
         let beyond = -along.perp_dot(corner - from);
         // Needles are cut where they are: their point would lie far away.
-        let near = corner.distance(from).min(corner.distance(to)) <= SLIVER;
-        (near && beyond <= SLIVER).then_some((beyond.max(0.0), k, corner))
+        let near = corner.distance(from).min(corner.distance(to)) <= NARROW;
+        (near && beyond <= NARROW).then_some((beyond.max(0.0), k, corner))
     };
     let (_, side, corner) =
         (0..n).filter_map(without).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;

@@ -150,6 +150,7 @@ fn combined([rolls, pitches, yaws]: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
 pub(super) fn asked(fixed: &Half, wanted: &Heights, turn: DMat3, floor: f64) -> Option<(Half, Half)> {
     let back = turn.transpose();
     let fixed = fixed.mapped(|p| back * p);
+    let wanted = wanted.without_cracks();
     let highest = wanted.range()?[1];
     let bounds = |half: &Half, of: fn(f64, f64) -> f64, start: f64| {
         half.surfaces.iter().flat_map(|s| &s.vertices).map(|p| p.z).fold(start, of)
