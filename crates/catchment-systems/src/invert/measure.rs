@@ -67,10 +67,7 @@ pub(super) fn patch(fixed: &Half, moving: &Heights, height: Option<f64>) -> f64 
             let top = |p: DVec2| (level - facet.normal.truncate().dot(p)) / facet.normal.z;
             for own in &moving.facets {
                 let Some(polygon) = common(&own.polygon, &plan) else { continue };
-                if polygon
-                    .iter()
-                    .all(|p| (top(*p) - own.height(*p) - height).abs() <= REACHED * steepness(own, own))
-                {
+                if polygon.iter().all(|p| (top(*p) - own.height(*p) - height).abs() <= REACHED) {
                     touching += area(&polygon);
                 }
             }

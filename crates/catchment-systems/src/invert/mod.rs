@@ -75,8 +75,6 @@ pub const REACHED: f64 = 1e-9;
 pub const SIDEWAYS: f64 = 2.5e-10;
 /// Narrower than this, in D, a piece is rounding of a mesh and no feature of it: 0.2 µm of 40 mm.
 pub const NARROW: f64 = 5e-6;
-/// What tidying may change a height by, in D, where that does not come of moving a side.
-const LEVEL: f64 = 2.5e-10;
 /// Places and planes nearer than this, in D, differ by rounding.
 const ROUNDED: f64 = 1e-10;
 

@@ -12,26 +12,26 @@
 //!
 //! 1. Neighbours of one plane become one where that is convex.
 //! 2. A sliver, narrower than [`NARROW`], goes to the neighbours along it, whose sides move over it: those whose planes differ there by
-//!    no more than [`LEVEL`]; where they do not cover it, those that are higher, too; and at the rim nothing may be left.
+//!    no more than [`ROUNDED`]; where they do not cover it, those that are higher, too; and at the rim nothing may be left.
 //! 3. A side that ends before it begins goes, where its neighbours meet just beyond it.
 //!
-//! So the function changes by no more than [`LEVEL`] in height or [`SIDEWAYS`] to the side, but for slivers of another height than all
+//! So the function changes by no more than [`ROUNDED`] in height or [`SIDEWAYS`] to the side, but for slivers of another height than all
 //! around them, such as leaning walls: there it rises, in a strip narrower than [`NARROW`], and what rises stops no higher.
 //!
 //! Sides move outward only: the columns over the pieces overlap by as little as they moved, and no gap opens. Where columns overlap
 //! the lower one counts, so a side moves over another piece only where that is not higher.
 
 use super::heights::{Heights, apart, common, width};
-use super::{LEVEL, NARROW, ROUNDED, SIDEWAYS};
+use super::{NARROW, ROUNDED, SIDEWAYS};
 use catchment::method::zraa::{HeightFacet, area, clip};
 use catchment::polytope::planar_hull;
 use glam::DVec2;
 
 impl Heights {
-    /// The same function, to [`LEVEL`] in height and [`SIDEWAYS`] to the side, without the pieces that rounding made.
+    /// The same function, to [`ROUNDED`] in height and [`SIDEWAYS`] to the side, without the pieces that rounding made.
     #[must_use]
     pub fn tidied(self) -> Self {
-        self.merged().without_slivers().merged().without_short_sides()
+        self.merged().without_slivers().merged().without_short_sides().without_slivers()
     }
 
     /// Neighbouring pieces of one plane joined where they make a convex polygon.
@@ -86,7 +86,7 @@ impl Heights {
                 continue;
             }
             let Some((polygon, part)) = moved_over(&facet.polygon, &thin.polygon) else { continue };
-            let most = LEVEL * steepness(facet, thin);
+            let most = ROUNDED * steepness(facet, thin);
             let above = |p: &DVec2| facet.height(*p) - thin.height(*p);
             if part.iter().any(|p| above(p) < -most) || !self.may_become(j, &polygon, kept) {
                 continue;
@@ -110,11 +110,14 @@ impl Heights {
     /// Whether a piece may grow to a polygon: no more than [`SIDEWAYS`], or over nothing that it would lower.
     fn may_become(&self, piece: usize, polygon: &[DVec2], kept: &[bool]) -> bool {
         let own = &self.facets[piece];
-        self.facets.iter().enumerate().filter(|(j, _)| *j != piece && kept[*j]).all(|(_, other)| {
-            let Some(over) = common(&other.polygon, polygon) else { return true };
-            width(&over) <= SIDEWAYS
-                || over.iter().all(|p| other.height(*p) - own.height(*p) <= LEVEL * steepness(own, other))
-        })
+        is_convex(polygon)
+            && self.facets.iter().enumerate().filter(|(j, _)| *j != piece && kept[*j]).all(|(_, other)| {
+                let Some(over) = common(&other.polygon, polygon) else { return true };
+                width(&over) <= SIDEWAYS
+                    || over
+                        .iter()
+                        .all(|p| other.height(*p) - own.height(*p) <= ROUNDED * steepness(own, other))
+            })
     }
 
     fn without_short_sides(mut self) -> Self {
@@ -134,6 +137,16 @@ impl Heights {
 /// What a distance between two planes is in height: at a wall, rounding to the side is much of it.
 pub(super) fn steepness(a: &HeightFacet, b: &HeightFacet) -> f64 {
     1.0 + a.gradient.length().max(b.gradient.length())
+}
+
+/// Whether a polygon turns left at every corner, once around: what moves of a side may leave behind of a tiny one is none.
+fn is_convex(polygon: &[DVec2]) -> bool {
+    let n = polygon.len();
+    let left = |k: usize| {
+        let [u, v] = [polygon[(k + 1) % n] - polygon[k], polygon[(k + 2) % n] - polygon[(k + 1) % n]];
+        u.perp_dot(v) >= 0.0 && u.dot(v) > -u.length() * v.length()
+    };
+    (0..n).all(left) && width(polygon) > 0.0
 }
 
 fn longest_side(polygon: &[DVec2]) -> DVec2 {
