@@ -174,7 +174,8 @@ impl InvertBody {
         );
         if let Some(most) = between.most_d.filter(|most| *most > REACHED) {
             let [roll, pitch, yaw] = between.angles_rad.map(|angle| significant(angle.to_degrees()));
-            let [x, y] = between.at_d.map(significant);
+            let near_zero = |v: f64| if v.abs() < REACHED { 0.0 } else { v };
+            let [x, y] = between.at_d.map(|v| significant(near_zero(v)));
             let at = format!("x {x}, y {y}, roll {roll}°, pitch {pitch}°, yaw {yaw}°");
             wrapped(
                 text,
