@@ -263,3 +263,91 @@ fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.dedup_by(|a, b| a.distance(*b) <= ROUNDED);
     planar_hull(&points, |a, b, c| (b - a).normalize_or_zero().perp_dot(c - a) > ROUNDED)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plane through `height` at (1, 0) with a gradient, over a box.
+    fn facet([x0, y0]: [f64; 2], [x1, y1]: [f64; 2], height: f64, gradient: [f64; 2]) -> HeightFacet {
+        let polygon = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| DVec2::new(x, y)).to_vec();
+        HeightFacet { polygon, offset: height - gradient[0], gradient: DVec2::from_array(gradient) }
+    }
+
+    fn tidied(facets: &[HeightFacet]) -> Heights {
+        Heights { facets: facets.to_vec() }.tidied()
+    }
+
+    #[test]
+    fn a_sliver_between_two_pieces_goes_to_them_without_a_gap() {
+        let thin = 3e-9;
+        let left = facet([0.0, 0.0], [1.0, 1.0], 0.0, [0.0, 0.0]);
+        let sliver = facet([1.0, 0.0], [1.0 + thin, 1.0], 1e-12, [1e-9, 0.0]);
+        let right = facet([1.0 + thin, 0.0], [2.0, 1.0], 0.0, [0.01, 0.0]);
+        let found = tidied(&[left, sliver, right]);
+        assert_eq!(found.facets.len(), 2);
+        assert!((found.area() - 2.0).abs() < 2.0 * thin, "{}", found.area());
+        for x in [0.5, 1.0, 1.0 + 0.5 * thin, 1.0 + thin, 1.5] {
+            let wanted = 0.01 * (x - 1.0f64).max(0.0);
+            assert!((found.at(DVec2::new(x, 0.3)).unwrap() - wanted).abs() < 1e-10, "{x}");
+        }
+    }
+
+    #[test]
+    fn a_sliver_along_two_pieces_goes_to_the_level_one_across() {
+        let thin = 2e-8;
+        let pieces = [
+            facet([0.0, 0.0], [1.0, 0.5], 0.3, [0.0, 0.0]),
+            facet([0.0, 0.5], [1.0, 1.0], 0.5, [0.0, 0.2]),
+            facet([1.0, 0.0], [1.0 + thin, 1.0], 0.0, [0.2, 0.0]),
+            facet([1.0 + thin, 0.0], [2.0, 1.0], 1e-11, [0.2, 0.0]),
+        ];
+        let found = tidied(&pieces);
+        assert_eq!(found.facets.len(), 3);
+        assert_eq!(
+            found
+                .facets
+                .iter()
+                .filter(|f| f.polygon == pieces[0].polygon || f.polygon == pieces[1].polygon)
+                .count(),
+            2
+        );
+        let beside = found.at(DVec2::new(1.0 + 0.5 * thin, 0.7)).unwrap();
+        assert!(beside.abs() < 1e-8, "{beside}");
+    }
+
+    #[test]
+    fn a_leaning_wall_is_upright_and_nothing_sinks() {
+        let lean = 1e-6;
+        let low = facet([0.0, 0.0], [1.0, 1.0], 0.0, [0.1, 0.0]);
+        let wall = facet([1.0, 0.0], [1.0 + lean, 1.0], 0.0, [0.5 / lean, 0.0]);
+        let high = facet([1.0 + lean, 0.0], [2.0, 1.0], 0.5, [0.0, 0.0]);
+        // At the rim nothing is left of it, between two pieces the upper one reaches over it.
+        let rim = tidied(&[low.clone(), wall.clone()]);
+        assert_eq!(rim.facets, vec![low.clone()]);
+        let found = tidied(&[low.clone(), wall.clone(), high]);
+        assert_eq!(found.facets.len(), 2);
+        assert!(found.facets.contains(&low));
+        for share in [0.1, 0.5, 0.9] {
+            let place = DVec2::new(1.0 + share * lean, 0.4);
+            let now = found.at(place).unwrap();
+            assert!((now - 0.5).abs() < 1e-9 && now > wall.height(place) - 1e-9, "{share}: {now}");
+        }
+    }
+
+    #[test]
+    fn a_side_without_length_goes_and_a_small_feature_stays() {
+        let cut = 1e-8;
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0 - cut), (1.0 - cut, 1.0), (0.0, 1.0)];
+        let polygon = corners.map(|(x, y)| DVec2::new(x, y)).to_vec();
+        let piece = HeightFacet { polygon, offset: 0.0, gradient: DVec2::ZERO };
+        assert_eq!(tidied(std::slice::from_ref(&piece)).facets[0].polygon.len(), 4);
+        // A groove 1e-4 wide between two pieces of one plane is one.
+        let groove = [
+            facet([0.0, 0.0], [1.0, 1.0], 0.0, [0.0, 0.0]),
+            facet([1.0, 0.0], [1.0001, 1.0], 0.1, [0.0, 0.0]),
+            facet([1.0001, 0.0], [2.0, 1.0], 0.0, [0.0, 0.0]),
+        ];
+        assert_eq!(tidied(&groove).facets, groove);
+    }
+}
