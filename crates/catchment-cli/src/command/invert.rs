@@ -7,11 +7,10 @@ use crate::failure::Failure;
 use crate::output::{FileArgs, tell};
 use crate::source::read_table;
 use catchment::design::{Design, Quantity};
-use catchment::exec::Exec;
 use catchment::problem::Problem;
 use catchment::report::figure::{FigureError, Picture, Placement, ensure_fits, section};
 use catchment_systems::invert::{
-    Heights, Inverse, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, report,
+    Heights, Inverse, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, list_of_angles, report,
     wanted_from_table,
 };
 use clap::Args;
@@ -28,7 +27,7 @@ use std::path::{Path, PathBuf};
     catchment invert design.toml                       the design's own moving half again\n  \
     catchment invert design.toml --heights other.toml -o new.toml\n  \
     catchment invert design.toml --heights wanted.csv  a grid: x,y,height, in D\n  \
-    catchment invert design.toml --yaw \"-20 deg\" --yaw \"20 deg\"\n  \
+    catchment invert design.toml --pitch \"-10..10 deg/21\" --yaw 0,\"20 deg\"\n  \
     catchment run new.toml                             what the result accepts\n\n\
     -o writes the pair as a design file (.toml), its halves as convex pieces, or a picture of it (.svg, .png).")]
 pub(crate) struct InvertArgs {
@@ -37,9 +36,15 @@ pub(crate) struct InvertArgs {
     /// Wanted heights: a design (.toml) or a table x,y,height in D (.csv) [default: the design's own]
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     heights: Option<PathBuf>,
-    /// A turn about z at which the design's own heights are wanted, too; may be given several times
-    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
-    yaw: Vec<f64>,
+    /// Rolls at which the heights are wanted, too, such as -10..10 deg/21 or 5 deg,10 deg; every one with every pitch and yaw
+    #[arg(long, value_name = "ANGLES", value_parser = angles, allow_hyphen_values = true)]
+    roll: Vec<Angles>,
+    /// Pitches, likewise; with --heights FILE.toml the heights of that design, otherwise those of DESIGN
+    #[arg(long, value_name = "ANGLES", value_parser = angles, allow_hyphen_values = true)]
+    pitch: Vec<Angles>,
+    /// Yaws, likewise; may be given several times, as the others
+    #[arg(long, value_name = "ANGLES", value_parser = angles, allow_hyphen_values = true)]
+    yaw: Vec<Angles>,
     /// Material behind the deepest point of the new half, in D
     #[arg(long, value_name = "D", default_value_t = 0.25)]
     backing: f64,
@@ -80,12 +85,20 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     if matches!(kind, Some("svg" | "png")) {
         ensure_fits(0, exec)?;
     }
-    let wanted = match &args.heights {
-        None => heights_of(design, connector, DMat3::IDENTITY, exec)?,
-        Some(path) => wanted(path, design, exec)?,
+    let of_design =
+        |problem: &Problem| heights_of(problem.design(), problem.connector(), DMat3::IDENTITY, exec);
+    let Wanted { level, turned } =
+        args.heights.as_deref().map_or(Ok(Wanted::default()), |path| wanted(path, design))?;
+    let other = turned.as_ref().unwrap_or(&problem);
+    let level = level.map_or_else(|| of_design(other), Ok)?;
+    let all = |angles: &[Angles]| angles.iter().flat_map(|Angles(angles)| angles.clone()).collect();
+    let settings = Settings {
+        roll: all(&args.roll),
+        pitch: all(&args.pitch),
+        yaw: all(&args.yaw),
+        backing: args.backing,
     };
-    let settings = Settings { yaw: args.yaw.clone(), backing: args.backing };
-    let found = invert(design, connector, wanted, &settings, exec)?;
+    let found = invert(design, connector, level, other.connector(), &settings, exec)?;
     drop(running);
     let report = report(design, &found, Limits { feature_d, draft_rad: args.min_draft });
     if report.pieces_d.len() > MAX_PIECES && kind == Some("toml") {
@@ -110,11 +123,17 @@ fn drawn(design: &Design, found: &Inverse) -> Result<Picture, FigureError> {
     section(design, &found.connector, &Placement::mated(design, APART))
 }
 
-/// The heights that a file wants.
-fn wanted(path: &Path, design: &Design, exec: &Exec) -> Result<Heights, Failure> {
+/// What a file wants: heights without rotation, or the design whose heights are wanted at every rotation.
+#[derive(Default)]
+struct Wanted {
+    level: Option<Heights>,
+    turned: Option<Problem>,
+}
+
+fn wanted(path: &Path, design: &Design) -> Result<Wanted, Failure> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match ending.as_str() {
-        "csv" => Ok(wanted_from_table(read_table(path)?)?),
+        "csv" => Ok(Wanted { level: Some(wanted_from_table(read_table(path)?)?), turned: None }),
         "toml" => {
             let other = Problem::open(path)?;
             if other.design().alignment.free.contains(catchment::pose::Dof::Y)
@@ -123,7 +142,7 @@ fn wanted(path: &Path, design: &Design, exec: &Exec) -> Result<Heights, Failure>
                 let message = "a planar design and a spatial one have no heights in common".to_owned();
                 return Err(Failure::with_help(message, Some("free y in both, or in neither".to_owned())));
             }
-            Ok(heights_of(other.design(), other.connector(), DMat3::IDENTITY, exec)?)
+            Ok(Wanted { level: None, turned: Some(other) })
         }
         _ => {
             let help = "heights are read from a design (.toml) or a table (.csv)".to_owned();
@@ -138,4 +157,12 @@ fn quantity(text: &str) -> Result<Quantity, String> {
 
 fn angle(text: &str) -> Result<f64, String> {
     quantity(text)?.angle_rad().map_err(|complaint| format!("{complaint}"))
+}
+
+/// Angles of a list or a range, in radians.
+#[derive(Debug, Clone)]
+struct Angles(Vec<f64>);
+
+fn angles(text: &str) -> Result<Angles, String> {
+    list_of_angles(text).map(Angles)
 }

@@ -1,6 +1,7 @@
 //! `catchment invert`: a design's own moving half comes back, and what it writes runs.
 
 use crate::{designs, home, json, run};
+use std::fmt::Write;
 use std::fs;
 
 const PYRAMID: &str = "[connector]\nfamily = \"pyramid\"\nwidth = 40.0\nunit = \"mm\"\naspect_ratio = 0.5\n[alignment]\nfree = [\"x\", \"y\"]\n";
@@ -33,4 +34,91 @@ fn what_cannot_be_reached_is_said_with_its_place() {
     assert!(most > 0.01 && !found["unattained"][0]["polygon"].as_array().unwrap().is_empty(), "{most}");
     let ran = run(home.path(), &["check", "q.toml"]);
     assert!(ran.starts_with("exit "), "{ran}");
+}
+
+/// A rounded nose as a program exports it: turned about z by an angle that no grid has, and every coordinate cut to a ten-thousandth of
+/// a millimetre. What was one plane before is many, and upright walls lean.
+fn nose() -> String {
+    const TURN: f64 = 0.3;
+    let arc = |k: u32| -1.1 + 2.2 * f64::from(k) / 6.0;
+    let mut profile = vec![[20.0 * arc(0).sin(), -25.0], [20.0 * arc(6).sin(), -25.0]];
+    profile.extend((0..=6).rev().map(|k| [20.0 * arc(k).sin(), 20.0 * arc(k).cos() - 20.0]));
+    let along = [-15.0, -4.3, 3.1, 15.0];
+    let corner = |[x, z]: [f64; 2], y: f64| {
+        let (sin, cos) = f64::sin_cos(TURN);
+        format!("vertex {:.4} {:.4} {z:.4}", cos * x - sin * y, sin * x + cos * y)
+    };
+    let mut text = "solid nose\n".to_owned();
+    let mut facet = |corners: [String; 3]| {
+        write!(text, "facet normal 0 0 0\nouter loop\n{}\nendloop\nendfacet\n", corners.join("\n")).unwrap();
+    };
+    let n = profile.len();
+    for (k, &a) in profile.iter().enumerate() {
+        let b = profile[(k + 1) % n];
+        for y in along.windows(2) {
+            facet([corner(a, y[0]), corner(b, y[1]), corner(b, y[0])]);
+            facet([corner(a, y[0]), corner(a, y[1]), corner(b, y[1])]);
+        }
+    }
+    for k in 1..n - 1 {
+        let [front, back] = [along[0], along[3]].map(|y| [0, k, k + 1].map(|j| corner(profile[j], y)));
+        facet(front);
+        let [a, b, c] = back;
+        facet([a, c, b]);
+    }
+    text + "endsolid nose\n"
+}
+
+#[test]
+fn a_foreign_mesh_gives_a_half_that_the_program_takes() {
+    let home = home();
+    fs::write(home.path().join("nose.stl"), nose()).unwrap();
+    let side = |s: f64| {
+        let (near, far) = (s * 20.0, 0.0);
+        let corners = [[near, -20.0], [near, 4.1624], [far, -20.0], [far, -2.3376]];
+        let corners: Vec<String> =
+            corners.iter().flat_map(|[x, z]| [-20, 20].map(|y| format!("[{x}, {y}, {z}]"))).collect();
+        format!("[{}]", corners.join(", "))
+    };
+    let design = format!(
+        "[connector]\nwidth = 40\nunit = \"mm\"\nface_height = 0\nfixed.pieces = [{}, {}]\n\
+         moving = {{ mesh = \"nose.stl\", unit = \"mm\" }}\n\
+         [alignment]\nfree = [\"x\", \"pitch\"]\nmount = \"y\"\n[errors]\nx = \"10 mm\"\npitch = \"10 deg\"\n",
+        side(-1.0),
+        side(1.0)
+    );
+    fs::write(home.path().join("d.toml"), design).unwrap();
+    let told = json(home.path(), &["invert", "d.toml", "-o", "new.toml", "--json"]);
+    assert_eq!(told["attained"], true, "{told}");
+    assert!(told["narrowest_d"].as_f64().unwrap() > 1e-6, "{}", told["narrowest_d"]);
+    let checked = run(home.path(), &["check", "new.toml"]);
+    assert!(checked.starts_with("exit 0\n"), "{checked}");
+    let ran = run(home.path(), &["run", "new.toml", "--method", "flood", "--resolution", "8", "--quiet"]);
+    assert!(ran.starts_with("exit 0\n"), "{ran}");
+    let zraa = |design: &str| json(home.path(), &["zraa", design, "--json"])["length_d"].as_f64().unwrap();
+    assert!((zraa("d.toml") - zraa("new.toml")).abs() < 1e-8, "{} {}", zraa("d.toml"), zraa("new.toml"));
+}
+
+#[test]
+fn rolls_pitches_and_yaws_are_asked_for_in_ranges() {
+    let home = home();
+    fs::write(home.path().join("p.toml"), PYRAMID).unwrap();
+    fs::copy(designs().join("systems/wanted-bowl.csv"), home.path().join("w.csv")).unwrap();
+    let asked =
+        ["invert", "p.toml", "--heights", "w.csv", "--pitch", "-10..10 deg/3", "--yaw", "0,20 deg", "--json"];
+    let found = json(home.path(), &asked);
+    assert_eq!((found["turns"].as_u64(), found["settings"]["pitch"].as_array().unwrap().len()), (Some(5), 3));
+    let between = &found["between"];
+    // Half of 10° and half of 20°.
+    assert!((between["turn_rad"].as_f64().unwrap() - 15f64.to_radians()).abs() < 1e-9, "{between}");
+    assert_eq!(between["midway"], 2);
+    let told = run(home.path(), &["invert", "p.toml", "--pitch", "-10..10 deg/3"]);
+    assert!(told.contains("pitch -10.00°, 0°, 10.00°: 2 rotations"), "{told}");
+    assert!(told.contains("nowhere higher than wanted at 2 rotations midway"), "{told}");
+    // One place is told once.
+    let places: Vec<&serde_json::Value> =
+        found["unattained"].as_array().unwrap().iter().map(|short| &short["at"]).collect();
+    for (k, place) in places.iter().enumerate() {
+        assert!(!places[..k].contains(place), "{place} is told twice");
+    }
 }

@@ -9,6 +9,8 @@
 //! this). [`super::brute`] is an independent judge that cuts nothing.
 
 use super::region::{Node, Region, place, turn};
+use catchment::method::zraa::{area, clip};
+use catchment::polytope::planar_hull;
 use glam::DVec2;
 use i_triangle::i_overlay::core::fill_rule::FillRule;
 use i_triangle::int::minkowski::{IntMinkowskiOperand, IntMinkowskiSolver};
@@ -94,23 +96,7 @@ pub(super) fn convex_sum(a: &[Node], b: &[Node]) -> Vec<Node> {
         a.iter().flat_map(|p| b.iter().map(move |q| Node::new(p.x + q.x, p.y + q.y))).collect();
     points.sort_unstable_by_key(|p| (p.x, p.y));
     points.dedup();
-    if points.len() < 3 {
-        return points;
-    }
-    let chain = |points: &mut dyn Iterator<Item = &Node>| {
-        let mut hull: Vec<Node> = Vec::new();
-        for &p in points {
-            while hull.len() > 1 && turn(hull[hull.len() - 2], hull[hull.len() - 1], p) <= 0 {
-                hull.pop();
-            }
-            hull.push(p);
-        }
-        hull.pop();
-        hull
-    };
-    let mut hull = chain(&mut points.iter());
-    hull.extend(chain(&mut points.iter().rev()));
-    hull
+    planar_hull(&points, |a, b, c| turn(a, b, c) > 0)
 }
 
 /// The overlap of the two regions when the second is moved by d: area of A ∩ (B + d), from their convex polygons.
@@ -155,22 +141,10 @@ fn common(a: &[DVec2], b: &[DVec2]) -> f64 {
     let mut rest = a.to_vec();
     for (k, &from) in b.iter().enumerate() {
         let along = b[(k + 1) % b.len()] - from;
-        let inside = |p: DVec2| along.perp_dot(p - from);
-        let mut cut = Vec::with_capacity(rest.len() + 1);
-        for (j, &p) in rest.iter().enumerate() {
-            let q = rest[(j + 1) % rest.len()];
-            let (dp, dq) = (inside(p), inside(q));
-            if dp >= 0.0 {
-                cut.push(p);
-            }
-            if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
-                cut.push(p.lerp(q, dp / (dp - dq)));
-            }
-        }
-        rest = cut;
+        rest = clip(&rest, |p| along.perp_dot(p - from));
         if rest.len() < 3 {
             return 0.0;
         }
     }
-    rest.windows(2).map(|w| (w[0] - rest[0]).perp_dot(w[1] - rest[0])).sum::<f64>() / 2.0
+    area(&rest)
 }

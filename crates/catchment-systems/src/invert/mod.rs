@@ -15,9 +15,9 @@
 //! The second line is itself a height of first contact: that of a body with the lower surface h* over f, at the offset u. So the
 //! exact envelope of [`catchment::method::zraa`] computes both lines, as planes over convex polygons; nothing is sampled.
 //!
-//! **Rotations.** With rotations free, g must also stay out of f at the other rotations R of the pair. For a list of rotations the
-//! wanted heights are asked at each, and g is the largest over them of what f turned by R⁻¹ asks: exact for the rotations of
-//! the list, and nothing is promised between them.
+//! **Rotations.** With rotations free, g must also stay out of f at the other rotations R of the pair. The heights are wanted at every
+//! combination of the rolls, pitches and yaws of a list, and g is the largest over them of what the fixed half, turned by R⁻¹, asks:
+//! exact at the rotations of the list; between them the excess has a bound, and is computed midway ([`Between`]).
 //!
 //! **Planar designs** are extruded solids with y locked: h* is taken along x, over a strip that is narrower than the gap of layers.
 //!
@@ -27,43 +27,65 @@
 //!
 //! # What is not promised
 //!
+//! The given half of a pair comes back from its own heights, at any rotations, where it is solid above its lower surface; a fixed half that
+//! reaches over its back when tilted makes g higher at the rim, as the new half is taken without a back. Sides of pieces are known
+//! to [`SIDEWAYS`], walls of a mesh to [`NARROW`]; what is wanted in a strip narrower than that is not asked for, and pieces that are no more than rounding are taken out.
+//!
 //! g is a surface without undercuts, on the plan of the design's own moving half. It is the lowest surface, not a
 //! good part: slopes, widths and what the result accepts are reported, not improved. Where nothing is wanted, nothing is kept.
 //!
 //! Source: the dissertation, section 7.2 (p. 108–109), which wishes for this and gives no formula: the adjunction, and all that
 //! follows from it, is ours.
 
+mod file;
 mod heights;
+mod measure;
 mod report;
 mod table;
 #[cfg(test)]
 mod tests;
+mod tidy;
+mod turns;
 
+pub use file::{MAX_PIECES, design_file};
 pub use heights::Heights;
-pub use report::{InvertBody, InvertReport, Limits, MAX_PIECES, design_file, report};
+pub use measure::Shortfall;
+pub use report::{InvertBody, InvertReport, Limits, report};
 pub use table::wanted_from_table;
+pub use turns::{Between, MOST_TURNS, list_of_angles};
 
 use catchment::connector::{Connector, Half};
 use catchment::contact::Pair;
 use catchment::design::Design;
 use catchment::exec::Exec;
-use catchment::method::zraa::{HeightFacet, Settings as Exactness, ZraaError, heights as envelope};
-use catchment::pose::Dof;
+use catchment::method::zraa::{
+    HeightFacet, Settings as Exactness, ZraaError, heights as first_contact, highest,
+};
+use catchment::pose::{Dof, rotation};
 use glam::{DMat3, DVec2, DVec3};
-use heights::{SAME_PLANE, area, common};
 use serde::{Deserialize, Serialize};
 
 /// Half the strip along x over which a planar design is asked, in D: narrower than half the gap between layers (0.1 D).
 const STRIP: f64 = 0.005;
 /// Beyond every offset at which halves touch, in D.
 const FAR: f64 = 100.0;
-/// What is nearer to zero, in D, is reached.
+/// Heights that are nearer than this, in D, are the same: reached.
 pub const REACHED: f64 = 1e-9;
+/// Sides of pieces are known to this, in D.
+pub const SIDEWAYS: f64 = 2.5e-10;
+/// Narrower than this, in D, a piece is rounding of a mesh and no feature of it: 0.2 µm of 40 mm.
+pub const NARROW: f64 = 5e-6;
+/// Places and planes nearer than this, in D, differ by rounding.
+const ROUNDED: f64 = 1e-10;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Turns about z at which the heights are wanted beside 0, in radians. Spatial designs only.
+    /// Rolls at which the heights are wanted beside 0, in radians. Rotations are all combinations with the pitches and yaws.
+    pub roll: Vec<f64>,
+    /// Pitches, in radians. Planar designs have no other rotation.
+    pub pitch: Vec<f64>,
+    /// Yaws, in radians.
     pub yaw: Vec<f64>,
     /// Material behind the deepest point of the moving half, in D.
     pub backing: f64,
@@ -72,19 +94,8 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         // The backing of the families' own sockets.
-        Self { yaw: Vec::new(), backing: 0.25 }
+        Self { roll: Vec::new(), pitch: Vec::new(), yaw: Vec::new(), backing: 0.25 }
     }
-}
-
-/// Where heights are wanted that no moving half reaches.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Shortfall {
-    /// Offsets, a convex polygon, in D.
-    pub polygon: Vec<DVec2>,
-    /// Largest h* − h over it, in D.
-    pub most: f64,
-    /// Where.
-    pub at: DVec2,
 }
 
 /// The other half, and how it does.
@@ -100,6 +111,10 @@ pub struct Inverse {
     pub reached: Heights,
     /// Where the result stays below what was wanted.
     pub shortfalls: Vec<Shortfall>,
+    /// Rotations beside none at which the heights were wanted.
+    pub turns: usize,
+    /// What holds between them.
+    pub between: Option<Between>,
     /// Area of the plan on which the halves touch at offset 0, in D².
     pub patch: f64,
     /// Area of the plan, in D².
@@ -123,9 +138,25 @@ pub enum InvertError {
     /// A wanted table covers nothing.
     #[error("no height is wanted at an offset at which the halves could touch")]
     NothingWanted,
-    /// A planar design has no yaw.
-    #[error("turns about z are for spatial designs; this one is planar")]
+    /// A planar design has neither roll nor yaw.
+    #[error("a planar design turns in its plane alone: --pitch, not --roll or --yaw")]
     Planar,
+    /// More rotations than can be asked for.
+    #[error(
+        "{count} rotations, more than {MOST_TURNS}: give fewer angles, all combinations of which are asked for"
+    )]
+    TooManyTurns {
+        /// How many.
+        count: usize,
+    },
+    /// A half that lies on its side.
+    #[error("at roll {roll:.1}° and pitch {pitch:.1}° the halves stand side by side: tilt by less than 80°")]
+    TooFar {
+        /// In degrees.
+        roll: f64,
+        /// In degrees.
+        pitch: f64,
+    },
 }
 
 /// Whether y is not free: the design is a profile along x.
@@ -153,7 +184,7 @@ pub fn heights_of(
     exec: &Exec,
 ) -> Result<Heights, InvertError> {
     let moving = connector.moving.mapped(|p| turn * p);
-    let facets = envelope([(&connector.fixed, &moving)], &Exactness::default(), exec)?;
+    let facets = first_contact(&connector.fixed, &moving, &Exactness::default(), exec)?;
     Ok(counted(design, Heights { facets }).merged())
 }
 
@@ -183,114 +214,58 @@ fn lower_surface(half: &Half, exec: &Exec) -> Result<Heights, InvertError> {
 
 /// The moving half that a fixed half and wanted heights ask for, on the plan of the design's own moving half.
 ///
-/// `wanted` is asked at offset by offset without rotation; with [`Settings::yaw`], the design's own heights are wanted at those
-/// turns as well.
+/// `wanted` is asked at every offset without rotation, and the heights of the pair `turned` at the rotations of the settings.
 ///
 /// # Errors
-/// Where nothing is wanted, contacts are too many, or the run was stopped.
+/// Where nothing is wanted, the rotations are none that can be asked for, contacts are too many, or the run was stopped.
 pub fn invert(
     design: &Design,
     connector: &Connector,
     wanted: Heights,
+    turned: &Connector,
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Inverse, InvertError> {
-    if is_planar(design) && !settings.yaw.is_empty() {
-        return Err(InvertError::Planar);
-    }
-    let wanted = counted(design, wanted).merged();
-    let Some([_, highest]) = wanted.range() else { return Err(InvertError::NothingWanted) };
-    // A body whose lower surface is what is wanted.
-    let mut asked: Vec<(Half, Half)> = vec![(connector.fixed.clone(), wanted.above(highest + 1.0))];
-    for yaw in &settings.yaw {
-        let back = DMat3::from_rotation_z(-yaw);
-        let there = heights_of(design, connector, DMat3::from_rotation_z(*yaw), exec)?;
-        let Some([_, top]) = there.range() else { continue };
-        asked.push((connector.fixed.mapped(|p| back * p), there.above(top + 1.0).mapped(|p| back * p)));
-    }
-    let pairs = asked.iter().map(|(fixed, body)| (fixed, body));
-    let whole = Heights { facets: envelope(pairs, &Exactness::default(), exec)? };
+    let turns = settings.turns(design)?;
     let plan = lower_surface(&connector.moving, exec)?;
-    let mut facets = Vec::new();
-    for face in &plan.facets {
-        facets.extend(whole.within(&face.polygon).facets);
+    let over_plan = |fixed: &Half, body: &Half| -> Result<Vec<HeightFacet>, InvertError> {
+        let whole = Heights { facets: first_contact(fixed, body, &Exactness::default(), exec)? };
+        Ok(plan.facets.iter().flat_map(|face| whole.within(&face.polygon).facets).collect())
+    };
+    let wanted = counted(design, wanted).merged();
+    let (fixed, body) =
+        turns::asked(&connector.fixed, &wanted, DMat3::IDENTITY, 0.0).ok_or(InvertError::NothingWanted)?;
+    let mut asked = Heights { facets: over_plan(&fixed, &body)? };
+    let [floor, _] = asked.range().ok_or(InvertError::NothingWanted)?;
+    for [roll, pitch, yaw] in &turns {
+        let turn = rotation(*roll, *pitch, *yaw);
+        let there = heights_of(design, turned, turn, exec)?;
+        if let Some((fixed, body)) = turns::asked(&connector.fixed, &there, turn, floor) {
+            // One rotation after the other: what one asks for is mostly hidden by the others.
+            asked.facets.extend(over_plan(&fixed, &body)?);
+            asked = Heights { facets: highest(asked.facets, &Exactness::default(), exec)? }.merged();
+        }
     }
-    let moving = Heights { facets }.merged();
+    let moving = asked.tidied();
     let Some([_, top]) = moving.range() else { return Err(InvertError::NothingWanted) };
     let back = top + settings.backing;
     let connector = Connector::from_halves(connector.fixed.clone(), moving.above(back));
     let reached = heights_of(design, &connector, DMat3::IDENTITY, exec)?;
-    let shortfalls = shortfalls(&wanted, &reached);
-    let patch = patch(&connector.fixed, &moving, reached.at(DVec2::ZERO));
-    let steepest = moving.facets.iter().map(|f| f.gradient.length()).fold(0.0, f64::max);
-    let narrowest = moving.facets.iter().map(|f| width(&f.polygon)).fold(f64::INFINITY, f64::min);
-    let plan = moving.facets.iter().map(|f| area(&f.polygon)).sum();
-    let settings = settings.clone();
     Ok(Inverse {
+        shortfalls: measure::shortfalls(&wanted, &reached),
+        turns: turns.len(),
+        between: turns::between(design, turned, &connector, settings, exec)?,
+        patch: measure::patch(&connector.fixed, &moving, reached.at(DVec2::ZERO)),
+        plan: moving.area(),
+        steepest: moving.facets.iter().map(|f| f.gradient.length()).fold(0.0, f64::max),
+        narrowest: moving.facets.iter().map(|f| heights::width(&f.polygon)).fold(f64::INFINITY, f64::min),
         wanted,
         moving,
         connector,
         reached,
-        shortfalls,
-        patch,
-        plan,
-        steepest,
-        narrowest,
         back,
-        settings,
+        settings: settings.clone(),
     })
-}
-
-/// Where the heights that are reached stay below those that are wanted, polygon by polygon, the deepest first.
-fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> {
-    let mut found = Vec::new();
-    for want in &wanted.facets {
-        for got in &reached.facets {
-            let Some(polygon) = common(&want.polygon, &got.polygon) else { continue };
-            let short = |p: &DVec2| want.height(*p) - got.height(*p);
-            let (at, most) =
-                polygon.iter().map(|p| (*p, short(p))).fold((polygon[0], f64::NEG_INFINITY), |best, next| {
-                    if next.1 > best.1 { next } else { best }
-                });
-            if most > REACHED {
-                found.push(Shortfall { polygon, most, at });
-            }
-        }
-    }
-    found.sort_by(|a, b| b.most.total_cmp(&a.most));
-    found
-}
-
-/// Area of the plan on which both surfaces are in contact at offset 0 and this height.
-fn patch(fixed: &Half, moving: &Heights, height: Option<f64>) -> f64 {
-    let Some(height) = height else { return 0.0 };
-    let mut touching = 0.0;
-    for surface in &fixed.surfaces {
-        for facet in surface.facets.iter().filter(|f| f.normal.z > 1e-9) {
-            let corners: Vec<DVec3> = facet.corners.iter().map(|k| surface.vertices[*k as usize]).collect();
-            let plan: Vec<DVec2> = corners.iter().map(|c| c.truncate()).collect();
-            let level = facet.normal.dot(corners[0]);
-            let top = |p: DVec2| (level - facet.normal.truncate().dot(p)) / facet.normal.z;
-            for own in &moving.facets {
-                let Some(polygon) = common(&own.polygon, &plan) else { continue };
-                if polygon.iter().all(|p| (top(*p) - own.height(*p) - height).abs() <= 10.0 * SAME_PLANE) {
-                    touching += area(&polygon);
-                }
-            }
-        }
-    }
-    touching
-}
-
-/// The least width of a convex polygon.
-fn width(polygon: &[DVec2]) -> f64 {
-    let n = polygon.len();
-    (0..n)
-        .map(|k| {
-            let along = (polygon[(k + 1) % n] - polygon[k]).normalize_or_zero();
-            polygon.iter().map(|p| along.perp_dot(*p - polygon[k])).fold(0.0, f64::max)
-        })
-        .fold(f64::INFINITY, f64::min)
 }
 
 /// Whether the mated pose of the result is a rest, as `catchment check` asks; a doubt in words otherwise.

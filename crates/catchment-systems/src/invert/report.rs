@@ -1,19 +1,16 @@
 //! What is told of an inverse: JSON, a table, and the pair as a design file.
 
-use super::{Heights, Inverse, REACHED, Settings, doubts};
-use catchment::connector::Half;
+use super::file::pieces;
+use super::{Between, Inverse, REACHED, Settings, doubts, measure};
 use catchment::design::Design;
-use catchment::method::zraa::HeightFacet;
-use catchment::pose::{Dof, Mount};
+use catchment::method::zraa::area;
 use catchment::report::schema::WarningReport;
 use catchment::report::text::{line, percent, row, significant, wrapped};
-use catchment::report::{Body, Envelope, number};
+use catchment::report::{Body, Envelope};
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
-/// Most convex pieces of a half that a design file takes.
-pub const MAX_PIECES: usize = 256;
-/// Shortfalls that are listed; more are counted.
+/// Places of shortfalls that are listed.
 const MOST_TOLD: usize = 20;
 
 /// An inverse with its head.
@@ -45,8 +42,12 @@ pub struct InvertBody {
     pub most_unattained_d: f64,
     /// Area of the offsets at which h* is not reached, in D².
     pub unattained_area_d2: f64,
-    /// The deepest shortfalls.
+    /// The deepest shortfalls, one of every place.
     pub unattained: Vec<ShortfallReport>,
+    /// Rotations beside none at which the heights were wanted.
+    pub turns: usize,
+    /// What holds between them.
+    pub between: Option<Between>,
     /// Wanted and reached height without error.
     pub mated_height_d: [Option<f64>; 2],
     /// Area on which the halves touch without error, in D².
@@ -74,13 +75,6 @@ impl Body for InvertBody {
     const KIND: &'static str = "invert";
 }
 
-/// Corners of the convex pieces of the moving half as drawn.
-fn pieces(design: &Design, found: &Inverse) -> Vec<Vec<DVec3>> {
-    let mount: Mount = design.alignment.mount;
-    let drawn = |corners: Vec<DVec3>| corners.into_iter().map(|p| mount.apply(p)).collect();
-    found.moving.columns(found.back).into_iter().map(drawn).collect()
-}
-
 /// What is told of an inverse.
 pub fn report(design: &Design, found: &Inverse, limits: Limits) -> InvertReport {
     let at_zero = DVec2::ZERO;
@@ -91,17 +85,17 @@ pub fn report(design: &Design, found: &Inverse, limits: Limits) -> InvertReport 
         pieces_d: pieces(design, found).iter().map(|p| p.iter().map(DVec3::to_array).collect()).collect(),
         attained: found.shortfalls.is_empty(),
         most_unattained_d: found.shortfalls.first().map_or(0.0, |s| s.most),
-        unattained_area_d2: found.shortfalls.iter().map(|s| super::heights::area(&s.polygon)).sum(),
-        unattained: found
-            .shortfalls
-            .iter()
-            .take(MOST_TOLD)
+        unattained_area_d2: found.shortfalls.iter().map(|s| area(&s.polygon)).sum(),
+        unattained: measure::places(&found.shortfalls, MOST_TOLD)
+            .into_iter()
             .map(|s| ShortfallReport {
                 polygon: s.polygon.iter().map(DVec2::to_array).collect(),
                 most: s.most,
                 at: s.at.to_array(),
             })
             .collect(),
+        turns: found.turns,
+        between: found.between,
         mated_height_d: [found.wanted.at(at_zero), found.reached.at(at_zero)],
         contact_patch_d2: found.patch,
         plan_d2: found.plan,
@@ -156,83 +150,55 @@ impl InvertBody {
         row(text, "contact", &format!("{} D², {share} of the plan", significant(self.contact_patch_d2)));
         row(text, "draft", &format!("{}° at least", significant(self.draft_rad.to_degrees())));
         row(text, "least width", &format!("{} D, of a facet", significant(self.narrowest_d)));
-        if !self.settings.yaw.is_empty() {
-            let turns: Vec<String> = self.settings.yaw.iter().map(|v| significant(v.to_degrees())).collect();
-            wrapped(
-                text,
-                "  also at yaw    ",
-                &format!("{}°; nothing is promised between", turns.join("°, ")),
-            );
+        if self.turns > 0 {
+            self.tell_turns(text);
         }
         std::mem::take(text)
     }
-}
-
-/// The fixed half in convex pieces, and whether they are its own: else they are columns under its upper side.
-fn fixed_pieces(fixed: &Half) -> (Vec<Vec<DVec3>>, bool) {
-    if fixed.surfaces.iter().all(|surface| surface.convex) {
-        return (fixed.surfaces.iter().map(|surface| surface.vertices.clone()).collect(), true);
-    }
-    let lowest = fixed.surfaces.iter().map(|s| s.bounds().0.z).fold(f64::INFINITY, f64::min);
-    let upper = fixed.surfaces.iter().flat_map(|surface| {
-        surface.facets.iter().filter(|f| f.normal.z > REACHED).map(|f| {
-            let corners: Vec<DVec3> = f.corners.iter().map(|k| surface.vertices[*k as usize]).collect();
-            let gradient = -f.normal.truncate() / f.normal.z;
-            HeightFacet {
-                offset: corners[0].z - gradient.dot(corners[0].truncate()),
-                gradient,
-                polygon: corners.iter().map(|c| c.truncate()).collect(),
-            }
-        })
-    });
-    (Heights { facets: upper.collect() }.columns(lowest), false)
-}
-
-/// The pair as a design file. Lengths in the unit of the design.
-pub fn design_file(design: &Design, found: &Inverse) -> String {
-    let alignment = &design.alignment;
-    let mut text = String::new();
-    let name = catchment::report::printable(&design.name).replace(['"', '\\'], "'");
-    line(
-        &mut text,
-        "# The moving half was computed from the fixed one and wanted heights: catchment invert.",
-    );
-    let (fixed, own) = fixed_pieces(&found.connector.fixed);
-    if !own {
-        line(&mut text, "# The fixed half is solid below its upper side: undercuts are filled.");
-    }
-    line(&mut text, "schema = 1");
-    line(&mut text, &format!("name = \"{name}, inverted\""));
-    line(&mut text, "[connector]");
-    line(&mut text, &format!("width = {}", number(design.width)));
-    if let Some(unit) = design.unit {
-        line(&mut text, &format!("unit = \"{}\"", unit.symbol()));
-    }
-    line(&mut text, "face_height = 0");
-    for (side, pieces) in [("fixed", fixed), ("moving", pieces(design, found))] {
-        line(&mut text, &format!("{side}.pieces = ["));
-        for piece in pieces {
-            let corners: Vec<String> = piece
-                .iter()
-                .map(|p| format!("[{}]", (*p * design.width).to_array().map(|v| number(v + 0.0)).join(", ")))
-                .collect();
-            line(&mut text, &format!("  [{}],", corners.join(", ")));
+    fn tell_turns(&self, text: &mut String) {
+        let Settings { roll, pitch, yaw, .. } = &self.settings;
+        let axes = [("roll", roll), ("pitch", pitch), ("yaw", yaw)];
+        let told: Vec<String> = axes
+            .into_iter()
+            .filter(|(_, angles)| !angles.is_empty())
+            .map(|(name, angles)| format!("{name} {}", listed(angles)))
+            .collect();
+        let also = format!("{}: {} rotations", told.join("; "), self.turns);
+        wrapped(text, "  also at        ", &also);
+        let Some(between) = self.between else { return };
+        let bound = significant(between.bound_d);
+        wrapped(
+            text,
+            "  between        ",
+            &format!("at most {bound} D higher than wanted at some place within {bound} D"),
+        );
+        if let Some(most) = between.most_d.filter(|most| *most > REACHED) {
+            let [roll, pitch, yaw] = between.angles_rad.map(|angle| significant(angle.to_degrees()));
+            let near_zero = |v: f64| if v.abs() < REACHED { 0.0 } else { v };
+            let [x, y] = between.at_d.map(|v| significant(near_zero(v)));
+            let at = format!("x {x}, y {y}, roll {roll}°, pitch {pitch}°, yaw {yaw}°");
+            wrapped(
+                text,
+                "                 ",
+                &format!("{} D higher than wanted midway, at {at}", significant(most)),
+            );
+        } else {
+            row(text, "", &format!("nowhere higher than wanted at {} rotations midway", between.midway));
         }
-        line(&mut text, "]");
     }
-    let names = |dofs: catchment::pose::DofSet| -> String {
-        let names: Vec<String> =
-            Dof::ALL.into_iter().filter(|d| dofs.contains(*d)).map(|d| format!("\"{}\"", d.name())).collect();
-        names.join(", ")
-    };
-    line(&mut text, "[alignment]");
-    line(&mut text, &format!("free = [{}]", names(alignment.free)));
-    line(&mut text, &format!("mount = \"{}\"", if alignment.mount == Mount::X { "x" } else { "y" }));
-    line(&mut text, &format!("center_of_rotation = {}", number(alignment.center_of_rotation)));
-    line(&mut text, &format!("rotation_length = {}", number(alignment.rotation_length)));
-    line(&mut text, "[errors]");
-    for dof in Dof::ALL.into_iter().filter(|dof| alignment.free.contains(*dof)) {
-        line(&mut text, &format!("{} = {}", dof.name(), number(alignment.half_range(dof))));
+}
+
+/// Angles in degrees: all of a few, the ends and the number of many.
+fn listed(angles: &[f64]) -> String {
+    /// Most angles that are told one by one.
+    const FEW: usize = 6;
+    let degrees = |angle: f64| format!("{}°", significant(angle.to_degrees()));
+    if angles.len() <= FEW {
+        return angles.iter().map(|angle| degrees(*angle)).collect::<Vec<_>>().join(", ");
     }
-    text
+    let [low, high] = [
+        angles.iter().copied().fold(f64::INFINITY, f64::min),
+        angles.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ];
+    format!("{} angles from {} to {}", angles.len(), degrees(low), degrees(high))
 }

@@ -1,28 +1,31 @@
 //! Round trips, and what cannot be reached.
 
+use super::heights::common;
 use super::*;
 use catchment::design::SourceText;
+use catchment::method::zraa::area;
 use catchment::problem::{Draft, Problem};
 
-fn problem(text: &str) -> Problem {
+pub(super) fn problem(text: &str) -> Problem {
     Draft::read(SourceText::new("d.toml", text)).unwrap().build().unwrap()
 }
 
-fn family(name: &str) -> Problem {
+pub(super) fn family(name: &str) -> Problem {
     problem(&format!(
         "[connector]\nfamily = \"{name}\"\naspect_ratio = 0.5\n[alignment]\nrotation_length = 0.5\n"
     ))
 }
 
-fn own_heights(problem: &Problem) -> Heights {
+pub(super) fn own_heights(problem: &Problem) -> Heights {
     heights_of(problem.design(), problem.connector(), DMat3::IDENTITY, &Exec::new()).unwrap()
 }
 
-fn inverted(problem: &Problem, wanted: Heights, settings: &Settings) -> Inverse {
-    invert(problem.design(), problem.connector(), wanted, settings, &Exec::new()).unwrap()
+pub(super) fn inverted(problem: &Problem, wanted: Heights, settings: &Settings) -> Inverse {
+    let own = problem.connector();
+    invert(problem.design(), own, wanted, own, settings, &Exec::new()).unwrap()
 }
 
-const FAMILIES: [&str; 5] = ["v-face", "s-face", "x-face", "pyramid", "x-face-3d"];
+pub(super) const FAMILIES: [&str; 5] = ["v-face", "s-face", "x-face", "pyramid", "x-face-3d"];
 
 /// Wanted: the heights of a family. Given: its fixed half. Got: its moving half.
 #[test]

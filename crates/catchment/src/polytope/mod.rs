@@ -69,12 +69,14 @@ mod hull;
 mod image;
 mod incidence;
 mod measure;
+mod planar;
 
 pub mod brute;
 
 pub use collection::Collection;
 pub use halfspace::Halfspace;
 pub use image::minkowski_sum_of;
+pub use planar::planar_hull;
 
 use exact::Lattice;
 use hull::Hull;

@@ -130,7 +130,7 @@ fn uncovered(i: usize, seen: &[usize], sheets: &[Sheet], places: &Places, seam: 
 }
 
 /// The part of a convex polygon where `inside`, linear and in units of length, is at least 0.
-pub(super) fn clip(polygon: &[DVec2], inside: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
+pub fn clip(polygon: &[DVec2], inside: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
     let mut out = Vec::with_capacity(polygon.len() + 1);
     for (k, &a) in polygon.iter().enumerate() {
         let b = polygon[(k + 1) % polygon.len()];

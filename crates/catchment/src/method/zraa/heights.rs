@@ -1,5 +1,6 @@
 //! The height of first contact over all lateral offsets, as the planes it is made of.
 
+use super::sheet::Sheet;
 use super::{MAX_SHEETS, Settings, ZraaError, cells, sheet};
 use crate::connector::Half;
 use crate::exec::Exec;
@@ -23,29 +24,49 @@ impl HeightFacet {
     }
 }
 
-/// The largest height of first contact of several pairs of a fixed and a moving half, exactly, as planes over convex polygons
-/// that tile the offsets at which any of them touches. Halves are taken as they stand: the height is that of the moving
-/// half's origin, and nothing is turned.
+/// The height of first contact of a fixed and a moving half, exactly, as planes over convex polygons that tile the offsets at
+/// which they touch. Halves are taken as they stand: the height is that of the moving half's origin, and nothing is turned.
 ///
 /// # Errors
 /// Where the contacts are too many, or the run was stopped.
-pub fn heights<'h>(
-    pairs: impl IntoIterator<Item = (&'h Half, &'h Half)>,
+pub fn heights(
+    fixed: &Half,
+    moving: &Half,
     settings: &Settings,
     exec: &Exec,
 ) -> Result<Vec<HeightFacet>, ZraaError> {
-    let mut sheets = Vec::new();
-    for (fixed, moving) in pairs {
-        let left = MAX_SHEETS - sheets.len();
-        sheets.extend(sheet::sheets(fixed, moving, left, exec)?.ok_or(ZraaError::TooManySheets)?);
+    let sheets = sheet::sheets(fixed, moving, MAX_SHEETS, exec)?.ok_or(ZraaError::TooManySheets)?;
+    envelope(&sheets, settings.seam, exec)
+}
+
+/// The largest of functions that are given as planes over convex polygons, counter-clockwise, as planes over convex polygons that
+/// do not overlap.
+///
+/// # Errors
+/// Where the planes are too many, or the run was stopped.
+pub fn highest(
+    facets: impl IntoIterator<Item = HeightFacet>,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Vec<HeightFacet>, ZraaError> {
+    let sheet = |facet: HeightFacet| Sheet {
+        footprint: facet.polygon,
+        offset: facet.offset,
+        gradient: facet.gradient,
+    };
+    let sheets: Vec<Sheet> = facets.into_iter().take(MAX_SHEETS + 1).map(sheet).collect();
+    if sheets.len() > MAX_SHEETS {
+        return Err(ZraaError::TooManySheets);
     }
-    let cells = cells::upper_envelope(&sheets, settings.seam, exec)?;
-    Ok(cells
-        .into_iter()
-        .map(|cell| HeightFacet {
-            offset: sheets[cell.sheet].offset,
-            gradient: sheets[cell.sheet].gradient,
-            polygon: cell.polygon,
-        })
-        .collect())
+    envelope(&sheets, settings.seam, exec)
+}
+
+fn envelope(sheets: &[Sheet], seam: f64, exec: &Exec) -> Result<Vec<HeightFacet>, ZraaError> {
+    let cells = cells::upper_envelope(sheets, seam, exec)?;
+    let facet = |cell: cells::Cell| HeightFacet {
+        offset: sheets[cell.sheet].offset,
+        gradient: sheets[cell.sheet].gradient,
+        polygon: cell.polygon,
+    };
+    Ok(cells.into_iter().map(facet).collect())
 }

@@ -23,8 +23,10 @@ mod places;
 mod sheet;
 mod square;
 
+pub use cells::clip;
 pub use circle::circle_bounds;
-pub use heights::{HeightFacet, heights};
+pub use heights::{HeightFacet, heights, highest};
+pub use sheet::area;
 pub use square::{Square, circle_square};
 
 use crate::contact::{Pair, Play, Seat, play};

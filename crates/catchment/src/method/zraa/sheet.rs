@@ -46,7 +46,7 @@ impl Sheet {
 }
 
 /// Signed area of a polygon, positive when counter-clockwise.
-pub(super) fn area(polygon: &[DVec2]) -> f64 {
+pub fn area(polygon: &[DVec2]) -> f64 {
     let Some(&origin) = polygon.first() else { return 0.0 };
     polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum::<f64>() / 2.0
 }

@@ -1,0 +1,77 @@
+//! What a new half is like: where it falls short of what was wanted, and where it touches.
+
+use super::heights::{Heights, apart, common, width};
+use super::tidy::steepness;
+use super::{NARROW, REACHED, SIDEWAYS};
+use catchment::connector::Half;
+use catchment::method::zraa::area;
+use glam::{DVec2, DVec3};
+
+/// Where heights are wanted that no moving half reaches.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shortfall {
+    /// Offsets, a convex polygon, in D.
+    pub polygon: Vec<DVec2>,
+    /// Largest h* − h over it, in D.
+    pub most: f64,
+    /// Where.
+    pub at: DVec2,
+}
+
+/// Where the heights that are reached stay below those that are wanted, polygon by polygon, the deepest first.
+///
+/// What is narrower than [`NARROW`] is a side that was moved by rounding, and no shortfall; nor is what moving a slope by
+/// [`SIDEWAYS`] makes of its height.
+pub(super) fn shortfalls(wanted: &Heights, reached: &Heights) -> Vec<Shortfall> {
+    let mut found = Vec::new();
+    for want in &wanted.facets {
+        for got in reached.facets.iter().filter(|got| !apart(&want.polygon, &got.polygon)) {
+            let Some(polygon) = common(&want.polygon, &got.polygon) else { continue };
+            let short = |p: &DVec2| want.height(*p) - got.height(*p);
+            let (at, most) =
+                polygon.iter().map(|p| (*p, short(p))).fold((polygon[0], f64::NEG_INFINITY), |best, next| {
+                    if next.1 > best.1 { next } else { best }
+                });
+            if most > REACHED * steepness(want, got) && width(&polygon) > NARROW {
+                found.push(Shortfall { polygon, most, at });
+            }
+        }
+    }
+    found.sort_by(|a, b| b.most.total_cmp(&a.most));
+    found
+}
+
+/// The deepest of every place, in order, at most so many: polygons that meet at a corner name it once.
+pub(super) fn places(shortfalls: &[Shortfall], most: usize) -> Vec<&Shortfall> {
+    let mut told: Vec<&Shortfall> = Vec::new();
+    for short in shortfalls {
+        if told.len() == most {
+            break;
+        }
+        if told.iter().all(|other| other.at.distance(short.at) > 2.0 * SIDEWAYS) {
+            told.push(short);
+        }
+    }
+    told
+}
+
+/// Area of the plan on which both surfaces are in contact at offset 0 and this height.
+pub(super) fn patch(fixed: &Half, moving: &Heights, height: Option<f64>) -> f64 {
+    let Some(height) = height else { return 0.0 };
+    let mut touching = 0.0;
+    for surface in &fixed.surfaces {
+        for facet in surface.facets.iter().filter(|f| f.normal.z > 1e-9) {
+            let corners: Vec<DVec3> = facet.corners.iter().map(|k| surface.vertices[*k as usize]).collect();
+            let plan: Vec<DVec2> = corners.iter().map(|c| c.truncate()).collect();
+            let level = facet.normal.dot(corners[0]);
+            let top = |p: DVec2| (level - facet.normal.truncate().dot(p)) / facet.normal.z;
+            for own in &moving.facets {
+                let Some(polygon) = common(&own.polygon, &plan) else { continue };
+                if polygon.iter().all(|p| (top(*p) - own.height(*p) - height).abs() <= REACHED) {
+                    touching += area(&polygon);
+                }
+            }
+        }
+    }
+    touching
+}

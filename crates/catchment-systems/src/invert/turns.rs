@@ -1,0 +1,219 @@
+//! Rotations at which heights are wanted, as well: what they ask of the moving half, and what holds between them.
+//!
+//! # The adjunction for a half that turns
+//!
+//! The moving half M turns by R about the centre of rotation; the fixed half F stays. With the face centre at the lateral place x and
+//! the height z, a point m of M (from the face centre) is at (x, z) + R m. Coming down along −ẑ, M first touches F at
+//!
+//! ```text
+//!   h(x, R) = max { f_z − (R m)_z :  f in F,  m in M,  f_xy = x + (R m)_xy }
+//! ```
+//!
+//! `h(x, R) ≤ h*(x, R)` for every x says that no (x, h*(x, R)) + R m lies inside F or below it: with F↓ = F − [0, ∞) ẑ,
+//!
+//! ```text
+//!   m  is not inside  K(R) = R⁻¹ { F↓ − (x, h*(x, R)) :  all x }                for every m of M
+//!   g(u) = max over R of  max { z : (u, z) in K(R) }                            as M is solid above its lower surface g
+//! ```
+//!
+//! So g is the smallest function that keeps h ≤ h* at every R asked for, by M without undercuts. `F↓ − (x, h*(x, R))` over all x is
+//! F less the solid B above h*(·, R), so the upper side of K(R) is one more height of first contact: of R⁻¹B over R⁻¹F, exact like
+//! those without rotation. It is **the fixed half that appears turned, by R⁻¹**, and the direction of approach with it: the walls
+//! of B, infinite downward in K, lean when R tilts, so B must be tall enough that their lower ends lie below all of g.
+//!
+//! **The centre of rotation** does not matter. It only says which x belongs to which pose: for a COR c in front of the face, the
+//! place of the COR is x − c·(R ẑ)_xy and its height h − c·(R ẑ)_z. Every x is asked for at every R, so the same set is asked for
+//! whatever c is; heights here are always those of the face centre, at the place of the face centre.
+//!
+//! # What holds between the rotations
+//!
+//! A point at the distance r from the face centre moves by at most 2 r sin(δ/2) where the rotation changes by the angle δ. Let δ be the
+//! angle to the nearest rotation asked for, at most half the sum of the steps of the three angles, and ε the sum of these
+//! bounds for the new half and for the half whose heights are wanted. Going to that rotation and back,
+//!
+//! ```text
+//!   h(x, R) ≤ max { h*(x + d, R) :  |d| ≤ ε } + ε        for every R within the range of the angles
+//! ```
+//!
+//! wherever heights are wanted at all these x + d: nothing is wanted where a half passes the other by.
+
+use super::heights::{Heights, common};
+use super::{InvertError, Settings, heights_of, is_planar};
+use catchment::connector::{Connector, Half};
+use catchment::design::{Design, Quantity};
+use catchment::exec::Exec;
+use catchment::pose::rotation;
+use catchment::study::sweep::Axis;
+use glam::{DMat3, DVec2};
+use serde::Serialize;
+
+/// Most rotations: each asks for an envelope of its own, in seconds.
+pub const MOST_TURNS: usize = 1000;
+/// Least cosine of a tilt: at more than 80° the halves stand side by side.
+const LEAST_UPRIGHT: f64 = 0.17;
+/// What walls reach below the deepest place of the new half, in D.
+const BELOW: f64 = 1.0;
+
+/// How much higher the new half stops between the rotations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Between {
+    /// Largest angle of a rotation within the range to the nearest asked for, in radians.
+    pub turn_rad: f64,
+    /// Proven: within this of a lateral place there is one where the half stops at most this much higher than wanted, in D.
+    pub bound_d: f64,
+    /// Rotations midway between those asked for at which both were computed.
+    pub midway: usize,
+    /// Largest h − h* at them, in D; none where there is nothing midway.
+    pub most_d: Option<f64>,
+    /// Roll, pitch and yaw there, in radians.
+    pub angles_rad: [f64; 3],
+    /// Lateral place there, in D.
+    pub at_d: [f64; 2],
+}
+
+/// Angles as a person lists them, in radians: `5 deg,10 deg`, or a range such as `-10..10 deg/21` (so many at equal distances). A bare number
+/// is what it is in a design file.
+///
+/// # Errors
+/// In words, with what to write instead.
+pub fn list_of_angles(text: &str) -> Result<Vec<f64>, String> {
+    // The ranges are those of a sweep, of any key that is an angle.
+    let axis: Axis = format!("errors.pitch={text}").parse().map_err(|_| {
+        format!(
+            "`{text}` is no list of angles: write 5 deg,10 deg or a range with its number, -10..10 deg/21"
+        )
+    })?;
+    let angle = |value: &String| {
+        let quantity: Quantity = value.parse().map_err(|complaint| format!("{complaint}"))?;
+        quantity.angle_rad().map_err(|complaint| format!("{complaint}"))
+    };
+    axis.values.iter().map(angle).collect()
+}
+
+impl Settings {
+    /// Angles of the three rotations, ascending, each at least 0 alone.
+    fn angles(&self) -> [Vec<f64>; 3] {
+        [&self.roll, &self.pitch, &self.yaw].map(|angles| {
+            let mut sorted = if angles.is_empty() { vec![0.0] } else { angles.clone() };
+            sorted.sort_by(f64::total_cmp);
+            sorted.dedup();
+            sorted
+        })
+    }
+
+    /// Roll, pitch and yaw of every rotation asked for but none at all: all combinations.
+    ///
+    /// # Errors
+    /// Where they are too many, tilt too far, or leave the plane of a planar design.
+    pub fn turns(&self, design: &Design) -> Result<Vec<[f64; 3]>, InvertError> {
+        let angles = self.angles();
+        if is_planar(design) && !(self.roll.is_empty() && self.yaw.is_empty()) {
+            return Err(InvertError::Planar);
+        }
+        let count = angles.iter().map(Vec::len).product();
+        if count > MOST_TURNS {
+            return Err(InvertError::TooManyTurns { count });
+        }
+        let turns = combined(&angles);
+        match turns.iter().find(|[roll, pitch, yaw]| rotation(*roll, *pitch, *yaw).z_axis.z < LEAST_UPRIGHT) {
+            Some([roll, pitch, _]) => {
+                Err(InvertError::TooFar { roll: roll.to_degrees(), pitch: pitch.to_degrees() })
+            }
+            None => Ok(turns.into_iter().filter(|turn| *turn != [0.0; 3]).collect()),
+        }
+    }
+
+    /// Rotations midway between neighbouring ones, and the largest angle to the nearest one.
+    fn midway(&self) -> (Vec<[f64; 3]>, f64) {
+        let angles = self.angles();
+        let half = |angles: &Vec<f64>| angles.windows(2).map(|w| (w[1] - w[0]) / 2.0).fold(0.0, f64::max);
+        let turn = angles.iter().map(half).sum();
+        let middles = angles.map(|angles| {
+            if angles.len() == 1 { angles } else { angles.windows(2).map(|w| w[0].midpoint(w[1])).collect() }
+        });
+        (if turn > 0.0 { combined(&middles) } else { Vec::new() }, turn)
+    }
+}
+
+fn combined([rolls, pitches, yaws]: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
+    let mut all = Vec::with_capacity(rolls.len() * pitches.len() * yaws.len());
+    for roll in rolls {
+        for pitch in pitches {
+            all.extend(yaws.iter().map(|yaw| [*roll, *pitch, *yaw]));
+        }
+    }
+    all
+}
+
+/// The halves, as the moving one sees them, whose height of first contact is what it must stay above at a rotation. `floor` is a
+/// height that lies below what is wanted of the new half.
+pub(super) fn asked(fixed: &Half, wanted: &Heights, turn: DMat3, floor: f64) -> Option<(Half, Half)> {
+    let back = turn.transpose();
+    let fixed = fixed.mapped(|p| back * p);
+    let wanted = wanted.without_cracks();
+    let highest = wanted.range()?[1];
+    let bounds = |half: &Half, of: fn(f64, f64) -> f64, start: f64| {
+        half.surfaces.iter().flat_map(|s| &s.vertices).map(|p| p.z).fold(start, of)
+    };
+    let over = bounds(&fixed, f64::max, f64::NEG_INFINITY)
+        - wanted.corners().map(|p| (back * p).z).fold(f64::INFINITY, f64::min);
+    let tall = ((over - floor).max(0.0) + BELOW) / turn.z_axis.z;
+    Some((fixed, wanted.above(highest + tall).mapped(|p| back * p)))
+}
+
+/// What holds between the rotations; none where there is nothing between.
+pub(super) fn between(
+    design: &Design,
+    wanted: &Connector,
+    new: &Connector,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Option<Between>, InvertError> {
+    let (midway, turn_rad) = settings.midway();
+    if midway.is_empty() {
+        return Ok(None);
+    }
+    let reach =
+        |half: &Half| half.surfaces.iter().flat_map(|s| &s.vertices).map(|p| p.length()).fold(0.0, f64::max);
+    let bound_d = 2.0 * (turn_rad / 2.0).sin() * (reach(&wanted.moving) + reach(&new.moving));
+    let mut found = Between {
+        turn_rad,
+        bound_d,
+        midway: midway.len(),
+        most_d: None,
+        angles_rad: [0.0; 3],
+        at_d: [0.0; 2],
+    };
+    for angles in midway {
+        let [roll, pitch, yaw] = angles;
+        let turn = rotation(roll, pitch, yaw);
+        let limit = heights_of(design, wanted, turn, exec)?;
+        let got = heights_of(design, new, turn, exec)?;
+        if let Some((at, most)) = most_above(&got, &limit)
+            && found.most_d.is_none_or(|before| most > before)
+        {
+            (found.most_d, found.angles_rad, found.at_d) = (Some(most), angles, at.to_array());
+        }
+    }
+    Ok(Some(found))
+}
+
+/// The largest difference of two functions where both are, and its place.
+pub(super) fn most_above(high: &Heights, low: &Heights) -> Option<(DVec2, f64)> {
+    let mut most: Option<(DVec2, f64)> = None;
+    for above in &high.facets {
+        for below in &low.facets {
+            let Some(polygon) = common(&above.polygon, &below.polygon) else { continue };
+            for p in polygon {
+                let apart = above.height(p) - below.height(p);
+                if most.is_none_or(|(_, before)| apart > before) {
+                    most = Some((p, apart));
+                }
+            }
+        }
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests;
