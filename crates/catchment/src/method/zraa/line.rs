@@ -4,15 +4,16 @@ use super::sheet::Sheet;
 use glam::DVec2;
 
 /// A stretch of the line over which one plane is a candidate for the height.
-struct Segment {
-    from: f64,
-    to: f64,
-    offset: f64,
-    slope: f64,
+pub(super) struct Segment {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Height over 0, inside the stretch or not.
+    pub(super) offset: f64,
+    pub(super) slope: f64,
 }
 
 impl Segment {
-    fn height(&self, s: f64) -> f64 {
+    pub(super) fn height(&self, s: f64) -> f64 {
         self.offset + self.slope * s
     }
 }
@@ -56,14 +57,14 @@ fn along(sheet: &Sheet, axis: DVec2, seam: f64) -> Option<Segment> {
 
 /// A stretch of the line and the segment that is the highest there.
 #[derive(Clone, Copy)]
-struct Top<'a> {
-    from: f64,
-    to: f64,
-    segment: &'a Segment,
+pub(super) struct Top<'a> {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) segment: &'a Segment,
 }
 
 /// The upper envelope of segments, from left to right: that of either half, merged.
-fn envelope(segments: &[Segment]) -> Vec<Top<'_>> {
+pub(super) fn envelope(segments: &[Segment]) -> Vec<Top<'_>> {
     match segments {
         [] => Vec::new(),
         [segment] => vec![Top { from: segment.from, to: segment.to, segment }],

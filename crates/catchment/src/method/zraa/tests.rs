@@ -8,12 +8,12 @@ use crate::pose::{CorPose, DofSet, Mount};
 use glam::DMat3;
 use proptest::prelude::*;
 
-fn pair(spec: FamilySpec) -> Pair {
+pub(super) fn pair(spec: FamilySpec) -> Pair {
     let planar = spec.family().is_planar();
     pair_of(ConnectorSpec::Family(spec), planar)
 }
 
-fn pair_of(connector: ConnectorSpec, planar: bool) -> Pair {
+pub(super) fn pair_of(connector: ConnectorSpec, planar: bool) -> Pair {
     let free = DofSet::EMPTY.with(Dof::X);
     let free = if planar { free } else { free.with(Dof::Y) };
     let alignment = Alignment {

@@ -15,6 +15,7 @@
 //!   solids      both halves in space
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
+//!   faces       designs side by side, mated and at the largest offset that still slides home
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
 //!   partition   the contact space as polygons, and the exact outline of what is accepted
 //!   overview    the picture of a design: halves, acceptance, heights
@@ -33,6 +34,7 @@ mod convergence;
 mod curves;
 mod difference;
 pub mod draw;
+mod faces;
 mod heights;
 mod map;
 mod matrix;
@@ -55,6 +57,7 @@ pub use basins::basins;
 pub use convergence::convergence;
 pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;
+pub use faces::{Face, faces};
 pub use heights::heights;
 pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};
