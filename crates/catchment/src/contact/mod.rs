@@ -16,6 +16,7 @@ mod candidates;
 mod element;
 mod envelope;
 mod hold;
+mod layers;
 pub mod mated;
 mod mirror;
 mod nearby;

@@ -9,7 +9,7 @@
 //! their bytes.
 
 use super::family::Value;
-use super::{Alignment, ConnectorSpec, Design, Docked, HalfSpec};
+use super::{Alignment, ConnectorSpec, Design, Docked, HalfSpec, keys};
 use crate::pose::{Dof, DofSet, Mount};
 use sha2::{Digest, Sha256};
 
@@ -27,6 +27,10 @@ impl Design {
                 hash.text("family");
                 hash.text(spec.family().name());
                 for (key, value) in spec.parameters() {
+                    // Parameters that came later count where they are written: all digests before them stay.
+                    if value.is_none() && key.name != keys::BASE_THICKNESS.name {
+                        continue;
+                    }
                     hash.text(key.name);
                     match value {
                         None => hash.text("default"),

@@ -13,6 +13,7 @@
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
+//!   lever       the first contact with its lever arms and angles, as the kinematic method sees it
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   faces       designs side by side, mated and at the largest offset that still slides home
@@ -36,6 +37,7 @@ mod difference;
 pub mod draw;
 mod faces;
 mod heights;
+mod lever;
 mod map;
 mod matrix;
 mod memory;
@@ -59,6 +61,7 @@ pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;
 pub use faces::{Face, faces};
 pub use heights::heights;
+pub use lever::lever;
 pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};
 pub use number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};

@@ -121,6 +121,18 @@ impl<'a> View<'a> {
         })
     }
 
+    /// The same, grown to show these places in x and z, in D.
+    pub(super) fn with(mut self, places: &[[f64; 2]]) -> Self {
+        let margin = 0.06 * self.size()[0].max(self.size()[1]);
+        for place in places {
+            for (k, value) in place.iter().enumerate() {
+                self.lo[k] = self.lo[k].min(value - margin);
+                self.hi[k] = self.hi[k].max(value + margin);
+            }
+        }
+        self
+    }
+
     /// How wide and how high it is, in D.
     pub(super) fn size(&self) -> [f64; 2] {
         [0, 1].map(|k| self.hi[k] - self.lo[k])
