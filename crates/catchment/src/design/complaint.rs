@@ -1,7 +1,7 @@
 //! What can be wrong with a design: facts, each with advice.
 
-use super::keys::Range;
 use super::FamilySpec;
+use super::keys::Range;
 use crate::pose::Dof;
 
 /// Lengths and angles.

@@ -138,6 +138,21 @@ mod tests {
         Design { name: "a".into(), connector: ConnectorSpec::Family(spec), width: 1.0, unit: None, alignment }
     }
 
+    /// Parameters that came later leave the digests of older designs as they were: this one was written down before.
+    #[test]
+    fn digests_stay() {
+        use crate::design::family::XFace;
+        use crate::design::hex;
+        let old = "fea9ebe52e43e7f586e998c95c3786faadb7b5ed0658fed4a441f163acb70c87";
+        let digest = |design: Design| hex(&design.digest().unwrap());
+        assert_eq!(digest(family(Family::XFace)), old);
+        for layers in [[Some(0.45), None], [None, Some(0.1)]] {
+            let face = XFace { layer_thickness: layers[0], layer_gap: layers[1], ..XFace::DEFAULT };
+            let connector = ConnectorSpec::Family(face.into());
+            assert_ne!(digest(Design { connector, ..family(Family::XFace) }), old);
+        }
+    }
+
     #[test]
     fn whatever_changes_an_answer_changes_the_digest() {
         let base = family(Family::Cone);
