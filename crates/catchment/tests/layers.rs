@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
 use catchment::acceptance::{Outcome, Reason};
+use catchment::contact::mated::MatedProblem;
 use catchment::design::family::XFace;
 use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use catchment::method::descent::{self, Settings};
@@ -119,13 +120,26 @@ proptest! {
     }
 }
 
-/// Turned about all axes it still docks from near by, and y stays what it was.
+/// Rolled, pitched and off in both directions it still docks from near by, and y stays within the gap.
 #[test]
-fn all_five_errors_are_corrected_but_y() {
-    let all = problem(&Dof::ALL, Some([THICK, GAP]), GAP);
-    let error = PoseError { x: 0.2, y: 0.05, roll: 0.05, pitch: 0.1, yaw: 0.1 };
-    let end = descent::Follower::new(all.pair(), &Settings::default()).rest(&error);
+fn roll_is_corrected_as_well() {
+    let free = [Dof::X, Dof::Y, Dof::Roll, Dof::Pitch];
+    let solid = problem(&free, Some([THICK, GAP]), GAP);
+    assert_eq!(solid.doubts(), []);
+    let error = PoseError { x: 0.2, y: 0.05, roll: 0.05, pitch: 0.1, yaw: 0.0 };
+    let end = descent::Follower::new(solid.pair(), &Settings::default()).rest(&error);
     assert_eq!(end.outcome, Outcome::Aligned, "{end:?}");
     assert!(end.error.x.abs() < 0.01 && end.error.y.abs() < GAP, "{end:?}");
-    assert!(end.error.yaw.abs() < 0.02 && end.error.pitch.abs() < 0.02, "{end:?}");
+    assert!(end.error.roll.abs() < 0.02 && end.error.pitch.abs() < 0.02, "{end:?}");
+}
+
+/// Ramps of opposite slope side by side push the halves round: with yaw free the aligned pose is no rest, and the halves turn until
+/// the walls of the layers meet, at 2·atan(gap/D).
+#[test]
+fn free_yaw_turns_until_walls_meet() {
+    let all = problem(&Dof::ALL, Some([THICK, GAP]), GAP);
+    assert!(matches!(all.doubts(), [MatedProblem::NotMinimum { .. }, ..]), "{:?}", all.doubts());
+    let end = descent::Follower::new(all.pair(), &Settings::default()).rest(&PoseError::default());
+    // At rest within the steps of the motion, some 1e-5.
+    assert!((end.error.yaw - 2.0 * GAP.atan()).abs() < 1e-4, "{end:?}");
 }

@@ -14,6 +14,8 @@ use glam::DVec2;
 
 /// Length of the drawn normal, in SVG units.
 const NORMAL: f64 = 62.0;
+/// Smaller angles, in radians, are told beside the drawing alone.
+const LEAST: f64 = 0.02;
 /// Segments of an arc per radian.
 const ARC: f64 = 24.0;
 
@@ -75,6 +77,9 @@ fn marks(svg: &mut Svg, view: &View<'_>, frame: &Frame, lever: &Lever) {
     arrow(svg, contact.to_array(), (contact + NORMAL * seen(lever.normal)).to_array(), INK, 1.6);
     // From a direction, by an angle with the sense of all of them.
     let mut arc = |at: DVec2, from: DVec2, angle: f64, radius: f64, name: &str| {
+        if angle.abs() < LEAST {
+            return;
+        }
         let steps = (angle.abs() * ARC).ceil().max(2.0);
         let place = |share: f64, radius: f64| {
             let turned = DVec2::from_angle(lever.sense * angle * share).rotate(from);
@@ -86,47 +91,32 @@ fn marks(svg: &mut Svg, view: &View<'_>, frame: &Frame, lever: &Lever) {
             &format!(r#"fill="none" stroke="{turn}" stroke-width="1.8" {JOIN}"#),
         );
         let [x, y] = place(0.5, radius + 13.0);
-        label(svg, [x, y + 4.0], name, &turn);
+        svg.haloed([x, y + 4.0], LABEL + 1.0, Anchor::Middle, &turn, name);
     };
     arc(corner, lever.corner_vertical(), lever.beta_p, 46.0, "βₚ");
     arc(edge, lever.normal, lever.alpha_e, 58.0, "αₑ");
     // θ₁ runs against the sense of the others: from the lateral direction to the normal.
     arc(edge, lever.lateral(), -lever.theta_1, 30.0, "θ₁");
     arc(contact, lever.normal, lever.theta_2, 34.0, "θ₂");
-    let [own, other] = if lever.corner == Body::Moving { ["P_M", "P_B"] } else { ["P_B", "P_M"] };
-    for (p, name, dx) in [(corner, own, 9.0), (edge, other, 9.0), (contact, "P_C", 9.0)] {
-        svg.circle(p.to_array(), 4.2, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="1.6""##));
-        let below = if name == "P_B" { 15.0 } else { -7.0 };
-        name_at(svg, [p.x + dx, p.y + below], name);
+    let mut word = |at: [f64; 2], anchor: Anchor, name: &str, colour: &str| {
+        svg.haloed(at, LABEL + 1.0, anchor, colour, name);
+    };
+    let [moving, base] = ["P_M moving", "P_B base"];
+    let [own, other] = if lever.corner == Body::Moving { [moving, base] } else { [base, moving] };
+    for (p, name) in [(corner, own), (edge, other), (contact, "P_C")] {
+        word([p.x + 9.0, p.y + 4.0], Anchor::Start, name, INK);
     }
-    let middle = |a: DVec2, b: DVec2| (a + b) / 2.0;
-    for (p, name, colour) in [
-        (middle(corner, contact), "l", &long),
-        (middle(edge, foot), "d", &across),
-        (middle(foot, contact), "q₁", &across),
-    ] {
-        label(svg, [p.x - 10.0, p.y - 4.0], name, colour);
+    for (a, b, name, colour) in
+        [(corner, contact, "l", &long), (edge, foot, "d", &across), (foot, contact, "q₁", &across)]
+    {
+        let p = (a + b) / 2.0;
+        word([p.x - 10.0, p.y - 4.0], Anchor::Middle, name, colour);
     }
     let tip = contact + (NORMAL + 9.0) * seen(lever.normal);
-    label(svg, [tip.x, tip.y + 4.0], "N", INK);
-}
-
-fn name_at(svg: &mut Svg, at: [f64; 2], name: &str) {
-    let shown = match name {
-        "P_M" => "P_M moving",
-        "P_B" => "P_B base",
-        other => other,
-    };
-    halo(svg, at, Anchor::Start, shown, INK);
-}
-
-fn label(svg: &mut Svg, at: [f64; 2], name: &str, colour: &str) {
-    halo(svg, at, Anchor::Middle, name, colour);
-}
-
-/// A word that stays readable over what lies below.
-fn halo(svg: &mut Svg, at: [f64; 2], anchor: Anchor, word: &str, colour: &str) {
-    svg.haloed(at, LABEL + 1.0, anchor, colour, word);
+    word([tip.x, tip.y + 4.0], Anchor::Middle, "N", INK);
+    for p in [corner, edge, contact] {
+        svg.circle(p.to_array(), 4.2, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="1.6""##));
+    }
 }
 
 /// The numbers beside the drawing.
