@@ -92,7 +92,7 @@ fn lever_arms_and_angles_of_a_pose() {
     let dir = tempfile::tempdir().unwrap();
     let x_face = design("x-face.toml");
     let args = ["trace", &x_face, "--cor=-1", "--aspect-ratio", "0.5", "--method", "kinematic", "--pose"];
-    let with = |more: &[&str]| [&args[..], more].concat();
+    let with = |more: &[&'static str]| [&args[..], more].concat();
     let aligned = json(dir.path(), &with(&["x=0.4", "--json"]));
     let contact = &aligned["contact"];
     let at = |name: &str| contact[name].as_f64().unwrap();
