@@ -92,9 +92,9 @@ pub struct Lever {
 }
 
 impl Lever {
-    /// θ₂ where the halves are aligned: `β_p + α_e`.
+    /// θ₂ where the halves are aligned: `β_p + α_e`, in [0, π].
     pub fn aligned(&self) -> f64 {
-        self.beta_p + self.alpha_e
+        wrapped(self.beta_p + self.alpha_e)
     }
 
     /// The vertical of the corner's body, from its rotation point to its face.
