@@ -134,13 +134,15 @@ mod tests {
     /// [docked], which have no value by default.
     #[test]
     fn commented_out_defaults_are_the_defaults() {
+        // These say something by being there.
+        const OTHERS: [&str; 4] = ["unit", "base_thickness", "layer_thickness", "layer_gap"];
         for family in Family::ALL {
             let text = template(family);
             let text = text.split("\n[docked]").next().unwrap();
             let key_line = |line: &str| {
                 let (name, _) = line.strip_prefix("# ")?.split_once(" = ")?;
                 let is_key = keys::KEYS.iter().any(|key| key.name == name);
-                (is_key && !["unit", "base_thickness"].contains(&name)).then(|| line[2..].to_owned())
+                (is_key && !OTHERS.contains(&name)).then(|| line[2..].to_owned())
             };
             let lines: Vec<String> =
                 text.lines().map(|line| key_line(line).unwrap_or_else(|| line.to_owned())).collect();

@@ -128,7 +128,7 @@ fn reach(tops: &[Top<'_>], sign: f64, depth: f64, seam: f64) -> f64 {
     ahead.sort_by(|a, b| outward(a).0.total_cmp(&outward(b).0));
     let mut seated = true;
     let mut reached = 0.0;
-    let mut below: Option<f64> = None;
+    let mut below: Option<(f64, f64)> = None;
     for top in ahead {
         let (from, to) = outward(top);
         if from > reached + near {
@@ -139,13 +139,17 @@ fn reach(tops: &[Top<'_>], sign: f64, depth: f64, seam: f64) -> f64 {
         }
         // Up a step outward is a drop on the way home; down a step outward is a wall.
         let segment = top.segment;
-        let walled = below.is_some_and(|z| segment.height(reached * sign) < z - near);
+        // Ends are known to a few seams: a steep stretch may begin lower than the one before ended by that much of its slope.
+        let walled = below.is_some_and(|(z, slope)| {
+            let steep = 1.0 + slope.abs() + segment.slope.abs();
+            segment.height(reached * sign) < z - near * steep
+        });
         seated &= [reached, to].into_iter().all(|s| segment.height(s * sign) <= level + near);
         if !seated && (segment.slope * sign <= seam || walled) {
             break;
         }
         reached = to;
-        below = Some(segment.height(to * sign));
+        below = Some((segment.height(to * sign), segment.slope));
     }
     reached
 }

@@ -378,6 +378,18 @@ mod tests {
         assert_eq!(Profile::of(&apart), None);
     }
 
+    /// Slopes of 12 meet gentle ones: rounding at such a kink is no wall.
+    #[test]
+    fn steep_kinks_are_no_walls() {
+        let left = [(-0.5, -0.125), (-1.0 / 3.0, -0.875), (-7.0 / 24.0, -0.375)];
+        let corners: Vec<DVec2> = left
+            .into_iter()
+            .chain(left.into_iter().rev().map(|(x, z)| (-x, -z)))
+            .map(|(x, z)| DVec2::new(x, z))
+            .collect();
+        agree(&Profile::new(&corners).unwrap());
+    }
+
     /// One minimum at m, ends higher: min(m, D − m). One maximum at M of a symmetric one: min(M, D − 2M).
     #[test]
     fn single_extrema_have_closed_forms() {

@@ -233,7 +233,7 @@ mod tests {
         let picture = faces(&shown).unwrap();
         look("faces", &picture);
         let svg = picture.svg();
-        for told in ["0.3333 D", "0.5 D", "1 D", ">H<", "a face named s…", "not one profile"] {
+        for told in ["0.3333 D", "0.5 D", "1 D", ">H<", "…<", "a face named ", "not one profile"] {
             assert!(svg.contains(told), "{told}");
         }
         assert!(!svg.contains("NaN") && faces(&shown[..1]).unwrap().svg().contains("0.3333 D"));
