@@ -33,6 +33,8 @@ const WIDTH: f64 = 1000.0;
 const GAP: f64 = 48.0;
 /// Least width of a column: room for words.
 const COLUMN: f64 = 150.0;
+/// Bold letters are wider by this, about.
+const BOLD: f64 = 1.14;
 /// The largest offset itself is a border, where what touches inside may touch no longer.
 const INSIDE: f64 = 1.0 - 1e-9;
 
@@ -113,7 +115,7 @@ pub fn faces(faces: &[Face<'_>]) -> Result<Picture, FigureError> {
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, story);
     for column in &columns {
         let middle = column.x + column.width / 2.0;
-        let name = fitted(&column.face.design.name, LABEL, column.width + GAP / 2.0);
+        let name = fitted(&column.face.design.name, BOLD * LABEL, column.width);
         svg.bold([middle, 82.0], LABEL, Anchor::Middle, &name);
         let bound = column.face.nilsson.as_ref().map_or_else(
             || "not one profile".to_owned(),
@@ -175,9 +177,10 @@ fn offset(svg: &mut Svg, face: &Face<'_>, view: &View<'_>, frame: &Frame) {
     }
     dimension(svg, [fixed, below], [moving, below], INK);
     let units = Units::of(face.design);
+    let in_d = rounded(shift).replace('-', "−");
     let told = face.design.unit.map_or_else(
-        || format!("{} D", rounded(shift)),
-        |_| format!("{} D = {} {}", rounded(shift), short(shift * units.lengths()), units.symbol()),
+        || format!("{in_d} D"),
+        |_| format!("{in_d} D = {} {}", short(shift * units.lengths()), units.symbol()),
     );
     svg.text([0.5 * (fixed + moving), below + 18.0], LABEL, Anchor::Middle, INK, &told);
 }

@@ -103,15 +103,18 @@ fn marks(svg: &mut Svg, view: &View<'_>, frame: &Frame, lever: &Lever) {
     };
     let [moving, base] = ["P_M moving", "P_B base"];
     let [own, other] = if lever.corner == Body::Moving { [moving, base] } else { [base, moving] };
-    for (p, name) in [(corner, own), (edge, other), (contact, "P_C")] {
+    for (p, name) in [(corner, own), (edge, other)] {
         word([p.x + 9.0, p.y + 4.0], Anchor::Start, name, INK);
     }
-    for (a, b, name, colour) in
-        [(corner, contact, "l", &long), (edge, foot, "d", &across), (foot, contact, "q₁", &across)]
-    {
+    // On the side that the edge does not take.
+    let (beside, anchor) = if foot.x > contact.x { (-9.0, Anchor::End) } else { (9.0, Anchor::Start) };
+    word([contact.x + beside, contact.y + 4.0], anchor, "P_C", INK);
+    for (a, b, name, colour) in [(corner, contact, "l", &long), (edge, foot, "d", &across)] {
         let p = (a + b) / 2.0;
         word([p.x - 10.0, p.y - 4.0], Anchor::Middle, name, colour);
     }
+    let within = (foot + contact) / 2.0 - 14.0 * seen(lever.normal);
+    word([within.x, within.y + 4.0], Anchor::Middle, "q₁", &across);
     let tip = contact + (NORMAL + 9.0) * seen(lever.normal);
     word([tip.x, tip.y + 4.0], Anchor::Middle, "N", INK);
     for p in [corner, edge, contact] {
