@@ -15,6 +15,7 @@ use crate::advice::Advice;
 use crate::design::Alignment;
 use crate::landscape::Grid;
 use crate::pose::{Dof, PoseError};
+use crate::problem::Problem;
 pub(crate) use random::Stream;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -45,6 +46,29 @@ impl Outcome {
             Self::Jammed => "jammed",
             Self::Missed => "missed",
             Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// Why a pose did not dock, where that can be told from where it ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reason {
+    /// Jammed: a layer rests on, or stands against, a layer of the other half that is not its partner.
+    Crossed,
+}
+
+impl Reason {
+    /// Why a motion that ended with this outcome at this pose error did not dock, if that can be told.
+    pub fn of(problem: &Problem, outcome: Outcome, end: &PoseError) -> Option<Self> {
+        let crossed = outcome == Outcome::Jammed && problem.may_cross() && problem.pair().crosses(end);
+        crossed.then_some(Self::Crossed)
+    }
+
+    /// The lower-case name used in files and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Crossed => "crossed",
         }
     }
 }

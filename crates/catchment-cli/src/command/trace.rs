@@ -4,21 +4,26 @@ use crate::args::DesignArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, to_stderr, to_stdout};
+use catchment::acceptance::Reason;
 use catchment::method::descent::{self, Settings};
+use catchment::method::kinematic::Start;
 use catchment::poses::parse_pose;
+use catchment::report::figure::Picture;
 use catchment::report::schema::WarningReport;
-use catchment::report::{TraceReport, csv, figure};
-use clap::Args;
+use catchment::report::{LeverReport, TraceReport, csv, figure};
+use clap::{Args, ValueEnum};
 
 /// Follow one pose from first contact to its end
 ///
 /// The motion is exact and quasi-static: no friction, no inertia, contact kept. Prints waypoints spread over the
-/// path; -o writes all of them, or a picture.
+/// path; -o writes all of them, or a picture. By the kinematic method it is the first contact alone: rotation points, lever
+/// arms and angles of the dissertation's planar analysis.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment trace design.toml --pose \"x=0.2,pitch=10 deg\"\n  \
     catchment trace design.toml --pose \"x=5 mm\" -o trace.png\n  \
-    catchment trace design.toml --pose \"x=0.2,yaw=0.3\" --json | jq .outcome\n\n\
+    catchment trace design.toml --pose \"x=0.2,yaw=0.3\" --json | jq .outcome\n  \
+    catchment trace x-face.toml --cor=-0.5 --pose \"x=0.2,pitch=10 deg\" --method kinematic -o levers.svg\n\n\
     Lengths are in D and angles in radians unless they have a unit. -o writes .png and .svg (pictures), .csv (a \
     line per contact point) and .json.")]
 pub(crate) struct TraceArgs {
@@ -27,6 +32,9 @@ pub(crate) struct TraceArgs {
     /// The pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     pose: String,
+    /// What follows the pose
+    #[arg(long, value_enum, default_value_t = By::Descent)]
+    method: By,
     /// Print the whole path as JSON
     #[arg(long)]
     json: bool,
@@ -34,33 +42,62 @@ pub(crate) struct TraceArgs {
     file: FileArgs,
 }
 
+/// What can be shown of one pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum By {
+    /// The exact quasi-static motion
+    Descent,
+    /// The first contact of a planar face: rotation points, lever arms, angles
+    Kinematic,
+}
+
 /// Pixels per unit of a picture.
 const PNG_SCALE: f32 = 2.0;
+
 pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
     let error = parse_pose(&args.pose, design)
         .map_err(|findings| Failure::of_option("--pose", &args.pose, findings))?;
+    if args.method == By::Kinematic {
+        let start = Start::of(&problem, &error)?;
+        let report = LeverReport::new(design, &start);
+        let told = if args.json { report.to_json()? } else { report.table() };
+        match kind {
+            Some("csv") => args.file.write(&csv(&report.records())?)?,
+            Some("json") => args.file.write(report.to_json()?.as_bytes())?,
+            Some(picture) => args.draw(picture, &figure::lever(design, problem.connector(), &start)?)?,
+            None => {}
+        }
+        to_stdout(&told)?;
+        return Ok(ExitStatus::Done);
+    }
     let settings = Settings::default();
     let path = descent::trace(pair, &error, &settings);
     let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = TraceReport::new(design, settings, error, &path, doubts);
+    let end = path.waypoints.last().map(|waypoint| waypoint.error);
+    let reason = end.and_then(|end| Reason::of(&problem, path.outcome, &end));
+    let report = TraceReport::new(design, settings, error, &path, reason, doubts);
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-        Some(picture) => {
-            let drawn = figure::trajectory(design, problem.connector(), &path)?;
-            if picture == "png" {
-                args.file.write(&drawn.png(PNG_SCALE)?)?;
-            } else {
-                args.file.write(drawn.svg().as_bytes())?;
-            }
-        }
+        Some(picture) => args.draw(picture, &figure::trajectory(design, problem.connector(), &path)?)?,
         None => {}
     }
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
     to_stderr(&said);
     Ok(ExitStatus::Done)
+}
+
+impl TraceArgs {
+    /// Writes a picture of this kind.
+    fn draw(&self, kind: &str, picture: &Picture) -> Result<(), Failure> {
+        if kind == "png" {
+            self.file.write(&picture.png(PNG_SCALE)?)
+        } else {
+            self.file.write(picture.svg().as_bytes())
+        }
+    }
 }

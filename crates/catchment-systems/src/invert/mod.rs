@@ -65,7 +65,7 @@ use catchment::pose::{Dof, rotation};
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Half the strip along x over which a planar design is asked, in D: narrower than half the gap between layers (0.1 D).
+/// Half the strip along x over which a planar design is asked, in D: half the narrowest gap that a design may give its layers.
 const STRIP: f64 = 0.005;
 /// Beyond every offset at which halves touch, in D.
 const FAR: f64 = 100.0;

@@ -15,7 +15,7 @@
 use super::Pair;
 use super::play::{Play, directions, play, unit};
 use crate::design::Alignment;
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, DofSet, PoseError};
 
 /// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
 /// four digits, below any play that matters.
@@ -161,7 +161,7 @@ pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
     } else if above < -CONTACT_TOLERANCE {
         problems.push(MatedProblem::Gap { gap: -above });
     }
-    problems.extend(deepest(pair, height));
+    problems.extend(deepest(pair, height, DofSet::ALL));
     // What a seat leaves free shows only where there is one.
     if problems.is_empty() {
         match round_half(pair) {
@@ -199,10 +199,15 @@ fn round_half(pair: &Pair) -> Option<&'static str> {
     pair.fixed.is_round([bottom + height, f64::INFINITY]).then_some("fixed")
 }
 
+/// Whether an error in some of the free degrees of freedom lets the aligned half sink deeper.
+pub(crate) fn sinking(pair: &Pair, among: DofSet) -> Option<MatedProblem> {
+    deepest(pair, pair.mated_height(), among)
+}
+
 /// The probe that sinks deepest, if one sinks more than rounding and curvature explain.
-fn deepest(pair: &Pair, aligned: f64) -> Option<MatedProblem> {
-    let free: Vec<Dof> =
-        pair.alignment.free.iter().filter(|dof| !pair.alignment.dont_care.contains(*dof)).collect();
+fn deepest(pair: &Pair, aligned: f64, among: DofSet) -> Option<MatedProblem> {
+    let matters = |dof: &Dof| among.contains(*dof) && !pair.alignment.dont_care.contains(*dof);
+    let free: Vec<Dof> = pair.alignment.free.iter().filter(matters).collect();
     let mut nearby = pair.about(PROBE);
     let mut worst: Option<(f64, PoseError)> = None;
     for signs in directions(free.len()) {
@@ -227,7 +232,7 @@ mod tests {
     use crate::connector::Connector;
     use crate::design::family::{PinHole, XFace3dLocking};
     use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
-    use crate::pose::{DofSet, Mount};
+    use crate::pose::Mount;
 
     fn design(connector: ConnectorSpec, mount: Mount, free: DofSet, cor: f64) -> Design {
         let alignment = Alignment { center_of_rotation: cor, ..Alignment::new(free, mount) };

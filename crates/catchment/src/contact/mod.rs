@@ -17,6 +17,7 @@ mod element;
 mod envelope;
 pub(crate) mod face;
 mod hold;
+mod layers;
 pub mod mated;
 mod mirror;
 mod nearby;

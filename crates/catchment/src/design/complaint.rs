@@ -1,6 +1,6 @@
 //! What can be wrong with a design: facts, each with advice.
 
-use super::Family;
+use super::FamilySpec;
 use super::keys::Range;
 use crate::pose::Dof;
 
@@ -245,6 +245,8 @@ pub enum Complaint {
         dof: Dof,
         /// The family.
         family: &'static str,
+        /// Whether it has layers that can be given a depth.
+        layered: bool,
     },
     /// Pitch beyond ±90° beside free roll and yaw.
     #[error("a pitch of more than 90 deg counts rotations twice when roll and yaw are free")]
@@ -279,10 +281,10 @@ impl Complaint {
         }
     }
 
-    /// The rule of planar families: nothing leaves the x–z plane.
-    pub(super) fn out_of_plane(dof: Dof, family: Option<Family>) -> Option<Self> {
-        let family = family.filter(|family| family.is_planar() && !matches!(dof, Dof::X | Dof::Pitch))?;
-        Some(Self::OutOfPlane { dof, family: family.name() })
+    /// The rule of planar families without depth: nothing leaves the x–z plane.
+    pub(super) fn out_of_plane(dof: Dof, family: Option<&FamilySpec>) -> Option<Self> {
+        let spec = family.filter(|spec| !spec.has_depth() && !matches!(dof, Dof::X | Dof::Pitch))?;
+        Some(Self::OutOfPlane { dof, family: spec.family().name(), layered: spec.is_layered() })
     }
 
     /// What to do about it; `None` where the message says it all.
@@ -325,6 +327,11 @@ impl Complaint {
             Self::FreeAndDontCare { .. } => {
                 Some("a don't-care rotation is locked in the motion: list it in one of the two".to_owned())
             }
+            Self::OutOfPlane { layered: true, .. } => Some(
+                "its layers have no depth until the design gives them one: write layer_thickness and layer_gap; else only x \
+                 and pitch can be free"
+                    .to_owned(),
+            ),
             Self::OutOfPlane { .. } => Some(
                 "a planar family is a profile in the x-z plane: only x and pitch can be free; for a solid of finite \
                  depth give own halves"

@@ -9,7 +9,7 @@
 //! their bytes.
 
 use super::family::Value;
-use super::{Alignment, ConnectorSpec, Design, Docked, Drawn, HalfSpec, OwnSpec, Placement};
+use super::{Alignment, ConnectorSpec, Design, Docked, Drawn, HalfSpec, OwnSpec, Placement, keys};
 use crate::pose::{Dof, DofSet, Mount};
 use sha2::{Digest, Sha256};
 
@@ -27,6 +27,10 @@ impl Design {
                 hash.text("family");
                 hash.text(spec.family().name());
                 for (key, value) in spec.parameters() {
+                    // Parameters that came later count where they are written: all digests before them stay.
+                    if value.is_none() && key.name != keys::BASE_THICKNESS.name {
+                        continue;
+                    }
                     hash.text(key.name);
                     match value {
                         None => hash.text("default"),
@@ -159,6 +163,21 @@ mod tests {
         let spec = FamilySpec::new(family);
         let alignment = Alignment::default_for(Some(family));
         Design { name: "a".into(), connector: ConnectorSpec::Family(spec), width: 1.0, unit: None, alignment }
+    }
+
+    /// Parameters that came later leave the digests of older designs as they were: this one was written down before.
+    #[test]
+    fn digests_stay() {
+        use crate::design::family::XFace;
+        use crate::design::hex;
+        let old = "fea9ebe52e43e7f586e998c95c3786faadb7b5ed0658fed4a441f163acb70c87";
+        let digest = |design: Design| hex(&design.digest().unwrap());
+        assert_eq!(digest(family(Family::XFace)), old);
+        for layers in [[Some(0.45), None], [None, Some(0.1)]] {
+            let face = XFace { layer_thickness: layers[0], layer_gap: layers[1], ..XFace::DEFAULT };
+            let connector = ConnectorSpec::Family(face.into());
+            assert_ne!(digest(Design { connector, ..family(Family::XFace) }), old);
+        }
     }
 
     #[test]

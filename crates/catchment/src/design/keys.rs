@@ -250,6 +250,7 @@ const fn parameter(name: &'static str, applies: Applies, kind: Kind, doc: &'stat
 const LOCKING: Applies = Applies::Families(&[Family::XFace3dLocking]);
 const PINS_ONLY: Applies = Applies::Families(&[Family::PinHole]);
 const WITH_PLAY: Applies = Applies::Families(&[Family::PinHole, Family::XFace3dLocking]);
+const LAYERED: Applies = Applies::Families(&[Family::XFace]);
 const ROUND: Applies = Applies::Families(&[Family::Cone, Family::PinHole]);
 
 macro_rules! keys {
@@ -298,6 +299,12 @@ keys! {
     /// `connector.chord_error`
     CHORD_ERROR = parameter("chord_error", ROUND, Kind::Length(Range::new(1e-6, 0.1, "D")),
         "Largest distance between a circle and the polygon that stands for it.");
+    /// `connector.layer_thickness`
+    LAYER_THICKNESS = parameter("layer_thickness", LAYERED, Kind::Length(Range::new(1e-3, 10.0, "D")),
+        "Thickness along y of each of the two layers. With it or layer_gap written, y, roll and yaw may be free.");
+    /// `connector.layer_gap`
+    LAYER_GAP = parameter("layer_gap", LAYERED, Kind::Length(Range::new(1e-2, 10.0, "D")),
+        "Gap along y between the two layers: how far a flat half may be off before it meets the wrong layer.");
     /// `connector.lip_height`
     LIP_HEIGHT = parameter("lip_height", LOCKING, Kind::Length(Range::new(1e-4, 10.0, "D")),
         "Height of the lip along the centre lines.");

@@ -4,7 +4,7 @@ use super::complaint::Complaint;
 use super::keys;
 use super::quantity::{Quantity, Unit, shortened};
 use super::reader::unknown_name;
-use super::{ConnectorSpec, Design, Family};
+use super::{ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{Dof, DofSet};
 
 /// The set in a list such as `x,y,yaw`.
@@ -37,6 +37,14 @@ impl Design {
         }
     }
 
+    /// The built-in family with its parameters, if it is one.
+    pub const fn family_spec(&self) -> Option<&FamilySpec> {
+        match &self.connector {
+            ConnectorSpec::Family(spec) => Some(spec),
+            ConnectorSpec::Own(_) => None,
+        }
+    }
+
     /// This design with other free degrees of freedom. One that did not matter and is now free matters.
     ///
     /// # Errors
@@ -45,7 +53,8 @@ impl Design {
         if free.is_empty() {
             return Err(Complaint::nothing_free("free".to_owned()));
         }
-        if let Some(complaint) = free.iter().find_map(|dof| Complaint::out_of_plane(dof, self.family())) {
+        if let Some(complaint) = free.iter().find_map(|dof| Complaint::out_of_plane(dof, self.family_spec()))
+        {
             return Err(complaint);
         }
         self.alignment.free = free;

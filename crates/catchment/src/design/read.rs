@@ -90,7 +90,7 @@ impl<'t> Walk<'t> {
         let owner = connector.as_ref().map_or(Owner::Unknown, |section| self.owner(section));
         let scale = connector.as_ref().and_then(|section| self.scale(section));
         let spec = connector.as_ref().and_then(|section| self.connector(section, owner, scale.as_ref()));
-        let alignment = self.alignment(root, owner, scale.as_ref());
+        let alignment = self.alignment(root, owner, spec.as_ref(), scale.as_ref());
         let (Scale { width, unit }, connector) = (scale?, spec?);
         let name =
             name.unwrap_or_else(|| owner.family().map_or("own halves", |family| family.name()).to_owned());
@@ -353,11 +353,17 @@ impl<'t> Walk<'t> {
         })
     }
 
-    fn alignment(&mut self, root: &Section<'t>, owner: Owner, scale: Option<&Scale>) -> Alignment {
+    fn alignment(
+        &mut self,
+        root: &Section<'t>,
+        owner: Owner,
+        connector: Option<&ConnectorSpec>,
+        scale: Option<&Scale>,
+    ) -> Alignment {
         let mut alignment = Alignment::default_for(owner.family());
         if let Some(section) = self.reader.section(root, &keys::ALIGNMENT) {
             self.reader.refuse_unknown_keys(&section, Table::Alignment);
-            self.freedom(&section, owner, &mut alignment);
+            self.freedom(&section, connector, &mut alignment);
             if let Some(cor) = self.reader.number(&section, &keys::CENTER_OF_ROTATION, scale) {
                 alignment.center_of_rotation = cor;
             }
@@ -397,7 +403,16 @@ impl<'t> Walk<'t> {
     }
 
     /// `free` and `dont_care`.
-    fn freedom(&mut self, section: &Section<'t>, owner: Owner, alignment: &mut Alignment) {
+    fn freedom(
+        &mut self,
+        section: &Section<'t>,
+        connector: Option<&ConnectorSpec>,
+        alignment: &mut Alignment,
+    ) {
+        let family = match connector {
+            Some(ConnectorSpec::Family(spec)) => Some(spec),
+            Some(ConnectorSpec::Own(_)) | None => None,
+        };
         let set = |list: &[(Dof, _)]| list.iter().map(|(dof, _)| *dof).collect::<DofSet>();
         if let Some(list) = self.reader.dofs(section, &keys::FREE) {
             let empty = self
@@ -409,7 +424,7 @@ impl<'t> Walk<'t> {
                 self.reader.complain(complaint, value.span());
             }
             for (dof, span) in &list {
-                if let Some(complaint) = Complaint::out_of_plane(*dof, owner.family()) {
+                if let Some(complaint) = Complaint::out_of_plane(*dof, family) {
                     self.reader.complain(complaint, span.clone());
                 }
             }

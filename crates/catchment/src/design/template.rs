@@ -1,6 +1,6 @@
 //! Commented starting points for `catchment new`.
 
-use super::family::{Freedom, Value};
+use super::family::{Freedom, Value, XFace};
 use super::keys::{self, Applies, Key, Kind, Table};
 use super::{Alignment, Docked, Family, FamilySpec};
 use crate::pose::{Dof, DofSet, Mount};
@@ -37,7 +37,7 @@ fn is_active(key: &Key, family: Family) -> bool {
         Table::Root => true,
         Table::Connector => {
             [keys::FAMILY, keys::WIDTH, keys::ASPECT_RATIO].contains(key)
-                || matches!(key.applies, Applies::Families(_))
+                || (matches!(key.applies, Applies::Families(_)) && FamilySpec::new(family).get(key).is_some())
         }
         Table::Alignment => {
             [keys::FREE, keys::CENTER_OF_ROTATION, keys::ROTATION_LENGTH].contains(key)
@@ -59,6 +59,8 @@ fn default_text(key: &Key, family: Family) -> Option<String> {
         keys::WIDTH => number(1.0),
         keys::UNIT => Some("\"mm\"".to_owned()),
         keys::BASE_THICKNESS => number(0.25),
+        keys::LAYER_THICKNESS => number(XFace::DEFAULT_LAYER_THICKNESS),
+        keys::LAYER_GAP => number(XFace::DEFAULT_LAYER_GAP),
         keys::FREE => Some(list(alignment.free)),
         keys::DONT_CARE => Some(list(alignment.dont_care)),
         keys::CENTER_OF_ROTATION => number(alignment.center_of_rotation),
@@ -132,13 +134,15 @@ mod tests {
     /// [docked], which have no value by default.
     #[test]
     fn commented_out_defaults_are_the_defaults() {
+        // These say something by being there.
+        const OTHERS: [&str; 4] = ["unit", "base_thickness", "layer_thickness", "layer_gap"];
         for family in Family::ALL {
             let text = template(family);
             let text = text.split("\n[docked]").next().unwrap();
             let key_line = |line: &str| {
                 let (name, _) = line.strip_prefix("# ")?.split_once(" = ")?;
                 let is_key = keys::KEYS.iter().any(|key| key.name == name);
-                (is_key && !["unit", "base_thickness"].contains(&name)).then(|| line[2..].to_owned())
+                (is_key && !OTHERS.contains(&name)).then(|| line[2..].to_owned())
             };
             let lines: Vec<String> =
                 text.lines().map(|line| key_line(line).unwrap_or_else(|| line.to_owned())).collect();

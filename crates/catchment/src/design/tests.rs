@@ -262,7 +262,12 @@ fn overrides_follow_the_rules_of_the_file() {
         Err(Complaint::WrongDimension { .. })
     ));
     let planar = design("[connector]\nfamily = \"v-face\"");
-    assert!(matches!(planar.with_free(DofSet::ALL), Err(Complaint::OutOfPlane { .. })));
+    assert!(matches!(planar.with_free(DofSet::ALL), Err(Complaint::OutOfPlane { layered: false, .. })));
+    let layers = "[connector]\nfamily = \"x-face\"";
+    let refused = design(layers).with_free(DofSet::ALL).unwrap_err();
+    assert!(refused.help().is_some_and(|help| help.contains("write layer_thickness and layer_gap")));
+    let deep = design(&format!("{layers}\nlayer_gap = 0.2\n[alignment]\nfree = [\"x\", \"y\", \"yaw\"]"));
+    assert!(deep.with_free(DofSet::ALL).is_ok());
     let own = design(&format!("[connector]\n{TETRAHEDRA}").replace("\"1 cm\"", "10"));
     assert!(matches!(own.with_aspect_ratio(1.0), Err(Complaint::NotAParameter { .. })));
 }

@@ -27,7 +27,8 @@ pub use draft::Draft;
 use crate::connector::Connector;
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
-use crate::design::{Alignment, Design, Findings, LoadError, SourceText, hex};
+use crate::design::{Alignment, Design, FamilySpec, Findings, LoadError, SourceText, hex};
+use crate::pose::Dof;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -130,6 +131,14 @@ impl Problem {
     /// SHA-256, in hexadecimal digits, of everything that may change an answer.
     pub fn digest(&self) -> &str {
         &self.0.digest
+    }
+
+    /// Whether a layer of the moving half can meet one that is not its partner: the halves come in layers, and an error leads out of
+    /// their plane.
+    pub fn may_cross(&self) -> bool {
+        let out_of_plane = [Dof::Y, Dof::Roll, Dof::Yaw];
+        self.design().family_spec().is_some_and(FamilySpec::is_layered)
+            && out_of_plane.into_iter().any(|dof| self.alignment().free.contains(dof))
     }
 
     /// This problem, refused for a reason that another room found, at the key it is about.

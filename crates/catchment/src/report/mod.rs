@@ -7,7 +7,7 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · zraa · export · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · lever · zraa · faces · export · slices · convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -25,9 +25,11 @@ mod comparison;
 mod convergence;
 mod envelope;
 mod export;
+mod faces;
 #[cfg(feature = "figure")]
 pub mod figure;
 pub mod folder;
+mod lever;
 mod outcomes;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
@@ -52,6 +54,8 @@ pub use comparison::{
 pub use convergence::{ConvergenceBody, ConvergenceReport};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
+pub use faces::{FacesBody, FacesError, FacesReport};
+pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::OutcomesReport;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
@@ -64,4 +68,4 @@ pub use sweep::{SweepBody, SweepReport};
 pub use table::{table, table_with};
 pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
-pub use zraa::{ZraaBody, ZraaFound, ZraaReport};
+pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};

@@ -3,7 +3,7 @@
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use super::text::number;
-use crate::acceptance::{Acceptance, Outcome};
+use crate::acceptance::{Acceptance, Outcome, Reason};
 use crate::design::Design;
 use crate::method::Method;
 use crate::method::descent::End;
@@ -26,6 +26,8 @@ pub struct OutcomesReport<'a> {
     pub acceptance: &'a Acceptance,
     /// Where each motion ended.
     pub ends: &'a [End],
+    /// Why each did not dock, where that can be told; `None` where there is nothing to tell of this design.
+    pub reasons: Option<Vec<Option<Reason>>>,
     /// Doubts about the answer.
     pub warnings: Vec<WarningReport>,
 }
@@ -52,6 +54,9 @@ impl Body for Answer<'_> {
 struct Row {
     error: PoseError,
     outcome: Outcome,
+    /// Why it did not dock.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<Reason>,
     #[serde(rename = "final")]
     last: PoseError,
     /// Columns that were carried through.
@@ -71,7 +76,10 @@ impl<'a> OutcomesReport<'a> {
         let objections = problem.objections();
         let doubts = objections.iter().map(WarningReport::note);
         let warnings = doubts.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
-        Self { design: problem.design(), table, settings: method.settings(), acceptance, ends, warnings }
+        let reason = |end: &End| Reason::of(problem, end.outcome, &end.error);
+        let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());
+        let (design, settings) = (problem.design(), method.settings());
+        Self { design, table, settings, acceptance, ends, reasons, warnings }
     }
 
     /// Bytes of memory that telling a table takes, as JSON or as CSV, at most. Every row of the JSON repeats the names of the
@@ -91,7 +99,13 @@ impl<'a> OutcomesReport<'a> {
         rows.saturating_mul(row).saturating_add(COPIES * table.text().len() as u64)
     }
 
-    /// The table as it came, with the outcome and the final errors in the units of their columns.
+    /// Why a pose did not dock, if that can be told.
+    fn reason(&self, pose: usize) -> Option<Reason> {
+        self.reasons.as_ref()?.get(pose).copied().flatten()
+    }
+
+    /// The table as it came, with the outcome and the final errors in the units of their columns; where reasons can be told, with a
+    /// column of them.
     ///
     /// # Errors
     /// If a row cannot be written, which text in memory gives no reason for.
@@ -101,10 +115,16 @@ impl<'a> OutcomesReport<'a> {
         let mut header = self.table.header();
         header.push("outcome".to_owned());
         header.extend(self.table.names().map(|name| format!("final_{name}")));
+        if self.reasons.is_some() {
+            header.push("reason".to_owned());
+        }
         writer.write_record(&header)?;
-        for (mut row, end) in self.table.rows().zip(self.ends) {
+        for (k, (mut row, end)) in self.table.rows().zip(self.ends).enumerate() {
             row.push(end.outcome.name().to_owned());
             row.extend(self.table.in_units(&end.error).map(number));
+            if self.reasons.is_some() {
+                row.push(self.reason(k).map_or("", Reason::name).to_owned());
+            }
             writer.write_record(&row)?;
         }
         writer.flush()?;
@@ -121,9 +141,10 @@ impl<'a> OutcomesReport<'a> {
         let at = self.table.offsets_at();
         let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
         let poses = self.table.rows().zip(self.table.errors()).zip(self.ends);
-        let poses = poses.map(|((row, error), end)| Row {
+        let poses = poses.enumerate().map(|(k, ((row, error), end))| Row {
             error: measured(error),
             outcome: end.outcome,
+            reason: self.reason(k),
             last: measured(&end.error),
             carried: carried.iter().map(|(k, name)| (name.clone(), row[*k].clone())).collect(),
         });
@@ -147,6 +168,11 @@ impl<'a> OutcomesReport<'a> {
         let poses = if count == 1 { "pose" } else { "poses" };
         let mut lines = vec![format!("{count} {poses}: {}", parts.join(", "))];
         let shown = |(_, name): (usize, String)| if name.is_empty() { "(no name)".to_owned() } else { name };
+        let crossed = self.reasons.iter().flatten().filter(|reason| reason.is_some()).count();
+        if crossed > 0 {
+            let jammed = format!("{crossed} of the jammed {}", if crossed == 1 { "is" } else { "are" });
+            lines.push(format!("{jammed} crossed: a layer rests on one that is not its partner"));
+        }
         let carried: Vec<String> = self.table.carried().into_iter().map(shown).collect();
         if !carried.is_empty() {
             lines.push(format!("carried through: {}", carried.join(", ")));

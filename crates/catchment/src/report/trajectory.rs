@@ -3,7 +3,7 @@
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use super::text::{line, number};
-use crate::acceptance::Outcome;
+use crate::acceptance::{Outcome, Reason};
 use crate::design::Design;
 use crate::method::descent::{Settings, Touch, Trajectory, Waypoint};
 use crate::pose::{Dof, PoseError};
@@ -30,6 +30,8 @@ pub struct TraceBody {
     pub start: PoseError,
     /// How it ends.
     pub outcome: Outcome,
+    /// Why it does not dock; null where that cannot be told.
+    pub reason: Option<Reason>,
     /// The last pose error; null if the halves never meet.
     pub end: Option<PoseError>,
     /// From first contact on.
@@ -71,12 +73,14 @@ impl From<&Waypoint> for WaypointReport {
 }
 
 impl TraceReport {
-    /// Of a path that descent with `settings` followed from `start`, with the doubts about its design.
+    /// Of a path that descent with `settings` followed from `start`, with the reason why it did not dock, and the doubts about its
+    /// design.
     pub fn new(
         design: &Design,
         settings: Settings,
         start: PoseError,
         path: &Trajectory,
+        reason: Option<Reason>,
         warnings: Vec<WarningReport>,
     ) -> Self {
         let body = TraceBody {
@@ -85,6 +89,7 @@ impl TraceReport {
             settings,
             start,
             outcome: path.outcome,
+            reason,
             end: path.waypoints.last().map(|w| w.error),
             waypoints: path.waypoints.iter().map(WaypointReport::from).collect(),
         };
@@ -131,7 +136,8 @@ impl TraceReport {
             let words = format!("{shown} of {all} waypoints; height is that of the centre of rotation");
             line(&mut text, &words);
         }
-        line(&mut text, &format!("outcome: {}", self.outcome.name()));
+        let reason = self.reason.map_or_else(String::new, |reason| format!(" ({})", reason.name()));
+        line(&mut text, &format!("outcome: {}{reason}", self.outcome.name()));
         text
     }
 
@@ -189,7 +195,7 @@ mod tests {
         design.name = "a\u{1b}[2Jb".to_owned();
         let path = Trajectory { waypoints, outcome: Outcome::Aligned };
         let doubts = vec![WarningReport::note("shallow")];
-        TraceReport::new(&design, Settings::default(), PoseError::default(), &path, doubts)
+        TraceReport::new(&design, Settings::default(), PoseError::default(), &path, None, doubts)
     }
 
     #[test]

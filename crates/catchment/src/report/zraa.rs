@@ -3,7 +3,7 @@
 use super::envelope::{Body, Envelope};
 use super::text::{line, number, rounded};
 use crate::design::Design;
-use crate::method::zraa::{Square, Zraa, circle_bounds, circle_square};
+use crate::method::zraa::{Catch, Nilsson, Square, Zraa, circle_bounds, circle_square};
 use crate::pose::Dof;
 use serde::Serialize;
 
@@ -39,6 +39,8 @@ pub enum ZraaFound {
         circle_length_d: Option<[f64; 2]>,
         /// The ONAA, counted in D: of one translation the length itself.
         onaa_d: f64,
+        /// Nilsson's bounds; null where the halves do not meet along one profile.
+        nilsson: Option<NilssonReport>,
     },
     /// Both translations.
     Region {
@@ -59,13 +61,95 @@ pub enum ZraaFound {
     },
 }
 
+/// What one profile corrects to both sides, beside what any of its kind can.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NilssonReport {
+    /// Whether both halves are alike.
+    pub ungendered: bool,
+    /// Width of the profile.
+    pub width_d: f64,
+    /// The most that any profile of this kind and width corrects to both sides.
+    pub bound_d: f64,
+    /// What this one does.
+    pub both_d: f64,
+    /// What limits offsets to −x; null where nothing is corrected.
+    pub from: Option<CatchReport>,
+    /// What limits offsets to +x; null where nothing is corrected.
+    pub to: Option<CatchReport>,
+}
+
+/// The moving half's minimum slides home until it stands over the fixed half's maximum.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CatchReport {
+    /// The offset where it does.
+    pub offset_d: f64,
+    /// x of the minimum, mated.
+    pub minimum_d: f64,
+    /// x of the maximum.
+    pub maximum_d: f64,
+}
+
+impl From<&Nilsson> for NilssonReport {
+    fn from(found: &Nilsson) -> Self {
+        let side = |side: &Catch| CatchReport {
+            offset_d: side.reach(),
+            minimum_d: side.minimum,
+            maximum_d: side.maximum,
+        };
+        let [from, to] = &found.catches;
+        Self {
+            ungendered: found.ungendered,
+            width_d: found.width,
+            bound_d: found.bound(),
+            both_d: found.both(),
+            from: from.as_ref().map(side),
+            to: to.as_ref().map(side),
+        }
+    }
+}
+
+impl NilssonReport {
+    /// The bound in a few words.
+    pub fn bound(&self) -> String {
+        let share = if self.ungendered { 3 } else { 2 };
+        if (self.width_d - 1.0).abs() < Square::TOLERANCE {
+            format!("D/{share}")
+        } else {
+            format!("{} D/{share}", rounded(self.width_d))
+        }
+    }
+
+    fn tell(&self, text: &mut String) {
+        let kind = if self.ungendered { "both halves alike" } else { "halves of two kinds" };
+        line(text, &format!("  nilsson {} to both sides is the most for one profile, {kind}", self.bound()));
+        line(text, &format!("          {:.9} D to both sides is what this one corrects", self.both_d));
+        for (side, found) in [("−x", &self.from), ("+x", &self.to)] {
+            let words = found.map_or_else(
+                || "nothing is caught".to_owned(),
+                |CatchReport { minimum_d, maximum_d, .. }| {
+                    let [minimum, maximum] = [minimum_d, maximum_d].map(|x| rounded(x + 0.0));
+                    format!("the minimum at x = {minimum} slides home short of the maximum at {maximum}")
+                },
+            );
+            line(text, &format!("          to {side} {words}"));
+        }
+    }
+}
+
 impl Body for ZraaBody {
     const KIND: &'static str = "zraa";
 }
 
 impl ZraaReport {
-    /// Of a design.
-    pub fn new(design: &Design, zraa: &Zraa, square: &Square) -> Self {
+    /// Of a design; `nilsson` is what its profile says, if it has one.
+    pub fn new(design: &Design, zraa: &Zraa, square: &Square, nilsson: Option<&Nilsson>) -> Self {
+        Self::of(ZraaBody::new(design, zraa, square, nilsson), Vec::new(), None)
+    }
+}
+
+impl ZraaBody {
+    /// Of a design; `nilsson` is what its profile says, if it has one.
+    pub fn new(design: &Design, zraa: &Zraa, square: &Square, nilsson: Option<&Nilsson>) -> Self {
         let bounds = circle_bounds(design, zraa);
         let found = match zraa {
             Zraa::Interval { axis, from, to } => ZraaFound::Interval {
@@ -75,6 +159,7 @@ impl ZraaReport {
                 length_d: to - from,
                 circle_length_d: bounds,
                 onaa_d: square.edge,
+                nilsson: nilsson.map(NilssonReport::from),
             },
             Zraa::Region { polygons, area } => ZraaFound::Region {
                 area_d2: *area,
@@ -86,7 +171,7 @@ impl ZraaReport {
                 polygons_d: polygons.iter().map(|p| p.iter().map(|v| [v.x, v.y]).collect()).collect(),
             },
         };
-        Self::of(ZraaBody { design: design.clone(), found }, Vec::new(), None)
+        Self { design: design.clone(), found }
     }
 
     /// The accepted offsets for a person.
@@ -101,12 +186,15 @@ impl ZraaReport {
             }
         };
         match &self.found {
-            ZraaFound::Interval { axis, from_d, to_d, length_d, circle_length_d, .. } => {
+            ZraaFound::Interval { axis, from_d, to_d, length_d, circle_length_d, nilsson, .. } => {
                 line(text, &format!("  offsets in {} corrected without rotation", axis.name()));
                 for (name, value) in [("from", from_d), ("to", to_d), ("length", length_d)] {
                     line(text, &format!("  {name:<6}  {value:.9} D{}", in_unit(design, *value, 1)));
                 }
                 circle(text, *circle_length_d, "D");
+                if let Some(nilsson) = nilsson {
+                    nilsson.tell(text);
+                }
             }
             ZraaFound::Region {
                 area_d2,
@@ -183,7 +271,8 @@ mod tests {
         let corners = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
         let center = DVec2::new(0.25, 0.25);
         let square = Square { edge: 0.5, center, centered_edge: 0.0 };
-        let region = ZraaReport::new(&design, &Zraa::Region { polygons: vec![corners], area: 0.5 }, &square);
+        let region =
+            ZraaReport::new(&design, &Zraa::Region { polygons: vec![corners], area: 0.5 }, &square, None);
         let json: serde_json::Value = serde_json::from_str(&region.to_json().unwrap()).unwrap();
         assert_eq!(
             (&json["kind"], &json["area_d2"], &json["polygons_d"][0][1][0]),
@@ -204,7 +293,7 @@ mod tests {
         assert_eq!(region.records()[1..], [["0", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]);
         let square = Square { edge: 0.75, center: DVec2::ZERO, centered_edge: 0.5 };
         let interval =
-            ZraaReport::new(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 }, &square);
+            ZraaReport::new(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 }, &square, None);
         let json: serde_json::Value = serde_json::from_str(&interval.to_json().unwrap()).unwrap();
         assert_eq!((&json["axis"], &json["length_d"]), (&"x".into(), &0.75.into()));
         assert_eq!(json["onaa_d"], json["length_d"]);

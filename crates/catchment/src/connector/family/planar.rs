@@ -1,6 +1,6 @@
 //! Planar families: profiles in the x–z plane, extruded along y.
 
-use super::{Draw, Halves};
+use super::{Check, Draw, Halves};
 use crate::connector::{Surface, SurfaceError};
 use crate::design::family::{SFace, VFace, XFace};
 use glam::{DVec2, DVec3};
@@ -8,8 +8,6 @@ use std::collections::BTreeSet;
 
 /// Slab in which a planar half of one layer is extruded, in D.
 const SLAB: [f64; 2] = [-0.5, 0.5];
-/// Slabs of the two layers of the X-Face: a real gap keeps a layer to its own counterpart.
-const LAYERS: [[f64; 2]; 2] = [[0.05, 0.5], [-0.5, -0.05]];
 
 type Cell = Vec<DVec2>;
 
@@ -40,12 +38,22 @@ impl Draw for SFace {
 }
 
 impl Draw for XFace {
-    /// Two ramps that cross, in two layers: z = H·(½ ± x).
+    fn check(&self, check: &mut Check) {
+        for (name, length) in [("layer_thickness", self.layer_thickness), ("layer_gap", self.layer_gap)] {
+            if let Some(length) = length {
+                check.require(name, length, length > 0.0, "give a number above 0");
+            }
+        }
+    }
+
+    /// Two ramps that cross, z = H·(½ ± x), in two layers with a gap between them, which keeps a layer to its own counterpart.
     fn halves(&self) -> Halves {
         let (h, b) = (self.aspect_ratio, self.base_thickness.unwrap_or(0.0));
+        let near = self.layer_gap.unwrap_or(Self::DEFAULT_LAYER_GAP) / 2.0;
+        let far = near + self.layer_thickness.unwrap_or(Self::DEFAULT_LAYER_THICKNESS);
         let rising = cell(&[(-0.5, -b), (0.5, -b), (0.5, h), (-0.5, 0.0)]);
         let falling = cell(&[(-0.5, -b), (0.5, -b), (0.5, 0.0), (-0.5, h)]);
-        let surfaces = vec![extrude(&[rising], LAYERS[0]), extrude(&[falling], LAYERS[1])];
+        let surfaces = vec![extrude(&[rising], [near, far]), extrude(&[falling], [-far, -near])];
         [surfaces.clone(), surfaces]
     }
 }

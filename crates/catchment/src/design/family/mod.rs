@@ -249,6 +249,17 @@ impl FamilySpec {
         field.is_some_and(|(_, field)| field.set(value))
     }
 
+    /// Whether its halves come in layers, each of which belongs to one layer of the other half: surfaces of the same number.
+    pub fn is_layered(&self) -> bool {
+        keys::LAYER_GAP.applies.to(Some(self.family()))
+    }
+
+    /// Whether errors out of the plane have a meaning: a profile has none, unless its layers are given a size along y.
+    pub fn has_depth(&self) -> bool {
+        let written = |key| self.get(key).is_some();
+        !self.family().is_planar() || written(&keys::LAYER_THICKNESS) || written(&keys::LAYER_GAP)
+    }
+
     /// Largest distance between a circle and the polygon that stands for it, in D, of families with circles.
     pub fn chord_error(&self) -> Option<f64> {
         match self.get(&keys::CHORD_ERROR) {

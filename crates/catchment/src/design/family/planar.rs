@@ -22,6 +22,13 @@ parameters! {
     }
 }
 
+impl XFace {
+    /// Thickness of a layer along y where a design names none, in D: with the gap the halves are one D deep.
+    pub const DEFAULT_LAYER_THICKNESS: f64 = 0.45;
+    /// Gap between the layers where a design names none, in D.
+    pub const DEFAULT_LAYER_GAP: f64 = 0.1;
+}
+
 parameters! {
     /// Two crossed ramps in two layers: planar, ungendered.
     XFace {
@@ -29,5 +36,9 @@ parameters! {
         aspect_ratio: f64 = 0.5 => ASPECT_RATIO;
         /// Material behind the mating surface, in D; `None`: nothing.
         base_thickness: Option<f64> = None => BASE_THICKNESS;
+        /// Thickness of a layer along y, in D; `None`: [`XFace::DEFAULT_LAYER_THICKNESS`].
+        layer_thickness: Option<f64> = None => LAYER_THICKNESS;
+        /// Gap between the layers along y, in D; `None`: [`XFace::DEFAULT_LAYER_GAP`].
+        layer_gap: Option<f64> = None => LAYER_GAP;
     }
 }

@@ -31,7 +31,10 @@
 //! x in a real docking, as it does here. For free motion see [`crate::method::descent`].
 
 pub(super) mod door;
+mod lever;
 pub mod stepping;
+
+pub use lever::{Body, Lever, Start};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
@@ -91,6 +94,9 @@ pub enum Unfit {
     /// Mounted the other way.
     #[error("its halves are mounted about y")]
     Mount,
+    /// An error out of the plane.
+    #[error("a pose has x and pitch alone: it knows no other error")]
+    Pose,
     /// Docked is another set than the mated pose alone.
     #[error("its faces dock in one point: [docked] must leave depth as it is")]
     Docked,

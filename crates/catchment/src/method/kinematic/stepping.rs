@@ -40,6 +40,7 @@
 //! is what was run for that table; it is not, see [`super`]. Source: the dissertation, section 3.1.1.
 
 use glam::DVec2;
+use serde::Serialize;
 
 /// How far the farthest corner moves in a step, in D. Half of it changes the
 /// outcome of 656 of the 203 401 starts of the tables (0.32 %).
@@ -50,7 +51,8 @@ pub const STEP: f64 = 0.02;
 pub const MOST_STEPS: usize = 100_000;
 
 /// How the stepping of a start halts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Halt {
     /// The halves are parallel on a ramp: they slide home.
     Success,
@@ -64,6 +66,20 @@ pub enum Halt {
     Bound,
     /// One contact holds both.
     AtRest,
+}
+
+impl Halt {
+    /// For a person.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Success => "success",
+            Self::Beside => "beside",
+            Self::Away => "away",
+            Self::Missed => "missed",
+            Self::Bound => "bound",
+            Self::AtRest => "at rest",
+        }
+    }
 }
 
 /// The two halves.
@@ -116,6 +132,13 @@ impl Faces {
         let falling = [DVec2::new(-0.5, z), DVec2::new(0.5, z), DVec2::new(-0.5, z + h)];
         let reach = rising.iter().map(|corner| corner.length()).fold(1.0, f64::max);
         Self { layers: [rising, falling], reach }
+    }
+
+    /// y and θ₂ of the contact that a start (x₀ in D, θ₀ in radians) begins with.
+    #[cfg(test)]
+    pub(super) fn first(&self, x0: f64, theta0: f64) -> Option<(f64, f64)> {
+        let angles = [theta0, 0.0];
+        self.highest(x0, angles).map(|contact| (contact.height, Self::theta2(&contact, x0, angles)))
     }
 
     /// What becomes of the start (x₀ in D, θ₀ in radians), stepped by `step`, in D.

@@ -8,7 +8,7 @@
 //!   drop       the neighbour lies lower               → likewise, or along the foot of the wall
 //!   valley     the neighbour's flow leads back        → down the border to its lower end
 //!   wall       the neighbour lies higher              → likewise
-//!   level      a valley or wall without slope         → at rest
+//!   level      a valley or wall without slope         → at rest: in the seat, all of it, or not
 //!   nothing    no contact across the border           → missed
 //! ```
 //!
@@ -63,7 +63,8 @@ enum Way {
     Into(usize),
     /// Along the border to one of its ends.
     Along(DVec2),
-    Rest,
+    /// On the border, at the height of a cell.
+    Rest(usize),
     Missed,
 }
 
@@ -172,7 +173,13 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         let (from, to) = self.span(cell, k);
         let whole = |accepted| vec![Strip { from, to, accepted }];
         match self.way(cell, &border) {
-            Way::Rest | Way::Missed => whole(false),
+            Way::Missed => whole(false),
+            Way::Rest(floor) => {
+                let middle = border.midpoint();
+                let height = self.sheet(floor).height(middle);
+                let seated = (self.docked)(middle, height);
+                whole(seated)
+            }
             Way::Along(end) => {
                 let height = self.sheet(cell).height(end);
                 let on = (end - border.midpoint()).normalize_or_zero();
@@ -215,7 +222,7 @@ impl<'a, D: FnMut(DVec2, f64) -> bool> Flow<'a, D> {
         let floor = if step < -self.near() { next } else { cell };
         let slope = -self.sheet(floor).gradient.dot(along.normalize_or_zero());
         if slope.abs() <= self.seam {
-            Way::Rest
+            Way::Rest(floor)
         } else {
             Way::Along(if slope > 0.0 { border.to } else { border.from })
         }

@@ -4,15 +4,16 @@ use super::sheet::Sheet;
 use glam::DVec2;
 
 /// A stretch of the line over which one plane is a candidate for the height.
-struct Segment {
-    from: f64,
-    to: f64,
-    offset: f64,
-    slope: f64,
+pub(super) struct Segment {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Height over 0, inside the stretch or not.
+    pub(super) offset: f64,
+    pub(super) slope: f64,
 }
 
 impl Segment {
-    fn height(&self, s: f64) -> f64 {
+    pub(super) fn height(&self, s: f64) -> f64 {
         self.offset + self.slope * s
     }
 }
@@ -56,14 +57,14 @@ fn along(sheet: &Sheet, axis: DVec2, seam: f64) -> Option<Segment> {
 
 /// A stretch of the line and the segment that is the highest there.
 #[derive(Clone, Copy)]
-struct Top<'a> {
-    from: f64,
-    to: f64,
-    segment: &'a Segment,
+pub(super) struct Top<'a> {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) segment: &'a Segment,
 }
 
 /// The upper envelope of segments, from left to right: that of either half, merged.
-fn envelope(segments: &[Segment]) -> Vec<Top<'_>> {
+pub(super) fn envelope(segments: &[Segment]) -> Vec<Top<'_>> {
     match segments {
         [] => Vec::new(),
         [segment] => vec![Top { from: segment.from, to: segment.to, segment }],
@@ -127,7 +128,7 @@ fn reach(tops: &[Top<'_>], sign: f64, depth: f64, seam: f64) -> f64 {
     ahead.sort_by(|a, b| outward(a).0.total_cmp(&outward(b).0));
     let mut seated = true;
     let mut reached = 0.0;
-    let mut below: Option<f64> = None;
+    let mut below: Option<(f64, f64)> = None;
     for top in ahead {
         let (from, to) = outward(top);
         if from > reached + near {
@@ -138,13 +139,17 @@ fn reach(tops: &[Top<'_>], sign: f64, depth: f64, seam: f64) -> f64 {
         }
         // Up a step outward is a drop on the way home; down a step outward is a wall.
         let segment = top.segment;
-        let walled = below.is_some_and(|z| segment.height(reached * sign) < z - near);
+        // Ends are known to a few seams: a steep stretch may begin lower than the one before ended by that much of its slope.
+        let walled = below.is_some_and(|(z, slope)| {
+            let steep = 1.0 + slope.abs() + segment.slope.abs();
+            segment.height(reached * sign) < z - near * steep
+        });
         seated &= [reached, to].into_iter().all(|s| segment.height(s * sign) <= level + near);
         if !seated && (segment.slope * sign <= seam || walled) {
             break;
         }
         reached = to;
-        below = Some(segment.height(to * sign));
+        below = Some((segment.height(to * sign), segment.slope));
     }
     reached
 }

@@ -19,7 +19,9 @@ mod circle;
 mod flow;
 mod heights;
 mod line;
+mod nilsson;
 mod places;
+mod profile;
 mod sheet;
 mod square;
 
@@ -27,12 +29,15 @@ pub use cells::clip;
 pub use circle::circle_bounds;
 pub use heights::{HeightFacet, heights, highest};
 pub use sheet::area;
+pub use nilsson::{Catch, Nilsson};
+pub use profile::Profile;
 pub use square::{Square, circle_square};
 
+use crate::contact::mated::{MatedProblem, sinking};
 use crate::contact::{Pair, Play, Seat, play};
 use crate::design::Alignment;
 use crate::exec::{Cancelled, Exec};
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, DofSet, PoseError};
 use flow::Flow;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -98,6 +103,9 @@ pub enum ZraaError {
         "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis"
     )]
     NoMatedPose,
+    /// An offset lets the aligned half sink deeper: nothing comes to rest there.
+    #[error(transparent)]
+    NotHeld(MatedProblem),
     /// The geometry is too rich.
     #[error("more than {MAX_SHEETS} ways to touch: give a coarser mesh or a larger chord_error")]
     TooManySheets,
@@ -121,6 +129,12 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaEr
     if let Some(Play { axis, .. }) = cut.filter(|play| !play.axis.is_rotation()) {
         return Err(ZraaError::Limited { name: axis.name() });
     }
+    if pair.mated_height() == f64::NEG_INFINITY {
+        return Err(ZraaError::NoMatedPose);
+    }
+    if let Some(sinks) = sinking(pair, DofSet::EMPTY.with(Dof::X).with(Dof::Y)) {
+        return Err(ZraaError::NotHeld(sinks));
+    }
     let sheets =
         sheet::sheets(&pair.fixed, &pair.moving, MAX_SHEETS, exec)?.ok_or(ZraaError::TooManySheets)?;
     let (axis, direction) = match (free.contains(Dof::X), free.contains(Dof::Y)) {
@@ -136,9 +150,6 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaEr
 fn region(pair: &Pair, sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
     let cells = cells::upper_envelope(sheets, seam, exec)?;
     let borders = cells::borders(&cells, seam, exec)?;
-    if pair.mated_height() == f64::NEG_INFINITY {
-        return Err(ZraaError::NoMatedPose);
-    }
     let mut seat = Seat::new(pair);
     let docked = |at: DVec2, height: f64| {
         seat.holds(&PoseError { x: at.x, y: at.y, ..PoseError::default() }, height - 20.0 * seam)

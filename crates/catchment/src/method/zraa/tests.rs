@@ -2,18 +2,18 @@
 
 use super::*;
 use crate::connector::{Connector, Half, stl};
-use crate::design::family::{PinHole, XFace3dLocking};
+use crate::design::family::{PinHole, XFace, XFace3dLocking};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
 use crate::pose::{CorPose, DofSet, Mount};
 use glam::DMat3;
 use proptest::prelude::*;
 
-fn pair(spec: FamilySpec) -> Pair {
+pub(super) fn pair(spec: FamilySpec) -> Pair {
     let planar = spec.family().is_planar();
     pair_of(ConnectorSpec::Family(spec), planar)
 }
 
-fn pair_of(connector: ConnectorSpec, planar: bool) -> Pair {
+pub(super) fn pair_of(connector: ConnectorSpec, planar: bool) -> Pair {
     let free = DofSet::EMPTY.with(Dof::X);
     let free = if planar { free } else { free.with(Dof::Y) };
     let alignment = Alignment {
@@ -52,6 +52,42 @@ fn planar_faces_reach_nilssons_bounds() {
                 assert!((from + bound).abs() < 1e-9 && (to - bound).abs() < 1e-9, "{family:?}: {from} {to}");
             }
         }
+    }
+}
+
+/// A groove is a seat without area: its bottom is a level line, and all that slides onto it is docked.
+#[test]
+fn a_groove_accepts_its_length() {
+    let mut alignment = Alignment::new(DofSet::EMPTY.with(Dof::X).with(Dof::Y), Mount::Y);
+    alignment.docked.limits[Dof::Y.index()] = Some(2.0);
+    let design = Design {
+        name: String::new(),
+        connector: ConnectorSpec::Family(FamilySpec::new(Family::VFace)),
+        width: 1.0,
+        unit: None,
+        alignment,
+    };
+    let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
+    let Zraa::Region { area, .. } = run(&pair, &Settings::default(), &Exec::new()).unwrap() else { panic!() };
+    // |x| < ½, and |y| < 1 while the slabs meet at all.
+    assert!((area - 2.0).abs() < 1e-9, "{area}");
+}
+
+/// Layers with a gap g: |x| < 1, and |y| < g. Beyond, a layer meets the wrong one and rests on it.
+#[test]
+fn layers_accept_their_gap() {
+    for (thickness, gap) in [(0.4, 0.2), (0.1, 0.3), (0.6, 0.05)] {
+        let face = XFace { layer_thickness: Some(thickness), layer_gap: Some(gap), ..XFace::DEFAULT };
+        let mut alignment = Alignment::new(DofSet::EMPTY.with(Dof::X).with(Dof::Y), Mount::Y);
+        alignment.docked.limits[Dof::Y.index()] = Some(gap);
+        let connector = ConnectorSpec::Family(face.into());
+        let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+        let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
+        let found = run(&pair, &Settings::default(), &Exec::new());
+        let Ok(Zraa::Region { area, .. }) = found else { panic!("{thickness} {gap}: {found:?}") };
+        // A gap wider than the layers are thick lets them pass each other before they meet the wrong one.
+        let reach = f64::min(gap, thickness);
+        assert!((area - 2.0 * 2.0 * reach).abs() < 1e-9, "{thickness} {gap}: {area}");
     }
 }
 

@@ -14,8 +14,10 @@
 //!   section     both halves cut along the approach axis, at any pose
 //!   solids      both halves in space
 //!   pair        both halves as they were understood: apart in space, mated in section
+//!   lever       the first contact with its lever arms and angles, as the kinematic method sees it
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
+//!   faces       designs side by side, mated and at the largest offset that still slides home
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
 //!   partition   the contact space as polygons, and the exact outline of what is accepted
 //!   overview    the picture of a design: halves, acceptance, heights
@@ -34,7 +36,9 @@ mod convergence;
 mod curves;
 mod difference;
 pub mod draw;
+mod faces;
 mod heights;
+mod lever;
 mod map;
 mod matrix;
 mod memory;
@@ -57,7 +61,9 @@ pub use basins::basins;
 pub use convergence::convergence;
 pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;
+pub use faces::{Face, faces};
 pub use heights::heights;
+pub use lever::lever;
 pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};
 pub use number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};

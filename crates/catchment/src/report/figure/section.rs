@@ -121,16 +121,43 @@ impl<'a> View<'a> {
         })
     }
 
+    /// The same, grown to show these places in x and z, in D.
+    pub(super) fn with(mut self, places: &[[f64; 2]]) -> Self {
+        let margin = 0.06 * self.size()[0].max(self.size()[1]);
+        for place in places {
+            for (k, value) in place.iter().enumerate() {
+                self.lo[k] = self.lo[k].min(value - margin);
+                self.hi[k] = self.hi[k].max(value + margin);
+            }
+        }
+        self
+    }
+
+    /// How wide and how high it is, in D.
+    pub(super) fn size(&self) -> [f64; 2] {
+        [0, 1].map(|k| self.hi[k] - self.lo[k])
+    }
+
+    /// Its middle in x, in D.
+    pub(super) fn middle(&self) -> f64 {
+        f64::midpoint(self.lo[0], self.hi[0])
+    }
+
+    /// The lowest and the highest z, in D.
+    pub(super) fn span(&self) -> [f64; 2] {
+        [self.lo[1], self.hi[1]]
+    }
+
     /// The largest size with the view's own proportions inside the given one.
     pub(super) fn fit(&self, width: f64, height: f64) -> (f64, f64) {
-        let (w, h) = (self.hi[0] - self.lo[0], self.hi[1] - self.lo[1]);
+        let [w, h] = self.size();
         let scale = (width / w).min(height / h);
         (w * scale, h * scale)
     }
 
     /// Fills a rectangle of any proportions: the view is widened to keep lengths equal in both directions.
     pub(super) fn frame(&self, rect: Rect) -> Frame {
-        let (w, h) = (self.hi[0] - self.lo[0], self.hi[1] - self.lo[1]);
+        let [w, h] = self.size();
         let scale = (rect.w / w).min(rect.h / h);
         let [mx, mz] = [0, 1].map(|k| 0.5 * (self.lo[k] + self.hi[k]));
         let [rx, rz] = [0.5 * rect.w / scale, 0.5 * rect.h / scale];

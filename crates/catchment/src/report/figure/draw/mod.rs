@@ -16,6 +16,7 @@
 //! assert!(Picture::of(svg).svg().contains("y [mm]"));
 //! ```
 
+pub mod arrow;
 pub mod axis;
 pub mod chart;
 pub mod colour;

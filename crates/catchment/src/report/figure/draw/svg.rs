@@ -104,6 +104,13 @@ impl Svg {
         self.write_text([x, y], size, Anchor::Middle, &turn, content);
     }
 
+    /// The same with a white border, for words over a drawing.
+    pub fn haloed(&mut self, at: [f64; 2], size: f64, anchor: Anchor, fill: &str, content: &str) {
+        let border = r##"fill="#ffffff" stroke="#ffffff" stroke-width="3.2" stroke-linejoin="round""##;
+        self.write_text(at, size, anchor, border, content);
+        self.text(at, size, anchor, fill, content);
+    }
+
     fn write_text(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, style: &str, content: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",

@@ -1,0 +1,31 @@
+//! Which surfaces of the two halves touch: of a connector in layers, whether each meets its partner.
+//!
+//! ```text
+//!     ┌─────1─────┐ ┌─────2─────┐     moving half, off by y
+//!   ┌─────1─────┐ ┌─────2─────┐       fixed half: its layer 2 is under the moving layer 1 as well
+//! ```
+//!
+//! Partners are the surfaces of the same number. Lengths in D. Not promised: an answer where a half has slid under an
+//! overhang; it is asked as lowered from above.
+
+use super::Pair;
+use crate::design::Alignment;
+use crate::pose::{CorPose, PoseError};
+
+/// What is nearer than this, in D, touches: a half at rest shivers between its contacts by less.
+const TOUCHING: f64 = 1e-4;
+
+impl Pair {
+    /// Whether something that touches at a pose error, with the moving half lowered onto the fixed one, touches what is not its
+    /// partner.
+    pub fn crosses(&self, error: &PoseError) -> bool {
+        let Alignment { center_of_rotation, free, rotation_length, .. } = self.alignment;
+        let pose = CorPose::from_error(error, center_of_rotation, free);
+        let mut nearby = self.about(TOUCHING);
+        nearby.turn(&pose.rotation, pose.lateral, TOUCHING / rotation_length, TOUCHING);
+        let Some(height) = nearby.height_below(pose.lateral, f64::INFINITY).0 else { return false };
+        let mut found = Vec::new();
+        nearby.contacts(pose.lateral.extend(height), TOUCHING, &mut found);
+        found.iter().any(|(_, meeting)| meeting.shapes[0] != meeting.shapes[1])
+    }
+}
