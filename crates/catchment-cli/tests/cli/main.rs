@@ -21,6 +21,7 @@ mod new;
 mod plumbing;
 mod poses;
 mod seat;
+mod solids;
 mod studies;
 mod sweep;
 mod tables;

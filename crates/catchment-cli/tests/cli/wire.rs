@@ -28,7 +28,7 @@ fn every_json_has_one_head_and_its_fields() {
     let home = home();
     std::fs::write(home.path().join("poses.csv"), "x,pitch\n0.1,0.2\n").unwrap();
     let run = ["run", "v.toml", "--resolution", "8", "--samples", "50", "--json"];
-    let calls: [(&str, &[&str]); 11] = [
+    let calls: [(&str, &[&str]); 13] = [
         ("run", &[&run[..], &["--method", "flood", "--error-sigma", "x=0.1"]].concat()),
         ("check", &["check", "v.toml", "--json"]),
         ("outcome", &["outcome", "v.toml", "--poses", "poses.csv", "--json"]),
@@ -40,6 +40,8 @@ fn every_json_has_one_head_and_its_fields() {
         ("comparison", &["compare", "v.toml", "--methods", "descent,flood", "--resolution", "8", "--json"]),
         ("methods", &[&run[..], &["--method", "all"]].concat()),
         ("export", &["export", "v.toml", "--pose", "x=0.1", "-o", "trial", "--json"]),
+        ("solids", &["solids", "v.toml", "--json"]),
+        ("trials", &["zraa", "v.toml", "--beside", "descent", "--resolution", "4", "--json"]),
     ];
     let mut told = String::new();
     for (kind, args) in calls {

@@ -425,9 +425,10 @@ mod tests {
         let design = design([Dof::X].into_iter().collect());
         let acceptance = blob(&design, 4);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        let refused = write(home.path(), &report, &acceptance, None, &Exec::new());
+        let refused = write(home.path(), &report, &acceptance, &Layers::default(), &Exec::new());
         assert!(matches!(refused, Err(ZarrError::Write(WriteError::NotAResult { .. }))));
-        let short = write(&home.path().join("new.zarr"), &report, &acceptance, Some(&[0.0]), &Exec::new());
+        let one = Layers { heights: Some(&[0.0]), watersheds: None };
+        let short = write(&home.path().join("new.zarr"), &report, &acceptance, &one, &Exec::new());
         assert!(matches!(short, Err(ZarrError::Shape { heights: 1, cells: 4 })));
     }
 

@@ -40,7 +40,7 @@ fn a_vtp_file_reads_back_to_the_bit() {
         let count = |name: &str| piece.attribute(name).unwrap().parse::<usize>().unwrap();
         let places = array("places");
         let corners: Vec<f64> =
-            shape.solids.iter().flat_map(|s| &s.vertices).flat_map(|v| v.to_array()).collect();
+            shape.solids.iter().flat_map(|s| &s.vertices).flat_map(DVec3::to_array).collect();
         assert_eq!((places.len(), &places), (3 * count("NumberOfPoints"), &corners));
         let (joins, ends) = (array("connectivity"), array("offsets"));
         assert_eq!(ends.len(), count("NumberOfPolys"));

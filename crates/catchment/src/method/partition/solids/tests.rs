@@ -169,8 +169,10 @@ fn halves_have_the_volume_of_their_surfaces() {
         let shape = made(&pair, Subject::Halves, 3);
         for (half, is_fixed) in [(&pair.fixed, true), (&pair.moving, false)] {
             let of_half = shape.solids.iter().filter(|solid| solid.fixed.is_some() == is_fixed);
-            let (pieces, whole) =
-                (of_half.map(measure).sum::<f64>(), half.surfaces.iter().map(|s| s.volume()).sum::<f64>());
+            let (pieces, whole) = (
+                of_half.map(measure).sum::<f64>(),
+                half.surfaces.iter().map(crate::connector::Surface::volume).sum::<f64>(),
+            );
             assert!((pieces - whole).abs() < 1e-9, "{family:?}: {pieces} {whole}");
         }
     }
