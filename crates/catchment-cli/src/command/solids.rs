@@ -11,13 +11,12 @@ use catchment::report::{SolidsReport, figure, solids};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 
-/// The shapes behind the contact space as convex bodies: for ParaView, Blender, or a picture
+/// The shapes behind the contact space as files: VTK, OBJ, pictures
 ///
 /// The halves as unions of convex pieces (P-collections), what the moving half sweeps over its angle (C-full), and the places at
 /// which the halves overlap (the surface collision shape, or configuration space obstacle): its upper side is the height of first
 /// contact. Up to three dimensions: x,y or one of them, or one length and one angle, must be all that is free.
 #[derive(Debug, Args)]
-#[expect(clippy::doc_markdown, reason = "the terminal shows it as it is")]
 #[command(after_long_help = "Examples:\n  \
     catchment solids design.toml --shape halves -o halves.vtp\n  \
     catchment solids design.toml --free x -o shape.svg          a planar design that does not turn: polygons\n  \

@@ -212,6 +212,9 @@ struct Canvas {
     colour: Vec<Rgb>,
 }
 
+/// Facets this near to each other, in fine pixels, lie in one plane: the one drawn first stays, and no pattern of rounding shows.
+const COINCIDENT: f64 = 1e-6;
+
 impl Canvas {
     fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb) {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
@@ -233,7 +236,7 @@ impl Canvas {
                 }
                 let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
                 let index = x + y * self.width;
-                if z > self.depth[index] {
+                if z > self.depth[index] + COINCIDENT {
                     self.depth[index] = z;
                     self.colour[index] = colour;
                 }

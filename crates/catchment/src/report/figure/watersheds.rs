@@ -1,7 +1,7 @@
 //! From a connector to its area of acceptance by flooding, in four panels: the halves, the heights, the first labels, what merging
 //! leaves of them.
 //!
-//! Every first watershed has a colour of its own, so that what sampling alone has cut apart shows; after merging it has a shade of what
+//! Every first watershed has a colour of its own, so that what sampling alone has cut apart shows; after merging it has that of what
 //! becomes of it.
 
 use super::draw::axis::Units;
@@ -39,7 +39,7 @@ pub fn watersheds(
     let units = Units::of(design);
     let map = Map::of(acceptance, pair, &PoseError::default())?;
     let (side, top) = (270.0, 96.0);
-    let mut svg = Svg::new(1330.0, top + side + 84.0);
+    let mut svg = Svg::new(1330.0, top + side + 108.0);
     svg.bold([24.0, 32.0], TITLE + 2.0, Anchor::Start, &design.name);
     svg.text([24.0, 53.0], LABEL, Anchor::Start, SOFT, &headline(report));
     let heading =
@@ -68,30 +68,19 @@ pub fn watersheds(
 
     heading(&mut svg, 1040.0, "after merging");
     let frame = map.frame(rect(1040.0), &units);
-    let merged: Vec<Rgb> = map
-        .slice
-        .cells
-        .iter()
-        .zip(&map.outcomes)
-        .map(|(cell, outcome)| {
-            let shade = watersheds.merged(*cell).map_or(0.0, |label| LIGHTER * share(label));
-            mix(colour::outcome(*outcome), [255; 3], shade)
-        })
-        .collect();
+    let merged: Vec<Rgb> = map.outcomes.iter().map(|outcome| colour::outcome(*outcome)).collect();
     map.paint(&mut svg, &frame, &merged)?;
     svg.path(&map.border(&frame), &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
     frame.draw(&mut svg);
     let told =
         format!("{} left; {} of the cells joined another", grouped(counts.merged), percent(moved_share));
     svg.text([1040.0, below], LABEL, Anchor::Start, INK, &told);
-    map::legend(&mut svg, acceptance, false, [340.0, below]);
+    map::legend(&mut svg, acceptance, false, [720.0, below + 26.0]);
     Ok(Picture::of(svg))
 }
 
 /// How far the halves are drawn apart, in D.
 const LIFT: f64 = 0.5;
-/// Share of white in the lightest shade of an outcome.
-const LIGHTER: f64 = 0.4;
 
 /// A number in [0, 1) that differs most between numbers near each other: multiples of the golden ratio.
 fn share(label: u32) -> f64 {

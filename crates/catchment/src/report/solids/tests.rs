@@ -132,7 +132,7 @@ fn shapes_are_drawn_flat_and_in_space() {
     for (k, (design, shape)) in all().iter().enumerate() {
         let picture = bodies(design, shape).unwrap();
         look(&format!("bodies-{k}"), &picture);
-        assert!(picture.svg().contains("convex bodies") && !picture.svg().contains("NaN"));
+        assert!(picture.svg().contains("convex bodies") && !picture.svg().contains("=\"NaN"));
         assert_eq!(picture, bodies(design, shape).unwrap());
         let empty = Solids { solids: Vec::new(), ..shape.clone() };
         assert!(matches!(bodies(design, &empty), Err(FigureError::Empty { .. })));

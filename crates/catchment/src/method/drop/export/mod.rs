@@ -56,9 +56,7 @@ pub enum ExportError {
         surface: usize,
     },
     /// A ground, which the files have none of.
-    #[error(
-        "a ground plane is not exported: leave --ground and presets with one out, and add it to the file"
-    )]
+    #[error("a ground plane is not exported: leave it out here, and add one to the file")]
     Ground,
     /// The halves pass each other by.
     #[error("with this error the halves pass each other by: there is nothing to drop onto")]
