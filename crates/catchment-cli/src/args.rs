@@ -29,6 +29,7 @@ use std::path::PathBuf;
         catchment zraa design.toml              offsets corrected by sliding alone\n  \
         catchment classify design.toml          where it stands among published connectors\n  \
         catchment export design.toml --pose x=0.2 -o trial\n                                          a drop test for MuJoCo and Gazebo\n  \
+        catchment solids design.toml --free x,y -o shape.vtp\n                                          where its halves overlap, for ParaView\n  \
         catchment reproduce 5.7                 a published table beside ours\n\n\
         Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\
         Exit codes: 0 done, 1 requirement not met, 2 could not compute, 130 interrupted, 143 terminated."

@@ -3,13 +3,17 @@
 use crate::failure::Failure;
 use crate::setting::{Change, with_changes};
 use catchment::method::Method;
-use catchment::method::drop::Settings;
+use catchment::method::drop::{PRESETS, Settings};
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use serde_json::{Value, json};
 
 /// What may be said of drop tests.
 #[derive(Debug, Args)]
 pub(crate) struct DropArgs {
+    /// Settings under a name; options beside it go before it
+    #[arg(long, value_name = "PRESET", value_parser = preset_parser(), help_heading = DROP)]
+    preset: Option<Settings>,
     /// Force along the approach, through the centre of rotation, in kg·D/s² [default: 5000]
     #[arg(long, value_name = "FORCE", help_heading = DROP)]
     push: Option<f64>,
@@ -37,6 +41,9 @@ pub(crate) struct DropArgs {
     /// Share of the approach speed that a bounce gives back [default: 0]
     #[arg(long, value_name = "SHARE", help_heading = DROP)]
     restitution: Option<f64>,
+    /// A ground to come to rest on, so far below the lowest point of the fixed half, in D [default: none]
+    #[arg(long, value_name = "LENGTH", help_heading = DROP)]
+    ground: Option<f64>,
     /// Height above first contact from which the half is let go, in D [default: 0.01]
     #[arg(long, value_name = "LENGTH", help_heading = DROP)]
     drop_height: Option<f64>,
@@ -59,6 +66,13 @@ pub(crate) struct DropArgs {
 
 const DROP: &str = "Drop tests (--method drop); lengths in D, times in s, masses in kg";
 
+fn preset_parser() -> ValueParser {
+    let names = PRESETS.map(|preset| PossibleValue::new(preset.name).help(preset.summary));
+    let find =
+        |name: String| PRESETS.iter().find(|preset| preset.name == name).map(|preset| (preset.settings)());
+    PossibleValuesParser::new(names).map(move |name| find(name).unwrap_or_default()).into()
+}
+
 impl DropArgs {
     /// What was asked for: option, setting and value, in the order of the options.
     pub(crate) fn changes(&self) -> Vec<Change> {
@@ -66,6 +80,13 @@ impl DropArgs {
         let mut add = |option: &'static str, setting: &'static str, value: Option<Value>| {
             changes.extend(value.map(|value| Change { option, setting, value }));
         };
+        // First: what is given beside it replaces it.
+        let preset = self.preset.as_ref();
+        add("--preset", "push", preset.map(|preset| json!(preset.push)));
+        add("--preset", "body", preset.map(|preset| json!(preset.body)));
+        add("--preset", "damping", preset.map(|preset| json!(preset.damping)));
+        add("--preset", "angular_damping", preset.map(|preset| json!(preset.angular_damping)));
+        add("--preset", "ground", preset.map(|preset| json!(preset.ground)));
         add("--push", "push", self.push.map(|force| json!({ "force": force })));
         add("--gravity", "push", self.gravity.map(|gravity| json!({ "gravity": gravity })));
         let given = |mass: Option<f64>, gyration: Option<f64>| json!({ "given": { "mass": mass.unwrap_or(1.0), "gyration": gyration } });
@@ -77,6 +98,7 @@ impl DropArgs {
         add("--angular-damping", "angular_damping", turning.map(Value::from));
         add("--friction", "friction", self.friction.map(Value::from));
         add("--restitution", "restitution", self.restitution.map(Value::from));
+        add("--ground", "ground", self.ground.map(Value::from));
         add("--drop-height", "drop_height", self.drop_height.map(Value::from));
         add("--timestep", "timestep", self.timestep.map(Value::from));
         add("--timeout", "timeout", self.timeout.map(Value::from));

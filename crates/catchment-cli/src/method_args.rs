@@ -110,7 +110,7 @@ pub(crate) fn method_parser() -> ValueParser {
 }
 
 /// Reads the name of a method that decides each pose by itself.
-fn pose_method_parser() -> ValueParser {
+pub(crate) fn pose_method_parser() -> ValueParser {
     let by_pose = |entry: &Entry| entry.method().follows().is_some();
     PossibleValuesParser::new(possible(by_pose)).try_map(|name| name.parse::<Method>()).into()
 }

@@ -57,6 +57,9 @@ fn every_registered_method_enters_the_same_way() {
         let [basins, partition] = ["basins", "partition"].map(|name| method.by_products().contains(&name));
         assert_eq!(answer.by_products.basins.is_some(), basins, "{method}");
         assert_eq!(answer.by_products.partition.is_some(), partition, "{method}");
+        let watersheds = method.by_products().contains(&"watersheds");
+        assert_eq!(answer.by_products.watersheds.is_some(), watersheds, "{method}");
+        assert_eq!(answer.report().watersheds.is_some(), watersheds, "{method}");
         if let Some(landscape) = &answer.by_products.landscape {
             assert!(method.by_products().contains(&"landscape") && landscape.heights.len() == 36);
         }

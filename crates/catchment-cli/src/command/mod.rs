@@ -17,6 +17,7 @@ mod reproduce;
 mod run;
 mod schema;
 mod slices;
+mod solids;
 mod sweep;
 mod trace;
 mod zraa;
@@ -36,8 +37,9 @@ pub(crate) enum Command {
     Sweep(Box<sweep::SweepArgs>),
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
-    Zraa(zraa::ZraaArgs),
+    Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
+    Solids(solids::SolidsArgs),
     Classify(classify::ClassifyArgs),
     Catalog(Box<catalog::CatalogArgs>),
     Invert(invert::InvertArgs),
@@ -64,6 +66,7 @@ impl Command {
             Self::Trace(args) => trace::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
+            Self::Solids(args) => solids::run(&args),
             Self::Classify(args) => classify::run(&args),
             Self::Catalog(args) => catalog::run(&args),
             Self::Invert(args) => invert::run(&args),

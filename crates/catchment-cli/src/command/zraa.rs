@@ -1,17 +1,25 @@
 //! `catchment zraa`: which offsets contact corrects without any rotation.
 
 use crate::args::DesignArgs;
+use crate::drop_args::DropArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stdout};
+use crate::method_args::pose_method_parser;
+use crate::output::{FileArgs, tell, to_stdout};
+use crate::setting::{Change, with_changes};
+use catchment::design::Design;
 use catchment::exec::Exec;
+use catchment::method::Method;
 use catchment::method::zraa::{Nilsson, Settings, Square, Zraa, run as accepted_offsets};
 use catchment::problem::{Draft, Problem};
 use catchment::report::figure::{self, Face, Picture};
-use catchment::report::{FacesError, FacesReport, ZraaBody, ZraaReport, csv};
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{FacesError, FacesReport, TrialsReport, ZraaBody, ZraaReport, csv};
+use catchment::study::trials;
 use clap::Args;
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// The zero-rotation area of acceptance: offsets corrected by sliding alone, exactly
 ///
@@ -26,7 +34,11 @@ use std::path::PathBuf;
     catchment zraa design.toml --free x             along one axis only\n  \
     catchment zraa design.toml -o region.svg        with a picture (.svg, .png) or the polygons (.csv)\n  \
     catchment zraa s-face.toml v-face.toml x-face.toml -o faces.svg\n                                                  side by side, at their largest offsets\n  \
-    catchment zraa design.toml --json | jq .area_d2")]
+    catchment zraa design.toml --json | jq .area_d2\n  \
+    catchment zraa design.toml --beside drop --resolution 11,21,41 -o beside.svg\n                                                    drop trials beside it, and where they disagree\n  \
+    catchment zraa design.toml --beside drop --resolution 21 --halvings 2\n                                                    again with half the time step, and a quarter\n\n\
+    --beside locks all rotations and drops one half at a random place of every cell; the share of the error box on the wrong side of the \
+    exact border has its 95 % interval. -o then writes the picture of both, or the trials of the last round (.csv).")]
 pub(crate) struct ZraaArgs {
     #[command(flatten)]
     design: DesignArgs,
@@ -36,11 +48,28 @@ pub(crate) struct ZraaArgs {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Beside the exact region, trials by this method
+    #[arg(long, value_name = "METHOD", value_parser = pose_method_parser(), conflicts_with = "more", help_heading = BESIDE)]
+    beside: Option<Method>,
+    /// Trials along every free offset; several are done one after the other
+    #[arg(long, value_name = "N[,N…]", value_delimiter = ',', default_value = "21", requires = "beside",
+          help_heading = BESIDE)]
+    resolution: Vec<usize>,
+    /// How often the time step of drop trials is halved, at the finest resolution
+    #[arg(long, value_name = "TIMES", default_value_t = 0, requires = "beside", help_heading = BESIDE)]
+    halvings: u32,
+    /// Seed of the places in the cells
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "beside", help_heading = BESIDE)]
+    seed: u64,
+    #[command(flatten)]
+    drop: DropArgs,
     #[command(flatten)]
     file: FileArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
+
+const BESIDE: &str = "Trials beside the exact region";
 
 /// Pixels per unit of a picture.
 const PNG_SCALE: f32 = 2.0;
@@ -50,6 +79,19 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     let count = args.more.len() + 1;
     if count > FacesReport::MOST {
         return Err(FacesError::TooMany { count }.into());
+    }
+    let changes = args.drop.changes();
+    match &args.beside {
+        Some(method) => return beside(args, with_changes(method, &changes)?, kind),
+        None => {
+            if let Some(Change { option, .. }) = changes.first() {
+                let message = format!("{option} is a setting of drop, and no trials are asked for");
+                return Err(Failure::with_help(
+                    message,
+                    Some("add --beside drop, or leave it out".to_owned()),
+                ));
+            }
+        }
     }
     // Rotations play no part, so whether the mated pose holds against them is of no interest here.
     let mut problems = vec![args.design.problem()?];
@@ -115,4 +157,34 @@ impl Answer {
             nilsson: answer.nilsson,
         })
     }
+}
+
+/// Trials beside the exact region, all rotations locked.
+fn beside(args: &ZraaArgs, method: Method, kind: Option<&str>) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let sliding = |design: Design| {
+        let free = design.alignment.free.iter().filter(|dof| !dof.is_rotation()).collect();
+        design.with_free(free)
+    };
+    let problem = args.design.draft()?.change("--beside", sliding)?.build()?;
+    let running = args.exec.start()?;
+    if matches!(kind, Some("svg" | "png")) {
+        figure::ensure_fits(0, &running.exec)?;
+    }
+    let resolutions = args.resolution.clone();
+    let settings = trials::Settings { method, resolutions, halvings: args.halvings, seed: args.seed };
+    let found = trials::run(&problem, &settings, &running.exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let design = problem.design();
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = TrialsReport::new(design, &found, doubts, Some(timing));
+    match kind {
+        Some("svg") => args.file.write(figure::trials(design, &found).svg().as_bytes())?,
+        Some("png") => args.file.write(&figure::trials(design, &found).png(PNG_SCALE)?)?,
+        Some(_) => args.file.write(&csv(&report.records())?)?,
+        None => {}
+    }
+    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
+    tell(&if args.json { report.to_json()? } else { report.table() }, &said)
 }

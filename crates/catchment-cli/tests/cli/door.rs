@@ -121,6 +121,8 @@ fn every_kind_of_report_has_one_head() {
         ("methods", &["run", "v.toml", "--method", "all", "--resolution", "4", "--samples", "0", "--json"]),
         ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "20", "--json"]),
         ("export", &["export", "v.toml", "--pose", "x=0.1", "-o", "trial", "--json"]),
+        ("solids", &["solids", "v.toml", "--json"]),
+        ("trials", &["zraa", "v.toml", "--beside", "descent", "--resolution", "4", "--json"]),
     ] {
         assert_eq!(head(args), json!([3, kind]));
     }

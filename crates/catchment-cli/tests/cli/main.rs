@@ -22,6 +22,7 @@ mod planar;
 mod plumbing;
 mod poses;
 mod seat;
+mod solids;
 mod studies;
 mod sweep;
 mod tables;

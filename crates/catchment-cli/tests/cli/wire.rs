@@ -44,6 +44,8 @@ fn every_json_has_one_head_and_its_fields() {
         ("comparison", &["compare", "v.toml", "--methods", "descent,flood", "--resolution", "8", "--json"]),
         ("methods", &[&run[..], &["--method", "all"]].concat()),
         ("export", &["export", "v.toml", "--pose", "x=0.1", "-o", "trial", "--json"]),
+        ("solids", &["solids", "v.toml", "--json"]),
+        ("trials", &["zraa", "v.toml", "--beside", "descent", "--resolution", "4", "--json"]),
     ];
     let mut told = String::new();
     for (kind, args) in calls {

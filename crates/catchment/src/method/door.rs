@@ -21,7 +21,7 @@ use crate::contact::Pair;
 use crate::design::{Design, nearest};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
-use crate::method::flood::Hierarchy;
+use crate::method::flood::{Hierarchy, Watersheds};
 use crate::method::partition::Partition;
 use crate::problem::Problem;
 use serde::de::DeserializeOwned;
@@ -179,6 +179,8 @@ pub struct ByProducts {
     pub landscape: Option<Landscape>,
     /// The basins and how they merge.
     pub basins: Option<Hierarchy>,
+    /// The label of every cell before merging and after.
+    pub watersheds: Option<Watersheds>,
     /// The polytopes of the contact space.
     pub partition: Option<Partition>,
 }

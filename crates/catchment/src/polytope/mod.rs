@@ -60,6 +60,7 @@
 //! computations in constrained optimal control*, Automatika 50 (2009), for the difference; G. Ziegler, *Lectures on
 //! Polytopes* (1995), for faces.
 
+mod boundary;
 mod collection;
 mod cut;
 mod exact;

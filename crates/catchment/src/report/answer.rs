@@ -1,7 +1,7 @@
 //! An answer, told: its report, whether it meets what was required, and its files.
 
 use super::Report;
-use super::schema::{PartitionReport, SuccessReport, Timing, WarningReport};
+use super::schema::{PartitionReport, SuccessReport, Timing, WarningReport, WatershedsReport};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
@@ -25,6 +25,7 @@ impl Answer {
         if let Some(basins) = &self.by_products.basins {
             report = report.with_basins(acceptance, basins);
         }
+        report.watersheds = self.by_products.watersheds.as_ref().map(WatershedsReport::new);
         if let Some(partition) = &self.by_products.partition {
             report.partition = Some(PartitionReport::new(partition));
         }
@@ -120,6 +121,9 @@ impl Run {
             if let Ok(flooding) = flooding {
                 report = report.with_basins(&acceptance, &flooding.hierarchy);
             }
+        }
+        if by_products.contains(&"watersheds") {
+            report.watersheds = Some(WatershedsReport::default());
         }
         if by_products.contains(&"partition") {
             report.partition = Some(PartitionReport::default());

@@ -7,7 +7,7 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · lever · zraa · faces · export · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -36,10 +36,12 @@ mod save;
 pub mod schema;
 mod sensitivity;
 mod slices;
+pub mod solids;
 mod sweep;
 mod table;
 pub mod text;
 mod trajectory;
+mod trials;
 pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
@@ -62,10 +64,12 @@ pub use save::{Saved, Target};
 pub use schema::{Report, RunBody};
 pub use sensitivity::{SensitivityBody, SensitivityReport};
 pub use slices::{SliceReport, SlicesBody, SlicesReport};
+pub use solids::{SolidsBody, SolidsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use sweep::Parts;
 pub use sweep::{SweepBody, SweepReport};
 pub use table::{table, table_with};
 pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
+pub use trials::{TrialReport, TrialsBody, TrialsReport};
 pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};

@@ -50,7 +50,7 @@ impl Answer {
         let json = report.to_json()?;
         write::folder(path, RUN, |folder| -> Result<(), SaveError> {
             write_all(folder, &pictures, exec)?;
-            zarr::write(&folder.join(RESULT), &report, &self.acceptance, self.heights(), exec)?;
+            zarr::write(&folder.join(RESULT), &report, &self.acceptance, &self.layers(), exec)?;
             write::part(folder, REPORT, json.as_bytes())?;
             Ok(exec.check()?)
         })?;
@@ -62,7 +62,7 @@ impl Answer {
     /// # Errors
     /// Those of [`Answer::save`].
     pub fn save_group(&self, path: &Path, exec: &Exec) -> Result<(), SaveError> {
-        Ok(zarr::write(path, &self.report(), &self.acceptance, self.heights(), exec)?)
+        Ok(zarr::write(path, &self.report(), &self.acceptance, &self.layers(), exec)?)
     }
 
     /// Writes pictures alone.
@@ -75,8 +75,11 @@ impl Answer {
         Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
     }
 
-    fn heights(&self) -> Option<&[f32]> {
-        self.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..])
+    fn layers(&self) -> zarr::Layers<'_> {
+        zarr::Layers {
+            heights: self.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..]),
+            watersheds: self.by_products.watersheds.as_ref(),
+        }
     }
 }
 
@@ -97,7 +100,13 @@ impl Slices {
             exec.check()?;
             let whole = Report::new(problem.design(), &slice.acceptance, settings.clone(), None, exec)
                 .map_err(RunError::from)?;
-            zarr::write(&folder.join(of.name() + ".zarr"), &whole, &slice.acceptance, None, exec)?;
+            zarr::write(
+                &folder.join(of.name() + ".zarr"),
+                &whole,
+                &slice.acceptance,
+                &zarr::Layers::default(),
+                exec,
+            )?;
         }
         Ok(())
     }

@@ -41,6 +41,10 @@ pub struct RunBody {
     pub success: Option<SuccessReport>,
     /// The basins behind the outcomes; null for methods that know none.
     pub basins: Option<BasinsReport>,
+    /// The watersheds behind the outcomes, before merging and after; null for methods that flood nothing, and in reports of versions
+    /// that did not count them.
+    #[serde(default)]
+    pub watersheds: Option<WatershedsReport>,
     /// The polytopes behind the outcomes; null for all methods but `partition`.
     pub partition: Option<PartitionReport>,
     /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
@@ -257,6 +261,7 @@ impl Report {
             tolerances: tolerances.into_iter().map(ToleranceReport::from).collect(),
             success: None,
             basins: None,
+            watersheds: None,
             partition: None,
             seat: None,
         };
@@ -372,11 +377,13 @@ mod sample;
 mod sound;
 #[cfg(test)]
 pub(crate) mod testing;
+mod watersheds;
 
 pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, StepReport};
 pub use partition::PartitionReport;
 pub use sample::SampleReport;
 pub use sound::UnsoundError;
+pub use watersheds::WatershedsReport;
 
 #[cfg(test)]
 mod tests {

@@ -47,6 +47,12 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
         text.push('\n');
         basins::lines(&mut text, found, report);
     }
+    if let Some(found) = &report.watersheds {
+        let [first, merged, dams] = [found.counts.first, found.counts.merged, found.counts.dams].map(grouped);
+        let dams = if found.counts.dams > 0 { format!(" (and {dams} dam cells)") } else { String::new() };
+        row(&mut text, "watersheds", &format!("{first} first labels{dams}, {merged} after merging"));
+        row(&mut text, "", &format!("{} of the cells joined another", percent(found.moved_share)));
+    }
     if let Some(found) = &report.partition {
         text.push('\n');
         let counts = found.counts;

@@ -4,6 +4,8 @@
 //!   out.zarr/          attributes: catchment (layout version), report (the JSON report)
 //!   ├── outcome        u8, 0 none · 1 aligned · 2 jammed · 3 missed · 4 undecided; (yaw, pitch, roll, y, x)
 //!   ├── height         f32, z of the COR at first contact in D, NaN without contact; same shape, where known
+//!   ├── watershed      u32, number of the watershed before merging; 4294967295 for a dam cell; where flooding decided
+//!   ├── watershed_merged   u32, the same after merging
 //!   └── x, y, …        f64, centres of the cells, in D and rad
 //! ```
 //!
@@ -26,6 +28,7 @@ use crate::acceptance::{Acceptance, Outcome};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, GridAxis};
 use crate::merit::MeritError;
+use crate::method::flood::{DAM, Watersheds};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -56,9 +59,9 @@ pub enum ZarrError {
     #[error(transparent)]
     Merit(#[from] MeritError),
     /// The heights do not belong to the grid.
-    #[error("{heights} heights for {cells} cells")]
+    #[error("{heights} values for {cells} cells")]
     Shape {
-        /// Number of heights.
+        /// Number of heights or labels.
         heights: usize,
         /// Number of cells.
         cells: usize,
@@ -95,8 +98,16 @@ fn storage<E: std::error::Error>(error: E) -> ZarrError {
     ZarrError::Storage { reason: error.to_string() }
 }
 
-/// Writes a run to the folder `path`, which must not exist or be such a group. `heights`, in D, are in the order of the
-/// grid's cells; values that are not finite stand for no contact.
+/// What a method knows of every cell beside its outcome, in the order of the grid's cells.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Layers<'a> {
+    /// z of the COR at first contact, in D; values that are not finite stand for no contact.
+    pub heights: Option<&'a [f32]>,
+    /// The labels of flooding.
+    pub watersheds: Option<&'a Watersheds>,
+}
+
+/// Writes a run to the folder `path`, which must not exist or be such a group.
 ///
 /// # Errors
 /// See [`ZarrError`]. Nothing is left behind and an older result stays as it was.
@@ -104,17 +115,17 @@ pub fn write(
     path: &Path,
     report: &Report,
     acceptance: &Acceptance,
-    heights: Option<&[f32]>,
+    layers: &Layers,
     exec: &Exec,
 ) -> Result<(), ZarrError> {
     let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
-    if let Some(heights) = heights
-        && heights.len() != grid.len()
-    {
-        return Err(ZarrError::Shape { heights: heights.len(), cells: grid.len() });
+    let lengths =
+        [layers.heights.map(<[f32]>::len), layers.watersheds.map(|watersheds| watersheds.first.len())];
+    if let Some(heights) = lengths.into_iter().flatten().find(|length| *length != grid.len()) {
+        return Err(ZarrError::Shape { heights, cells: grid.len() });
     }
     let filled = write::folder(path, KIND, |folder| {
-        exec.install(|| fill(folder, report, acceptance, grid, heights, exec))
+        exec.install(|| fill(folder, report, acceptance, grid, layers, exec))
     });
     filled.map_err(|error| match error {
         // The storage library does not say where.
@@ -128,7 +139,7 @@ fn fill(
     report: &Report,
     acceptance: &Acceptance,
     grid: &Grid,
-    heights: Option<&[f32]>,
+    layers: &Layers,
     exec: &Exec,
 ) -> Result<(), ZarrError> {
     let store = Arc::new(FilesystemStore::new(folder).map_err(storage)?);
@@ -142,7 +153,7 @@ fn fill(
         Plan { name: "outcome", dimensions: &dimensions, kind: data_type::uint8(), fill: 0u8, folder, exec };
     let code = |cell: usize| acceptance.outcomes[cell] as u8;
     arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, code)?);
-    if let Some(heights) = heights {
+    if let Some(heights) = layers.heights {
         let finite = |cell: usize| if heights[cell].is_finite() { heights[cell] } else { f32::NAN };
         let attributes = json!({ "long_name": "z of the centre of rotation at first contact", "units": "D" });
         let plan = Plan {
@@ -154,6 +165,21 @@ fn fill(
             exec,
         };
         arrays.insert(plan.name.to_owned(), plan.write(&store, attributes, finite)?);
+    }
+    if let Some(watersheds) = layers.watersheds {
+        for (name, told, merged) in [
+            ("watershed", "number of the watershed before merging", false),
+            ("watershed_merged", "number of the watershed after merging", true),
+        ] {
+            let label = |cell: usize| {
+                let last = if merged { watersheds.merged(cell) } else { Some(watersheds.first[cell]) };
+                last.unwrap_or(DAM)
+            };
+            let attributes = json!({ "long_name": told, "outside": watersheds.outside, "dam": DAM });
+            let (kind, fill) = (data_type::uint32(), DAM);
+            let plan = Plan { name, dimensions: &dimensions, kind, fill, folder, exec };
+            arrays.insert(name.to_owned(), plan.write(&store, attributes, label)?);
+        }
     }
     finish(folder, &serde_json::to_value(report).map_err(storage)?, &arrays)
 }
@@ -329,7 +355,10 @@ mod tests {
             .map(|i| if i == 7 { f32::NEG_INFINITY } else { i as f32 })
             .collect();
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        write(folder, &report, &acceptance, Some(&heights), &Exec::new()).unwrap();
+        let first = (0..acceptance.outcomes.len() as u32).map(|k| if k == 9 { DAM } else { k % 5 }).collect();
+        let watersheds = Watersheds { first, into: vec![0, 0, 2, 3, 2], outside: Some(3) };
+        let layers = Layers { heights: Some(&heights), watersheds: Some(&watersheds) };
+        write(folder, &report, &acceptance, &layers, &Exec::new()).unwrap();
         (acceptance, heights)
     }
 
@@ -363,6 +392,12 @@ mod tests {
         let height = Array::open(Arc::clone(&store), "/height").unwrap();
         let read: Vec<f32> = height.retrieve_array_subset(&height.subset_all()).unwrap();
         assert!(read[7].is_nan() && read[8] == heights[8]);
+        let labels = |name: &str| -> Vec<u32> {
+            let array = Array::open(Arc::clone(&store), name).unwrap();
+            array.retrieve_array_subset(&array.subset_all()).unwrap()
+        };
+        let (first, merged) = (labels("/watershed"), labels("/watershed_merged"));
+        assert_eq!((&first[5..10], &merged[5..10]), (&[0, 1, 2, 3, DAM][..], &[0, 0, 2, 3, DAM][..]));
         let yaw = Array::open(store, "/yaw").unwrap();
         let centers: Vec<f64> = yaw.retrieve_array_subset(&yaw.subset_all()).unwrap();
         assert_eq!(centers[5], acceptance.grid().unwrap().axes[2].center(5));
@@ -390,9 +425,10 @@ mod tests {
         let design = design([Dof::X].into_iter().collect());
         let acceptance = blob(&design, 4);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        let refused = write(home.path(), &report, &acceptance, None, &Exec::new());
+        let refused = write(home.path(), &report, &acceptance, &Layers::default(), &Exec::new());
         assert!(matches!(refused, Err(ZarrError::Write(WriteError::NotAResult { .. }))));
-        let short = write(&home.path().join("new.zarr"), &report, &acceptance, Some(&[0.0]), &Exec::new());
+        let one = Layers { heights: Some(&[0.0]), watersheds: None };
+        let short = write(&home.path().join("new.zarr"), &report, &acceptance, &one, &Exec::new());
         assert!(matches!(short, Err(ZarrError::Shape { heights: 1, cells: 4 })));
     }
 

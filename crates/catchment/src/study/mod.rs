@@ -5,6 +5,7 @@
 //!   agreement    every method on one grid                        one design, how each two agree
 //!   convergence  finer and finer grids until stable               one design, every method
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
+//!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
 //!   sweep        any keys of the design file, all combinations     many designs, one run
 //! ```
 
@@ -14,6 +15,7 @@ pub mod refinement;
 pub mod sensitivity;
 pub mod slices;
 pub mod sweep;
+pub mod trials;
 
 use crate::acceptance::Outcome;
 use crate::method::descent;

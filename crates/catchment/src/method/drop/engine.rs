@@ -10,6 +10,7 @@ use super::pieces::{Part, parts};
 use super::settings::{Push, Settings};
 use super::turning::Turning;
 use crate::acceptance::Outcome;
+use crate::connector::Half;
 use crate::contact::{Pair, Seat};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::End;
@@ -28,6 +29,8 @@ pub(super) struct Engine<'a> {
     settings: &'a Settings,
     fixed: Vec<SharedShape>,
     moving: Vec<SharedShape>,
+    /// z of the ground, in D.
+    ground: Option<f64>,
     /// The moving half as it is.
     body: Mass,
     /// The moving half as an implicit step moves it.
@@ -64,6 +67,7 @@ impl<'a> Engine<'a> {
             settings,
             fixed: parts(&pair.fixed).iter().map(shape).collect::<Result<_, _>>()?,
             moving: parts(&pair.moving).iter().map(shape).collect::<Result<_, _>>()?,
+            ground: settings.ground.map(|below| lowest(&pair.fixed, &DMat3::IDENTITY) - below),
             body,
             damped: body.damped(settings, alignment.rotation_length),
             turning,
@@ -79,6 +83,9 @@ impl<'a> Engine<'a> {
             // Nothing below it: it falls past.
             return Ok(End { outcome: Outcome::Missed, error: *error });
         };
+        // What hangs over beside the fixed half may meet the ground first.
+        let on_ground = self.ground.map(|ground| ground - lowest(&self.pair.moving, &start.rotation));
+        let height = on_ground.map_or(height, |on_ground| height.max(on_ground));
         let cor = start.lateral.extend(height + self.settings.drop_height);
         let mut fall = Fall::new(self, cor, start.rotation);
         let lost = self.apart(cor.with_z(height), &start.rotation) + self.settings.lost_beyond;
@@ -158,6 +165,12 @@ pub(super) fn stays_locked(center: &DVec3, free: DofSet) -> bool {
 
 /// A centre of mass this close to the COR, in D, is there.
 const CENTERED: f64 = 1e-9;
+
+/// z of the lowest corner of a turned half, in D.
+fn lowest(half: &Half, rotation: &DMat3) -> f64 {
+    let corners = half.surfaces.iter().flat_map(|surface| &surface.vertices);
+    corners.map(|corner| (*rotation * *corner).z).fold(f64::INFINITY, f64::min)
+}
 
 /// A part as the engine's shape.
 fn shape(part: &Part) -> Result<SharedShape, DropError> {
@@ -242,6 +255,14 @@ impl<'a> Fall<'a> {
                     .restitution(settings.restitution);
                 world.insert_collider(collider, Some(body));
             }
+        }
+        if let Some(z) = engine.ground {
+            let ground = ColliderBuilder::new(SharedShape::halfspace(DVec3::Z))
+                .translation(DVec3::Z * z)
+                .density(0.0)
+                .friction(settings.friction)
+                .restitution(settings.restitution);
+            world.insert_collider(ground, Some(fixed));
         }
         Self { engine, world, half, held: held.then_some(fixed) }
     }

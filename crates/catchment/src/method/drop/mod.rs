@@ -12,6 +12,8 @@
 //! motion of [`descent`](super::descent), reached by an independent way. There c·(|v|² + ρ²|ω|²), v at the COR, is what friction dissipates,
 //! and the default inertia mass·ρ² about the COR has the same metric, so that ρ means the same in both.
 //!
+//! The fixed half may stand on a ground (`ground`), which the moving one can come to rest on too (dissertation, figure 4.5).
+//!
 //! Locked errors are locked as in [`descent`](super::descent): translations at the COR, rotations as hinges one inside the other.
 //! Geometry is exact: convex pieces, or the triangles of a mesh; see `pieces`.
 //!
@@ -32,7 +34,7 @@ mod settings;
 mod tests;
 mod turning;
 
-pub use settings::{Body, Push, SettingError, Settings};
+pub use settings::{Body, PRESETS, Preset, Push, SettingError, Settings};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::advice::Advice;

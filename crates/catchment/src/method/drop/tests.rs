@@ -183,3 +183,40 @@ fn settings_survive_json_and_refuse_what_they_do_not_know() {
     assert_eq!(serde_json::from_str::<Settings>(&text).unwrap(), settings);
     assert!(serde_json::from_str::<Settings>("{\"fricton\": 0.1}").is_err());
 }
+
+/// A tip beside its notch slides off outwards, until its base clears the peak at x = 1: past the notch into nothing, or onto the ground that
+/// the notch stands on, where its apex comes to rest.
+#[test]
+fn what_slides_off_comes_to_rest_on_the_ground() {
+    let pair = pair(Family::VFace, DofSet::EMPTY.with(Dof::X));
+    let fall = |ground: Option<f64>, at: f64| {
+        let settings = Settings { ground, trials: 1, ..Settings::default() };
+        run(&pair, Domain::Poses(vec![x(at)]), &settings, &Exec::new()).unwrap().1[0]
+    };
+    assert_eq!(fall(None, 0.7).outcome, Outcome::Missed);
+    for below in [0.0, 0.2] {
+        let end = fall(Some(below), 0.7);
+        assert_eq!(end.outcome, Outcome::Jammed, "{below}");
+        assert!((end.error.x - 1.0).abs() < 0.01, "{below}: {}", end.error.x);
+        // Inside, the ground is of no concern.
+        assert_eq!(fall(Some(below), 0.3).outcome, Outcome::Aligned);
+    }
+}
+
+/// The stated settings: overdamped enough that a step moves the half by some thousandths, and with the verdicts of exact motion well
+/// inside and well outside.
+#[test]
+fn the_preset_of_the_dissertation_docks_and_fails_as_it_should() {
+    let settings = Settings { trials: 1, ..Settings::gazebo_2014() };
+    settings.check().unwrap();
+    let Push::Gravity(gravity) = settings.push else { panic!("it falls by its weight") };
+    // Velocity keeps a hundredth of itself per step.
+    let kept = 1.0 / (1.0 + settings.damping * settings.timestep);
+    assert!((kept - 0.01).abs() < 1e-12);
+    let step = kept * gravity * settings.timestep * settings.timestep;
+    assert!(step < 2e-3, "{step}");
+    let pair = pair(Family::XFace3d, DofSet::ALL);
+    let met = outcomes(&pair, vec![x(0.05), x(0.97)], &settings);
+    assert_eq!(met[0], Outcome::Aligned);
+    assert_ne!(met[1], Outcome::Aligned);
+}

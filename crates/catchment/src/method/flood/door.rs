@@ -67,7 +67,7 @@ impl Decide for Settings {
     }
 
     fn by_products(&self) -> &'static [&'static str] {
-        &["landscape", "basins"]
+        &["landscape", "basins", "watersheds"]
     }
 
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
@@ -79,6 +79,7 @@ impl Decide for Settings {
         let by_products = ByProducts {
             landscape: Some(landscape),
             basins: Some(flooding.hierarchy),
+            watersheds: Some(flooding.watersheds),
             ..ByProducts::default()
         };
         Ok(Decided { by_products, ..Decided::plain(flooding.acceptance, used.settings()) })

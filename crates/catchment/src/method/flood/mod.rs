@@ -54,6 +54,7 @@ mod tests;
 mod tolerance;
 mod tree;
 mod verdict;
+mod watersheds;
 
 use crate::acceptance::{Acceptance, Outcome};
 use crate::advice::Advice;
@@ -67,6 +68,7 @@ use serde::{Deserialize, Serialize};
 use steepest::Metric;
 pub use tolerance::{Choice, Reason};
 pub use tree::{Link, MergeTree, Minimum, Step};
+pub use watersheds::{Counts, DAM, Watersheds};
 
 /// Where a cell drains to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -168,6 +170,8 @@ pub struct Flooding {
     pub acceptance: Acceptance,
     /// The basins behind it.
     pub hierarchy: Hierarchy,
+    /// The label of every cell, before merging and after.
+    pub watersheds: Watersheds,
 }
 
 /// The basins of a landscape, at one tolerance and at all of them.
@@ -233,7 +237,8 @@ pub fn flood(
     let (mut acceptance, basins) =
         verdict::verdict(landscape, &targets, docks, &labels, &tree, tolerance.depth, exec)?;
     acceptance.method = settings.rule.method();
-    Ok(Flooding { acceptance, hierarchy: Hierarchy { basins, tree, tolerance, staircase } })
+    let watersheds = Watersheds { first: labels, into: tree.merged(tolerance.depth), outside: tree.outside };
+    Ok(Flooding { acceptance, hierarchy: Hierarchy { basins, tree, tolerance, staircase }, watersheds })
 }
 
 /// Every cell's basin before merging, and the tree of the basins. Minima that hold one of the `targets` are one.

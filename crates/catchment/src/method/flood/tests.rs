@@ -57,6 +57,37 @@ proptest! {
         }
     }
 
+    /// Labels that are joined wherever a link is shallower than the tolerance are the merged ones, cell by cell.
+    #[test]
+    fn first_labels_joined_by_the_links_are_the_merged_ones((shape, heights) in landscapes(), tolerance in 0..40i8) {
+        let (labels, tree) = fast(&shape, &heights, 1);
+        let tolerance = f64::from(tolerance);
+        let watersheds =
+            Watersheds { first: labels.clone(), into: tree.merged(tolerance), outside: tree.outside };
+        let mut joined: Vec<u32> = labels.clone();
+        for link in tree.links.iter().filter(|link| link.depth < tolerance) {
+            let [a, b] = link.basins.map(|basin| joined[tree.minima[basin as usize].cell]);
+            for label in joined.iter_mut().filter(|label| **label == a) {
+                *label = b;
+            }
+        }
+        for cell in 0..labels.len() {
+            for other in 0..cell {
+                let merged = watersheds.merged(cell) == watersheds.merged(other);
+                prop_assert_eq!(merged, joined[cell] == joined[other], "{} {}", cell, other);
+            }
+        }
+        let counts = watersheds.counts();
+        let outside = usize::from(tree.outside.is_some());
+        prop_assert_eq!((counts.first, counts.dams), (tree.minima.len() - outside, 0));
+        joined.sort_unstable();
+        joined.dedup();
+        // The outside counts for none, whether or not another basin ran into it.
+        prop_assert_eq!(counts.merged, joined.len() - outside);
+        let moved = (0..labels.len()).filter(|cell| watersheds.merged(*cell) != Some(labels[*cell])).count();
+        prop_assert_eq!(counts.moved, moved);
+    }
+
     /// The staircase, in one pass, says what merging at every single tolerance says.
     #[test]
     fn the_staircase_is_merging_at_every_tolerance((shape, heights) in landscapes(), at in any::<prop::sample::Index>()) {
@@ -330,4 +361,50 @@ fn threads_do_not_change_a_bit() {
         })
     };
     assert!(with(1) == with(3) && with(1) == with(8));
+}
+
+/// A grid over x and pitch with heights by the numbers of its cells.
+fn field(cells: usize, height: impl Fn(f32, f32) -> f32) -> (Landscape, Alignment) {
+    let alignment = Alignment::new([Dof::X, Dof::Pitch].into_iter().collect(), Mount::X);
+    let grid = Grid::over(&alignment, |_| cells);
+    let heights = (0..grid.len()).map(|k| height((k % cells) as f32, (k / cells) as f32)).collect();
+    (Landscape { grid, heights }, alignment)
+}
+
+/// First and merged watersheds by both kinds of flooding at a tolerance.
+fn counted(field: &(Landscape, Alignment), tolerance: f64) -> [Counts; 2] {
+    let (landscape, alignment) = field;
+    let docks = |_: usize| true;
+    let exec = Exec::new();
+    let fast = flood(landscape, alignment, &docks, &Settings::with_tolerance(tolerance), &exec).unwrap();
+    let settings = meyer::Settings::with_tolerance(tolerance);
+    let queue = meyer::accept(landscape, alignment, &docks, &settings, &exec).unwrap();
+    [fast.watersheds.counts(), queue.watersheds.counts()]
+}
+
+#[test]
+fn a_bowl_is_one_watershed_and_nothing_is_merged() {
+    let bowl = field(41, |u, v| (u - 20.0).powi(2) + 0.5 * (v - 20.0).powi(2));
+    let one = Counts { first: 1, merged: 1, dams: 0, moved: 0 };
+    for tolerance in [0.0, 0.1, 1e3] {
+        assert_eq!(counted(&bowl, tolerance), [one; 2]);
+    }
+}
+
+/// The dissertation's figure 5.11: a steep canal that falls towards one end and runs half a cell aside per cell. Every other cell of it
+/// lies on the floor and is a minimum by sampling alone; between two of them the water must rise by half a cell's steepness.
+#[test]
+fn a_canal_across_the_grid_is_cut_by_sampling_and_joined_by_merging() {
+    const CELLS: usize = 41;
+    let canal = field(CELLS, |u, v| 10.0 * (v - 10.0 - 0.5 * u).abs() + 0.01 * u);
+    let floor = CELLS.div_ceil(2);
+    for counts in counted(&canal, 4.9) {
+        assert_eq!((counts.first, counts.merged, counts.moved), (floor, floor, 0));
+    }
+    let [fast, queue] = counted(&canal, 5.1);
+    assert_eq!((fast.first, fast.merged, fast.dams), (floor, 1, 0));
+    assert_eq!((queue.first, queue.merged), (floor, 1));
+    assert!(queue.dams > 0 && queue.moved < CELLS * CELLS - queue.dams);
+    // All but the watershed of the canal's lowest cell.
+    assert!(fast.moved > CELLS * CELLS / 2 && fast.moved < CELLS * CELLS);
 }

@@ -93,6 +93,12 @@ pub(super) fn compose(piece: &Piece, compartment: &Compartment) -> Vec<Vec<Point
     composites
 }
 
+/// How many composites a piece has in a compartment of so many rotations.
+pub(super) fn count(piece: &Piece, rotations: usize) -> u64 {
+    let corners = piece.vertices.len() as u64;
+    (0..rotations as u64).map(|k| 2 * (corners + k)).product()
+}
+
 /// The vertices, turned by an angle that becomes their coordinate `axis`.
 fn slice(vertices: &[Point], dimension: usize, dof: Dof, angle: f64, axis: usize) -> Vec<Point> {
     let (sine, cosine) = angle.sin_cos();
@@ -115,6 +121,7 @@ fn slice(vertices: &[Point], dimension: usize, dof: Dof, angle: f64, axis: usize
 
 #[cfg(test)]
 mod tests {
+    use super::super::pieces::EVERYWHERE;
     use super::*;
     use crate::polytope::Polytope;
     use crate::pose::PoseError;
@@ -122,6 +129,11 @@ mod tests {
 
     fn point(v: &[f64]) -> Point {
         array::from_fn(|k| v.get(k).copied().unwrap_or(0.0))
+    }
+
+    fn piece<const N: usize>(dimension: usize, corners: &[[f64; N]]) -> Piece {
+        let vertices = corners.iter().map(|corner| point(corner)).collect();
+        Piece { dimension, vertices, number: 0, slab: EVERYWHERE }
     }
 
     #[test]
@@ -134,7 +146,7 @@ mod tests {
     #[test]
     fn compositions_count_two_per_vertex_and_rotation() {
         let simplex = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let piece = Piece { dimension: 3, vertices: simplex.iter().map(|v| point(v)).collect() };
+        let piece = piece(3, &simplex);
         let spans = vec![(Dof::Pitch, [0.0, 0.1]), (Dof::Yaw, [0.0, 0.2])];
         let composites = compose(&piece, &Compartment { spans });
         assert_eq!(composites.len(), 8 * 10);
@@ -144,7 +156,7 @@ mod tests {
     #[test]
     fn on_slices_the_composite_is_the_turned_half() {
         let corners = [[0.3, 0.1, -0.2], [1.0, 0.0, 0.4], [0.0, 1.0, 0.1], [0.2, 0.3, 1.0]];
-        let piece = Piece { dimension: 3, vertices: corners.iter().map(|v| point(v)).collect() };
+        let piece = piece(3, &corners);
         let (pitch, yaw) = (0.4, -0.7);
         let spans = vec![(Dof::Pitch, [pitch, 0.6]), (Dof::Yaw, [-0.9, yaw])];
         let rotation = PoseError { pitch, yaw, ..PoseError::default() }.rotation();
@@ -161,7 +173,7 @@ mod tests {
     #[test]
     fn a_planar_composite_fills_a_thin_wedge() {
         let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let piece = Piece { dimension: 2, vertices: square.iter().map(|v| point(v)).collect() };
+        let piece = piece(2, &square);
         let span = [0.0, 0.01];
         let composites = compose(&piece, &Compartment { spans: vec![(Dof::Pitch, span)] });
         assert_eq!(composites.len(), 8);

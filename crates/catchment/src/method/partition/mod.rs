@@ -23,6 +23,7 @@ mod fall;
 mod frame;
 mod outline;
 mod pieces;
+mod solids;
 mod space;
 #[cfg(test)]
 mod tests;
@@ -41,8 +42,10 @@ use cells::Cells;
 use compose::Compartment;
 use glam::DVec2;
 pub use outline::Corner;
+use pieces::Pieces;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+pub use solids::{Solid, SolidError, Solids, Subject, shapes};
 use watershed::{Parts, Watersheds};
 
 /// What changes the answer.
@@ -67,6 +70,24 @@ impl Settings {
     /// Defaults that take seconds: the polytopes grow with the product of the slices of all angles.
     pub fn for_rotations(rotations: usize) -> Self {
         if rotations < 2 { Self::default() } else { Self { slices: 4, strips: 1 } }
+    }
+
+    /// Refuses what makes no partition.
+    fn check(&self) -> Result<(), PartitionError> {
+        for (setting, [least, most], given) in
+            [("slices", SLICES, self.slices), ("strips", STRIPS, self.strips)]
+        {
+            if !(least..=most).contains(&given) {
+                return Err(PartitionError::Setting { setting, least, most, given });
+            }
+        }
+        Ok(())
+    }
+
+    /// The slices of every free rotation of a pair.
+    fn slices_of(&self, alignment: &Alignment) -> Vec<(Dof, Vec<f64>)> {
+        let rotations = alignment.free.iter().filter(|dof| dof.is_rotation());
+        rotations.map(|dof| (dof, compose::slices(alignment.half_range(dof), self.slices))).collect()
     }
 }
 
@@ -172,26 +193,12 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
     if free.len() < 2 || free.rotations() == 0 {
         return Err(PartitionError::TooFewErrors { free: free.len() });
     }
-    let Settings { slices, strips } = *settings;
-    for (setting, [least, most], given) in [("slices", SLICES, slices), ("strips", STRIPS, strips)] {
-        if !(least..=most).contains(&given) {
-            return Err(PartitionError::Setting { setting, least, most, given });
-        }
-    }
-    let slices: Vec<(Dof, Vec<f64>)> = free
-        .iter()
-        .filter(|dof| dof.is_rotation())
-        .map(|dof| (dof, compose::slices(alignment.half_range(dof), settings.slices)))
-        .collect();
-    let pairs = pieces::pairs(pair, 1.0 / settings.strips as f64)?;
+    settings.check()?;
+    let slices = settings.slices_of(alignment);
+    let pieces = Pieces::of(pair, 1.0 / settings.strips as f64)?;
+    let pairs = pieces.pairs()?;
     let count: u64 = slices.iter().map(|(_, angles)| angles.len() as u64 - 1).product();
-    let polytopes: u64 = pairs
-        .iter()
-        .map(|m| {
-            let corners = m.moving.vertices.len() as u64;
-            (0..slices.len() as u64).map(|k| 2 * (corners + k)).product::<u64>()
-        })
-        .sum();
+    let polytopes: u64 = pairs.iter().map(|met| compose::count(met.moving, slices.len())).sum();
     let threads = exec.threads() as u64;
     exec.ensure_fits(
         "the partition",
@@ -240,7 +247,7 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Partition, P
 
 /// The contact space of every compartment, in their order.
 fn spaces(
-    pairs: &[pieces::PiecePair],
+    pairs: &[pieces::PiecePair<'_>],
     compartments: &[Compartment],
     alignment: &Alignment,
     exec: &Exec,

@@ -17,21 +17,51 @@ use crate::pose::{Dof, DofSet};
 use glam::DVec3;
 
 /// A convex piece of a half.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) struct Piece {
     /// 3 over (x, y, z); 2 over (x, z) of a profile.
     pub(super) dimension: usize,
     /// Its corners, in D.
     pub(super) vertices: Vec<Point>,
+    /// Which convex piece of its half it is, or is a strip of.
+    pub(super) number: usize,
+    /// The slab in y that the extrusion of a profile fills; [`EVERYWHERE`] for a solid.
+    pub(super) slab: [f64; 2],
 }
 
-/// Pieces of both halves that can meet, moving ones from the COR.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct PiecePair {
+/// A slab that is no bound.
+pub(super) const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+impl Piece {
+    fn of(polytope: &Polytope, number: usize, slab: [f64; 2]) -> Self {
+        Self { dimension: polytope.dimension(), vertices: polytope.vertices().to_vec(), number, slab }
+    }
+
+    /// The slab in y that both fill.
+    fn shared_slab(&self, other: &Self) -> Option<[f64; 2]> {
+        let shared = [self.slab[0].max(other.slab[0]), self.slab[1].min(other.slab[1])];
+        (shared[0] < shared[1]).then_some(shared)
+    }
+}
+
+/// The convex pieces of both halves, moving ones from the COR.
+#[derive(Debug)]
+pub(super) struct Pieces {
+    /// Of the fixed half.
+    pub(super) fixed: Vec<Piece>,
+    /// Of the moving half.
+    pub(super) moving: Vec<Piece>,
+}
+
+/// Pieces of both halves that can meet.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PiecePair<'a> {
     /// A piece of the fixed half.
-    pub(super) fixed: Piece,
+    pub(super) fixed: &'a Piece,
     /// A piece of the moving half.
-    pub(super) moving: Piece,
+    pub(super) moving: &'a Piece,
+    /// The slab in y that both fill.
+    pub(super) slab: [f64; 2],
 }
 
 /// Most convex pieces of a half: beyond it the surface is a mesh that this method is not made for.
@@ -40,40 +70,54 @@ const MOST_PIECES: usize = 512;
 /// Most pairs of pieces that can meet.
 const MOST_PAIRS: usize = 100_000;
 
-/// The pairs of convex pieces that can meet, moving ones cut into strips narrower than `width`.
-pub(super) fn pairs(pair: &Pair, width: f64) -> Result<Vec<PiecePair>, PartitionError> {
-    let [fixed, moving] = [&pair.fixed, &pair.moving].map(convex_pieces);
-    let (fixed, moving) = (fixed?, moving?);
-    let planar = DofSet::EMPTY.with(Dof::X).with(Dof::Pitch);
-    let in_plane = pair.alignment.free.iter().all(|dof| planar.contains(dof));
-    let profiles = |pieces: &[Polytope]| pieces.iter().map(profile).collect::<Option<Vec<_>>>();
-    let mut pairs = Vec::new();
-    if let (true, Some(fixed), Some(moving)) = (in_plane, profiles(&fixed), profiles(&moving)) {
-        for (profile, slab) in &moving {
-            for strip in strips(profile, &[0], width) {
-                for (other, other_slab) in &fixed {
-                    if slab[0].max(other_slab[0]) < slab[1].min(other_slab[1]) {
-                        pairs.push(PiecePair { fixed: piece(other), moving: piece(&strip) });
-                    }
-                }
-            }
-        }
-    } else {
-        for polytope in &moving {
-            for strip in strips(polytope, &[0, 1], width) {
-                let met = |other| PiecePair { fixed: piece(other), moving: piece(&strip) };
-                pairs.extend(fixed.iter().map(met));
-                if pairs.len() > MOST_PAIRS {
-                    return Err(PartitionError::TooManyStrips { most: MOST_PAIRS });
-                }
-            }
+impl Pieces {
+    /// The pieces of a pair: profiles where both halves are extrusions along y and only x and pitch are free, else solids. The moving ones
+    /// are cut into strips narrower than `width`.
+    pub(super) fn of(pair: &Pair, width: f64) -> Result<Self, PartitionError> {
+        let [fixed, moving] = [&pair.fixed, &pair.moving].map(convex_pieces);
+        let (fixed, moving) = (fixed?, moving?);
+        let planar = DofSet::EMPTY.with(Dof::X).with(Dof::Pitch);
+        let in_plane = pair.alignment.free.iter().all(|dof| planar.contains(dof));
+        let profiles = |pieces: &[Polytope]| pieces.iter().map(profile).collect::<Option<Vec<_>>>();
+        if let (true, Some(fixed), Some(moving)) = (in_plane, profiles(&fixed), profiles(&moving)) {
+            Self::cut(&fixed, &moving, &[0], width)
+        } else {
+            let solids = |pieces: Vec<Polytope>| -> Vec<(Polytope, [f64; 2])> {
+                pieces.into_iter().map(|piece| (piece, EVERYWHERE)).collect()
+            };
+            Self::cut(&solids(fixed), &solids(moving), &[0, 1], width)
         }
     }
-    Ok(pairs)
-}
 
-fn piece(polytope: &Polytope) -> Piece {
-    Piece { dimension: polytope.dimension(), vertices: polytope.vertices().to_vec() }
+    fn cut(
+        fixed: &[(Polytope, [f64; 2])],
+        moving: &[(Polytope, [f64; 2])],
+        axes: &[usize],
+        width: f64,
+    ) -> Result<Self, PartitionError> {
+        let whole = |(number, (polytope, slab)): (usize, &(Polytope, _))| Piece::of(polytope, number, *slab);
+        let mut pieces = Self { fixed: fixed.iter().enumerate().map(whole).collect(), moving: Vec::new() };
+        for (number, (polytope, slab)) in moving.iter().enumerate() {
+            pieces.moving.extend(strips(polytope, axes, width).iter().map(|s| Piece::of(s, number, *slab)));
+            if pieces.moving.len() > MOST_PAIRS {
+                return Err(PartitionError::TooManyStrips { most: MOST_PAIRS });
+            }
+        }
+        Ok(pieces)
+    }
+
+    /// The pairs that can meet.
+    pub(super) fn pairs(&self) -> Result<Vec<PiecePair<'_>>, PartitionError> {
+        let mut pairs = Vec::new();
+        for moving in &self.moving {
+            let met = |fixed| moving.shared_slab(fixed).map(|slab| PiecePair { fixed, moving, slab });
+            pairs.extend(self.fixed.iter().filter_map(met));
+            if pairs.len() > MOST_PAIRS {
+                return Err(PartitionError::TooManyStrips { most: MOST_PAIRS });
+            }
+        }
+        Ok(pairs)
+    }
 }
 
 /// The profile of an extrusion along y, and its slab in y.

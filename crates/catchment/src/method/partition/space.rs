@@ -82,7 +82,7 @@ pub(super) struct Tile {
 
 /// The contact space over one compartment.
 pub(super) fn tiles(
-    pairs: &[PiecePair],
+    pairs: &[PiecePair<'_>],
     compartment: &Compartment,
     free: DofSet,
     exec: &Exec,
@@ -92,13 +92,13 @@ pub(super) fn tiles(
 
 /// All polytopes of the sum over one compartment, highest first.
 pub(super) fn roofs(
-    pairs: &[PiecePair],
+    pairs: &[PiecePair<'_>],
     compartment: &Compartment,
     free: DofSet,
     exec: &Exec,
 ) -> Result<Vec<Roof>, Cancelled> {
     let mut roofs: Vec<Roof> = Vec::new();
-    for PiecePair { fixed, moving } in pairs {
+    for PiecePair { fixed, moving, .. } in pairs {
         let dimension = moving.dimension + compartment.spans.len();
         for composite in compose(moving, compartment) {
             exec.check()?;
@@ -112,7 +112,7 @@ pub(super) fn roofs(
 }
 
 /// The cross-section at the aligned position of every translation that is locked, and the axis of the approach in it.
-fn unlocked(sum: Polytope, solid_dimension: usize, free: DofSet) -> Option<(Polytope, usize)> {
+pub(super) fn unlocked(sum: Polytope, solid_dimension: usize, free: DofSet) -> Option<(Polytope, usize)> {
     use crate::pose::Dof;
     let mut approach = solid_dimension - 1;
     let mut sum = sum;

@@ -32,12 +32,9 @@ const FIVE: [(Family, f64, f64); 5] = [
 
 fn spaces_of(pair: &Pair, settings: &Settings) -> Vec<(Vec<Roof>, Vec<Tile>, Compartment)> {
     let free = pair.alignment.free;
-    let angles: Vec<_> = free
-        .iter()
-        .filter(|dof| dof.is_rotation())
-        .map(|dof| (dof, slices(pair.alignment.half_range(dof), settings.slices)))
-        .collect();
-    let pairs = pieces::pairs(pair, 1.0 / settings.strips as f64).unwrap();
+    let angles = settings.slices_of(&pair.alignment);
+    let pieces = Pieces::of(pair, 1.0 / settings.strips as f64).unwrap();
+    let pairs = pieces.pairs().unwrap();
     Compartment::all(&angles)
         .into_iter()
         .map(|compartment| {

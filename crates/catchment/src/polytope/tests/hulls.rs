@@ -211,3 +211,32 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Every edge once each way, all corners, and the volume that it encloses by the divergence theorem.
+    #[test]
+    fn the_boundary_is_closed_and_faces_out((dimension, points) in cloud(2..=3, 14)) {
+        let Some(hull) = Polytope::hull(dimension, &points) else { return Ok(()) };
+        let boundary = hull.boundary();
+        let mut edges: Vec<[usize; 2]> = boundary
+            .iter()
+            .flat_map(|walk| (0..walk.len()).map(|k| [walk[k], walk[(k + 1) % walk.len()]]))
+            .collect();
+        edges.sort_unstable();
+        let count = edges.len();
+        edges.dedup();
+        prop_assert_eq!(count, edges.len(), "{:?}", boundary);
+        let at = |k: usize| glam::DVec3::from_slice(&hull.vertices()[k][..3]);
+        let measure: f64 = if dimension == 2 {
+            prop_assert_eq!(boundary[0].len(), hull.vertices().len());
+            edges.iter().map(|e| at(e[0]).truncate().perp_dot(at(e[1]).truncate()) / 2.0).sum()
+        } else {
+            prop_assert!(edges.iter().all(|[a, b]| edges.binary_search(&[*b, *a]).is_ok()), "{:?}", boundary);
+            let cone = |w: &Vec<usize>| w.windows(2).map(|e| at(w[0]).dot(at(e[0]).cross(at(e[1]))) / 6.0).sum::<f64>();
+            boundary.iter().map(cone).sum()
+        };
+        prop_assert!((measure - hull.volume()).abs() < SHARP, "{measure} {}", hull.volume());
+    }
+}

@@ -67,6 +67,10 @@ impl Answer {
             drawn.keep("overview", super::overview(&report, connector, acceptance, map, &height, main))?;
             drawn.keep("slices", super::slices(&report, acceptance, &finer, &[], &zero))?;
             drawn.keep("heights", super::heights(&report, map, &height, main, &zero))?;
+            if let (Some(watersheds), true) = (&self.by_products.watersheds, *map_grid == *grid) {
+                let stages = super::watersheds(&report, connector, acceptance, watersheds, &height, main);
+                drawn.keep("watersheds", stages)?;
+            }
         }
         if let Some(basins) = &self.by_products.basins {
             drawn.keep("basins", super::basins(&report, acceptance, basins))?;

@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn depths_and_staircase_share_a_scale() {
         let (design, flooding) = flooded();
-        let Flooding { acceptance, hierarchy } = flooding;
+        let Flooding { acceptance, hierarchy, .. } = flooding;
         let report = report_of(&design, &acceptance);
         let picture = basins(&report, &acceptance, &hierarchy).unwrap();
         look("basins", &picture);

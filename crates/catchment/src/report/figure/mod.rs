@@ -15,10 +15,13 @@
 //!   solids      both halves in space
 //!   pair        both halves as they were understood: apart in space, mated in section
 //!   lever       the first contact with its lever arms and angles, as the kinematic method sees it
+//!   faces       designs side by side, mated and at the largest offset that still slides home
+//!   bodies      convex pieces of the halves, what they sweep, and where they overlap
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
-//!   faces       designs side by side, mated and at the largest offset that still slides home
+//!   trials      the exact region beside the outcomes of single trials
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
+//!   watersheds  halves, heights, the labels of flooding before and after merging
 //!   partition   the contact space as polygons, and the exact outline of what is accepted
 //!   overview    the picture of a design: halves, acceptance, heights
 //! ```
@@ -32,6 +35,7 @@
 mod agreement;
 mod answer;
 mod basins;
+mod bodies;
 mod convergence;
 mod curves;
 mod difference;
@@ -54,10 +58,13 @@ mod slices;
 mod solid;
 mod sweep;
 mod trajectory;
+mod trials;
+mod watersheds;
 
 pub use agreement::agreement;
 pub use answer::Drawn;
 pub use basins::basins;
+pub use bodies::bodies;
 pub use convergence::convergence;
 pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;
@@ -77,6 +84,8 @@ pub use slices::slices;
 pub use solid::{panel as solid_panel, solids};
 pub use sweep::{sweep_map, sweep_outlines};
 pub use trajectory::trajectory;
+pub use trials::trials;
+pub use watersheds::watersheds;
 
 use super::schema::Interval;
 use super::text::percent;

@@ -42,10 +42,8 @@ pub fn panel(
     connector: &Connector,
     placement: &Placement,
 ) -> Result<(), FigureError> {
-    /// Pixels per SVG unit in the finished image.
-    const PIXELS: f64 = 2.0;
     let (rotation, face) = placement.of(design);
-    let bodies: Vec<Body> = connector
+    let halves: Vec<Body> = connector
         .fixed
         .surfaces
         .iter()
@@ -58,14 +56,24 @@ pub fn panel(
                 .map(|s| Body::new(s, rotation, face, [colour::MOVING, colour::MOVING_EDGE])),
         )
         .collect();
+    bodies(svg, rect, &halves)
+}
+
+/// Surfaces in the world frame, as an image in a rectangle of a picture.
+///
+/// # Errors
+/// If none has a facet.
+pub(super) fn bodies(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<(), FigureError> {
+    /// Pixels per SVG unit in the finished image.
+    const PIXELS: f64 = 2.0;
     let size = [(rect.w * PIXELS) as usize, (rect.h * PIXELS) as usize];
-    let image = draw(&bodies, size)?;
+    let image = draw(bodies, size)?;
     svg.image(rect, &raster::encode(size[0], size[1], true, &image)?, false);
     Ok(())
 }
 
 /// A surface in the world frame.
-struct Body<'a> {
+pub(super) struct Body<'a> {
     surface: &'a Surface,
     corners: Vec<DVec3>,
     normals: Vec<DVec3>,
@@ -74,7 +82,8 @@ struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    fn new(surface: &'a Surface, rotation: DMat3, shift: DVec3, [fill, edge]: [Rgb; 2]) -> Self {
+    /// A surface, turned and then shifted, in the colours of its facets and edges.
+    pub(super) fn new(surface: &'a Surface, rotation: DMat3, shift: DVec3, [fill, edge]: [Rgb; 2]) -> Self {
         Self {
             surface,
             corners: surface.vertices.iter().map(|v| rotation * *v + shift).collect(),
@@ -132,7 +141,7 @@ impl Camera {
             }
         }
         if lo[0] >= hi[0] || lo[1] >= hi[1] {
-            return Err(FigureError::Empty { what: "the halves have no facets" });
+            return Err(FigureError::Empty { what: "there are no facets" });
         }
         let size = [width as f64, height as f64];
         let scale = Self::FILL * (size[0] / (hi[0] - lo[0])).min(size[1] / (hi[1] - lo[1]));
@@ -203,6 +212,9 @@ struct Canvas {
     colour: Vec<Rgb>,
 }
 
+/// Facets this near to each other, in fine pixels, lie in one plane: the one drawn first stays, and no pattern of rounding shows.
+const COINCIDENT: f64 = 1e-6;
+
 impl Canvas {
     fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb) {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
@@ -224,7 +236,7 @@ impl Canvas {
                 }
                 let z = a.z + wb * (b.z - a.z) + wc * (c.z - a.z);
                 let index = x + y * self.width;
-                if z > self.depth[index] {
+                if z > self.depth[index] + COINCIDENT {
                     self.depth[index] = z;
                     self.colour[index] = colour;
                 }

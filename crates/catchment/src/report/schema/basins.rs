@@ -138,7 +138,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_report_lists_basins_and_steps_and_reads_back() {
-        let (design, Flooding { acceptance, hierarchy }) = flooded();
+        let (design, Flooding { acceptance, hierarchy, .. }) = flooded();
         let report = Report::new(&design, &acceptance, serde_json::Value::Null, None, &Exec::new()).unwrap();
         assert_eq!(report.basins, None);
         let report = report.with_basins(&acceptance, &hierarchy);

@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn basins_and_tolerance_are_told_in_eighty_columns() {
-        let (design, Flooding { acceptance, hierarchy }) = flooded();
+        let (design, Flooding { acceptance, hierarchy, .. }) = flooded();
         let report = Report::new(&design, &acceptance, serde_json::Value::Null, None, &Exec::new()).unwrap();
         let text = table(&report.with_basins(&acceptance, &hierarchy));
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");

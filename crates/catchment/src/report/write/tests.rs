@@ -431,7 +431,14 @@ fn write_group(path: &Path, version: usize) -> bool {
     let design = design([Dof::X, Dof::Y].into_iter().collect());
     let acceptance = blob(&design, 4);
     let report = Report::new(&design, &acceptance, version.into(), None, &Exec::new()).unwrap();
-    crate::report::zarr::write(path, &report, &acceptance, None, &Exec::new()).is_ok()
+    crate::report::zarr::write(
+        path,
+        &report,
+        &acceptance,
+        &crate::report::zarr::Layers::default(),
+        &Exec::new(),
+    )
+    .is_ok()
 }
 
 #[cfg(not(feature = "zarr"))]

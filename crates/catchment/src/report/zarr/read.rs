@@ -70,7 +70,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
 
 #[cfg(test)]
 mod tests {
-    use super::super::write;
+    use super::super::{Layers, write};
     use super::*;
     use crate::pose::Dof;
     use crate::report::schema::testing::{blob, design};
@@ -82,7 +82,7 @@ mod tests {
         let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
         let acceptance = blob(&design, 7);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        write(&path, &report, &acceptance, None, &Exec::new()).unwrap();
+        write(&path, &report, &acceptance, &Layers::default(), &Exec::new()).unwrap();
         let (read_report, read_acceptance) = read(&path, &Exec::new()).unwrap();
         assert_eq!(read_report, report);
         assert_eq!(
@@ -123,7 +123,7 @@ mod tests {
         let design = design([Dof::X, Dof::Yaw].into_iter().collect());
         let acceptance = blob(&design, 7);
         let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
-        write(&path, &report, &acceptance, None, &Exec::new()).unwrap();
+        write(&path, &report, &acceptance, &Layers::default(), &Exec::new()).unwrap();
         std::fs::write(path.join(file), bytes).unwrap();
         read(&path, &Exec::new()).unwrap_err().to_string()
     }

@@ -55,6 +55,9 @@ pub enum ExportError {
         /// Which surface, from 0.
         surface: usize,
     },
+    /// A ground, which the files have none of.
+    #[error("a ground plane is not exported: leave it out here, and add one to the file")]
+    Ground,
     /// The halves pass each other by.
     #[error("with this error the halves pass each other by: there is nothing to drop onto")]
     NoContact,
@@ -75,6 +78,9 @@ impl<'a> Scene<'a> {
         error: &PoseError,
     ) -> Result<Self, ExportError> {
         settings.check()?;
+        if settings.ground.is_some() {
+            return Err(ExportError::Ground);
+        }
         let alignment = &pair.alignment;
         let body = Mass::of(&pair.moving, settings, alignment.rotation_length);
         if !stays_locked(&body.center, alignment.free) {

@@ -17,7 +17,7 @@ use crate::landscape::{Landscape, Resolution};
 use crate::method::flood::steepest::Metric;
 use crate::method::flood::tolerance::{self, Choice, Reason};
 use crate::method::flood::tree::explains;
-use crate::method::flood::{self, FloodError, Rule, target, verdict};
+use crate::method::flood::{self, FloodError, Rule, Watersheds, target, verdict};
 use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
@@ -60,12 +60,14 @@ pub struct Flooding {
     pub acceptance: Acceptance,
     /// The tolerance that was used, and why.
     pub tolerance: Choice,
+    /// The label of every cell, before merging and after; dams are given to no watershed yet.
+    pub watersheds: Watersheds,
 }
 
-/// Bytes per cell beside the heights: its basin, its place on the water line (the queue doubles as it grows), its place in
-/// the list of dams, and its outcome.
+/// Bytes per cell beside the heights: its basin before and after dams are given, its place on the water line (the queue doubles as it
+/// grows), its place in the list of dams, and its outcome.
 const BYTES_PER_CELL: u64 =
-    (size_of::<u32>() + 2 * size_of::<Shore<f32>>() + size_of::<usize>() + size_of::<Outcome>()) as u64;
+    (2 * size_of::<u32>() + 2 * size_of::<Shore<f32>>() + size_of::<usize>() + size_of::<Outcome>()) as u64;
 
 /// Bytes that flooding `cells` cells needs, heights included; what the passes between basins take comes on top.
 pub const fn bytes(cells: u64) -> u64 {
@@ -103,6 +105,7 @@ pub fn accept(
         None => widest_gap(landscape, alignment, &targets, exec)?,
     };
     let mut division = divide(&shape, heights, &targets, tolerance.depth, settings.rules, exec)?;
+    let watersheds = division.watersheds();
     division.give_dams(heights);
     let count = division.merged.into.len();
     let mated = mated_basin(&division, heights, &targets, docks, tolerance.depth);
@@ -135,7 +138,7 @@ pub fn accept(
     let outcomes: Vec<Outcome> = (0..heights.len()).map(outcome).collect();
     let warnings = verdict::warnings(landscape, &outcomes, &targets, border_cells, exec)?;
     let acceptance = Acceptance { method: "meyer", domain: Domain::Grid(grid.clone()), outcomes, warnings };
-    Ok(Flooding { acceptance, tolerance })
+    Ok(Flooding { acceptance, tolerance, watersheds })
 }
 
 /// The basin that gathers at the mated pose.

@@ -63,7 +63,7 @@ impl Decide for Settings {
     }
 
     fn by_products(&self) -> &'static [&'static str] {
-        &["landscape"]
+        &["landscape", "watersheds"]
     }
 
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
@@ -77,7 +77,11 @@ impl Decide for Settings {
             exec,
         )?;
         let used = Self { depth_tolerance: Some(flooding.tolerance.depth), ..*self };
-        let by_products = ByProducts { landscape: Some(landscape), ..ByProducts::default() };
+        let by_products = ByProducts {
+            landscape: Some(landscape),
+            watersheds: Some(flooding.watersheds),
+            ..ByProducts::default()
+        };
         Ok(Decided { by_products, ..Decided::plain(flooding.acceptance, used.settings()) })
     }
 }

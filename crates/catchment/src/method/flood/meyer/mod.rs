@@ -34,9 +34,10 @@ pub(super) mod neighbourhood;
 #[cfg(test)]
 mod tests;
 
-use super::FloodError;
 use super::drain::LABEL_LIMIT;
+use super::{FloodError, Watersheds};
 use crate::exec::Exec;
+use crate::method::flood;
 pub use accept::{Flooding, Settings, accept, bytes};
 pub use basins::{Height, Rules};
 use basins::{OUTSIDE, is_basin};
@@ -71,6 +72,13 @@ impl Division {
     /// Whether a basin is that of the cells without contact.
     pub const fn is_outside(basin: u32) -> bool {
         basin == OUTSIDE
+    }
+
+    /// The label of every cell before merging, and where merging takes it. Cells that are walled in by dams are dams.
+    pub fn watersheds(&self) -> Watersheds {
+        let label = |label: &u32| if is_basin(*label) { *label } else { flood::DAM };
+        let first = self.labels.iter().map(label).collect();
+        Watersheds { first, into: self.merged.into.clone(), outside: Some(OUTSIDE) }
     }
 
     /// The cells around a cell, up to 3ⁿ − 1: in ascending order of their place along the last axis, then along the one

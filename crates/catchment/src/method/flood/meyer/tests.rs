@@ -57,6 +57,22 @@ proptest! {
         );
     }
 
+    /// First labels, taken where merging takes them, are the final ones; dams alone are given to a watershed later.
+    #[test]
+    fn merged_first_labels_are_the_final_ones((shape, heights, targets, tolerance) in landscapes(), rules in rules()) {
+        let division = divide(&shape, &heights, &targets, tolerance, rules, &Exec::new()).unwrap();
+        let watersheds = division.watersheds();
+        let judged = brute::divide(&shape, &heights, &targets, tolerance, rules);
+        let mut dams = 0;
+        for (cell, basin) in judged.iter().enumerate() {
+            match watersheds.merged(cell) {
+                Some(merged) => prop_assert_eq!(merged, *basin),
+                None => dams += 1,
+            }
+        }
+        prop_assert_eq!(watersheds.counts().dams, dams);
+    }
+
     /// Outcomes on an error grid, the mated pose where the design says.
     #[test]
     fn outcomes_equal_the_judges(

@@ -10,6 +10,9 @@ impl RunBody {
         if let Some(basins) = &self.basins {
             check_basins(basins, self.acceptance.cells)?;
         }
+        if let Some(watersheds) = &self.watersheds {
+            share(watersheds.moved_share, "watersheds.moved_share")?;
+        }
         if let Some(partition) = &self.partition {
             not_negative(partition.sum, "partition.sum")?;
         }

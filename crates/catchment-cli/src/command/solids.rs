@@ -1,0 +1,96 @@
+//! `catchment solids`: the shapes behind the contact space, as files.
+
+use crate::args::DesignArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, tell};
+use catchment::method::partition::{Settings, Subject, shapes};
+use catchment::report::schema::WarningReport;
+use catchment::report::{SolidsReport, figure, solids};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+
+/// The shapes behind the contact space as files: VTK, OBJ, pictures
+///
+/// The halves as unions of convex pieces (P-collections), what the moving half sweeps over its angle (C-full), and the places at
+/// which the halves overlap (the surface collision shape, or configuration space obstacle): its upper side is the height of first
+/// contact. Up to three dimensions: x,y or one of them, or one length and one angle, must be all that is free.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment solids design.toml --shape halves -o halves.vtp\n  \
+    catchment solids design.toml --free x -o shape.svg          a planar design that does not turn: polygons\n  \
+    catchment solids design.toml --free x,y -o shape.obj        a spatial design that does not turn\n  \
+    catchment solids design.toml --free x,pitch --slices 15 -o shape.vtp\n  \
+    catchment solids design.toml --shape swept --cor \"-0.1\" -o swept.png\n  \
+    catchment solids design.toml --free x,y --json | jq .bodies\n\n\
+    -o writes .vtp (VTK PolyData: numbers per face say which pieces and which slice), .obj (a group per body), .svg and .png.\n\
+    Lengths are in D and angles in radians; z is the approach, and an angle takes the axis that no free length has.")]
+pub(crate) struct SolidsArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Which shape
+    #[arg(long, value_name = "SHAPE", default_value = "collision", value_parser = shape_parser())]
+    shape: Subject,
+    /// Slices across the error box of the angle
+    #[arg(long, value_name = "COUNT", default_value_t = DEFAULT.slices)]
+    slices: usize,
+    /// Strips per D into which the moving half is cut before its slices are joined; 1 is the dissertation's method
+    #[arg(long, value_name = "COUNT", default_value_t = DEFAULT.strips)]
+    strips: usize,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Those of figure 5.6 of the dissertation.
+const DEFAULT: Settings = Settings { slices: 15, strips: 1 };
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+fn shape_parser() -> ValueParser {
+    let shapes = [
+        ("halves", "both halves as convex pieces, docked", Subject::Halves),
+        ("swept", "the moving half, reflected and turned through its slices", Subject::Swept),
+        ("collision", "places of the centre of rotation at which the halves overlap", Subject::Collision),
+    ];
+    PossibleValuesParser::new(shapes.map(|(name, help, _)| PossibleValue::new(name).help(help)))
+        .map(move |name| {
+            shapes.iter().find(|shape| shape.0 == name).map_or(Subject::Collision, |shape| shape.2)
+        })
+        .into()
+}
+
+pub(crate) fn run(args: &SolidsArgs) -> Result<ExitStatus, Failure> {
+    let kind = args.file.kind(&["vtp", "obj", "svg", "png"])?;
+    let problem = args.design.problem()?;
+    let running = args.exec.start()?;
+    if matches!(kind, Some("svg" | "png")) {
+        figure::ensure_fits(0, &running.exec)?;
+    }
+    let settings = Settings { slices: args.slices, strips: args.strips };
+    let shape = shapes(problem.pair(), args.shape, &settings, &running.exec)?;
+    drop(running);
+    match kind {
+        Some("vtp") => args.file.write(solids::vtp(&shape).as_bytes())?,
+        Some("obj") => args.file.write(solids::obj(&shape).as_bytes())?,
+        Some(picture) => {
+            let drawn = figure::bodies(problem.design(), &shape)?;
+            if picture == "png" {
+                args.file.write(&drawn.png(PNG_SCALE)?)?;
+            } else {
+                args.file.write(drawn.svg().as_bytes())?;
+            }
+        }
+        None => {}
+    }
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = SolidsReport::new(problem.design(), &shape, doubts);
+    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
+    tell(&if args.json { report.to_json()? } else { report.table() }, &said)
+}
