@@ -1,7 +1,7 @@
 //! The upper envelope of all elements at one rotation: heights wherever the moving half is.
 
 use super::brute::SEAM;
-use super::candidates::{Candidates, FLUSH, Sieve};
+use super::candidates::{Candidates, Counts, FLUSH, Sieve};
 use super::turned::{Turned, VERTICAL};
 use super::{Contact, Lattice, Pair};
 use glam::{DMat3, DVec2, DVec3};
@@ -29,9 +29,10 @@ impl<'a> Envelope<'a> {
 
     /// Moves on to another rotation.
     pub fn turn(&mut self, rotation: &DMat3) {
-        let sieve = Sieve { slack: FLUSH, lowest: VERTICAL, skin: 0.0, window: None };
+        let counts = Counts { slack: FLUSH, lowest: VERTICAL };
+        let sieve = Sieve { slack: counts.slack, lowest: counts.lowest, skin: 0.0, window: None };
         self.candidates.collect(self.turned.pair, rotation, &sieve);
-        self.turned.turn(rotation, &self.candidates, FLUSH, VERTICAL);
+        self.turned.turn(rotation, &self.candidates, counts);
         let shapes = &self.turned.pair.moving_shapes;
         self.moving.resize_with(shapes.len(), Vec::new);
         for (turned, shape) in self.moving.iter_mut().zip(shapes) {
@@ -41,14 +42,14 @@ impl<'a> Envelope<'a> {
     }
 
     /// z of the COR at first contact with the COR at `lateral`, in D; `None` where the halves pass each other.
-    pub fn height(&self, lateral: DVec2) -> Option<f64> {
+    pub fn height(&mut self, lateral: DVec2) -> Option<f64> {
         self.turned.height_below(lateral, f64::INFINITY).0
     }
 
     /// Everything that carries the moving half, or is closer than `reach` along its normal, with the COR at `position`.
-    pub fn contacts(&self, position: DVec3, reach: f64, out: &mut Vec<Contact>) {
+    pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<Contact>) {
         out.clear();
-        out.extend(self.turned.contacts(position, reach, SEAM).map(|(contact, _)| contact));
+        self.turned.contacts(position, reach, SEAM, |(contact, _)| out.push(contact));
     }
 
     /// Heights over a lattice of *COR* positions, x fastest; −∞ where the halves pass each other by.

@@ -23,10 +23,12 @@ mod overlap;
 mod plan;
 mod play;
 mod raster;
+mod search;
 mod seat;
 mod shape;
 #[cfg(test)]
 mod tests;
+mod tree;
 mod turned;
 mod walls;
 
@@ -42,8 +44,22 @@ use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::CorPose;
 use glam::{DMat3, DVec2, DVec3};
+use search::Trees;
 use shape::Shape;
 use std::sync::OnceLock;
+use tree::Tree;
+use turned::Turned;
+
+/// From this product of their numbers of facets on, halves have trees, and a single height is found by them.
+const MANY: usize = 300 * 300;
+/// From this one on motions ask the trees, too: below it a list of what may touch near a pose, which serves the poses around it, is as
+/// fast where the halves lie close.
+const MOST_LISTED: usize = 3000 * 3000;
+
+/// Facets of a half.
+fn facets(half: &Half) -> usize {
+    half.surfaces.iter().map(|surface| surface.facets.len()).sum()
+}
 
 /// A connector whose moving half is given from the COR: ready for heights.
 #[derive(Debug, Clone)]
@@ -56,6 +72,10 @@ pub struct Pair {
     pub alignment: Alignment,
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
+    /// Of halves of [`MANY`] facets.
+    trees: Option<Trees>,
+    /// Whether what is near a pose is listed.
+    lists: bool,
     mirrors: Vec<Mirror>,
     tight: bool,
     mated_height: f64,
@@ -70,6 +90,12 @@ impl Pair {
         let moving = connector.moving.mapped(|p| p + face_from_cor);
         let shapes = |half: &Half| -> Vec<Shape> { half.surfaces.iter().map(Shape::new).collect() };
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
+        let count = facets(&fixed) * facets(&moving);
+        let lists = count < MOST_LISTED;
+        let trees = (count >= MANY).then(|| Trees {
+            fixed: Tree::over(&fixed, &fixed_shapes),
+            moving: Tree::over(&moving, &moving_shapes),
+        });
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
         let (alignment, mated_height, homing) = (alignment.clone(), f64::NEG_INFINITY, OnceLock::new());
@@ -79,6 +105,8 @@ impl Pair {
             alignment,
             fixed_shapes,
             moving_shapes,
+            trees,
+            lists,
             mirrors,
             tight,
             mated_height,
@@ -112,7 +140,7 @@ impl Pair {
 
     /// z of the COR at first contact, in D; `None` where the halves pass each other by.
     pub fn height(&self, pose: &CorPose) -> Option<f64> {
-        self.at_rotation(pose.rotation).height(pose.lateral)
+        Turned::height_at(self, pose)
     }
 
     /// The same two features as in `before`, seen as planes and lines without borders, at another pose.
