@@ -52,7 +52,7 @@ use turned::Turned;
 
 /// From this product of their numbers of facets on, halves have trees, and a single height is found by them.
 const MANY: usize = 300 * 300;
-/// From this one on motions ask the trees, too: below it a list of what may touch near a pose, which serves the poses around it, is as
+/// From this one on motions and grids ask the trees, too: below it a list of what may touch near a pose, which serves the poses around it, is as
 /// fast where the halves lie close.
 const MOST_LISTED: usize = 3000 * 3000;
 
@@ -115,6 +115,16 @@ impl Pair {
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
         pair
+    }
+
+    /// Whether the halves have so many facets that what may touch near a pose is searched anew at every pose, not listed.
+    pub(crate) fn is_large(&self) -> bool {
+        self.searched().is_some()
+    }
+
+    /// The trees, where there is too much to list.
+    fn searched(&self) -> Option<&Trees> {
+        self.trees.as_ref().filter(|_| !self.lists)
     }
 
     /// Whether all motion near the mated pose leads to it, as `find` says, which is asked once.

@@ -196,7 +196,8 @@ impl Lowered<'_> {
             }
             Split::Moving(a, b) => {
                 let f = &trees.fixed.node(fixed).part;
-                let [p, q] = [a, b].map(|k| self.placed.part(&trees.moving.node(k).part));
+                let p = self.placed.part(&trees.moving.node(a).part);
+                let q = self.placed.part(&trees.moving.node(b).part);
                 self.both([(fixed, a, &p, f.heights(&p)), (fixed, b, &q, f.heights(&q))]);
             }
         }
@@ -270,11 +271,14 @@ impl Close<'_> {
     }
 }
 
+/// How much smaller a node of the fixed half may be and still be split first: where it is, is known.
+const SOONER: f64 = 1.5;
+
 /// What is below two nodes.
 enum Split<'a> {
     /// Two leaves.
     Leaves(&'a Leaf, &'a Leaf),
-    /// The children of the fixed half's node, which is the larger.
+    /// The children of the fixed half's node.
     Fixed(u32, u32),
     /// The children of the moving half's node.
     Moving(u32, u32),
@@ -286,7 +290,7 @@ impl Trees {
         let (f, m) = (self.fixed.node(fixed), self.moving.node(moving));
         if f.is_leaf && m.is_leaf {
             Split::Leaves(self.fixed.leaf(fixed), self.moving.leaf(moving))
-        } else if m.is_leaf || !f.is_leaf && f.part.size() >= m.part.size() {
+        } else if m.is_leaf || !f.is_leaf && SOONER * f.part.size() >= m.part.size() {
             let [a, b] = self.fixed.children(fixed);
             Split::Fixed(a, b)
         } else {

@@ -210,6 +210,7 @@ impl Part {
 
     /// Where heights of contact of a part of the fixed half and one of the moving half may lie: none is below the first number nor above
     /// the second; `None` where they are beside each other. Heights are those of the COR above where it is.
+    #[inline]
     pub(super) fn heights(&self, moving: &Self) -> Option<[f64; 2]> {
         // What both boxes have in common in plan view.
         let reach = self.half.truncate() + MARGIN;
@@ -255,6 +256,7 @@ impl Placed {
     }
 
     /// A part of the moving half in the world.
+    #[inline]
     pub(super) fn part(&self, own: &Part) -> Part {
         let normal = self.rotation * own.normal;
         let level = own.level + normal.dot(self.position);

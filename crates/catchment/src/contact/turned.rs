@@ -104,6 +104,12 @@ impl<'a> Turned<'a> {
         height.is_some_and(|height| height > level)
     }
 
+    /// What carries a half lowered from far above, by the trees.
+    pub(super) fn carried_by(&mut self, lateral: DVec2) -> Option<(Element, Number, f64)> {
+        let whole = Asked { ceiling: f64::INFINITY, enough: f64::INFINITY };
+        self.trees.and_then(|trees| self.carried(trees, lateral, whole).by)
+    }
+
     fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: Asked) -> Carried {
         let carried = trees.carried(self.pair, &self.rotation, lateral, self.counts, asked, self.carrier);
         self.carrier = carried.by.map(|(_, number, _)| number).or(self.carrier);

@@ -4,7 +4,7 @@ use super::*;
 use crate::connector::{Connector, Half, Source, convex_hull};
 use crate::contact::candidates::{Candidates, FLUSH, Sieve};
 use crate::contact::turned::Turned;
-use crate::contact::{Contact, Meeting, brute};
+use crate::contact::{Contact, Envelope, Lattice, Meeting, brute};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{CorPose, DofSet, Mount, rotation};
 use proptest::prelude::*;
@@ -139,5 +139,37 @@ fn heights_of_a_funnel_are_the_judges() {
         };
         let (fast, slow) = (pair.height(&pose).unwrap(), brute::height(&pair, &pose).unwrap());
         assert!((fast - slow).abs() < 1e-11, "{fast} against {slow}");
+    }
+}
+
+#[test]
+fn a_searched_lattice_is_the_listed_one() {
+    let mut pair = funnel(300);
+    let turn = rotation(0.1, -0.2, 0.3);
+    let lattice = |first: f64| Lattice { first, step: 0.11, count: 14 };
+    let (x, y) = (lattice(-0.7), lattice(-0.65));
+    let cells = x.count * y.count;
+    let mut relief = |lists: bool| {
+        pair.lists = lists;
+        let (mut single, mut heights, mut carriers) = (vec![0.0; cells], vec![0.0; cells], vec![0; cells]);
+        let mut envelope = pair.at_rotation(turn);
+        envelope.heights(x, y, &mut single);
+        envelope.relief(x, y, &mut heights, &mut carriers);
+        assert_eq!(single, heights);
+        let at = |k: usize| DVec2::new(x.at(k % x.count), y.at(k / x.count));
+        let carried = |(k, carrier): (usize, &u32)| {
+            (*carrier != Envelope::NOTHING).then(|| envelope.carried_by(*carrier, at(k)))
+        };
+        (heights, carriers.iter().enumerate().map(carried).collect::<Vec<_>>())
+    };
+    let (listed, by_list) = relief(true);
+    let (searched, by_search) = relief(false);
+    assert!(listed.iter().filter(|h| h.is_finite()).count() > cells / 4);
+    for k in 0..cells {
+        // Rounding of a plane along a row.
+        assert!(listed[k] == searched[k] || (listed[k] - searched[k]).abs() < 1e-12);
+        // Whatever carries there carries as high.
+        let cor = |by: &Option<(Contact, DVec3)>| by.as_ref().map_or(f64::NEG_INFINITY, |(_, cor)| cor.z);
+        assert!((cor(&by_list[k]).max(-9.0) - cor(&by_search[k]).max(-9.0)).abs() < 1e-12);
     }
 }
