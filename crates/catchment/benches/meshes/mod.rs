@@ -25,7 +25,7 @@ const MOUTH: f64 = 0.45;
 const BACK: f64 = 0.2;
 
 /// Triangles of a half.
-pub type Triangles = Vec<[DVec3; 3]>;
+pub(crate) type Triangles = Vec<[DVec3; 3]>;
 
 /// The profile of the face from the axis to the rim: `count` + 1 points (radius, z), the rim at z = 0.
 fn profile(count: usize) -> Vec<DVec2> {
@@ -49,7 +49,7 @@ fn profile(count: usize) -> Vec<DVec2> {
 }
 
 /// Fixed and moving half of about `count` triangles each, both facing +z, their rims at z = 0.
-pub fn funnel(count: usize) -> [Triangles; 2] {
+pub(crate) fn funnel(count: usize) -> [Triangles; 2] {
     // Facets as long as they are wide where the face is half as wide as the half: 2·sides·rings triangles.
     let rings = ((count as f64 / 8.0).sqrt().round() as usize).max(4);
     let sides = (count / (2 * rings + 4)).max(8);
@@ -80,7 +80,9 @@ pub fn funnel(count: usize) -> [Triangles; 2] {
     let socket =
         [&face[..], &[DVec2::new(RADIUS, 0.0), DVec2::new(RADIUS, back), DVec2::new(0.0, back)]].concat();
     // The plug as it faces +z: its tip on top.
-    face.iter_mut().for_each(|p| p.y = -p.y);
+    for p in &mut face {
+        p.y = -p.y;
+    }
     let plug =
         [&face[..], &[DVec2::new(RADIUS, 0.0), DVec2::new(RADIUS, -BACK), DVec2::new(0.0, -BACK)]].concat();
     [lathe(&socket), lathe(&plug)]
