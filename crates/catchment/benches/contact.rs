@@ -1,12 +1,15 @@
 //! Heights of first contact and descents of committed designs: the unit of work of every method.
 
 mod designs;
+mod meshes;
 mod rates;
 
 use catchment::acceptance::{Domain, Outcome};
-use catchment::contact::{Lattice, Pair, brute};
+use catchment::connector::{Connector, Source};
+use catchment::contact::{Lattice, Pair, brute, mated};
+use catchment::design::Alignment;
 use catchment::method::descent;
-use catchment::pose::{CorPose, rotation};
+use catchment::pose::{CorPose, Dof, DofSet, Mount, PoseError, rotation};
 use designs::pair;
 use glam::{DMat3, DVec2};
 use rates::Rates;
@@ -27,7 +30,60 @@ fn main() {
     for name in ["v-face", "pyramid", "x-face-3d"] {
         descents(&mut rates, name, &pair(&format!("{name}.toml")));
     }
+    for count in FACETS {
+        funnel(&mut rates, count);
+    }
     rates.finish();
+}
+
+/// Triangles per half of the funnels: a list and trees, and how time grows with ten times as many.
+const FACETS: [usize; 3] = [1_000, 10_000, 100_000];
+/// Poses of a funnel whose heights are asked for, and of these such that are followed.
+const HEIGHTS: usize = 50;
+const MOTIONS: usize = 5;
+
+/// A filleted funnel as CAD exports it: the whole check, heights of first contact, motions. Its heights are the judge's at a thousand
+/// triangles, which the tests of the room hold.
+fn funnel(rates: &mut Rates, count: usize) {
+    let build = || {
+        let [fixed, moving] = meshes::funnel(count).map(Source::Triangles);
+        let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).expect("sound meshes");
+        let alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
+        let pair = Pair::new(&connector, &alignment);
+        assert_eq!(mated::problems(&pair), [], "the plug is seated");
+        pair
+    };
+    let pair = build();
+    // A third of the error box: where most poses touch.
+    let poses: Vec<PoseError> = match Domain::random(&pair.alignment, HEIGHTS, 1) {
+        Domain::Poses(poses) => {
+            poses.iter().map(|e| PoseError::from_array(e.to_array().map(|x| x / 3.0))).collect()
+        }
+        Domain::Grid(_) => Vec::new(),
+    };
+    let placed =
+        |e: &PoseError| CorPose::from_error(e, pair.alignment.center_of_rotation, pair.alignment.free);
+    let heights = || poses.iter().map(|e| pair.height(&placed(e))).collect::<Vec<_>>();
+    let known = heights();
+    rates.measure(&format!("check of a funnel of {count}"), "checks", 1, &mut || drop(build()), None);
+    rates.measure(
+        &format!("poses of a funnel of {count}"),
+        "heights",
+        HEIGHTS,
+        &mut || assert_eq!(heights(), known),
+        None,
+    );
+    let settings = descent::Settings::default();
+    rates.measure(
+        &format!("random poses of a funnel of {count}"),
+        "descents",
+        MOTIONS,
+        &mut || {
+            let aligned = |error| descent::outcome(&pair, error, &settings).outcome == Outcome::Aligned;
+            assert!(poses.iter().take(MOTIONS).any(aligned), "none of {MOTIONS} aligned");
+        },
+        None,
+    );
 }
 
 /// A tilted half, so that no edge is parallel to another by accident.

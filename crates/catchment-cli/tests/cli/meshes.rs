@@ -101,7 +101,7 @@ fn three_million_triangles_are_refused_unread() {
         file.write_all(&COUNT.to_le_bytes()).unwrap();
         file.set_len((HEADER + TRIANGLE * COUNT as usize) as u64).unwrap();
     };
-    refused("huge", huge, "3000000 triangles, more than the 20000 that a half may have");
+    refused("huge", huge, "3000000 triangles, more than the 200000 that a half may have");
 }
 
 /// Final errors of 50 poses spread over the error box.

@@ -31,7 +31,7 @@ pub struct Surface {
     pub vertices: Vec<DVec3>,
     /// Facets, outward.
     pub facets: Vec<Facet>,
-    /// The *convex* edges only: flat and reflex ones never touch first.
+    /// The *convex* edges only: flat and reflex ones never touch first. In the order of their ends.
     pub edges: Vec<Edge>,
     /// Whether the whole solid is convex.
     pub convex: bool,

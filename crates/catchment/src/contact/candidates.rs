@@ -45,6 +45,15 @@ pub(super) struct Sieve {
     pub(super) window: Option<Window>,
 }
 
+/// Which elements count at a rotation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Counts {
+    /// Sine of the angle by which a feature may fail to support a normal and still count.
+    pub(super) slack: f64,
+    /// Normals must have a z-component above this.
+    pub(super) lowest: f64,
+}
+
 /// Where the COR is in plan view, and how close features must come to count.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
@@ -54,10 +63,10 @@ pub(super) struct Window {
 
 /// A feature of a fixed shape and one of a moving shape; indices into the corners, facets or ridges of the shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Candidate {
-    shapes: [u32; 2],
-    fixed: u32,
-    moving: u32,
+pub(super) struct Candidate {
+    pub(super) shapes: [u32; 2],
+    pub(super) fixed: u32,
+    pub(super) moving: u32,
 }
 
 /// The pairs of features that passed a sieve.
@@ -168,13 +177,11 @@ impl Candidates {
         &self,
         pair: &Pair,
         rotation: &DMat3,
-        slack: f64,
-        lowest: f64,
+        Counts { slack, lowest }: Counts,
         out: &mut Vec<Element>,
     ) {
         out.clear();
         let back = rotation.transpose();
-        let up = back.z_axis;
         let of = |c: &Candidate| {
             (&pair.fixed_shapes[c.shapes[0] as usize], &pair.moving_shapes[c.shapes[1] as usize])
         };
@@ -182,50 +189,86 @@ impl Candidates {
         let mut seen = DVec3::ZERO;
         for candidate in &self.facet_corner {
             let (fixed, moving) = of(candidate);
-            let facet = candidate.fixed as usize;
-            let normal = fixed.facets[facet].normal;
-            if last != Some((candidate.shapes[0], facet)) {
-                last = Some((candidate.shapes[0], facet));
-                seen = back * normal;
+            if last != Some((candidate.shapes[0], candidate.fixed)) {
+                last = Some((candidate.shapes[0], candidate.fixed));
+                seen = back * fixed.facets[candidate.fixed as usize].normal;
             }
-            let corner = &moving.corners[candidate.moving as usize];
-            if moving.supports(corner, seen, slack) {
-                let features = Features::FacetCorner { facet: candidate.fixed, vertex: corner.vertex };
-                let offset = seen.dot(moving.at(corner.vertex)) - fixed.levels[facet];
-                out.push(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset });
-            }
+            out.extend(facet_corner(candidate, fixed, moving, seen, slack));
         }
         for candidate in &self.corner_facet {
             let (fixed, moving) = of(candidate);
-            let facet = candidate.moving as usize;
-            let normal = *rotation * moving.facets[facet].normal;
-            let corner = &fixed.corners[candidate.fixed as usize];
-            if -normal.z > lowest && fixed.supports(corner, normal, slack) {
-                let features = Features::CornerFacet { vertex: corner.vertex, facet: candidate.moving };
-                let offset = normal.dot(fixed.at(corner.vertex)) - moving.levels[facet];
-                let meeting = Meeting { shapes: candidate.shapes, features };
-                out.push(Element { meeting, normal: -normal, offset });
-            }
+            let normal = *rotation * moving.facets[candidate.moving as usize].normal;
+            out.extend(corner_facet(candidate, fixed, moving, normal, slack, lowest));
         }
         last = None;
         for candidate in &self.edge_edge {
             let (fixed, moving) = of(candidate);
-            let (f, m) = (&fixed.ridges[candidate.fixed as usize], &moving.ridges[candidate.moving as usize]);
-            if last != Some((candidate.shapes[0], candidate.fixed as usize)) {
-                last = Some((candidate.shapes[0], candidate.fixed as usize));
-                seen = back * f.along;
+            if last != Some((candidate.shapes[0], candidate.fixed)) {
+                last = Some((candidate.shapes[0], candidate.fixed));
+                seen = back * fixed.ridges[candidate.fixed as usize].along;
             }
-            if m.normals.iter().all(|n| up.dot(*n) >= -lowest) {
-                continue;
-            }
-            let edges = EdgesAt { w: *rotation * m.along, moving: m };
-            if let Some(normal) = edges.normal(f, seen, slack).filter(|n| n.z > lowest) {
-                let offset = normal.dot(*rotation * moving.at(m.ends[0]) - fixed.at(f.ends[0]));
-                let features = Features::EdgeEdge { fixed: f.ends, moving: m.ends };
-                out.push(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset });
-            }
+            out.extend(edge_edge(candidate, fixed, moving, rotation, seen, slack, lowest));
         }
     }
+}
+
+/// A fixed facet that faces up enough under a moving corner, if that supports its normal, `seen` in the moving frame.
+pub(super) fn facet_corner(
+    candidate: &Candidate,
+    fixed: &Shape,
+    moving: &Shape,
+    seen: DVec3,
+    slack: f64,
+) -> Option<Element> {
+    let facet = candidate.fixed as usize;
+    let corner = &moving.corners[candidate.moving as usize];
+    moving.supports(corner, seen, slack).then(|| {
+        let features = Features::FacetCorner { facet: candidate.fixed, vertex: corner.vertex };
+        let offset = seen.dot(moving.at(corner.vertex)) - fixed.levels[facet];
+        let meeting = Meeting { shapes: candidate.shapes, features };
+        Element { meeting, normal: fixed.facets[facet].normal, offset }
+    })
+}
+
+/// A fixed corner under a moving facet with this normal in the world, if it faces down enough and the corner supports it.
+pub(super) fn corner_facet(
+    candidate: &Candidate,
+    fixed: &Shape,
+    moving: &Shape,
+    normal: DVec3,
+    slack: f64,
+    lowest: f64,
+) -> Option<Element> {
+    let corner = &fixed.corners[candidate.fixed as usize];
+    (-normal.z > lowest && fixed.supports(corner, normal, slack)).then(|| {
+        let features = Features::CornerFacet { vertex: corner.vertex, facet: candidate.moving };
+        let offset = normal.dot(fixed.at(corner.vertex)) - moving.levels[candidate.moving as usize];
+        let meeting = Meeting { shapes: candidate.shapes, features };
+        Element { meeting, normal: -normal, offset }
+    })
+}
+
+/// Two edges, if they support their common normal and it faces up enough; `seen` is the direction of the fixed one in the moving frame.
+pub(super) fn edge_edge(
+    candidate: &Candidate,
+    fixed: &Shape,
+    moving: &Shape,
+    rotation: &DMat3,
+    seen: DVec3,
+    slack: f64,
+    lowest: f64,
+) -> Option<Element> {
+    let (f, m) = (&fixed.ridges[candidate.fixed as usize], &moving.ridges[candidate.moving as usize]);
+    // World z seen from the moving half.
+    let up = rotation.transpose().z_axis;
+    if m.normals.iter().all(|n| up.dot(*n) >= -lowest) {
+        return None;
+    }
+    let edges = EdgesAt { w: *rotation * m.along, moving: m };
+    let normal = edges.normal(f, seen, slack).filter(|n| n.z > lowest)?;
+    let offset = normal.dot(*rotation * moving.at(m.ends[0]) - fixed.at(f.ends[0]));
+    let features = Features::EdgeEdge { fixed: f.ends, moving: m.ends };
+    Some(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset })
 }
 
 /// A moving edge at one rotation.

@@ -1,10 +1,14 @@
 //! The upper envelope of all elements at one rotation: heights wherever the moving half is.
+//!
+//! All that can carry is listed once for a rotation; where that would be too much, every position is searched by the trees.
 
 use super::brute::SEAM;
-use super::candidates::{Candidates, FLUSH, Sieve};
+use super::candidates::{Candidates, Counts, FLUSH, Sieve};
+use super::element::Element;
 use super::turned::{Turned, VERTICAL};
 use super::{Contact, Lattice, Pair};
 use glam::{DMat3, DVec2, DVec3};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// The pair at one rotation: everything that can carry the moving half from below, for any position of the COR.
@@ -16,22 +20,34 @@ pub struct Envelope<'a> {
     candidates: Candidates,
     /// Vertices of the moving shapes at the rotation.
     moving: Vec<Vec<DVec3>>,
+    /// What was found to carry where nothing is listed.
+    carriers: Vec<Element>,
 }
 
 impl<'a> Envelope<'a> {
     /// The envelope at `rotation`.
     pub(super) fn new(pair: &'a Pair, rotation: &DMat3) -> Self {
-        let mut envelope =
-            Self { turned: Turned::new(pair), candidates: Candidates::default(), moving: Vec::new() };
+        let mut envelope = Self {
+            turned: Turned::new(pair),
+            candidates: Candidates::default(),
+            moving: Vec::new(),
+            carriers: Vec::new(),
+        };
         envelope.turn(rotation);
         envelope
     }
 
     /// Moves on to another rotation.
     pub fn turn(&mut self, rotation: &DMat3) {
-        let sieve = Sieve { slack: FLUSH, lowest: VERTICAL, skin: 0.0, window: None };
-        self.candidates.collect(self.turned.pair, rotation, &sieve);
-        self.turned.turn(rotation, &self.candidates, FLUSH, VERTICAL);
+        let counts = Counts { slack: FLUSH, lowest: VERTICAL };
+        let pair = self.turned.pair;
+        if let Some(trees) = pair.searched() {
+            self.turned.turn_trees(rotation, trees, counts);
+        } else {
+            let sieve = Sieve { slack: counts.slack, lowest: counts.lowest, skin: 0.0, window: None };
+            self.candidates.collect(pair, rotation, &sieve);
+            self.turned.turn(rotation, &self.candidates, counts);
+        }
         let shapes = &self.turned.pair.moving_shapes;
         self.moving.resize_with(shapes.len(), Vec::new);
         for (turned, shape) in self.moving.iter_mut().zip(shapes) {
@@ -41,21 +57,24 @@ impl<'a> Envelope<'a> {
     }
 
     /// z of the COR at first contact with the COR at `lateral`, in D; `None` where the halves pass each other.
-    pub fn height(&self, lateral: DVec2) -> Option<f64> {
+    pub fn height(&mut self, lateral: DVec2) -> Option<f64> {
         self.turned.height_below(lateral, f64::INFINITY).0
     }
 
     /// Everything that carries the moving half, or is closer than `reach` along its normal, with the COR at `position`.
-    pub fn contacts(&self, position: DVec3, reach: f64, out: &mut Vec<Contact>) {
+    pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<Contact>) {
         out.clear();
-        out.extend(self.turned.contacts(position, reach, SEAM).map(|(contact, _)| contact));
+        self.turned.contacts(position, reach, SEAM, |(contact, _)| out.push(contact));
     }
 
     /// Heights over a lattice of *COR* positions, x fastest; −∞ where the halves pass each other by.
     ///
     /// `out` has `x.count · y.count` cells and is overwritten.
-    pub fn heights(&self, x: Lattice, y: Lattice, out: &mut [f64]) {
+    pub fn heights(&mut self, x: Lattice, y: Lattice, out: &mut [f64]) {
         out.fill(f64::NEG_INFINITY);
+        if self.turned.pair.is_large() {
+            return self.search(x, y, |cell, _, height| out[cell] = height);
+        }
         self.rasterise(x, y, |_, plane, cells| {
             for (k, cell) in out[cells].iter_mut().enumerate() {
                 *cell = cell.max(plane.at(k));
@@ -66,9 +85,13 @@ impl<'a> Envelope<'a> {
     /// Heights as by [`Envelope::heights`], and for every cell the number of what carries the moving half there, for
     /// [`Envelope::carried_by`]; [`Envelope::NOTHING`] where the halves pass each other by. Among equals the first
     /// counts.
-    pub fn relief(&self, x: Lattice, y: Lattice, heights: &mut [f64], carriers: &mut [u32]) {
+    pub fn relief(&mut self, x: Lattice, y: Lattice, heights: &mut [f64], carriers: &mut [u32]) {
         heights.fill(f64::NEG_INFINITY);
         carriers.fill(Self::NOTHING);
+        if self.turned.pair.is_large() {
+            return self
+                .search(x, y, |cell, number, height| (heights[cell], carriers[cell]) = (height, number));
+        }
         self.rasterise(x, y, |number, plane, cells| {
             let carriers = &mut carriers[cells.clone()];
             for (k, (height, carrier)) in heights[cells].iter_mut().zip(carriers).enumerate() {
@@ -89,11 +112,29 @@ impl<'a> Envelope<'a> {
     /// # Panics
     /// When no relief at this rotation gave that number.
     pub fn carried_by(&self, carrier: u32, lateral: DVec2) -> (Contact, DVec3) {
-        let element = &self.turned.elements[carrier as usize];
+        let elements = if self.turned.pair.is_large() { &self.carriers } else { &self.turned.elements };
+        let element = &elements[carrier as usize];
         let [f, m] = element.meeting.shapes.map(|s| s as usize);
         let cor = lateral.extend(element.height(lateral));
         let point = element.touch(&self.turned.pair.fixed_shapes[f], &self.moving[m], cor);
         (Contact { gap: 0.0, normal: element.normal, point }, cor)
+    }
+
+    /// Visits every cell in which something carries the half, with the number of what does.
+    fn search(&mut self, x: Lattice, y: Lattice, mut visit: impl FnMut(usize, u32, f64)) {
+        let Self { turned, carriers, .. } = self;
+        carriers.clear();
+        let mut numbers = BTreeMap::new();
+        for cell in 0..x.count * y.count {
+            let lateral = DVec2::new(x.at(cell % x.count), y.at(cell / x.count));
+            if let Some((element, number, height)) = turned.carried_by(lateral) {
+                let number = *numbers.entry(number).or_insert_with(|| {
+                    carriers.push(element);
+                    carriers.len() as u32 - 1
+                });
+                visit(cell, number, height);
+            }
+        }
     }
 
     /// Visits, for every element that faces up, the rows of cells it covers.

@@ -12,7 +12,7 @@
 //! Whether another piece of the same solid covers the contact is not asked.
 
 use super::element::{Features, Meeting};
-use super::shape::{Ridge, Shape};
+use super::shape::Shape;
 use super::{Contact, Pair};
 use glam::{DMat3, DVec3};
 
@@ -78,7 +78,9 @@ fn between(shape: &Shape, ends: [u32; 2], point: DVec3) -> f64 {
 
 /// Smallest sine by which the neighbours of a corner lie along `toward`.
 fn supported(shape: &Shape, vertex: u32, toward: DVec3) -> f64 {
-    shape.corners.iter().find(|c| c.vertex == vertex).map_or(f64::INFINITY, |corner| {
+    // Corners are in the order of their vertices.
+    shape.corners.binary_search_by_key(&vertex, |c| c.vertex).map_or(f64::INFINITY, |k| {
+        let corner = &shape.corners[k];
         let spokes = &shape.spokes[corner.spokes.start as usize..corner.spokes.end as usize];
         spokes.iter().map(|s| toward.dot(*s)).fold(f64::INFINITY, f64::min)
     })
@@ -86,7 +88,9 @@ fn supported(shape: &Shape, vertex: u32, toward: DVec3) -> f64 {
 
 /// Smaller sine by which the two facets beside an edge lie along `toward`.
 fn spread(shape: &Shape, ends: [u32; 2], toward: DVec3) -> f64 {
-    shape.ridges.iter().find(|r| r.ends == ends).map_or(f64::INFINITY, |ridge: &Ridge| {
+    // Ridges are in the order of their ends, as the edges of a surface.
+    shape.ridges.binary_search_by_key(&ends, |r| r.ends).map_or(f64::INFINITY, |k| {
+        let ridge = &shape.ridges[k];
         let [left, right] = ridge.normals;
         toward.dot(left.cross(ridge.along)).min(toward.dot(ridge.along.cross(right)))
     })

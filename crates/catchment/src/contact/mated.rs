@@ -217,6 +217,9 @@ fn deepest(pair: &Pair, aligned: f64, among: DofSet) -> Option<MatedProblem> {
             error[dof.index()] = sign * PROBE / (count as f64).sqrt() / unit(pair, *dof);
         }
         let error = PoseError::from_array(error);
+        if nearby.is_above(&error, aligned - SLOPE * PROBE) {
+            continue;
+        }
         // Passing by altogether is the deepest fall there is.
         let sinks = nearby.height(&error).map_or(f64::INFINITY, |height| aligned - height);
         if sinks > SLOPE * PROBE && worst.is_none_or(|(most, _)| sinks > most) {

@@ -25,10 +25,12 @@ mod overlap;
 mod plan;
 mod play;
 mod raster;
+mod search;
 mod seat;
 mod shape;
 #[cfg(test)]
 mod tests;
+mod tree;
 mod turned;
 mod walls;
 
@@ -44,8 +46,22 @@ use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::CorPose;
 use glam::{DMat3, DVec2, DVec3};
+use search::Trees;
 use shape::Shape;
 use std::sync::OnceLock;
+use tree::Tree;
+use turned::Turned;
+
+/// From this product of their numbers of facets on, halves have trees, and a single height is found by them.
+const MANY: usize = 300 * 300;
+/// From this one on motions and grids ask the trees, too: below it a list of what may touch near a pose, which serves the poses around it, is as
+/// fast where the halves lie close.
+const MOST_LISTED: usize = 3000 * 3000;
+
+/// Facets of a half.
+fn facets(half: &Half) -> usize {
+    half.surfaces.iter().map(|surface| surface.facets.len()).sum()
+}
 
 /// A connector whose moving half is given from the COR: ready for heights.
 #[derive(Debug, Clone)]
@@ -58,6 +74,10 @@ pub struct Pair {
     pub alignment: Alignment,
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
+    /// Of halves of [`MANY`] facets.
+    trees: Option<Trees>,
+    /// Whether what is near a pose is listed.
+    lists: bool,
     mirrors: Vec<Mirror>,
     tight: bool,
     mated_height: f64,
@@ -72,6 +92,12 @@ impl Pair {
         let moving = connector.moving.mapped(|p| p + face_from_cor);
         let shapes = |half: &Half| -> Vec<Shape> { half.surfaces.iter().map(Shape::new).collect() };
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
+        let count = facets(&fixed) * facets(&moving);
+        let lists = count < MOST_LISTED;
+        let trees = (count >= MANY).then(|| Trees {
+            fixed: Tree::over(&fixed, &fixed_shapes),
+            moving: Tree::over(&moving, &moving_shapes),
+        });
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
         let (alignment, mated_height, homing) = (alignment.clone(), f64::NEG_INFINITY, OnceLock::new());
@@ -81,6 +107,8 @@ impl Pair {
             alignment,
             fixed_shapes,
             moving_shapes,
+            trees,
+            lists,
             mirrors,
             tight,
             mated_height,
@@ -89,6 +117,16 @@ impl Pair {
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
         pair
+    }
+
+    /// Whether the halves have so many facets that what may touch near a pose is searched anew at every pose, not listed.
+    pub(crate) fn is_large(&self) -> bool {
+        self.searched().is_some()
+    }
+
+    /// The trees, where there is too much to list.
+    fn searched(&self) -> Option<&Trees> {
+        self.trees.as_ref().filter(|_| !self.lists)
     }
 
     /// Whether all motion near the mated pose leads to it, as `find` says, which is asked once.
@@ -114,7 +152,7 @@ impl Pair {
 
     /// z of the COR at first contact, in D; `None` where the halves pass each other by.
     pub fn height(&self, pose: &CorPose) -> Option<f64> {
-        self.at_rotation(pose.rotation).height(pose.lateral)
+        Turned::height_at(self, pose)
     }
 
     /// The same two features as in `before`, seen as planes and lines without borders, at another pose.

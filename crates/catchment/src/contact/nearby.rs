@@ -11,7 +11,7 @@
 //! The answers are those of a list collected at every pose, bit for bit: see [`super::candidates`].
 
 use super::brute::SEAM;
-use super::candidates::{Candidates, FLUSH, ROUNDING, Sieve, Window};
+use super::candidates::{Candidates, Counts, FLUSH, ROUNDING, Sieve, Window};
 use super::element::Meeting;
 use super::turned::Turned;
 use super::{Contact, Pair};
@@ -21,6 +21,9 @@ use glam::{DMat3, DVec2, DVec3};
 /// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
 /// Facets that lean further back belong to the undersides of the halves.
 const OVERHANG: f64 = 0.5;
+
+/// What is announced to a motion of halves of many facets, in D.
+const MET: f64 = 1e-4;
 
 /// Skin and shift in units of the widest slack and reach: longer lists against more collecting. Flat around its optimum.
 const SKIN: f64 = 1.0;
@@ -66,6 +69,10 @@ impl<'a> Nearby<'a> {
     /// motion that turns by up to `slack` may meet.
     pub fn turn(&mut self, rotation: &DMat3, lateral: DVec2, slack: f64, reach: f64) {
         let slack = slack.max(ROUNDING);
+        let counts = Counts { slack, lowest: -OVERHANG };
+        if let Some(trees) = self.turned.pair.searched() {
+            return self.turned.turn_trees(rotation, trees, counts);
+        }
         let holds = self.collected.is_some_and(|c| {
             let turn = chord(&c.rotation, rotation);
             slack <= c.slack
@@ -80,33 +87,53 @@ impl<'a> Nearby<'a> {
             self.candidates.collect(self.turned.pair, rotation, &sieve);
             self.collected = Some(Collected { rotation: *rotation, lateral, slack, reach });
         }
-        self.turned.turn(rotation, &self.candidates, slack, -OVERHANG);
+        self.turned.turn(rotation, &self.candidates, counts);
     }
 
     /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
     /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
-    pub fn height_below(&self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
+    pub fn height_below(&mut self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
         self.turned.height_below(lateral, ceiling)
     }
 
     /// The height of first contact at a pose error, in D; `None` where the halves pass each other by. Cheap where the last one was near.
     pub fn height(&mut self, error: &PoseError) -> Option<f64> {
+        let lateral = self.go_to(error);
+        self.height_below(lateral, f64::INFINITY).0
+    }
+
+    /// Whether the height of first contact at a pose error is above `level`, in D: cheaper than the height where it is.
+    pub fn is_above(&mut self, error: &PoseError, level: f64) -> bool {
+        let lateral = self.go_to(error);
+        self.turned.is_stopped_above(lateral, level)
+    }
+
+    /// Turns to a pose error, for heights; returns where the COR is.
+    fn go_to(&mut self, error: &PoseError) -> DVec2 {
         let alignment = &self.turned.pair.alignment;
         let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
         self.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
-        self.height_below(pose.lateral, f64::INFINITY).0
+        pose.lateral
     }
 
-    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`.
-    pub fn contacts(&self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
+    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`. Of halves of many facets, where a
+    /// step's reach holds thousands, what is nearer than [`MET`] counts alone: the rest is met on the way.
+    pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
+        let reach = if self.turned.pair.is_large() { reach.min(MET) } else { reach };
         out.clear();
-        out.extend(self.turned.contacts(position, reach, SEAM));
+        self.turned.contacts(position, reach, SEAM, |contact| out.push(contact));
     }
 
     /// As [`Nearby::contacts`], counting also what touches beyond the border of its feature by up to `seam`, in D.
-    pub fn contacts_within(&self, position: DVec3, reach: f64, seam: f64, out: &mut Vec<(Contact, Meeting)>) {
+    pub fn contacts_within(
+        &mut self,
+        position: DVec3,
+        reach: f64,
+        seam: f64,
+        out: &mut Vec<(Contact, Meeting)>,
+    ) {
         out.clear();
-        out.extend(self.turned.contacts(position, reach, seam));
+        self.turned.contacts(position, reach, seam, |contact| out.push(contact));
     }
 
     /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than

@@ -88,16 +88,31 @@ impl PlanTree {
 
     /// Calls `meet` with every feature whose box has a point in common with `window`, in no particular order.
     pub(super) fn visit(&self, window: &Plan, mut meet: impl FnMut(u32)) {
-        self.descend(0, &self.features, window, &mut meet);
+        self.any(window, |feature| {
+            meet(feature);
+            false
+        });
     }
 
-    fn descend(&self, node: usize, features: &[(Plan, u32)], window: &Plan, meet: &mut impl FnMut(u32)) {
+    /// Whether `is` says so of any feature whose box has a point in common with `window`.
+    pub(super) fn any(&self, window: &Plan, mut is: impl FnMut(u32) -> bool) -> bool {
+        self.descend(0, &self.features, window, &mut is)
+    }
+
+    fn descend(
+        &self,
+        node: usize,
+        features: &[(Plan, u32)],
+        window: &Plan,
+        is: &mut impl FnMut(u32) -> bool,
+    ) -> bool {
         if features.len() <= LEAF {
-            features.iter().filter(|(plan, _)| plan.meets(window)).for_each(|(_, k)| meet(*k));
+            features.iter().filter(|(plan, _)| plan.meets(window)).any(|(_, k)| is(*k))
         } else if self.nodes[node].meets(window) {
             let (left, right) = features.split_at(features.len() / 2);
-            self.descend(2 * node + 1, left, window, meet);
-            self.descend(2 * node + 2, right, window, meet);
+            self.descend(2 * node + 1, left, window, is) || self.descend(2 * node + 2, right, window, is)
+        } else {
+            false
         }
     }
 }

@@ -84,7 +84,7 @@ pub(super) fn unit(pair: &Pair, dof: Dof) -> f64 {
 fn reach(nearby: &mut Nearby, level: f64, way: &[f64; 5], farthest: f64) -> f64 {
     let mut is_level = |length: f64| {
         let error = PoseError::from_array(way.map(|part| length * part));
-        nearby.height(&error).is_some_and(|height| height <= level)
+        !nearby.is_above(&error, level) && nearby.height(&error).is_some()
     };
     let (mut held, mut look) = (0.0, FIRST);
     while held < farthest {

@@ -101,7 +101,8 @@ impl<'a> Seat<'a> {
             (first..looks as usize).all(|k| {
                 let share = k as f64 / looks;
                 let at = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
-                self.nearby.height(&PoseError::from_array(at)).is_none_or(|h| h <= self.level() + ROUNDING)
+                let level = self.level() + ROUNDING;
+                !self.nearby.is_above(&PoseError::from_array(at), level)
             })
         })
     }

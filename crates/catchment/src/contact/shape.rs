@@ -126,7 +126,9 @@ impl Shape {
                     return false;
                 }
                 let (a, b) = (seen(self.at(a)), seen(self.at(b)));
-                other.facets.iter().any(|facet| {
+                let over = Plan::around([a, b].iter().map(|p| p.truncate()));
+                other.plans.facets.any(&over, |facet| {
+                    let facet = &other.facets[facet as usize];
                     let origin = other.at(facet.corners[0]);
                     let (above, below) = (facet.normal.dot(a - origin), facet.normal.dot(b - origin));
                     if above.min(below) > -THROUGH || above.max(below) < THROUGH {

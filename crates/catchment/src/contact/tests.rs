@@ -120,7 +120,7 @@ proptest! {
         x in (-1.5..0.0f64, 0.01..0.3f64, 1..12usize), y in (-1.5..0.0f64, 0.01..0.3f64, 1..12usize),
     ) {
         let pair = pair(family, ratio, cor);
-        let envelope = pair.at_rotation(pose.rotation);
+        let mut envelope = pair.at_rotation(pose.rotation);
         let lattice = |(first, step, count)| Lattice { first, step, count };
         let (x, y) = (lattice(x), lattice(y));
         let mut cells = vec![f64::NAN; x.count * y.count];

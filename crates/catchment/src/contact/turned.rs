@@ -1,39 +1,79 @@
 //! The pair at one rotation, as a list of elements: where a lowered half is stopped, and what touches there.
 
 use super::brute::SEAM;
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
+use super::search::{Asked, Carried, Number, Trees};
 use super::shape::Shape;
 use super::{Contact, Pair};
+use crate::pose::CorPose;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Below this z-component a normal counts as horizontal: such a facet has no height of its own, its rim
 /// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
 pub(super) const VERTICAL: f64 = 1e-9;
 
-/// A pair, a rotation, and what can touch there.
+/// A pair, a rotation, and what can touch there: a list of elements, or, without one, the trees of the pair.
 #[derive(Debug, Clone)]
 pub(super) struct Turned<'a> {
     pub(super) pair: &'a Pair,
-    rotation: DMat3,
+    pub(super) rotation: DMat3,
     pub(super) elements: Vec<Element>,
+    trees: Option<&'a Trees>,
+    /// Which of their elements count.
+    counts: Counts,
+    /// What carried the half last, as the trees number it: where it is looked for first.
+    carrier: Option<Number>,
+    /// What the trees found near, kept to be allocated once.
+    near: Vec<(Number, Element)>,
 }
 
 impl<'a> Turned<'a> {
     /// Not turned yet: nothing touches.
     pub(super) fn new(pair: &'a Pair) -> Self {
-        Self { pair, rotation: DMat3::IDENTITY, elements: Vec::new() }
+        let (rotation, counts) = (DMat3::IDENTITY, Counts { slack: 0.0, lowest: VERTICAL });
+        Self { pair, rotation, elements: Vec::new(), trees: None, counts, carrier: None, near: Vec::new() }
     }
 
     /// Replaces the elements by those among `candidates` at `rotation`.
-    pub(super) fn turn(&mut self, rotation: &DMat3, candidates: &Candidates, slack: f64, lowest: f64) {
-        self.rotation = *rotation;
-        candidates.try_at(self.pair, rotation, slack, lowest, &mut self.elements);
+    pub(super) fn turn(&mut self, rotation: &DMat3, candidates: &Candidates, counts: Counts) {
+        (self.rotation, self.trees) = (*rotation, None);
+        candidates.try_at(self.pair, rotation, counts, &mut self.elements);
+    }
+
+    /// Leaves it to the trees of the pair what can touch at `rotation`.
+    pub(super) fn turn_trees(&mut self, rotation: &DMat3, trees: &'a Trees, counts: Counts) {
+        (self.rotation, self.trees, self.counts) = (*rotation, Some(trees), counts);
+        self.elements.clear();
+    }
+
+    /// The height of first contact at one pose alone, in D: what is beside it in plan view is left out.
+    pub(super) fn height_at(pair: &'a Pair, pose: &CorPose) -> Option<f64> {
+        let mut turned = Self::new(pair);
+        let counts = Counts { slack: FLUSH, lowest: VERTICAL };
+        if let Some(trees) = &pair.trees {
+            turned.turn_trees(&pose.rotation, trees, counts);
+        } else {
+            let window = Some(Window { lateral: pose.lateral, reach: 2.0 * SEAM });
+            let mut candidates = Candidates::default();
+            let sieve = Sieve { slack: counts.slack, lowest: counts.lowest, skin: 0.0, window };
+            candidates.collect(pair, &pose.rotation, &sieve);
+            turned.turn(&pose.rotation, &candidates, counts);
+        }
+        turned.height_below(pose.lateral, f64::INFINITY).0
     }
 
     /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
     /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
-    pub(super) fn height_below(&self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
+    pub(super) fn height_below(&mut self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
+        if let Some(trees) = self.trees {
+            let mut ask = |ceiling| self.carried(trees, lateral, Asked { ceiling, enough: f64::INFINITY });
+            // As a rule nothing is above the ceiling, and the whole is searched faster than a part.
+            let first = ask(f64::INFINITY);
+            let above = first.height().is_some_and(|height| height > ceiling);
+            let carried = if above { ask(ceiling) } else { first };
+            return (carried.height(), carried.covered);
+        }
         let mut highest = f64::NEG_INFINITY;
         let mut covered = false;
         for element in &self.elements {
@@ -53,24 +93,56 @@ impl<'a> Turned<'a> {
         (highest.is_finite().then_some(highest), covered)
     }
 
+    /// Whether a half lowered from far above is stopped above `level`.
+    pub(super) fn is_stopped_above(&mut self, lateral: DVec2, level: f64) -> bool {
+        let height = match self.trees {
+            Some(trees) => {
+                self.carried(trees, lateral, Asked { ceiling: f64::INFINITY, enough: level }).height()
+            }
+            None => self.height_below(lateral, f64::INFINITY).0,
+        };
+        height.is_some_and(|height| height > level)
+    }
+
+    /// What carries a half lowered from far above, by the trees.
+    pub(super) fn carried_by(&mut self, lateral: DVec2) -> Option<(Element, Number, f64)> {
+        let whole = Asked { ceiling: f64::INFINITY, enough: f64::INFINITY };
+        self.trees.and_then(|trees| self.carried(trees, lateral, whole).by)
+    }
+
+    fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: Asked) -> Carried {
+        let carried = trees.carried(self.pair, &self.rotation, lateral, self.counts, asked, self.carrier);
+        self.carrier = carried.by.map(|(_, number, _)| number).or(self.carrier);
+        carried
+    }
+
     /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`; a foot may lie
     /// beyond the border of its feature by `seam`.
     pub(super) fn contacts(
-        &self,
+        &mut self,
         position: DVec3,
         reach: f64,
         seam: f64,
-    ) -> impl Iterator<Item = (Contact, Meeting)> + '_ {
-        self.elements.iter().filter_map(move |element| {
+        mut meet: impl FnMut((Contact, Meeting)),
+    ) {
+        let mut near = std::mem::take(&mut self.near);
+        if let Some(trees) = self.trees {
+            // Feet may lie beyond both borders.
+            let reach = reach + 2.0 * seam;
+            trees.near(self.pair, &self.rotation, position, self.counts, reach, &mut near);
+        }
+        for element in self.elements.iter().chain(near.iter().map(|(_, element)| element)) {
             let gap = element.gap(position);
             // Deeper than `reach` the halves are not near each other along this normal: they passed.
             if gap.abs() > reach {
-                return None;
+                continue;
             }
-            let point = self.foot(element, position, seam)?;
-            self.is_exposed(element, point, position)
-                .then_some((Contact { gap, normal: element.normal, point }, element.meeting))
-        })
+            let Some(point) = self.foot(element, position, seam) else { continue };
+            if self.is_exposed(element, point, position) {
+                meet((Contact { gap, normal: element.normal, point }, element.meeting));
+            }
+        }
+        self.near = near;
     }
 
     /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than

@@ -11,6 +11,7 @@
 //! Where no such walls are, the half sinks onto slopes that centre it, and small errors of its motion heal. Between walls
 //! they do not: a touch on the other side sends it elsewhere.
 
+use super::plan::{Plan, PlanTree};
 use super::shape::Shape;
 use crate::design::Alignment;
 use crate::pose::Dof;
@@ -46,7 +47,10 @@ pub(super) fn are_close(fixed: &[Shape], moving: &[Shape], alignment: &Alignment
     if moving.is_empty() {
         return false;
     }
-    walls(fixed, DVec3::ZERO).iter().any(|fixed| moving.iter().any(|moving| fixed.faces(moving)))
+    let plans = PlanTree::over(moving.iter().map(|wall| wall.plan()));
+    walls(fixed, DVec3::ZERO)
+        .iter()
+        .any(|fixed| plans.any(&fixed.plan().widened(NEAR), |k| fixed.faces(&moving[k as usize])))
 }
 
 /// A steep facet.
@@ -60,6 +64,10 @@ impl Wall {
     fn of(normal: DVec3, corners: impl Iterator<Item = DVec3>) -> Self {
         let none = Self { normal, low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         corners.fold(none, |w, p| Self { low: w.low.min(p), high: w.high.max(p), ..w })
+    }
+
+    fn plan(&self) -> Plan {
+        Plan::around([self.low, self.high].into_iter().map(DVec3::truncate))
     }
 
     /// Whether `other` is in front of this wall, and within reach.

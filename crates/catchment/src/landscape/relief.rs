@@ -272,7 +272,7 @@ mod tests {
                 // The gradient of one of the contacts there; all are in the list, the carrier is one of them.
                 let error = grid.pose(cell);
                 let pose = CorPose::from_error(&error, -0.4, pair.alignment.free);
-                let envelope = pair.at_rotation(pose.rotation);
+                let mut envelope = pair.at_rotation(pose.rotation);
                 let cor = pose.lateral.extend(envelope.height(pose.lateral).unwrap());
                 envelope.contacts(cor, 1e-9, &mut contacts);
                 let nx = grid.axis(Dof::X).map_or(1, |a| a.cells);

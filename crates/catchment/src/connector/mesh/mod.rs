@@ -19,9 +19,9 @@ use super::stl::MAX_BYTES;
 use glam::DVec3;
 use std::fmt;
 
-/// Most triangles of a half. The heights of a pair cost the product of the two halves' elements, so beyond
-/// this even one pose takes seconds; docking faces need hundreds.
-pub const MAX_TRIANGLES: usize = 20_000;
+/// Most triangles of a half: the largest for which a motion was measured to take seconds rather than minutes. Docking faces need
+/// hundreds, as CAD exports them ten thousands.
+pub const MAX_TRIANGLES: usize = 200_000;
 /// Corners closer than this, relative to the largest coordinate, are one: ten times the rounding of single
 /// precision.
 pub const WELD: f64 = 1e-6;

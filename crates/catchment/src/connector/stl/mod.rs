@@ -21,7 +21,7 @@ use super::mesh::{self, MeshProblem};
 use super::source::FileBytes;
 
 /// Longest ASCII file that can hold as many triangles as a half may have, generously written.
-pub const MAX_BYTES: u64 = 16 << 20;
+pub const MAX_BYTES: u64 = 128 << 20;
 
 /// As the table of formats wants it.
 pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Sharp seats (faces that end in a point or a ridge) have this; motion into their last corner takes as long as all before. Tight fits
-//! and limits on what may rest are always followed into the seat.
+//! and limits on what may rest are always followed into the seat, and so are halves of so many facets that these poses take longer than they
+//! save.
 //!
 //! Not promised: that no pose near it jams, only that fewer than three in a hundred do, with 95 % confidence.
 
@@ -35,7 +36,7 @@ pub(super) fn is_near(pair: &Pair, rotation: &DMat3, cor: DVec3) -> bool {
 /// Whether all poses that are tried near the mated one dock. With the default settings, whoever asks: the answer is kept with the pair, and
 /// must not depend on who asked first.
 pub(super) fn all_dock(pair: &Pair) -> bool {
-    if pair.is_tight() || Seat::new(pair).is_limited() {
+    if pair.is_tight() || pair.is_large() || Seat::new(pair).is_limited() {
         return false;
     }
     pair.is_homing(|| {

@@ -22,9 +22,24 @@ pub(super) enum Part {
     Mesh(Surface),
 }
 
-/// Facets turned back lie in one plane within this, in D, and facets steeper than this (cosine) are walls: rounding of
-/// coordinates near 1.
-const FLAT: f64 = 1e-9;
+/// Half of the last place of a single-precision number, as meshes are stored in, relative to it.
+const SINGLE: f64 = 1.0 / (1 << 24) as f64;
+
+/// How far rounding has moved the corners of a surface at most, in D.
+fn rounding(surface: &Surface) -> f64 {
+    // Moving a half to its face centre takes coordinates near 1 to others.
+    surface.vertices.iter().fold(1.0, |size: f64, p| size.max(p.abs().max_element())) * SINGLE
+}
+
+/// Whether rounding alone may have tilted a facet out of the vertical: moving its corners in plan view by as much changes its area there
+/// by up to that times its circumference.
+fn is_wall(corners: &[DVec3], rounding: f64) -> bool {
+    let next = |k: usize| corners[(k + 1) % corners.len()];
+    let around: f64 = corners.iter().enumerate().map(|(k, p)| p.distance(next(k))).sum();
+    let area: f64 =
+        corners.iter().enumerate().map(|(k, p)| p.truncate().perp_dot(next(k).truncate()) / 2.0).sum();
+    area.abs() <= rounding * around
+}
 
 /// The parts of a half, in its own axes.
 pub(super) fn parts(half: &Half) -> Vec<Part> {
@@ -51,25 +66,28 @@ pub(super) fn parts(half: &Half) -> Vec<Part> {
 /// The columns under the facets that face +z; `None` where some facet facing −z is not at the bottom.
 fn columns(surface: &Surface) -> Option<Vec<Surface>> {
     let floor = surface.bounds().0.z;
-    let at = |i: &u32| surface.vertices[*i as usize];
-    let stands = |corners: &[u32]| {
-        corners.iter().map(at).all(|p| p.z - floor <= FLAT * p.abs().max_element().max(1.0))
-    };
-    if surface.facets.iter().any(|f| f.normal.z < -FLAT && !stands(&f.corners)) {
+    let rounding = rounding(surface);
+    let stands = |corners: &[DVec3]| corners.iter().all(|p| p.z - floor <= rounding);
+    let facets = surface.facets.iter().map(|f| {
+        let corners = f.corners.iter().map(|k| surface.vertices[*k as usize]).collect::<Vec<_>>();
+        (f.normal.z, corners)
+    });
+    let (up, down): (Vec<_>, Vec<_>) =
+        facets.filter(|(_, corners)| !is_wall(corners, rounding)).partition(|(up, _)| *up > 0.0);
+    if down.iter().any(|(_, corners)| !stands(corners)) {
         return None;
     }
-    let upward = surface.facets.iter().filter(|f| f.normal.z > FLAT);
-    upward.map(|f| column(&f.corners.iter().map(at).collect::<Vec<_>>(), floor)).collect()
+    up.iter().map(|(_, corners)| column(corners, floor, rounding)).collect()
 }
 
 /// The solid between a polygon, counter-clockwise from above, and the floor.
-fn column(top: &[DVec3], floor: f64) -> Option<Surface> {
+fn column(top: &[DVec3], floor: f64, rounding: f64) -> Option<Surface> {
     let count = top.len() as u32;
     let mut vertices = top.to_vec();
     let bottom: Vec<u32> = (0..count)
         .map(|k| {
             let p = top[k as usize];
-            if p.z - floor <= FLAT {
+            if p.z - floor <= rounding {
                 return k;
             }
             vertices.push(p.with_z(floor));
@@ -135,5 +153,34 @@ mod tests {
         let surface = Surface::from_polygons(vertices, &polygons).unwrap();
         assert!(!surface.convex);
         assert!(matches!(parts(&Half { surfaces: vec![surface] })[..], [Part::Mesh(_)]));
+    }
+    /// A square boss on a plate, the top of its walls out by `out`.
+    fn boss(out: f64) -> Surface {
+        let square = |half: f64, z: f64| {
+            [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]].map(|[x, y]| DVec3::new(half * x, half * y, z))
+        };
+        let rings = [square(0.5, 0.0), square(0.5, 0.1), square(0.2, 0.1), square(0.2 + out, 0.11)];
+        let mut polygons: Vec<Vec<u32>> = vec![vec![3, 2, 1, 0], vec![12, 13, 14, 15]];
+        for ring in 0..3 {
+            for k in 0..4 {
+                let (a, b) = (4 * ring + k, 4 * ring + (k + 1) % 4);
+                polygons.push(vec![a, b, b + 4, a + 4]);
+            }
+        }
+        Surface::from_polygons(rings.concat(), &polygons).unwrap()
+    }
+
+    #[test]
+    fn walls_rounded_to_single_precision_are_no_undercuts() {
+        // Normals with z of 0, −4e-9, −4e-6 and 4e-6.
+        for out in [0.0, 4e-11, 4e-8, -4e-8] {
+            let surface = boss(out);
+            let parts = parts(&Half { surfaces: vec![surface.clone()] });
+            assert!(parts.iter().all(|part| matches!(part, Part::Convex(_))), "{out}");
+            // What is left out beside the walls: their length times what they are out by.
+            assert!((volume(&parts) - surface.volume()).abs() < 1e-7, "{out}");
+        }
+        // A hundred times as much is drawn.
+        assert!(matches!(parts(&Half { surfaces: vec![boss(1e-5)] })[..], [Part::Mesh(_)]));
     }
 }

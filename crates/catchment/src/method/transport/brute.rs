@@ -71,7 +71,7 @@ fn velocity(pair: &Pair, grid: &Grid, cell: usize) -> Vec<f64> {
     let error = grid.pose(cell);
     let alignment = &pair.alignment;
     let pose = CorPose::from_error(&error, alignment.center_of_rotation, alignment.free);
-    let envelope = pair.at_rotation(pose.rotation);
+    let mut envelope = pair.at_rotation(pose.rotation);
     let Some(z) = envelope.height(pose.lateral) else { return vec![0.0; grid.axes.len()] };
     let cor = pose.lateral.extend(z);
     let mut contacts = Vec::new();

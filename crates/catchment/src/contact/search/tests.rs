@@ -1,0 +1,175 @@
+//! The trees against the list of all elements, bit for bit, and against the judge.
+
+use super::*;
+use crate::connector::{Connector, Half, Source, convex_hull};
+use crate::contact::candidates::{Candidates, FLUSH, Sieve};
+use crate::contact::turned::Turned;
+use crate::contact::{Contact, Envelope, Lattice, Meeting, brute};
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::pose::{CorPose, DofSet, Mount, rotation};
+use proptest::prelude::*;
+
+#[path = "../../../benches/meshes/mod.rs"]
+mod meshes;
+
+/// The pair with trees, however small it is.
+fn with_trees(connector: &Connector) -> Pair {
+    let mut pair = Pair::new(connector, &Alignment::new(DofSet::ALL, Mount::X));
+    let tree = |half: &Half, shapes: &[Shape]| Tree::over(half, shapes);
+    pair.trees = Some(Trees {
+        fixed: tree(&pair.fixed, &pair.fixed_shapes),
+        moving: tree(&pair.moving, &pair.moving_shapes),
+    });
+    pair
+}
+
+fn funnel(count: usize) -> Pair {
+    let [fixed, moving] = meshes::funnel(count).map(Source::Triangles);
+    with_trees(&Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap())
+}
+
+fn family(family: Family) -> Pair {
+    let spec = ConnectorSpec::Family(FamilySpec::new(family).with_chord_error(0.02));
+    let alignment = Alignment::new(DofSet::ALL, Mount::X);
+    let design = Design { name: String::new(), connector: spec, width: 1.0, unit: None, alignment };
+    with_trees(&Connector::build(&design).unwrap())
+}
+
+/// Halves of tetrahedra that cross each other.
+fn soup(corners: &[[f64; 3]]) -> Pair {
+    let half = |corners: &[[f64; 3]]| Half {
+        surfaces: corners
+            .chunks_exact(4)
+            .filter_map(|four| {
+                convex_hull(&four.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>()).ok()
+            })
+            .collect(),
+    };
+    let (fixed, moving) = corners.split_at(corners.len() / 2);
+    with_trees(&Connector::from_halves(half(fixed), half(moving)))
+}
+
+/// The pair at one rotation: by the list of all elements, and by its trees.
+fn both<'a>(pair: &'a Pair, rotation: &DMat3, counts: Counts) -> [Turned<'a>; 2] {
+    let mut listed = Turned::new(pair);
+    let mut candidates = Candidates::default();
+    let sieve = Sieve { slack: counts.slack, lowest: counts.lowest, skin: 0.0, window: None };
+    candidates.collect(pair, rotation, &sieve);
+    listed.turn(rotation, &candidates, counts);
+    let mut searched = Turned::new(pair);
+    searched.turn_trees(rotation, pair.trees.as_ref().unwrap(), counts);
+    [listed, searched]
+}
+
+fn contacts(turned: &mut Turned<'_>, position: DVec3, reach: f64) -> Vec<(Contact, Meeting)> {
+    let mut out = Vec::new();
+    turned.contacts(position, reach, SEAM, |contact| out.push(contact));
+    out
+}
+
+fn poses(lateral: f64, turn: f64) -> impl Strategy<Value = CorPose> {
+    (proptest::array::uniform2(-lateral..lateral), proptest::array::uniform3(-turn..turn))
+        .prop_map(|(at, [r, p, w])| CorPose { lateral: DVec2::from_array(at), rotation: rotation(r, p, w) })
+}
+
+/// Heights, heights below a ceiling, and contacts are those of the list.
+fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Result<(), TestCaseError> {
+    let counts = Counts { slack: slack.max(FLUSH), lowest: -0.5 };
+    let [mut listed, mut searched] = both(pair, &pose.rotation, counts);
+    let whole = listed.height_below(pose.lateral, f64::INFINITY);
+    prop_assert_eq!(searched.height_below(pose.lateral, f64::INFINITY), whole);
+    let Some(z) = whole.0 else { return Ok(()) };
+    let ceiling = z - below;
+    let expected = listed.height_below(pose.lateral, ceiling);
+    // The second time what carried before is tried first.
+    prop_assert_eq!(searched.height_below(pose.lateral, ceiling), expected);
+    prop_assert_eq!(searched.height_below(pose.lateral, ceiling), expected);
+    for level in [z - 1e-3, z, z + 1e-3] {
+        prop_assert_eq!(searched.is_stopped_above(pose.lateral, level), z > level);
+    }
+    let position = pose.lateral.extend(z - below.min(reach));
+    prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn trees_of_families_find_what_the_list_holds(
+        which in proptest::sample::select(Family::ALL.to_vec()), pose in poses(0.8, 1.5),
+        slack in 0.0..0.1f64, reach in 0.0..0.1f64, below in 0.0..0.3f64,
+    ) {
+        agree(&family(which), &pose, slack, reach, below)?;
+    }
+
+    #[test]
+    fn trees_of_soups_find_what_the_list_holds(
+        corners in proptest::collection::vec(proptest::array::uniform3(-0.5..0.5f64), 8..64), pose in poses(0.6, 3.0),
+        slack in 0.0..0.1f64, reach in 0.0..0.1f64, below in 0.0..0.3f64,
+    ) {
+        agree(&soup(&corners), &pose, slack, reach, below)?;
+    }
+}
+
+#[test]
+fn trees_of_a_funnel_find_what_the_list_holds() {
+    let pair = funnel(1000);
+    // Far from the mated pose, near it, and in it, where everything touches.
+    for (size, reach) in [(1.0, 0.02), (0.3, 0.02), (1e-2, 1e-2), (1e-3, 1e-4), (1e-6, 1e-4), (0.0, 1e-5)] {
+        for k in 0..6 {
+            let a = f64::from(k);
+            let pose = CorPose {
+                lateral: DVec2::new(a.sin(), (2.0 * a).cos()) * (0.7 * size),
+                rotation: rotation(size * (3.0 * a).sin(), size * (5.0 * a).cos(), size * a),
+            };
+            agree(&pair, &pose, 0.02 * size, reach, 0.1 * size).unwrap();
+        }
+    }
+}
+
+#[test]
+fn heights_of_a_funnel_are_the_judges() {
+    let pair = funnel(1000);
+    for k in 0..4 {
+        let a = f64::from(k);
+        let pose = CorPose {
+            lateral: DVec2::new(0.2 * a.sin(), 0.1 * a.cos()),
+            rotation: rotation(0.3 * (3.0 * a).sin(), 0.2 * a.cos(), a),
+        };
+        let (fast, slow) = (pair.height(&pose).unwrap(), brute::height(&pair, &pose).unwrap());
+        assert!((fast - slow).abs() < 1e-11, "{fast} against {slow}");
+    }
+}
+
+#[test]
+fn a_searched_lattice_is_the_listed_one() {
+    let mut pair = funnel(300);
+    let turn = rotation(0.1, -0.2, 0.3);
+    let lattice = |first: f64| Lattice { first, step: 0.11, count: 14 };
+    let (x, y) = (lattice(-0.7), lattice(-0.65));
+    let cells = x.count * y.count;
+    let mut relief = |lists: bool| {
+        pair.lists = lists;
+        let (mut single, mut heights, mut carriers) = (vec![0.0; cells], vec![0.0; cells], vec![0; cells]);
+        let mut envelope = pair.at_rotation(turn);
+        envelope.heights(x, y, &mut single);
+        envelope.relief(x, y, &mut heights, &mut carriers);
+        assert_eq!(single, heights);
+        let at = |k: usize| DVec2::new(x.at(k % x.count), y.at(k / x.count));
+        let carried = |(k, carrier): (usize, &u32)| {
+            (*carrier != Envelope::NOTHING).then(|| envelope.carried_by(*carrier, at(k)))
+        };
+        (heights, carriers.iter().enumerate().map(carried).collect::<Vec<_>>())
+    };
+    let (listed, by_list) = relief(true);
+    let (searched, by_search) = relief(false);
+    assert!(listed.iter().filter(|h| h.is_finite()).count() > cells / 4);
+    for k in 0..cells {
+        // Rounding of a plane along a row.
+        assert!(listed[k] == searched[k] || (listed[k] - searched[k]).abs() < 1e-12);
+        // Whatever carries there carries as high.
+        let cor = |by: &Option<(Contact, DVec3)>| by.as_ref().map_or(f64::NEG_INFINITY, |(_, cor)| cor.z);
+        assert!((cor(&by_list[k]).max(-9.0) - cor(&by_search[k]).max(-9.0)).abs() < 1e-12);
+    }
+}
