@@ -172,7 +172,7 @@ impl Start {
         let (pair, alignment) = (problem.pair(), problem.alignment());
         let cor = alignment.center_of_rotation;
         let pose = CorPose::from_error(error, cor, alignment.free);
-        let envelope = pair.at_rotation(pose.rotation);
+        let mut envelope = pair.at_rotation(pose.rotation);
         let height = envelope.height(pose.lateral);
         let lever = height.and_then(|height| {
             let position = pose.lateral.extend(height);

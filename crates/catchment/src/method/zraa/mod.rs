@@ -28,9 +28,9 @@ mod square;
 pub use cells::clip;
 pub use circle::circle_bounds;
 pub use heights::{HeightFacet, heights, highest};
-pub use sheet::area;
 pub use nilsson::{Catch, Nilsson};
 pub use profile::Profile;
+pub use sheet::area;
 pub use square::{Square, circle_square};
 
 use crate::contact::mated::{MatedProblem, sinking};

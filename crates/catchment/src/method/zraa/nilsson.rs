@@ -226,7 +226,7 @@ mod tests {
     fn exact(profile: &Profile) -> Result<Zraa, ZraaError> {
         // The moving half is mounted by a half turn about y: drawn, it is the profile turned in its plane.
         let turned: Vec<DVec2> = profile.corners().iter().rev().map(|p| -*p).collect();
-        let own = OwnSpec { face_height: 0.0, fixed: columns(profile.corners()), moving: columns(&turned) };
+        let own = OwnSpec::new(0.0, columns(profile.corners()), columns(&turned));
         let pair = pair_of(ConnectorSpec::Own(own), true);
         let found = Profile::of(&pair).unwrap();
         let same = |(a, b): (&DVec2, &DVec2)| a.distance(*b) < 1e-12;
@@ -366,7 +366,7 @@ mod tests {
         assert_eq!(Profile::of(&pair(FamilySpec::new(Family::Pyramid))), None);
         let flat = [DVec2::new(-0.5, 0.0), DVec2::new(0.5, 0.0)];
         let ramp = [DVec2::new(-0.5, 0.0), DVec2::new(0.5, 0.3)];
-        let own = OwnSpec { face_height: 0.0, fixed: columns(&flat), moving: columns(&ramp) };
+        let own = OwnSpec::new(0.0, columns(&flat), columns(&ramp));
         let design = crate::design::Design {
             name: String::new(),
             connector: ConnectorSpec::Own(own),
