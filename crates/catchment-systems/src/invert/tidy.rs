@@ -28,7 +28,7 @@ use catchment::polytope::planar_hull;
 use glam::DVec2;
 
 impl Heights {
-    /// The same function, to [`ROUNDED`] in height and [`SIDEWAYS`] to the side, without the pieces that rounding made.
+    /// The same function, to `ROUNDED` in height and `SIDEWAYS` to the side, without the pieces that rounding made.
     #[must_use]
     pub fn tidied(self) -> Self {
         self.merged().without_slivers().merged().without_short_sides().without_slivers()

@@ -117,7 +117,7 @@ impl<'a> Nearby<'a> {
     }
 
     /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`. Of halves of many facets, where a
-    /// step's reach holds thousands, what is nearer than [`MET`] counts alone: the rest is met on the way.
+    /// step's reach holds thousands, what is nearer than 10⁻⁴ D counts alone: the rest is met on the way.
     pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
         let reach = if self.turned.pair.is_large() { reach.min(MET) } else { reach };
         out.clear();

@@ -116,10 +116,10 @@ pub const PRESETS: [Preset; 1] = [Preset {
 impl Settings {
     /// The drop tests of the dissertation, sections 4.2.1 and 4.2.2, as far as they are stated.
     ///
-    /// [D] g = 9000 m/s² through the solid's centre of mass; all velocities lose 0.99 of themselves per step; no friction, no bounce; one
+    /// Stated: g = 9000 m/s² through the solid's centre of mass; all velocities lose 0.99 of themselves per step; no friction, no bounce; one
     /// half on a ground plane; failed where the face centres are more than a width apart; the majority of three trials.
     ///
-    /// [I] D = 65.5 mm, the prototypes' face: it scales time alone. The decay is a force, 99 per step and mass, taken implicitly, so contacts push
+    /// Our reading: D = 65.5 mm, the prototypes' face: it scales time alone. The decay is a force, 99 per step and mass, taken implicitly, so contacts push
     /// in the metric of friction with ρ of the design, where ODE pushes in that of inertia and scales velocities afterwards. A uniform solid.
     /// The lower half is held: whether it could slide on its ground is not said.
     ///
