@@ -47,7 +47,7 @@ pub(super) fn are_close(fixed: &[Shape], moving: &[Shape], alignment: &Alignment
     if moving.is_empty() {
         return false;
     }
-    let plans = PlanTree::over(moving.iter().map(|wall| wall.plan()));
+    let plans = PlanTree::over(moving.iter().map(Wall::plan));
     walls(fixed, DVec3::ZERO)
         .iter()
         .any(|fixed| plans.any(&fixed.plan().widened(NEAR), |k| fixed.faces(&moving[k as usize])))
