@@ -1,6 +1,6 @@
 //! Wavefront OBJ files: the faces of all objects of a file together, colours and textures left out.
 //!
-//! Read by `tobj`; faces of more than three corners are cut into triangles and must be convex. The unit stands beside the file, as for STL.
+//! Read by `tobj`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for STL.
 
 use super::Surface;
 use super::mesh::{self, MeshProblem, Triangle};
@@ -25,16 +25,17 @@ pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProb
 
 fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let mut lines = Lines { rest: bytes, line: 0 };
+    // Points and lines bound nothing.
+    let options = LoadOptions { ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
     let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);
-    let (models, _) =
-        tobj::load_obj_buf(&mut lines, &LoadOptions::default(), no_materials).map_err(|error| {
-            // Corners of faces are looked for at the end of their object only.
-            let line = match error {
-                LoadError::FaceVertexOutOfBounds => bad_face(bytes).unwrap_or(lines.line),
-                _ => lines.line,
-            };
-            vec![MeshProblem::Syntax { line, expected: expected(error), found: shown(bytes, line) }]
-        })?;
+    let (models, _) = tobj::load_obj_buf(&mut lines, &options, no_materials).map_err(|error| {
+        // Corners of faces are looked for at the end of their object only.
+        let line = match error {
+            LoadError::FaceVertexOutOfBounds => bad_face(bytes).unwrap_or(lines.line),
+            _ => lines.line,
+        };
+        vec![MeshProblem::Syntax { line, expected: expected(error), found: shown(bytes, line) }]
+    })?;
     let mut triangles = mesh::Triangles::default();
     for mesh in models.iter().map(|model| &model.mesh) {
         let corner = |k: &u32| {
@@ -160,10 +161,7 @@ mod tests {
             refused("v 1 1 0", "v 1 1 nan")
         );
         assert_eq!(read("# nothing\n").unwrap_err(), [MeshProblem::NoTriangles]);
-        let arrow = "v 0 0 0\nv 1 1 0\nv 0 .2 0\nv -1 1 0\nf 1 2 3 4\n";
-        assert_eq!(
-            read(arrow).unwrap_err()[0].to_string(),
-            "the face of triangle 0 is not convex: triangulate the mesh when it is exported"
-        );
+        let crossed = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1.1 0\nf 1 2 3 4\n";
+        assert_eq!(read(crossed).unwrap_err(), [MeshProblem::NotSimple { triangle: 0 }]);
     }
 }

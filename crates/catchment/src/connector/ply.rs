@@ -1,6 +1,6 @@
 //! PLY files, text and binary: the faces over the vertices, everything else left out.
 //!
-//! Read by `ply-rs-bw`; faces of more than three corners are cut into triangles and must be convex. The unit stands beside the file, as for
+//! Read by `ply-rs-bw`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for
 //! STL.
 
 use super::Surface;

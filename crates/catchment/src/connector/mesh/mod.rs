@@ -13,6 +13,7 @@
 //! coplanar overlaps of separate shells are not looked for.
 
 mod check;
+mod cut;
 
 use super::Surface;
 use super::stl::MAX_BYTES;
@@ -139,9 +140,11 @@ pub enum MeshProblem {
         /// What it is, and what to do about it.
         what: &'static str,
     },
-    /// A face of more than three corners whose triangles would depend on how it is cut.
-    #[error("the face of triangle {triangle} is not convex: triangulate the mesh when it is exported")]
-    NotConvex {
+    /// A face of more than three corners that cannot be cut into triangles.
+    #[error(
+        "the border of the face that triangle {triangle} begins crosses itself, or has no area: triangulate the mesh when it is exported"
+    )]
+    NotSimple {
         /// The number that its first triangle would have.
         triangle: usize,
     },
@@ -240,22 +243,20 @@ pub(super) struct Triangles {
 }
 
 impl Triangles {
-    /// Appends a face, cut into triangles from its first corner.
+    /// Appends a face, cut into triangles.
     pub(super) fn push(&mut self, corners: &[DVec3]) -> Result<(), Vec<MeshProblem>> {
-        let count = corners.len();
-        let normal: DVec3 = (0..count).map(|k| corners[k].cross(corners[(k + 1) % count])).sum();
-        let turns = |k: usize| {
-            let [a, b, c] = [corners[k], corners[(k + 1) % count], corners[(k + 2) % count]];
-            normal.dot((b - a).cross(c - b)) / (normal.length() * (b - a).length() * (c - b).length())
+        // A triangle is what it is; whether it has an area, and whether all are numbers, is asked of all of them together.
+        let cut = if corners.len() == 3 || !corners.iter().all(|corner| corner.is_finite()) {
+            Some(vec![[0, 1, 2]])
+        } else {
+            cut::triangles(corners)
         };
-        // What lies on a line turns neither way; numbers that are none are found by their own check.
-        if count > 3 && (0..count).any(|k| turns(k) < -WELD) {
-            return Err(vec![MeshProblem::NotConvex { triangle: self.list.len() }]);
-        }
-        for k in 1..count.saturating_sub(1) {
-            let place = Place { triangle: self.list.len(), start: Start::Memory };
-            self.list.push(Triangle { corners: [corners[0], corners[k], corners[k + 1]], place });
-        }
+        let first = self.list.len();
+        let cut = cut.ok_or_else(|| vec![MeshProblem::NotSimple { triangle: first }])?;
+        self.list.extend(cut.into_iter().enumerate().map(|(k, ids)| Triangle {
+            corners: ids.map(|id| corners[id]),
+            place: Place { triangle: first + k, start: Start::Memory },
+        }));
         if self.list.len() > MAX_TRIANGLES {
             return Err(vec![MeshProblem::TooMany { count: self.list.len() as u64 }]);
         }
