@@ -15,6 +15,7 @@ use catchment::report::UnanswerableError;
 use catchment::run::{Answer, Over, Part, PartAnswer, PartError, Run, RunError, Sample};
 use proptest::prelude::*;
 use serde_json::{Value, json};
+use std::f64::consts::FRAC_PI_2;
 
 fn problem(family: Family, free: DofSet) -> Problem {
     let alignment = Alignment { free, ..Alignment::default_for(Some(family)) };
@@ -256,4 +257,22 @@ fn undecided_random_motions_are_said() {
     });
     let Some((motions, of)) = said else { panic!("{:?}", answer.warnings()) };
     assert!(motions > 0 && motions <= of && of >= 200, "{motions} of {of}");
+}
+
+/// Over (x, y, yaw) the pyramid corrects |x|, |y| < D/2 and |yaw| < 45°, whatever its height and centre of rotation: π/2 D²·rad. The dissertation
+/// prints 2.47 in its text (section 5.3), which no convention that is known gives.
+#[test]
+fn the_pyramid_over_x_y_and_yaw_measures_half_pi() {
+    for (ratio, cor) in [(0.5, 0.5), (2.0, -1.0)] {
+        let alignment = Alignment {
+            free: [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect(),
+            center_of_rotation: cor,
+            ..Alignment::default_for(Some(Family::Pyramid))
+        };
+        let connector = ConnectorSpec::Family(FamilySpec::new(Family::Pyramid).with_aspect_ratio(ratio));
+        let design = Design { name: "pyramid".to_owned(), connector, width: 1.0, unit: None, alignment };
+        let answer = run("transport", 24, 4000).on(&Problem::of(design).unwrap(), &Exec::new()).unwrap();
+        let [lo, hi] = answer.sum_ci95().unwrap();
+        assert!(lo < FRAC_PI_2 && FRAC_PI_2 < hi && hi - lo < 0.1, "{ratio} {cor}: {lo} … {hi}");
+    }
 }

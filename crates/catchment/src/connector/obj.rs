@@ -164,4 +164,18 @@ mod tests {
         let crossed = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1.1 0\nf 1 2 3 4\n";
         assert_eq!(read(crossed).unwrap_err(), [MeshProblem::NotSimple { triangle: 0 }]);
     }
+
+    /// One face of the cube is subdivided and its neighbours are not: their edges are divided too, and it is closed.
+    #[test]
+    fn edges_that_one_side_divides_are_divided_on_the_other() {
+        let top = "v .5 0 1\nv 1 .5 1\nv .5 1 1\nv 0 .5 1\nv .5 .5 1\nf 5 9 13 12\nf 9 6 10 13\nf 13 10 7 11\nf 12 13 11 8\n";
+        let text = CUBE.replace("f 5//1 6//1 7//1 8//1\n", top);
+        let cube = read(&text).unwrap();
+        assert_eq!(cube.vertices.len(), 13);
+        assert!((cube.volume() - 0.125).abs() < 1e-15, "{}", cube.volume());
+        // A hole stays one, also beside a divided edge.
+        let problems = read(&text.replace("f 2 3 7 6\n", "")).unwrap_err();
+        assert!(problems.iter().all(|p| matches!(p, MeshProblem::Open { .. })), "{problems:?}");
+        assert_eq!(problems.len(), 5);
+    }
 }

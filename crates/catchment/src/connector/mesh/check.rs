@@ -1,5 +1,6 @@
 //! From loose triangles to a closed surface, or to every reason why they are none.
 
+use super::divide::divide;
 use super::{MAX_REPORTED, MeshProblem, PLAUSIBLE_WIDTH, Reported, Triangle, WELD};
 use crate::connector::Surface;
 use glam::{DVec3, I64Vec3};
@@ -14,10 +15,12 @@ pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec
     let size =
         triangles.iter().flat_map(|t| t.corners).fold(0.0, |size: f64, c| size.max(c.abs().max_element()));
     let tolerance = WELD * size;
-    let (vertices, indexed) = weld(triangles, tolerance);
+    let (vertices, mut indexed) = weld(triangles, tolerance);
+    let mut triangles = triangles.to_vec();
+    let sides = divide(&mut triangles, &mut indexed, &vertices, tolerance);
+    let triangles = triangles.as_slice();
     let mut reported = Reported::default();
     reported.extend(zero_areas(triangles, &vertices, &indexed));
-    let sides = sides(&indexed);
     reported.extend(open_edges(triangles, &vertices, &sides));
     reported.extend(crowded_edges(&vertices, &sides));
     reported.extend(wrong_windings(triangles, &sides));
@@ -83,9 +86,9 @@ fn zero_areas(triangles: &[Triangle], vertices: &[DVec3], indexed: &[[u32; 3]]) 
 }
 
 /// Per undirected edge: its triangles, and whether each runs along it upwards.
-type Sides = BTreeMap<[u32; 2], Vec<(usize, bool)>>;
+pub(super) type Sides = BTreeMap<[u32; 2], Vec<(usize, bool)>>;
 
-fn sides(indexed: &[[u32; 3]]) -> Sides {
+pub(super) fn sides(indexed: &[[u32; 3]]) -> Sides {
     let mut sides = Sides::new();
     for (k, t) in indexed.iter().enumerate() {
         for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {

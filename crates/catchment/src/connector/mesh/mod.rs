@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Every source of triangles comes through here, the files of the sources as well as triangles in memory. Corners closer
-//! than [`WELD`] of the model's size are one. The winding counts, counter-clockwise seen from outside. Nothing is
-//! repaired or dropped: a mesh is either closed, wound outward and free of self-intersections, or every reason
+//! than [`WELD`] of the model's size are one, and an edge is divided where a corner of its neighbours lies on it as nearly. The winding counts,
+//! counter-clockwise seen from outside. Nothing else is repaired, and nothing dropped: a mesh is either closed, wound outward and free of self-intersections, or every reason
 //! against it is reported with its place. Coordinates in messages are those of the source.
 //!
 //! Not promised: solids that touch each other along an edge are refused (four triangles meet there), and
@@ -14,6 +14,7 @@
 
 mod check;
 mod cut;
+mod divide;
 
 use super::Surface;
 use super::stl::MAX_BYTES;
