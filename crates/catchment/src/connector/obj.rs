@@ -24,18 +24,15 @@ pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProb
 }
 
 fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
-    let mut lines = Lines { rest: bytes, line: 0 };
+    let refused =
+        |line: usize, expected| vec![MeshProblem::Syntax { line, expected, found: shown(bytes, line) }];
+    let text = plain(bytes).map_err(|line| refused(line, CORNERS))?;
+    let mut lines = Lines { rest: text.as_bytes(), line: 0 };
+    let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);
     // Points and lines bound nothing.
     let options = LoadOptions { ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
-    let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);
-    let (models, _) = tobj::load_obj_buf(&mut lines, &options, no_materials).map_err(|error| {
-        // Corners of faces are looked for at the end of their object only.
-        let line = match error {
-            LoadError::FaceVertexOutOfBounds => bad_face(bytes).unwrap_or(lines.line),
-            _ => lines.line,
-        };
-        vec![MeshProblem::Syntax { line, expected: expected(error), found: shown(bytes, line) }]
-    })?;
+    let (models, _) = tobj::load_obj_buf(&mut lines, &options, no_materials)
+        .map_err(|error| refused(lines.line, expected(error)))?;
     let mut triangles = mesh::Triangles::default();
     for mesh in models.iter().map(|model| &model.mesh) {
         let corner = |k: &u32| {
@@ -56,37 +53,48 @@ fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     Ok(triangles.list)
 }
 
+/// What a face needs.
+const CORNERS: &str = "corners of a face that were defined before it";
+
 /// What the format wants where `tobj` gave up.
 const fn expected(error: LoadError) -> &'static str {
     match error {
         LoadError::PositionParseError => "`v` and three numbers",
         LoadError::FaceParseError | LoadError::InvalidPolygon => "`f` and at least three corners",
-        LoadError::FaceVertexOutOfBounds => "corners of a face that were defined before it",
-        LoadError::FaceTexCoordOutOfBounds | LoadError::FaceNormalOutOfBounds => {
-            "normals and textures of a face that were defined before it"
-        }
-        LoadError::ReadError => "text",
+        LoadError::FaceVertexOutOfBounds => CORNERS,
         _ => "a line of an OBJ file",
     }
 }
 
-/// The line of the first face with a corner that was not defined before it.
-fn bad_face(bytes: &[u8]) -> Option<usize> {
-    let mut corners = 0i64;
-    let mut is_bad = |line: &[u8]| {
-        let text = String::from_utf8_lossy(line);
-        let mut words = text.split_whitespace();
+/// The corners and faces of a file, line by line, without the normals, textures and names that `tobj` would follow to places that are none; or
+/// the line of the first face with a corner that was not defined before it.
+fn plain(bytes: &[u8]) -> Result<String, usize> {
+    let mut corners = 0u64;
+    let mut text = String::with_capacity(bytes.len());
+    for (number, line) in bytes.split(|b| *b == b'\n').enumerate() {
+        let line = String::from_utf8_lossy(line);
+        let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => corners += 1,
+            Some("v") => {
+                corners += 1;
+                text.push_str(line.trim_end());
+            }
             Some("f") => {
-                let numbers = words.filter_map(|word| word.split('/').next()?.parse::<i64>().ok());
-                return numbers.map(i64::unsigned_abs).any(|k| k == 0 || k > corners.unsigned_abs());
+                text.push('f');
+                for word in words {
+                    let corner = word.split('/').next().unwrap_or_default();
+                    if corner.parse::<i64>().is_ok_and(|k| k == 0 || k.unsigned_abs() > corners) {
+                        return Err(number + 1);
+                    }
+                    text.push(' ');
+                    text.push_str(corner);
+                }
             }
             _ => {}
         }
-        false
-    };
-    bytes.split(|b| *b == b'\n').position(&mut is_bad).map(|line| line + 1)
+        text.push('\n');
+    }
+    Ok(text)
 }
 
 /// A line of a file, shortened.
@@ -155,6 +163,8 @@ mod tests {
             refused("f 1 2 6 5", "f 1 2 60 5")
         );
         assert!(refused("f 1 2 6 5\n", "").contains("open along the edge"));
+        // Normals and textures are not followed, wherever they lead.
+        assert!(read(&CUBE.replace("5//1 6//1", "5//0 6//-9")).is_ok());
         assert!(
             refused("v 1 1 0", "v 1 1 nan").contains("not finite"),
             "{}",
