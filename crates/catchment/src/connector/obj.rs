@@ -179,7 +179,8 @@ mod tests {
     #[test]
     fn edges_that_one_side_divides_are_divided_on_the_other() {
         let top = "v .5 0 1\nv 1 .5 1\nv .5 1 1\nv 0 .5 1\nv .5 .5 1\nf 5 9 13 12\nf 9 6 10 13\nf 13 10 7 11\nf 12 13 11 8\n";
-        let text = CUBE.replace("f 5//1 6//1 7//1 8//1\n", top);
+        // Corners counted from the end are others now.
+        let text = CUBE.replace("f 5//1 6//1 7//1 8//1\n", top).replace("-8 -4 -1 -5", "1 5 8 4");
         let cube = read(&text).unwrap();
         assert_eq!(cube.vertices.len(), 13);
         assert!((cube.volume() - 0.125).abs() < 1e-15, "{}", cube.volume());
