@@ -230,6 +230,44 @@ fn equal_chamfers_let_in_what_is_over_the_mouth() {
     }
 }
 
+/// Flush faces of a drawing that was rounded differ in their last digits: none of their contacts may be lost from the exact heights.
+#[test]
+fn the_envelope_of_flush_faces_has_no_holes() {
+    for (sides, slope, digits) in
+        [(4, 1.0, 3), (6, 1.0, 6), (7, 1.0, 6), (8, 2f64.sqrt() - 1.0, 9), (16, 1.0, 9)]
+    {
+        let peg = Chamfered { sides, slope, digits };
+        for problem in [peg.pieces(), peg.triangles()].map(|source| peg.problem(source)) {
+            let catchment::connector::Connector { fixed, moving, .. } = problem.connector();
+            let facets = zraa::heights(fixed, moving, &zraa::Settings::default(), &Exec::new()).unwrap();
+            let mut alignment = problem.alignment().clone();
+            alignment.half_ranges[..2].fill(1.0);
+            let poses = Domain::random(&alignment, 2000, 7);
+            for error in (0..poses.len()).map(|k| poses.pose(k)) {
+                let pose = catchment::pose::CorPose::from_error(
+                    &error,
+                    alignment.center_of_rotation,
+                    alignment.free,
+                );
+                let exact = problem.pair().height(&pose).map(|h| h + alignment.center_of_rotation);
+                let holds = |polygon: &[glam::DVec2]| {
+                    (0..polygon.len()).all(|k| {
+                        let along = polygon[(k + 1) % polygon.len()] - polygon[k];
+                        along.perp_dot(pose.lateral - polygon[k]) >= -1e-9 * along.length()
+                    })
+                };
+                let over = facets.iter().filter(|f| holds(&f.polygon)).map(|f| f.height(pose.lateral));
+                let found = over.reduce(f64::max);
+                let same = match (found, exact) {
+                    (Some(found), Some(exact)) => (found - exact).abs() < 1e-5,
+                    (found, exact) => found == exact,
+                };
+                assert!(same, "{peg:?} at {}: {found:?} for {exact:?}", pose.lateral);
+            }
+        }
+    }
+}
+
 /// A bar with two corners over a truncated V: the middle of the bar stays as far from the apex, so its height falls either way.
 /// At rest one corner has come to the end of the floor: cos(45° + p) = 0.4 / (0.42 √2).
 #[test]

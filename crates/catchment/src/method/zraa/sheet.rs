@@ -3,15 +3,17 @@
 //! With the COR at c = (x, y, z), a point q of the moving half (from the COR) touches a point p of the fixed
 //! half with normal n when n·(c + q − p) = 0, which is a plane over (x, y). Its footprint is where the foot of
 //! the contact lies on both features. Features that cannot support the normal lie below others and are left
-//! out; what stays in too much does no harm to the upper envelope.
+//! out, with the slack of heights elsewhere, so that of halves that lie flush some feature always counts; what stays in too much
+//! joins points of both halves all the same and lies below the envelope.
 
 use crate::connector::{Half, Surface};
+use crate::contact::FLUSH;
 use crate::exec::{Cancelled, Exec};
 use glam::{DVec2, DVec3};
 
 /// Below this z-component a normal is horizontal: the feature is a wall and has no height.
 const VERTICAL: f64 = 1e-9;
-/// Slack of the support test, relative to lengths: rounding only.
+/// Areas smaller than this, relative to lengths, are none: rounding only.
 const ROUNDING: f64 = 1e-9;
 
 /// A plane over a convex polygon of the lateral plane.
@@ -94,7 +96,7 @@ fn facets_and_corners(
             break;
         }
         for (v, around) in b.vertices.iter().zip(&neighbours) {
-            if around.is_empty() || around.iter().any(|e| facet.normal.dot(*e) < -ROUNDING * e.length()) {
+            if around.is_empty() || around.iter().any(|e| facet.normal.dot(*e) < -FLUSH * e.length()) {
                 continue;
             }
             let corners = facet.corners.iter().map(|&k| ((a.vertices[k as usize] - *v) * up).truncate());
@@ -142,7 +144,5 @@ fn edges(
 fn between(n: DVec3, [left, right]: [DVec3; 2], edge: DVec3) -> bool {
     let along = edge.normalize_or_zero();
     let along = if left.cross(right).dot(along) < 0.0 { -along } else { along };
-    left.cross(n).dot(along) >= -ROUNDING
-        && n.cross(right).dot(along) >= -ROUNDING
-        && n.dot(left + right) > 0.0
+    left.cross(n).dot(along) >= -FLUSH && n.cross(right).dot(along) >= -FLUSH && n.dot(left + right) > 0.0
 }
