@@ -13,7 +13,8 @@
 //! 1. Neighbours of one plane become one where that is convex.
 //! 2. A sliver, narrower than [`NARROW`], goes to the neighbours along it, whose sides move over it: those whose planes differ there by
 //!    no more than [`ROUNDED`]; where they do not cover it, those that are higher, too; and at the rim nothing may be left.
-//! 3. A side that ends before it begins goes, where its neighbours meet just beyond it.
+//! 3. A side that ends before it begins goes, where its neighbours meet just beyond it; where they would cover something higher, a side
+//!    shorter than [`POINT`] closes to its middle.
 //!
 //! So the function changes by no more than [`ROUNDED`] in height or [`SIDEWAYS`] to the side, but for slivers of another height than all
 //! around them, such as leaning walls: there it rises, in a strip narrower than [`NARROW`], and what rises stops no higher.
@@ -26,6 +27,9 @@ use super::{NARROW, ROUNDED, SIDEWAYS};
 use catchment::method::zraa::{HeightFacet, area, clip};
 use catchment::polytope::planar_hull;
 use glam::DVec2;
+
+/// Corners nearer than this, in D, are one to who reads convex pieces.
+const POINT: f64 = 1e-9;
 
 impl Heights {
     /// The same function, to `ROUNDED` in height and `SIDEWAYS` to the side, without the pieces that rounding made.
@@ -127,6 +131,9 @@ impl Heights {
                 if !self.may_become(k, &polygon, &kept) {
                     break;
                 }
+                self.facets[k].polygon = polygon;
+            }
+            while let Some(polygon) = without_point_sides(&self.facets[k].polygon) {
                 self.facets[k].polygon = polygon;
             }
         }
@@ -232,6 +239,16 @@ fn fewer_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
         (0..n).filter_map(without).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
     let mut out = polygon.to_vec();
     out[side] = corner;
+    out.remove((side + 1) % n);
+    Some(out)
+}
+
+/// The polygon with a side that is a point to every reader closed to its middle; none where all are longer.
+fn without_point_sides(polygon: &[DVec2]) -> Option<Vec<DVec2>> {
+    let n = polygon.len();
+    let side = (0..n).find(|k| n > 3 && polygon[*k].distance(polygon[(k + 1) % n]) <= POINT)?;
+    let mut out = polygon.to_vec();
+    out[side] = polygon[side].midpoint(polygon[(side + 1) % n]);
     out.remove((side + 1) % n);
     Some(out)
 }

@@ -44,7 +44,7 @@ pub use seat::Seat;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;
-use crate::pose::CorPose;
+use crate::pose::{CorPose, DofSet};
 use glam::{DMat3, DVec2, DVec3};
 use search::Trees;
 use shape::Shape;
@@ -116,6 +116,18 @@ impl Pair {
         };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
+        pair
+    }
+
+    /// The same halves where other errors are free.
+    #[must_use]
+    pub(crate) fn with_free(&self, free: DofSet) -> Self {
+        let mut pair = self.clone();
+        pair.alignment.free = free;
+        pair.tight = walls::are_close(&pair.fixed_shapes, &pair.moving_shapes, &pair.alignment);
+        if free != self.alignment.free {
+            pair.homing = OnceLock::new();
+        }
         pair
     }
 

@@ -22,7 +22,7 @@ use crate::landscape::{Grid, Resolution};
 use crate::merit::sum::wilson95;
 use crate::method::zraa::{self, Zraa, ZraaError};
 use crate::method::{DecideError, Method, MethodError};
-use crate::pose::{Dof, PoseError};
+use crate::pose::PoseError;
 use crate::problem::Problem;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -240,23 +240,9 @@ fn trials_of(
     let trial = |(error, outcome): (PoseError, &Outcome)| Trial {
         error,
         outcome: *outcome,
-        inside: holds(zraa, &error),
+        inside: zraa.holds(DVec2::new(error.x, error.y)),
     };
     Ok(errors.into_iter().zip(&acceptance.outcomes).map(trial).collect())
-}
-
-/// Whether the exact region holds an offset.
-fn holds(zraa: &Zraa, error: &PoseError) -> bool {
-    let place = DVec2::new(error.x, error.y);
-    match zraa {
-        Zraa::Interval { axis, from, to } => {
-            (*from..=*to).contains(if *axis == Dof::X { &place.x } else { &place.y })
-        }
-        Zraa::Region { polygons, .. } => polygons.iter().any(|corners| {
-            let n = corners.len();
-            (0..n).all(|k| (corners[(k + 1) % n] - corners[k]).perp_dot(place - corners[k]) >= 0.0)
-        }),
-    }
 }
 
 /// What the trials of a grid say.
@@ -288,7 +274,7 @@ mod tests {
     use super::super::testing::problem;
     use super::*;
     use crate::design::Family;
-    use crate::pose::DofSet;
+    use crate::pose::{Dof, DofSet};
 
     const XY: DofSet = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
 

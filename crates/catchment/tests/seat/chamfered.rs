@@ -78,6 +78,11 @@ impl Chamfered {
         Problem::new(fixed, moving, alignment).unwrap_or_else(|e| panic!("{self:?}: {e}"))
     }
 
+    /// Area of the captured n-gon, in D².
+    pub(crate) fn captured(&self) -> f64 {
+        0.5 * f64::from(self.sides) * (MOUTH - TIP).powi(2) * (TAU / f64::from(self.sides)).sin()
+    }
+
     /// How far inside the captured n-gon an offset lies, in D; negative outside.
     pub(crate) fn inside(&self, error: &PoseError) -> f64 {
         let half = 0.5 * TAU / f64::from(self.sides);

@@ -10,6 +10,9 @@
 //! translation locked) the answer is an interval; for the planar families these are Nilsson's bounds, ±D/3 for
 //! the S-Face, ±D/2 for the V-Face and ±D for the X-Face.
 //!
+//! Beside the region stand some hundreds of exact motions. Where they end otherwise than the region says, rounding of the drawing led
+//! the flow astray, and it is cut again with a coarser seam; where none agrees, there is no answer.
+//!
 //! Exact up to rounding and [`Settings::seam`] for the solids as given; a cone is the polygon that stands for
 //! it. Sets without area (the ridge of a roof) are not decided. Source: the dissertation, section 2.2 (ZRAA);
 //! Nilsson for the bounds of planar faces.
@@ -18,6 +21,7 @@ mod cells;
 mod circle;
 mod flow;
 mod heights;
+mod judge;
 mod line;
 mod nilsson;
 mod places;
@@ -40,15 +44,19 @@ use crate::exec::{Cancelled, Exec};
 use crate::pose::{Dof, DofSet, PoseError};
 use flow::Flow;
 use glam::DVec2;
+use judge::Judge;
 use serde::{Deserialize, Serialize};
 
 /// Most sheets: minutes of cutting, and 100 MB.
 const MAX_SHEETS: usize = 400_000;
 
+/// Seams for drawings that are rounded, up to the tenth part of a thousandth of D that no fit notices.
+const SEAMS: [f64; 5] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5];
+
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Positions closer than this, in D, are one.
+    /// Positions closer than this, in D, are one; more are, where motions over both translations disagree.
     pub seam: f64,
 }
 
@@ -80,6 +88,21 @@ pub enum Zraa {
     },
 }
 
+impl Zraa {
+    /// Whether an offset is corrected.
+    pub fn holds(&self, at: DVec2) -> bool {
+        match self {
+            Self::Interval { axis, from, to } => {
+                (*from..=*to).contains(if *axis == Dof::X { &at.x } else { &at.y })
+            }
+            Self::Region { polygons, .. } => polygons.iter().any(|corners| {
+                let n = corners.len();
+                (0..n).all(|k| (corners[(k + 1) % n] - corners[k]).perp_dot(at - corners[k]) >= 0.0)
+            }),
+        }
+    }
+}
+
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ZraaError {
@@ -109,6 +132,17 @@ pub enum ZraaError {
     /// The geometry is too rich.
     #[error("more than {MAX_SHEETS} ways to touch: give a coarser mesh or a larger chord_error")]
     TooManySheets,
+    /// Motions say otherwise, with every seam.
+    #[error(
+        "exact motions from {differ} of {judged} offsets end otherwise than the region says: which offsets are corrected is not decided \
+         exactly here; use run --free x,y"
+    )]
+    Disputed {
+        /// Offsets of which both say something.
+        judged: usize,
+        /// Those of which they say different things.
+        differ: usize,
+    },
     /// The subdivision is not consistent.
     #[error(
         "the motion over {cells} cells does not come to an end: the geometry has details below the seam of {seam:.1e} D"
@@ -138,13 +172,30 @@ pub fn run(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Zraa, ZraaEr
     let sheets =
         sheet::sheets(&pair.fixed, &pair.moving, MAX_SHEETS, exec)?.ok_or(ZraaError::TooManySheets)?;
     let (axis, direction) = match (free.contains(Dof::X), free.contains(Dof::Y)) {
-        (true, true) => return region(pair, &sheets, settings.seam, exec),
+        (true, true) => return judged(pair, &sheets, settings.seam, exec),
         (true, false) => (Dof::X, DVec2::X),
         (false, true) => (Dof::Y, DVec2::Y),
         (false, false) => return Err(ZraaError::NoTranslation),
     };
     let [from, to] = line::interval(&sheets, direction, docked.depth, settings.seam);
     Ok(Zraa::Interval { axis, from, to })
+}
+
+/// The region of the first seam that exact motions agree with.
+fn judged(pair: &Pair, sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {
+    let judge = Judge::of(pair, exec)?;
+    let mut refused = None;
+    for seam in std::iter::once(seam).chain(SEAMS.into_iter().filter(|coarser| *coarser > seam)) {
+        match region(pair, sheets, seam, exec) {
+            Ok(region) => match judge.against(&region) {
+                [_, 0] => return Ok(region),
+                [judged, differ] => refused = Some(ZraaError::Disputed { judged, differ }),
+            },
+            Err(error @ ZraaError::Tangled { .. }) => refused = refused.or(Some(error)),
+            Err(error) => return Err(error),
+        }
+    }
+    Err(refused.unwrap_or(ZraaError::Tangled { cells: 0, seam }))
 }
 
 fn region(pair: &Pair, sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Result<Zraa, ZraaError> {

@@ -1,0 +1,76 @@
+//! Whether a region is the one that exact motions find.
+//!
+//! A drawing is rounded: faces that were one plane are several, which cross where the last digits say, and a flow that goes by slivers
+//! of them may stop at a place where nothing stops. Nothing in the flow tells. So motions are followed one by one, beside it, from
+//! places of nested boxes around the mated pose, as the region may be any part of the error box:
+//!
+//! ```text
+//!   ┌───────────────┐
+//!   │ ·       ·     │     as many places in every box, each of half the width of the one around it
+//!   │   ┌───────┐ · │
+//!   │ · │·┌───┐ │   │
+//!   │   │ │·:·│·│   │
+//!   │   │ └───┘ │ · │
+//!   │   └───────┘   │
+//!   └───────────────┘
+//! ```
+//!
+//! Places nearer to the region's border than [`MARGIN`] judge nothing. Not promised: a part of the region so small that no place fell
+//! into it is not judged.
+
+use super::Zraa;
+use crate::acceptance::{Domain, Outcome, Stream};
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec};
+use crate::method::descent;
+use crate::pose::{Dof, DofSet, PoseError};
+use glam::DVec2;
+
+/// Boxes, each of half the width of the one before.
+const BOXES: i32 = 4;
+/// Places in each.
+const PLACES: u64 = 150;
+/// Distance from the border of the region within which a place is not judged, in D.
+const MARGIN: f64 = 1e-4;
+/// Of the places.
+const SEED: u64 = 1;
+
+/// What became of the motions.
+pub(super) struct Judge(Vec<(DVec2, bool)>);
+
+impl Judge {
+    /// Follows the motions of a pair without rotation.
+    pub(super) fn of(pair: &Pair, exec: &Exec) -> Result<Self, Cancelled> {
+        let pair = pair.with_free(DofSet::EMPTY.with(Dof::X).with(Dof::Y));
+        let stream = Stream::new(SEED);
+        let ranges = DVec2::new(pair.alignment.half_ranges[0], pair.alignment.half_ranges[1]);
+        let place = |level: i32, k: u64| {
+            let unit = |axis: u64| 2.0 * stream.branch(axis).uniform(level as u64 * PLACES + k) - 1.0;
+            DVec2::new(unit(0), unit(1)) * ranges * 0.5f64.powi(level)
+        };
+        let places: Vec<DVec2> = (0..BOXES)
+            .flat_map(|level| (0..PLACES).map(move |k| (level, k)))
+            .map(|(l, k)| place(l, k))
+            .collect();
+        let errors = places.iter().map(|at| PoseError { x: at.x, y: at.y, ..PoseError::default() }).collect();
+        let (found, _) = descent::run(&pair, Domain::Poses(errors), &descent::Settings::default(), exec)?;
+        let known =
+            places.into_iter().zip(found.outcomes).filter(|(_, outcome)| *outcome != Outcome::Undecided);
+        Ok(Self(known.map(|(at, outcome)| (at, outcome == Outcome::Aligned)).collect()))
+    }
+
+    /// Places that are judged, and how many of them the region says otherwise of.
+    pub(super) fn against(&self, region: &Zraa) -> [usize; 2] {
+        let aside = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]
+            .map(|(x, y)| DVec2::new(x, y) * MARGIN);
+        let (mut judged, mut differ) = (0, 0);
+        for (at, docks) in &self.0 {
+            let inside = region.holds(*at);
+            if aside.iter().all(|by| region.holds(*at + *by) == inside) {
+                judged += 1;
+                differ += usize::from(inside != *docks);
+            }
+        }
+        [judged, differ]
+    }
+}
