@@ -27,7 +27,8 @@ use std::time::Instant;
 /// offsets are an area. One: they are an interval, which for the planar families has a closed form
 /// (s-face D/3, v-face D/2, x-face D to either side). Where the halves meet along one profile, Nilsson's bound
 /// for such profiles stands beside it, and the extrema that limit this one. Beside an area stands the ONAA in D: the
-/// edge of the largest axis-parallel square inside, wherever it lies.
+/// edge of the largest axis-parallel square inside, wherever it lies. 600 exact motions judge every area: where one of them ends
+/// otherwise, there is no answer.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment zraa design.toml\n  \
