@@ -171,6 +171,14 @@ impl Connector {
         self
     }
 
+    /// The same halves, the moving one placed in its frame by a rigid map.
+    #[must_use]
+    pub(crate) fn with_moving_at(mut self, map: DAffine3) -> Self {
+        self.moving = self.moving.mapped(|p| map.transform_point3(p));
+        self.origin.moving = map * self.origin.moving;
+        self
+    }
+
     /// Moves both face centres to the origin and mounts the moving half.
     fn placed(drawn: &family::Drawn, mount: Mount) -> Self {
         let face = DVec3::new(0.0, 0.0, drawn.face_height);

@@ -27,6 +27,7 @@ mod play;
 mod raster;
 mod search;
 mod seat;
+pub(crate) mod settle;
 mod shape;
 #[cfg(test)]
 mod tests;
