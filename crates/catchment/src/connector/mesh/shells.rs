@@ -9,11 +9,13 @@
 //!                        └─────────┘
 //! ```
 //!
-//! Not promised: shells that share an edge are no shells here, four triangles meet there.
+//! Not promised: shells that share an edge are no shells here, four triangles meet there. Of more than [`MOST`] shells nothing is taken apart.
 
 use super::check::{Sides, corners};
 use glam::DVec3;
 
+/// Most shells that are told apart, as many as a half may have pieces: every two bodies of both halves are compared.
+const MOST: usize = 256;
 /// Share of all directions in which a point sees a shell from inside above which it counts as inside: on the shell it is half.
 const INSIDE: f64 = 0.25;
 
@@ -50,6 +52,10 @@ impl Shells {
             }
             of.push(number[first]);
             triangles[number[first]].push(k);
+        }
+        if triangles.len() > MOST {
+            of.fill(0);
+            triangles = vec![(0..indexed.len()).collect()];
         }
         let at = |k: usize| corners(vertices, indexed[k]);
         // Seen from one of its own corners: far from the origin the sum would lose its digits.
