@@ -25,7 +25,7 @@ run *arguments:
 docs:
     cargo doc --locked --workspace --no-deps --all-features --open
 
-# fuzz a reader: arguments, design, stl, poses, lines, report, zarr, requirement or resolution: just fuzz stl 600
+# fuzz a reader: arguments, design, stl, obj, ply, threemf, drawing, poses, lines, report, zarr, requirement or resolution: just fuzz stl 600
 fuzz target='design' seconds='60':
     fuzz/run {{ seconds }} {{ target }}
 

@@ -4,7 +4,7 @@
 
 use catchment::connector::{Connector, Half, Problem, Side, stl};
 use catchment::contact::{Pair, mated};
-use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, FileSpec, HalfSpec, OwnSpec};
 use catchment::pose::{CorPose, DofSet, Mount, PoseError};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -37,11 +37,8 @@ fn write(half: &Half, format: stl::Format, folder: &Path, name: &str, size: f64)
 fn meshes(format: stl::Format, folder: &Path, size: f64) -> Design {
     let connector = Connector::build(&family()).unwrap();
     let drawn = connector.moving.mapped(|p| Mount::X.apply(p));
-    let mesh = |half, name| HalfSpec::Mesh {
-        path: write(half, format, folder, name, size),
-        scale: 1.0 / size,
-        content: None,
-    };
+    let mesh =
+        |half, name| HalfSpec::Mesh(FileSpec::new(write(half, format, folder, name, size), 1.0 / size));
     let own = OwnSpec::new(0.0, mesh(&connector.fixed, "socket.stl"), mesh(&drawn, "plug.stl"));
     design(ConnectorSpec::Own(own))
 }
@@ -110,7 +107,7 @@ fn all_problems_of_both_halves_come_at_once() {
     let own = OwnSpec::new(
         0.0,
         HalfSpec::Pieces(vec![vec![[0.0; 3]; 3], vec![[0.0, f64::NAN, 0.0]; 4]]),
-        HalfSpec::Mesh { path: "no/such.stl".into(), scale: 1.0, content: None },
+        HalfSpec::Mesh(FileSpec::new("no/such.stl", 1.0)),
     );
     let problems = Connector::build(&design(ConnectorSpec::Own(own))).unwrap_err();
     let places: Vec<_> = problems
@@ -131,8 +128,8 @@ fn a_mesh_in_the_wrong_unit_is_told_what_to_check() {
     // 50 mm read as if D were 50 m.
     if let ConnectorSpec::Own(own) = &mut design.connector {
         for half in [&mut own.fixed, &mut own.moving] {
-            if let HalfSpec::Mesh { scale, .. } = half {
-                *scale /= 1000.0;
+            if let HalfSpec::Mesh(file) = half {
+                file.scale /= 1000.0;
             }
         }
     }

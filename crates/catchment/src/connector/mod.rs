@@ -14,6 +14,8 @@ mod family;
 mod hull;
 pub mod mesh;
 mod obj;
+mod outline;
+mod part;
 mod place;
 mod ply;
 mod problem;
@@ -21,15 +23,18 @@ mod round;
 mod source;
 pub mod stl;
 mod surface;
+mod threemf;
 mod ungendered;
 
 pub use hull::{HullError, MAX_POINTS, convex_hull};
 pub use mesh::MeshProblem;
+pub use outline::OutlineProblem;
+pub use part::PartError;
 pub use problem::{Problem, Side};
-pub use source::{FileBytes, Read, Source};
+pub use source::{FileBytes, Read, Source, UnitProblem};
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
-use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, HalfSpec, MeshContent, OwnSpec};
+use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, HalfSpec, OwnSpec};
 use crate::pose::Mount;
 use glam::{DAffine3, DVec3};
 
@@ -48,8 +53,8 @@ impl Half {
     }
 }
 
-/// A half and what its mesh held, or everything that is wrong with it.
-type Sourced = Result<(Half, Option<MeshContent>), Vec<Problem>>;
+/// A half and what its files held, or everything that is wrong with it.
+type Sourced = Result<source::Built, Vec<Problem>>;
 
 /// The two halves, in the frames the contact room works in.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,7 +88,7 @@ impl Origin {
 impl Connector {
     /// Two halves that already are in these frames.
     pub const fn from_halves(fixed: Half, moving: Half) -> Self {
-        let contents = Contents { fixed: None, moving: None };
+        let contents = Contents { fixed: Vec::new(), moving: Vec::new() };
         Self { fixed, moving, contents, origin: Origin::HERE }
     }
 
@@ -104,8 +109,12 @@ impl Connector {
         match &design.connector {
             ConnectorSpec::Family(spec) => Self::of_family(spec, mount),
             ConnectorSpec::Own(own) => {
-                let half =
-                    |spec, side| Source::of(spec, side, read).map_err(|problem| vec![problem])?.build(side);
+                // Parts are drawn in the unit of the design.
+                let half = |spec: &HalfSpec, side| -> Sourced {
+                    let built = Source::of(spec, side, read)?.build(side)?;
+                    let scale = matches!(spec, HalfSpec::Parts(_)).then_some(1.0 / design.width);
+                    Ok(source::Built { scale: built.scale.or(scale), ..built })
+                };
                 Self::of_own([half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)], own, mount)
             }
         }
@@ -137,21 +146,18 @@ impl Connector {
     /// Places halves that were built; where the face centre is to be found, at the origin of the drawing.
     fn of_own([fixed, moving]: [Sourced; 2], own: &OwnSpec, mount: Mount) -> Result<Self, Vec<Problem>> {
         match (fixed, moving) {
-            (Ok((fixed, of_fixed)), Ok((moving, of_moving))) => {
+            (Ok(fixed), Ok(moving)) => {
                 let frames = place::frames(own, mount);
-                let [fixed, moving] = [(fixed, frames[0]), (moving, frames[1])]
-                    .map(|(h, f)| h.mapped(|p| f.transform_point3(p)));
-                let scale = |half: &HalfSpec| match half {
-                    HalfSpec::Mesh { scale, .. } => DAffine3::from_scale(DVec3::splat(*scale)),
-                    HalfSpec::Pieces(_) | HalfSpec::Memory { .. } => DAffine3::IDENTITY,
-                };
+                let [placed_fixed, placed_moving] = [(&fixed, frames[0]), (&moving, frames[1])]
+                    .map(|(built, f)| built.half.mapped(|p| f.transform_point3(p)));
+                let scale = |scale: Option<f64>| DAffine3::from_scale(DVec3::splat(scale.unwrap_or(1.0)));
                 let origin = Origin {
-                    fixed: frames[0] * scale(&own.fixed),
-                    moving: frames[1] * scale(&own.moving),
+                    fixed: frames[0] * scale(fixed.scale),
+                    moving: frames[1] * scale(moving.scale),
                     apart: None,
                 };
-                let contents = Contents { fixed: of_fixed, moving: of_moving };
-                Ok(Self { fixed, moving, contents, origin })
+                let contents = Contents { fixed: fixed.contents, moving: moving.contents };
+                Ok(Self { fixed: placed_fixed, moving: placed_moving, contents, origin })
             }
             (fixed, moving) => Err([fixed, moving].into_iter().filter_map(Result::err).flatten().collect()),
         }

@@ -2,9 +2,8 @@
 //!
 //! Read by `tobj`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for STL.
 
-use super::Surface;
 use super::mesh::{self, MeshProblem, Triangle};
-use super::source::FileBytes;
+use super::source::{FileBytes, Held};
 use glam::DVec3;
 use std::io::{self, BufRead, Read};
 use tobj::{LoadError, LoadOptions};
@@ -13,14 +12,11 @@ use tobj::{LoadError, LoadOptions};
 pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    mesh::check_scale(scale)?;
+pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
     if file.size > MAX_BYTES {
         return Err(vec![MeshProblem::TooLong { bytes: file.size }]);
     }
-    let triangles = parse(&file.bytes)?;
-    mesh::sound_numbers(&triangles)?;
-    mesh::from_file(&triangles, scale)
+    parse(&file.bytes).map(Held::of_triangles)
 }
 
 fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
@@ -139,8 +135,9 @@ mod tests {
     const CUBE: &str = "# a cube\nmtllib none.mtl\no cube\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
                         vn 0 0 1\nusemtl red\nf 4 3 2 1\nf 5//1 6//1 7//1 8//1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\ng back\nf -8 -4 -1 -5\n";
 
-    fn read(text: &str) -> Result<Surface, Vec<MeshProblem>> {
-        super::read(&FileBytes::whole(text.as_bytes().to_vec()), 0.5)
+    fn read(text: &str) -> Result<crate::connector::Surface, Vec<MeshProblem>> {
+        let held = super::read(&FileBytes::whole(text.as_bytes().to_vec()))?;
+        mesh::half(&held.bodies, 0.5).map(|mut half| half.surfaces.swap_remove(0))
     }
 
     #[test]

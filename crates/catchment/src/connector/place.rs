@@ -7,7 +7,7 @@
 //!
 //! Turns by right angles are exact: an upright wall stays upright.
 
-use crate::design::{Drawn, OwnSpec, Placement};
+use crate::design::{Drawn, OwnSpec, PartSpec, Placement};
 use crate::pose::Mount;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -33,14 +33,24 @@ pub(super) fn frames(own: &OwnSpec, mount: Mount) -> [DAffine3; 2] {
     }
 }
 
+/// From the coordinates of a part to those of its half.
+pub(super) fn part(spec: &PartSpec) -> DAffine3 {
+    let turn = turned(spec.rotate) * turn_between(DVec3::Z, DVec3::from_array(spec.axis));
+    DAffine3 { matrix3: exact(turn), translation: DVec3::from_array(spec.at) }
+}
+
+/// Turns about x, then y, then z.
+fn turned([x, y, z]: [f64; 3]) -> DMat3 {
+    exact(DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x))
+}
+
 fn to_origin(point: DVec3) -> DAffine3 {
     DAffine3::from_translation(-point)
 }
 
 fn placed(placement: &Placement) -> DAffine3 {
-    let Placement { facing, rotate: [x, y, z], translate } = *placement;
-    let turn = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
-    let turn = exact(turn) * turn_between(DVec3::from_array(facing), DVec3::Z);
+    let Placement { facing, rotate, translate } = *placement;
+    let turn = turned(rotate) * turn_between(DVec3::from_array(facing), DVec3::Z);
     DAffine3 { matrix3: turn, translation: DVec3::from_array(translate) }
 }
 

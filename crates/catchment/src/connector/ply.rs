@@ -3,9 +3,8 @@
 //! Read by `ply-rs-bw`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for
 //! STL.
 
-use super::Surface;
 use super::mesh::{self, MeshProblem, Triangle};
-use super::source::FileBytes;
+use super::source::{FileBytes, Held};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
@@ -14,14 +13,11 @@ use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    mesh::check_scale(scale)?;
+pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
     if file.size > MAX_BYTES {
         return Err(vec![MeshProblem::TooLong { bytes: file.size }]);
     }
-    let triangles = parse(&file.bytes)?;
-    mesh::sound_numbers(&triangles)?;
-    mesh::from_file(&triangles, scale)
+    parse(&file.bytes).map(Held::of_triangles)
 }
 
 fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
@@ -107,8 +103,9 @@ mod tests {
                         0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n0 0 1 9\n1 0 1 9\n1 1 1 9\n0 1 1 9\n\
                         4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
 
-    fn read(bytes: &[u8]) -> Result<Surface, Vec<MeshProblem>> {
-        super::read(&FileBytes::whole(bytes.to_vec()), 0.5)
+    fn read(bytes: &[u8]) -> Result<crate::connector::Surface, Vec<MeshProblem>> {
+        let held = super::read(&FileBytes::whole(bytes.to_vec()))?;
+        mesh::half(&held.bodies, 0.5).map(|mut half| half.surfaces.swap_remove(0))
     }
 
     fn binary() -> Vec<u8> {

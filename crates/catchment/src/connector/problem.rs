@@ -1,7 +1,7 @@
 //! What can be wrong with a geometry, where, and what to do about it.
 
 use super::mesh::MeshProblem;
-use super::{HullError, SurfaceError};
+use super::{HullError, PartError, SurfaceError};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -78,7 +78,17 @@ pub enum Problem {
         /// Why not.
         error: MeshProblem,
     },
-    /// Triangles in memory that are no half.
+    /// A part that is none.
+    #[error("{side}, part {part}: {error}")]
+    Part {
+        /// Which half.
+        side: Side,
+        /// Which part, from 0.
+        part: usize,
+        /// Why not.
+        error: PartError,
+    },
+    /// Triangles in memory, or of all parts together, that are no half.
     #[error("{side}: {error}")]
     Triangles {
         /// Which half.

@@ -97,7 +97,7 @@ mod tests {
         let mut pair = connector(&FamilySpec::new(Family::XFace3d), Mount::X);
         let mut file = Vec::new();
         stl::write(&pair.fixed, stl::Format::Binary, &mut file).unwrap();
-        pair.fixed.surfaces = vec![stl::from_bytes(&file, file.len() as u64, 1.0).unwrap()];
+        pair.fixed = stl::from_bytes(&file, file.len() as u64, 1.0).unwrap();
         assert!(pair.ungendered(Mount::X));
         // A wall moved by a hundredth of D is seen.
         pair.fixed = pair.fixed.mapped(|p| p * 1.01);

@@ -1,7 +1,7 @@
 //! What can be wrong with a design: facts, each with advice.
 
 use super::FamilySpec;
-use super::keys::Range;
+use super::keys::{MOST_PARTS, Range};
 use crate::pose::Dof;
 
 /// Lengths and angles.
@@ -151,11 +151,40 @@ pub enum Complaint {
         found: usize,
     },
     /// A list that is no point.
-    #[error("`{key}` has {found} numbers where three are needed: [x, y, z]")]
+    #[error(
+        "`{key}` has {found} numbers where {}",
+        if *needed == 2 { "two are needed: [x, y]" } else { "three are needed: [x, y, z]" }
+    )]
     NotAPoint {
         /// The key.
         key: String,
         /// Its coordinates.
+        found: usize,
+        /// How many a point has.
+        needed: usize,
+    },
+    /// A polygon that encloses nothing.
+    #[error("`{key}` has {found} corners; a polygon has at least 3")]
+    TooFewCorners {
+        /// The polygon.
+        key: String,
+        /// Its corners.
+        found: usize,
+    },
+    /// A part that is nothing.
+    #[error("`{key}` has no shape")]
+    NoShape {
+        /// The part.
+        key: String,
+        /// What to write.
+        advice: &'static str,
+    },
+    /// More parts than a half may have.
+    #[error("`{key}` has {found} parts; a half may have {MOST_PARTS}")]
+    TooManyParts {
+        /// The key.
+        key: String,
+        /// How many there are.
         found: usize,
     },
     /// Three zeros, or too small to tell where they point.
@@ -320,8 +349,13 @@ impl Complaint {
                 Some(question) => format!("{question} One of {}", known.join(", ")),
                 None => format!("one of {}", known.join(", ")),
             }),
-            Self::Missing { advice, .. } | Self::Empty { advice, .. } | Self::Contradiction { advice, .. } => {
-                Some((*advice).to_owned())
+            Self::Missing { advice, .. }
+            | Self::Empty { advice, .. }
+            | Self::NoShape { advice, .. }
+            | Self::Contradiction { advice, .. } => Some((*advice).to_owned()),
+            Self::TooManyParts { .. } => Some("unite them into a mesh: mesh = \"half.stl\"".to_owned()),
+            Self::UnsupportedHalf { key: "profile" } => {
+                Some("extrude it, as a part: parts = [{ profile = [[x, y], …], height = 1.0, axis = \"-y\" }]".to_owned())
             }
             Self::NotAParameter { belongs_to, .. } => Some(format!("it belongs to {belongs_to}; remove it")),
             Self::FreeAndDontCare { .. } => {
@@ -354,6 +388,7 @@ impl Complaint {
             | Self::WrongType { .. }
             | Self::NotFinite { .. }
             | Self::TooFewPoints { .. }
+            | Self::TooFewCorners { .. }
             | Self::NotAPoint { .. }
             | Self::NoDirection { .. }
             | Self::NotARatio { .. }

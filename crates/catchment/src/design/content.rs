@@ -1,6 +1,6 @@
-//! What a mesh held, so that a stored design says what was computed and not only where it lay.
+//! What a file held, so that a stored design says what was computed and not only where it lay.
 
-use super::{ConnectorSpec, Design, HalfSpec};
+use super::{ConnectorSpec, Design};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -13,14 +13,26 @@ pub struct MeshContent {
     pub sha256: String,
     /// How many bytes there are.
     pub bytes: u64,
-    /// How many triangles they make.
+    /// How many triangles they make; of a drawing, how many corners its outlines have.
     pub triangles: usize,
+    /// How many closed bodies it is the union of; shells that are apart count as one unless the file tells them apart.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub bodies: usize,
+}
+
+const fn one() -> usize {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+const fn is_one(count: &usize) -> bool {
+    *count == 1
 }
 
 impl MeshContent {
     /// Of these bytes, which make so many triangles.
     pub fn of(bytes: &[u8], triangles: usize) -> Self {
-        Self { sha256: hex(&Sha256::digest(bytes)), bytes: bytes.len() as u64, triangles }
+        Self { sha256: hex(&Sha256::digest(bytes)), bytes: bytes.len() as u64, triangles, bodies: 1 }
     }
 }
 
@@ -32,23 +44,23 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     })
 }
 
-/// What the meshes of both halves held; `None` for a half that came from no mesh.
+/// What the files of both halves held, or the triangles that were given in memory, in their order; nothing of a half without any.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Contents {
     /// Of the fixed half.
-    pub fixed: Option<MeshContent>,
+    pub fixed: Vec<MeshContent>,
     /// Of the moving half.
-    pub moving: Option<MeshContent>,
+    pub moving: Vec<MeshContent>,
 }
 
 impl Design {
-    /// This design with what its meshes held, as known once its halves are built.
+    /// This design with what its files held, as known once its halves are built.
     #[must_use]
     pub fn with_contents(mut self, contents: &Contents) -> Self {
         if let ConnectorSpec::Own(own) = &mut self.connector {
             for (half, found) in [(&mut own.fixed, &contents.fixed), (&mut own.moving, &contents.moving)] {
-                if let (HalfSpec::Mesh { content, .. }, Some(found)) = (half, found) {
-                    *content = Some(found.clone());
+                for (file, found) in half.files_mut().into_iter().zip(found) {
+                    file.content = Some(found.clone());
                 }
             }
         }

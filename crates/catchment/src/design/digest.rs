@@ -9,7 +9,11 @@
 //! their bytes.
 
 use super::family::Value;
-use super::{Alignment, ConnectorSpec, Design, Docked, Drawn, HalfSpec, OwnSpec, Placement, keys};
+use super::{
+    Alignment, ConnectorSpec, Design, Docked, Drawn, FileSpec, FileUnit, HalfSpec, OutlineSpec, OwnSpec,
+    PartSpec, Placement,
+};
+use super::{ShapeSpec, keys};
 use crate::pose::{Dof, DofSet, Mount};
 use sha2::{Digest, Sha256};
 
@@ -96,22 +100,74 @@ impl Hash {
     }
 
     fn half(&mut self, half: &HalfSpec) -> Option<()> {
-        let (scale, content) = match half {
-            HalfSpec::Pieces(pieces) => {
-                self.text("pieces");
-                self.count(pieces.len() as u64);
-                for piece in pieces {
-                    self.count(piece.len() as u64);
-                    piece.iter().flatten().for_each(|number| self.number(*number));
-                }
-                return Some(());
+        match half {
+            HalfSpec::Pieces(pieces) => self.pieces(pieces),
+            HalfSpec::Mesh(file) => return self.file(file),
+            HalfSpec::Memory { content } => {
+                self.text("memory");
+                self.number(1.0);
+                self.text(&content.sha256);
             }
-            HalfSpec::Mesh { scale, content, .. } => (*scale, content.as_ref()?),
-            HalfSpec::Memory { content } => (1.0, content),
-        };
-        self.text(if matches!(half, HalfSpec::Memory { .. }) { "memory" } else { "mesh" });
-        self.number(scale);
+            HalfSpec::Parts(parts) => {
+                self.text("parts");
+                self.count(parts.len() as u64);
+                for PartSpec { shape, axis, rotate, at } in parts {
+                    self.shape(shape)?;
+                    self.numbers(&[*axis, *rotate, *at].concat());
+                }
+            }
+        }
+        Some(())
+    }
+
+    fn pieces(&mut self, pieces: &[Vec<[f64; 3]>]) {
+        self.text("pieces");
+        self.count(pieces.len() as u64);
+        for piece in pieces {
+            self.count(piece.len() as u64);
+            piece.iter().flatten().for_each(|number| self.number(*number));
+        }
+    }
+
+    fn file(&mut self, file: &FileSpec) -> Option<()> {
+        let content = file.content.as_ref()?;
+        // A unit that the design states is in the scale; where the file says it, its bytes do.
+        self.text(if file.unit == FileUnit::InFile { "mesh in its own unit" } else { "mesh" });
+        self.number(file.scale);
         self.text(&content.sha256);
+        Some(())
+    }
+
+    fn shape(&mut self, shape: &ShapeSpec) -> Option<()> {
+        match shape {
+            ShapeSpec::Mesh(file) => return self.file(file),
+            ShapeSpec::Pieces(pieces) => self.pieces(pieces),
+            ShapeSpec::Sphere { radius, chord_error } => {
+                self.text("sphere");
+                self.numbers(&[*radius, *chord_error]);
+            }
+            ShapeSpec::Cone { radius, top_radius, height, chord_error } => {
+                self.text("cone");
+                self.numbers(&[*radius, *top_radius, *height, *chord_error]);
+            }
+            ShapeSpec::Box { size } => {
+                self.text("box");
+                self.numbers(size);
+            }
+            ShapeSpec::Profile { outline: OutlineSpec::Corners(corners), height, .. } => {
+                self.text("profile");
+                self.count(corners.len() as u64);
+                corners.iter().for_each(|corner| self.numbers(corner));
+                self.number(*height);
+            }
+            ShapeSpec::Profile { outline: OutlineSpec::File(file), height, chord_error } => {
+                self.text("drawing");
+                // How a drawing is read depends on what it is named after.
+                self.text(&file.ending());
+                self.numbers(&[*height, *chord_error]);
+                return self.file(file);
+            }
+        }
         Some(())
     }
 
@@ -222,7 +278,7 @@ mod tests {
     fn of_a_mesh_counts_what_it_held() {
         let mesh = |path: &str, scale, held: Option<&[u8]>| {
             let content = held.map(|bytes| MeshContent::of(bytes, 4));
-            let half = HalfSpec::Mesh { path: path.into(), scale, content };
+            let half = HalfSpec::Mesh(FileSpec { content, ..FileSpec::new(path, scale) });
             let own = OwnSpec::new(0.0, half.clone(), half);
             Design { connector: ConnectorSpec::Own(own), ..family(Family::Pyramid) }.digest()
         };
@@ -237,7 +293,7 @@ mod tests {
     fn a_mesh_without_its_content_reads_as_before() {
         let old = r#"{"mesh":{"path":"a.stl","scale":0.5}}"#;
         let half: HalfSpec = serde_json::from_str(old).unwrap();
-        assert_eq!(half, HalfSpec::Mesh { path: "a.stl".into(), scale: 0.5, content: None });
+        assert_eq!(half, HalfSpec::Mesh(FileSpec::new("a.stl", 0.5)));
         assert_eq!(serde_json::to_string(&half).unwrap(), old);
         // SHA-256 of nothing, FIPS 180-4.
         assert!(MeshContent::of(b"", 0).sha256.starts_with("e3b0c44298fc1c14"));

@@ -14,6 +14,8 @@ fn paths_of(table: Table) -> &'static [&'static str] {
         Table::Root => &[""],
         Table::Connector => &["connector."],
         Table::Half => &["connector.fixed.", "connector.moving."],
+        // They stand in lists, of which a path names no member.
+        Table::Part | Table::Sphere | Table::Cylinder | Table::Cone => &[],
         Table::Alignment => &["alignment."],
         Table::Errors => &["errors."],
         Table::Docked => &["docked."],
@@ -23,8 +25,9 @@ fn paths_of(table: Table) -> &'static [&'static str] {
 /// Keys whose values a person may replace: those that hold one value and change the answer.
 fn replaceable() -> impl Iterator<Item = (String, &'static Key)> {
     Table::ALL.into_iter().flat_map(|table| {
-        let one_value =
-            |key: &&Key| !matches!(key.kind, Kind::Table(_) | Kind::Later | Kind::Pieces | Kind::Line);
+        let one_value = |key: &&Key| {
+            !matches!(key.kind, Kind::Table(_) | Kind::Parts | Kind::Later | Kind::Pieces | Kind::Line)
+        };
         let keys = table.keys().filter(one_value).filter(|key| key.table != Table::Root);
         keys.flat_map(move |key| paths_of(table).iter().map(move |path| (format!("{path}{}", key.name), key)))
     })

@@ -90,6 +90,10 @@ pub enum Kind {
     Path,
     /// Convex pieces, each a list of points.
     Pieces,
+    /// The parts of a half: a list of tables.
+    Parts,
+    /// The path of a drawing, or the corners of a polygon: a list of two lengths each, bare in the unit of the design.
+    Outline(Range),
     /// Read by a later version.
     Later,
     /// A table with keys of its own.
@@ -105,6 +109,14 @@ pub enum Table {
     Connector,
     /// `[connector.fixed]` and `[connector.moving]`.
     Half,
+    /// `[[connector.fixed.parts]]` and `[[connector.moving.parts]]`.
+    Part,
+    /// `sphere` of a part.
+    Sphere,
+    /// `cylinder` of a part.
+    Cylinder,
+    /// `cone` of a part.
+    Cone,
     /// `[alignment]`.
     Alignment,
     /// `[errors]`.
@@ -115,8 +127,18 @@ pub enum Table {
 
 impl Table {
     /// Every table.
-    pub const ALL: [Self; 6] =
-        [Self::Root, Self::Connector, Self::Half, Self::Alignment, Self::Errors, Self::Docked];
+    pub const ALL: [Self; 10] = [
+        Self::Root,
+        Self::Connector,
+        Self::Half,
+        Self::Part,
+        Self::Sphere,
+        Self::Cylinder,
+        Self::Cone,
+        Self::Alignment,
+        Self::Errors,
+        Self::Docked,
+    ];
 
     /// For a person.
     pub const fn name(self) -> &'static str {
@@ -124,6 +146,10 @@ impl Table {
             Self::Root => "the top of the file",
             Self::Connector => "[connector]",
             Self::Half => "[connector.fixed] and [connector.moving]",
+            Self::Part => "a part of a half",
+            Self::Sphere => "a sphere",
+            Self::Cylinder => "a cylinder",
+            Self::Cone => "a cone",
             Self::Alignment => "[alignment]",
             Self::Errors => "[errors]",
             Self::Docked => "[docked]",
@@ -195,6 +221,7 @@ impl Key {
     pub const fn element(self) -> Self {
         let kind = match self.kind {
             Kind::Point(range) => Kind::DrawnLength(range),
+            Kind::Outline(range) => Kind::DrawnLength(range),
             Kind::Turns(range) => Kind::Angle(range),
             kind => kind,
         };
@@ -355,10 +382,13 @@ keys! {
         "Convex pieces whose union is the half: each a list of points [x, y, z] in the unit of the design.");
     /// `mesh` of a half
     MESH = key(Table::Half, "mesh", Kind::Path,
-        "A closed triangle mesh: an STL file, its path relative to the folder of the design file.");
+        "A closed triangle mesh: an STL, OBJ, PLY or 3MF file, its path relative to the folder of the design file.");
     /// `unit` of a half
     MESH_UNIT = key(Table::Half, "unit", Kind::Unit,
-        "Unit of the mesh file, which cannot say it itself: um, mm, cm, m or in.");
+        "Unit of the mesh file, which cannot say it itself unless it is a 3MF: um, mm, cm, m or in.");
+    /// `parts` of a half
+    PARTS = key(Table::Half, "parts", Kind::Parts,
+        "Meshes, pieces, spheres, cylinders, cones, boxes and extruded profiles whose union is the half, each at a place of its own.");
     /// `facing` of a half
     FACING = key(Table::Half, "facing", Kind::Direction,
         "The direction in which the part faces in its file: +x, -x, +y, -y, +z, -z or [x, y, z]. It is turned to +z.");
@@ -374,6 +404,64 @@ keys! {
     /// `heightfield` of a half
     HEIGHTFIELD = key(Table::Half, "heightfield", Kind::Later,
         "Not yet supported: a grid of heights.");
+
+    /// `mesh` of a part
+    PART_MESH = key(Table::Part, "mesh", Kind::Path,
+        "A closed triangle mesh: an STL, OBJ, PLY or 3MF file, its path relative to the folder of the design file.");
+    /// `pieces` of a part
+    PART_PIECES = key(Table::Part, "pieces", Kind::Pieces,
+        "Convex pieces: each a list of points [x, y, z] in the unit of the design.");
+    /// `sphere` of a part
+    PART_SPHERE = key(Table::Part, "sphere", Kind::Table(Table::Sphere),
+        "A ball about the origin of the part.");
+    /// `cylinder` of a part
+    PART_CYLINDER = key(Table::Part, "cylinder", Kind::Table(Table::Cylinder),
+        "A pin that stands on the origin of the part, up its z axis.");
+    /// `cone` of a part
+    PART_CONE = key(Table::Part, "cone", Kind::Table(Table::Cone),
+        "A cone, or what is left of one below its top, that stands on the origin of the part, up its z axis.");
+    /// `box` of a part
+    PART_BOX = key(Table::Part, "box", Kind::Point(Range::new(1e-6, 1e3, "D")),
+        "A box [x, y, z] that stands on the origin of the part, the middle of its floor, up its z axis.");
+    /// `profile` of a part
+    PART_PROFILE = key(Table::Part, "profile", Kind::Outline(Range::new(-1e3, 1e3, "D")),
+        "The corners [x, y] of a polygon, or the path of an SVG or DXF file with closed outlines, extruded along the part's z axis by `height`.");
+    /// `height` of a part
+    PART_HEIGHT = key(Table::Part, "height", Kind::DrawnLength(Range::new(1e-6, 1e3, "D")),
+        "How far the profile is extruded, in the unit of the design.");
+    /// `unit` of a part
+    PART_UNIT = key(Table::Part, "unit", Kind::Unit,
+        "Unit of the mesh, SVG or DXF file where it does not say it itself: um, mm, cm, m or in.");
+    /// `chord_error` of a part
+    PART_CHORD_ERROR = key(Table::Part, "chord_error", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
+        "Largest distance between something round and the facets that stand for it, in the unit of the design. Without it: 0.001 D.");
+    /// `axis` of a part
+    PART_AXIS = key(Table::Part, "axis", Kind::Direction,
+        "The direction to which the part's z axis is turned: +x, -x, +y, -y, +z, -z or [x, y, z].");
+    /// `rotate` of a part
+    PART_ROTATE = key(Table::Part, "rotate", Kind::Turns(Range::new(-2.0 * PI, 2.0 * PI, "rad")),
+        "Turns about x, then y, then z, after `axis`.");
+    /// `at` of a part
+    PART_AT = key(Table::Part, "at", Kind::Point(Range::new(-1e3, 1e3, "D")),
+        "Where the origin of the part is in its half: [x, y, z] in the unit of the design.");
+    /// `radius` of a sphere
+    SPHERE_RADIUS = key(Table::Sphere, "radius", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
+        "Radius of the ball, in the unit of the design.");
+    /// `radius` of a cylinder
+    CYLINDER_RADIUS = key(Table::Cylinder, "radius", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
+        "Radius of the cylinder, in the unit of the design.");
+    /// `height` of a cylinder
+    CYLINDER_HEIGHT = key(Table::Cylinder, "height", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
+        "Height of the cylinder, in the unit of the design.");
+    /// `radius` of a cone
+    CONE_RADIUS = key(Table::Cone, "radius", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
+        "Radius of the cone's floor, in the unit of the design.");
+    /// `top_radius` of a cone
+    CONE_TOP_RADIUS = key(Table::Cone, "top_radius", Kind::DrawnLength(Range::new(0.0, 1e3, "D")),
+        "Radius of the cone's top, in the unit of the design. Without it the cone ends in its apex.");
+    /// `height` of a cone
+    CONE_HEIGHT = key(Table::Cone, "height", Kind::DrawnLength(Range::new(1e-5, 1e3, "D")),
+        "Height of the cone, in the unit of the design.");
 
     /// `alignment.free`
     FREE = key(Table::Alignment, "free", Kind::Dofs,
@@ -444,6 +532,9 @@ pub const COORDINATE: Key = key(
     Kind::DrawnLength(Range::new(-1e3, 1e3, "D")),
     "A coordinate of a convex piece, in the unit of the design. Is `connector.width` in the same unit?",
 );
+
+/// Most parts of a half: beyond it a mesh says the same with less.
+pub const MOST_PARTS: usize = 256;
 
 /// Longest name, in characters.
 pub const LONGEST_LINE: usize = 200;

@@ -1,8 +1,7 @@
 //! The resolved design: no units, no defaults left open.
 
-use super::{Alignment, Drawn, FamilySpec, MeshContent, Placement};
+use super::{Alignment, Drawn, FamilySpec, FileSpec, MeshContent, PartSpec, Placement};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// A checked design: lengths in D, angles in radians.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -117,19 +116,24 @@ impl OwnSpec {
 pub enum HalfSpec {
     /// Convex pieces, each a list of vertices, in D.
     Pieces(Vec<Vec<[f64; 3]>>),
-    /// A closed triangle mesh in an STL file.
-    Mesh {
-        /// The file, absolute or relative to the working directory.
-        path: PathBuf,
-        /// Multiplies the file's coordinates to give D.
-        scale: f64,
-        /// What the file held, once it was read.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        content: Option<MeshContent>,
-    },
+    /// A closed triangle mesh in a file.
+    Mesh(FileSpec),
+    /// Parts, each at a place of its own, whose union is the half.
+    Parts(Vec<PartSpec>),
     /// Triangles that a program gave in memory, in D. The design says only what they were, not the triangles.
     Memory {
         /// What they were.
         content: MeshContent,
     },
+}
+
+impl HalfSpec {
+    /// The files that it comes from, in order.
+    pub(super) fn files_mut(&mut self) -> Vec<&mut FileSpec> {
+        match self {
+            Self::Mesh(file) => vec![file],
+            Self::Parts(parts) => parts.iter_mut().filter_map(|part| part.shape.file_mut()).collect(),
+            Self::Pieces(_) | Self::Memory { .. } => Vec::new(),
+        }
+    }
 }

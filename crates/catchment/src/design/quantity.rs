@@ -92,7 +92,7 @@ impl FromStr for Quantity {
 }
 
 /// The first 40 characters without control characters: messages quote input of any size and kind.
-pub(super) fn shortened(text: &str) -> String {
+pub(crate) fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
     let printable = |c: char| if c.is_control() { '\u{FFFD}' } else { c };
     let mut short: String = text.chars().take(LONGEST).map(printable).collect();

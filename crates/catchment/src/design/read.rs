@@ -6,10 +6,9 @@ use super::keys::{self, Applies, Key, Kind, Table};
 use super::problem::{Problems, Sources};
 use super::quantity::Scale;
 use super::reader::{Reader, Section};
-use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, HalfSpec, OwnSpec, Placement};
+use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, OwnSpec};
 use crate::pose::{Dof, DofSet};
 use std::path::Path;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Largest design file, in bytes. Larger geometry belongs into a mesh file; the worst text of this size takes
@@ -69,9 +68,9 @@ impl Owner {
     }
 }
 
-struct Walk<'t> {
-    reader: Reader<'t>,
-    base_dir: &'t Path,
+pub(super) struct Walk<'t> {
+    pub(super) reader: Reader<'t>,
+    pub(super) base_dir: &'t Path,
 }
 
 impl<'t> Walk<'t> {
@@ -205,152 +204,6 @@ impl<'t> Walk<'t> {
         let moving = self.half(section, &keys::MOVING, is_assembled, scale);
         let ((fixed, fixed_placement), (moving, moving_placement)) = (fixed?, moving?);
         Some(OwnSpec { face_height, drawn, fixed, moving, fixed_placement, moving_placement })
-    }
-
-    /// A half and how it is placed.
-    fn half(
-        &mut self,
-        parent: &Section<'t>,
-        key: &Key,
-        is_assembled: bool,
-        scale: Option<&Scale>,
-    ) -> Option<(HalfSpec, Placement)> {
-        const ADVICE: &str = "give convex pieces = [[[x, y, z], …], …] or mesh = \"half.stl\"";
-        let Some(section) = self.reader.section(parent, key) else {
-            if !parent.has(key) {
-                self.reader.missing(parent, key, ADVICE);
-            }
-            return None;
-        };
-        self.reader.refuse_unknown_keys(&section, Table::Half);
-        let spec = self.half_spec(&section, ADVICE, scale);
-        if is_assembled {
-            self.reader.not_drawn_so(&section, &keys::FACING, is_assembled);
-        }
-        let none = Placement::NONE;
-        let placement = Placement {
-            facing: self.reader.direction(&section, &keys::FACING).unwrap_or(none.facing),
-            rotate: self.reader.triple(&section, &keys::ROTATE, scale).unwrap_or(none.rotate),
-            translate: self.reader.triple(&section, &keys::TRANSLATE, scale).unwrap_or(none.translate),
-        };
-        Some((spec?, placement))
-    }
-
-    fn half_spec(
-        &mut self,
-        section: &Section<'t>,
-        advice: &'static str,
-        scale: Option<&Scale>,
-    ) -> Option<HalfSpec> {
-        let later = [keys::PROFILE, keys::HEIGHTFIELD];
-        for key in &later {
-            if let Some(span) = section.key_span(key) {
-                self.reader.complain(Complaint::UnsupportedHalf { key: key.name }, span);
-            }
-        }
-        if let (Some(span), true) = (section.key_span(&keys::MESH), section.has(&keys::PIECES)) {
-            let complaint = Complaint::Contradiction {
-                key: section.place(keys::MESH.name),
-                other: section.place(keys::PIECES.name),
-                advice: "a half is drawn once: remove one of them",
-            };
-            self.reader.complain(complaint, span);
-            return None;
-        }
-        if section.has(&keys::PIECES) {
-            if let Some(span) = section.key_span(&keys::MESH_UNIT) {
-                let complaint = Complaint::NotAParameter {
-                    key: keys::MESH_UNIT.name.to_owned(),
-                    owner: "pieces, which are drawn in the unit of [connector]",
-                    belongs_to: "a mesh".to_owned(),
-                };
-                self.reader.complain(complaint, span);
-            }
-            return self.pieces(section, scale).map(HalfSpec::Pieces);
-        }
-        if section.has(&keys::MESH) {
-            return self.mesh(section, scale);
-        }
-        if !later.iter().any(|key| section.has(key)) {
-            self.reader.missing(section, &keys::PIECES, advice);
-        }
-        None
-    }
-
-    fn mesh(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<HalfSpec> {
-        let unit = self.reader.unit(section, &keys::MESH_UNIT);
-        let path = self.reader.string(section, &keys::MESH).and_then(|(written, span)| {
-            let path = self.base_dir.join(written);
-            if written.trim().is_empty() {
-                let key = section.place(keys::MESH.name);
-                self.reader.complain(Complaint::Empty { key, advice: "name an STL file" }, span);
-                None
-            } else {
-                Some(path)
-            }
-        });
-        let scale = scale?;
-        let scale = match (unit, scale.unit) {
-            (Some(file), Some(design)) => file.metres() / (design.metres() * scale.width),
-            (None, None) => 1.0 / scale.width,
-            (Some(file), None) => {
-                let text = file.symbol().to_owned();
-                let span = section.key_span(&keys::MESH_UNIT)?;
-                self.reader.complain(Complaint::UnitInDimensionlessDesign { text }, span);
-                return None;
-            }
-            (None, Some(_)) => {
-                if !section.has(&keys::MESH_UNIT) {
-                    let advice = "a mesh file does not say its unit: write it beside the file, unit = \"mm\"";
-                    self.reader.missing(section, &keys::MESH_UNIT, advice);
-                }
-                return None;
-            }
-        };
-        Some(HalfSpec::Mesh { path: path?, scale, content: None })
-    }
-
-    fn pieces(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<Vec<Vec<[f64; 3]>>> {
-        const LEAST_POINTS: usize = 4;
-        let value = self.reader.raw(section, &keys::PIECES)?;
-        let place = section.place(keys::PIECES.name);
-        let elements = self.reader.array(&place, "a list of pieces", value)?;
-        if elements.is_empty() {
-            let advice = "a half has at least one convex piece";
-            self.reader.complain(Complaint::Empty { key: place, advice }, value.span());
-            return None;
-        }
-        let mut pieces = Some(Vec::with_capacity(elements.len()));
-        for (index, element) in elements.iter().enumerate() {
-            let place = format!("{place}[{index}]");
-            self.reader.sources.insert(place.clone(), element.span());
-            let piece = self.reader.array(&place, "a list of points [x, y, z]", element).and_then(|points| {
-                if points.len() < LEAST_POINTS {
-                    let complaint = Complaint::TooFewPoints { key: place.clone(), found: points.len() };
-                    self.reader.complain(complaint, element.span());
-                    return None;
-                }
-                // Every point is looked at, also behind a wrong one.
-                let points: Vec<_> = points.iter().map(|point| self.point(&place, point, scale)).collect();
-                points.into_iter().collect::<Option<Vec<_>>>()
-            });
-            pieces = pieces.zip(piece).map(|(mut list, piece)| {
-                list.push(piece);
-                list
-            });
-        }
-        pieces
-    }
-
-    fn point(
-        &mut self,
-        place: &str,
-        value: &'t Spanned<DeValue<'t>>,
-        scale: Option<&Scale>,
-    ) -> Option<[f64; 3]> {
-        self.reader.three(place, "a point [x, y, z]", value, |reader, place, value| {
-            reader.checked(place, &keys::COORDINATE, value, scale)
-        })
     }
 
     fn alignment(

@@ -47,6 +47,11 @@ impl<'t> Section<'t> {
     pub(super) fn has(&self, key: &Key) -> bool {
         self.table.contains_key(key.name)
     }
+
+    /// Whether the value of a key is a string.
+    pub(super) fn is_text(&self, key: &Key) -> bool {
+        self.entry(key.name).is_some_and(|(_, value)| matches!(value.get_ref(), DeValue::String(_)))
+    }
 }
 
 /// The ways to draw halves, and whether they are drawn assembled.
@@ -122,6 +127,14 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// Complains about a part that is nothing.
+    pub(super) fn missing_shape(&mut self, section: &Section<'t>, advice: &'static str) {
+        if self.broken.is_empty() {
+            let complaint = Complaint::NoShape { key: section.path.clone(), advice };
+            self.complain(complaint, section.span.clone());
+        }
+    }
+
     fn wrong_type(&mut self, place: String, expected: &'static str, value: &Spanned<DeValue<'t>>) {
         let complaint = Complaint::WrongType { key: place, expected, found: value.get_ref().type_str() };
         self.complain(complaint, value.span());
@@ -168,6 +181,16 @@ impl<'t> Reader<'t> {
             return None;
         };
         Some(Section { path: parent.place(key.name), span: value.span(), table })
+    }
+
+    /// A table that is a member of a list, `place` in the file.
+    pub(super) fn member(&mut self, place: String, value: &'t Spanned<DeValue<'t>>) -> Option<Section<'t>> {
+        self.sources.insert(place.clone(), value.span());
+        let DeValue::Table(table) = value.get_ref() else {
+            self.wrong_type(place, "a table", value);
+            return None;
+        };
+        Some(Section { path: place, span: value.span(), table })
     }
 
     /// A string and its place.
@@ -372,15 +395,37 @@ impl<'t> Reader<'t> {
         place: &str,
         expected: &'static str,
         value: &'t Spanned<DeValue<'t>>,
-        mut one: impl FnMut(&mut Self, &str, &'t Spanned<DeValue<'t>>) -> Option<T>,
+        one: impl FnMut(&mut Self, &str, &'t Spanned<DeValue<'t>>) -> Option<T>,
     ) -> Option<[T; 3]> {
-        let [x, y, z] = self.array(place, expected, value)? else {
-            let found = self.array(place, expected, value)?.len();
-            self.complain(Complaint::NotAPoint { key: place.to_owned(), found }, value.span());
+        self.several(place, expected, value, one)
+    }
+
+    /// A list of two, in the same way.
+    pub(super) fn two<T>(
+        &mut self,
+        place: &str,
+        expected: &'static str,
+        value: &'t Spanned<DeValue<'t>>,
+        one: impl FnMut(&mut Self, &str, &'t Spanned<DeValue<'t>>) -> Option<T>,
+    ) -> Option<[T; 2]> {
+        self.several(place, expected, value, one)
+    }
+
+    fn several<T, const N: usize>(
+        &mut self,
+        place: &str,
+        expected: &'static str,
+        value: &'t Spanned<DeValue<'t>>,
+        mut one: impl FnMut(&mut Self, &str, &'t Spanned<DeValue<'t>>) -> Option<T>,
+    ) -> Option<[T; N]> {
+        let elements = self.array(place, expected, value)?;
+        if elements.len() != N {
+            let complaint = Complaint::NotAPoint { key: place.to_owned(), found: elements.len(), needed: N };
+            self.complain(complaint, value.span());
             return None;
-        };
-        let (x, y, z) = (one(self, place, x), one(self, place, y), one(self, place, z));
-        Some([x?, y?, z?])
+        }
+        let read: Vec<Option<T>> = elements.iter().map(|element| one(self, place, element)).collect();
+        read.into_iter().collect::<Option<Vec<T>>>()?.try_into().ok()
     }
 
     /// The elements of an array.

@@ -70,6 +70,21 @@ fn property(key: &Key) -> Value {
                 "items": three(&json!({ "anyOf": [{ "type": "number" }, with_unit(key.kind)] })),
             },
         }),
+        Kind::Parts => json!({
+            "type": "array",
+            "minItems": 1,
+            "maxItems": keys::MOST_PARTS,
+            "items": Value::Object(table(Table::Part)),
+        }),
+        Kind::Outline(_) => json!({ "anyOf": [
+            { "type": "string", "minLength": 1 },
+            { "type": "array", "minItems": 3, "items": {
+                "type": "array",
+                "minItems": 2,
+                "maxItems": 2,
+                "items": { "anyOf": [{ "type": "number" }, with_unit(key.element().kind)] },
+            }},
+        ]}),
         Kind::Later => json!(false),
     };
     let doc = match key.applies {
@@ -115,9 +130,13 @@ mod tests {
         let schema: Value = serde_json::from_str(&json_schema()).unwrap();
         let properties = |value: &Value| value["properties"].as_object().unwrap().len();
         let connector = &schema["properties"]["connector"];
+        let part = &connector["properties"]["fixed"]["properties"]["parts"]["items"];
+        let shapes = ["sphere", "cylinder", "cone"].map(|shape| properties(&part["properties"][shape]));
         let counted = properties(&schema)
             + properties(connector)
             + properties(&connector["properties"]["fixed"])
+            + properties(part)
+            + shapes.iter().sum::<usize>()
             + properties(&schema["properties"]["alignment"])
             + properties(&schema["properties"]["errors"])
             + properties(&schema["properties"]["docked"]);

@@ -45,6 +45,7 @@ fn is_active(key: &Key, family: Family) -> bool {
         }
         Table::Errors => free.iter().any(|dof| keys::ERROR_KEYS[dof.index()] == *key),
         Table::Half | Table::Docked => false,
+        Table::Part | Table::Sphere | Table::Cylinder | Table::Cone => false,
     }
 }
 

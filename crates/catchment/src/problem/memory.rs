@@ -2,7 +2,7 @@
 
 use super::{Draft, Problem, ProblemError, places};
 use crate::connector::{Connector, Half, Source};
-use crate::design::{Alignment, ConnectorSpec, Design, HalfSpec, MeshContent, OwnSpec};
+use crate::design::{Alignment, ConnectorSpec, Design, FileSpec, HalfSpec, MeshContent, OwnSpec};
 use glam::DVec3;
 
 impl Problem {
@@ -17,8 +17,8 @@ impl Problem {
         let contents = connector.contents.clone();
         let own = OwnSpec::new(
             FACE_HEIGHT,
-            spec(fixed, contents.fixed, &connector.fixed),
-            spec(moving, contents.moving, &connector.moving),
+            spec(fixed, &contents.fixed, &connector.fixed),
+            spec(moving, &contents.moving, &connector.moving),
         );
         let name = "in memory".to_owned();
         let design = Design { name, connector: ConnectorSpec::Own(own), width: 1.0, unit: None, alignment };
@@ -27,15 +27,19 @@ impl Problem {
 }
 
 /// What a design says of a half that came from a source.
-fn spec(source: Source, content: Option<MeshContent>, built: &Half) -> HalfSpec {
-    match (source, content) {
-        (Source::Pieces(pieces), _) => {
+fn spec(source: Source, contents: &[MeshContent], built: &Half) -> HalfSpec {
+    match source {
+        Source::Pieces(pieces) => {
             HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(DVec3::to_array).collect()).collect())
         }
-        (Source::Mesh { path, scale, .. }, content) => HalfSpec::Mesh { path, scale, content },
-        (_, Some(content)) => HalfSpec::Memory { content },
-        // A half of a family, which a design of two halves of one's own cannot name.
-        (_, None) => HalfSpec::Memory { content: content_of(built) },
+        Source::Mesh { path, scale, unit, .. } => {
+            HalfSpec::Mesh(FileSpec { path, scale, unit, content: None })
+        }
+        Source::Parts(parts) => HalfSpec::Parts(parts.into_iter().map(|(part, _)| part).collect()),
+        // A half of a family is one that a design of two halves of one's own cannot name.
+        Source::Triangles(_) | Source::Surface(_) | Source::Family(_) => {
+            HalfSpec::Memory { content: contents.first().cloned().unwrap_or_else(|| content_of(built)) }
+        }
     }
 }
 

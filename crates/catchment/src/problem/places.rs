@@ -1,6 +1,6 @@
 //! Which key of a design file a complaint of a later room is about.
 
-use crate::connector::{MeshProblem, Problem, Side};
+use crate::connector::{MeshProblem, PartError, Problem, Side};
 use crate::contact::mated::MatedProblem;
 use crate::design::{Complaint, Finding, Findings, keys};
 use std::mem::discriminant;
@@ -51,6 +51,14 @@ fn same_kind(a: &Problem, b: &Problem) -> bool {
                 && (discriminant(first) == discriminant(error)
                     || matches!(error, MeshProblem::More { .. } | MeshProblem::NotLookedAt { .. }))
         }
+        (
+            Problem::Part { side: a, part: p, error: PartError::Mesh { error: first, .. } },
+            Problem::Part { side: b, part: q, error: PartError::Mesh { error, .. } },
+        ) => {
+            (a, p) == (b, q)
+                && (discriminant(first) == discriminant(error)
+                    || matches!(error, MeshProblem::More { .. } | MeshProblem::NotLookedAt { .. }))
+        }
         _ => false,
     }
 }
@@ -60,7 +68,9 @@ fn likewise(rest: &[Problem]) -> Option<String> {
     let places: Vec<String> = rest
         .iter()
         .map(|problem| match problem {
-            Problem::Mesh { error, .. } => error.to_string(),
+            Problem::Mesh { error, .. } | Problem::Part { error: PartError::Mesh { error, .. }, .. } => {
+                error.to_string()
+            }
             other => other.to_string(),
         })
         .collect();
@@ -74,6 +84,14 @@ fn key_of(problem: &Problem) -> String {
         Problem::PieceCount { side, .. } => format!("connector.{}.pieces", half(*side)),
         Problem::Piece { side, piece, .. } => format!("connector.{}.pieces[{piece}]", half(*side)),
         Problem::Mesh { side, .. } => format!("connector.{}.mesh", half(*side)),
+        Problem::Part { side, part, error } => {
+            let key = match error {
+                PartError::Mesh { .. } => ".mesh",
+                PartError::Outline { .. } => ".profile",
+                _ => "",
+            };
+            format!("connector.{}.parts[{part}]{key}", half(*side))
+        }
         Problem::Triangles { side, .. } | Problem::NotInDesign { side } => {
             format!("connector.{}", half(*side))
         }

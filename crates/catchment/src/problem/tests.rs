@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::connector::Source;
-use crate::design::{ConnectorSpec, Family, FamilySpec, HalfSpec};
+use crate::design::{ConnectorSpec, Family, FamilySpec, FileSpec, HalfSpec};
 use crate::pose::{Dof, DofSet, Mount};
 use glam::DVec3;
 use std::fmt::Write;
@@ -67,7 +67,7 @@ fn the_digest_knows_what_a_mesh_held_and_not_where_it_lay() {
     assert_eq!(here.digest(), there.digest());
     // The report says what was in the file, not only where it lay.
     let ConnectorSpec::Own(own) = &here.design().connector else { panic!("it has halves of its own") };
-    let HalfSpec::Mesh { content: Some(content), .. } = &own.moving else { panic!("a mesh") };
+    let HalfSpec::Mesh(FileSpec { content: Some(content), .. }) = &own.moving else { panic!("a mesh") };
     assert_eq!((content.bytes, content.triangles), (plug.len() as u64, 6));
     assert_ne!(
         problem("swapped", &socket).map_or_else(|e| e.to_string(), |p| p.digest().to_owned()),

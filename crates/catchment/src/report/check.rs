@@ -3,7 +3,10 @@
 use super::envelope::{Body, Envelope};
 use super::text::line;
 use crate::connector::Origin;
-use crate::design::{ConnectorSpec, Design, Drawn, Finding, Findings, HalfSpec, OwnSpec, SourceText};
+use crate::design::{
+    ConnectorSpec, Design, Drawn, FileSpec, Finding, Findings, HalfSpec, OutlineSpec, OwnSpec,
+};
+use crate::design::{PartSpec, ShapeSpec, SourceText};
 use crate::pose::{Dof, DofSet};
 use crate::problem::Problem;
 use glam::{DAffine3, DVec3};
@@ -46,7 +49,8 @@ pub struct DrawingReport {
     pub apart: Option<f64>,
 }
 
-/// Places in the coordinates in which a half is drawn: those of its mesh file; of pieces and of triangles in memory, D.
+/// Places in the coordinates in which a half is drawn: those of its mesh file; of parts, the unit of the design; of
+/// pieces and of triangles in memory, D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct DrawnReport {
     /// The face centre.
@@ -183,6 +187,10 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
         ConnectorSpec::Own(own) => {
             row("fixed half", &half(&own.fixed));
             row("moving half", &half(&own.moving));
+            let round = [&own.fixed, &own.moving].into_iter().filter_map(chord_error).reduce(f64::max);
+            if let Some(error) = round {
+                row("round parts", &format!("facets inside of them, by at most {}", length(error)));
+            }
         }
     }
     if let Some(DrawingReport { fixed, moving, apart }) = drawing {
@@ -246,9 +254,47 @@ fn half(half: &HalfSpec) -> String {
     match half {
         HalfSpec::Pieces(pieces) if pieces.len() == 1 => "1 convex piece".to_owned(),
         HalfSpec::Pieces(pieces) => format!("{} convex pieces", pieces.len()),
-        HalfSpec::Mesh { path, .. } => format!("mesh {}", path.display()),
+        HalfSpec::Mesh(file) => mesh(file),
+        HalfSpec::Parts(parts) => parts_of(parts),
         HalfSpec::Memory { content } => format!("{} triangles in memory", content.triangles),
     }
+}
+
+fn mesh(file: &FileSpec) -> String {
+    let bodies = file.content.as_ref().map_or(1, |content| content.bodies);
+    let united = if bodies > 1 { format!(", the union of {bodies} bodies") } else { String::new() };
+    format!("mesh {}{united}", file.path.display())
+}
+
+/// The parts of a half, those that are alike together; and how round what is round is.
+fn parts_of(parts: &[PartSpec]) -> String {
+    let mut kinds: Vec<(String, usize)> = Vec::new();
+    for part in parts {
+        let kind = match &part.shape {
+            ShapeSpec::Mesh(file) => mesh(file),
+            ShapeSpec::Pieces(_) => "convex pieces".to_owned(),
+            ShapeSpec::Sphere { .. } => "ball".to_owned(),
+            ShapeSpec::Cone { radius, top_radius, .. } if radius == top_radius => "cylinder".to_owned(),
+            ShapeSpec::Cone { .. } => "cone".to_owned(),
+            ShapeSpec::Box { .. } => "box".to_owned(),
+            ShapeSpec::Profile { outline: OutlineSpec::Corners(_), .. } => "profile".to_owned(),
+            ShapeSpec::Profile { outline: OutlineSpec::File(file), .. } => {
+                format!("profile {}", file.path.display())
+            }
+        };
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((kind, 1)),
+        }
+    }
+    let told = |(kind, count): (String, usize)| if count == 1 { kind } else { format!("{count} × {kind}") };
+    kinds.into_iter().map(told).collect::<Vec<_>>().join(", ")
+}
+
+/// Largest distance between what is round in a half and its facets, in D.
+fn chord_error(half: &HalfSpec) -> Option<f64> {
+    let HalfSpec::Parts(parts) = half else { return None };
+    parts.iter().filter_map(|part| part.shape.chord_error()).reduce(f64::max)
 }
 
 fn names(set: DofSet) -> String {

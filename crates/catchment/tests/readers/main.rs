@@ -77,6 +77,16 @@ fn ply_files() {
 }
 
 #[test]
+fn threemf_files() {
+    replay("threemf", targets::threemf_file);
+}
+
+#[test]
+fn drawings() {
+    replay("drawing", targets::drawing);
+}
+
+#[test]
 fn tables_of_poses() {
     replay("poses", targets::pose_table);
 }

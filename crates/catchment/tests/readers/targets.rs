@@ -4,7 +4,8 @@
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
 use catchment::connector::{Connector, FileBytes, Source, stl};
-use catchment::design::{Design, Problems, Quantity, keys, parse_dofs, read};
+use catchment::design::{Design, FileSpec, FileUnit, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec};
+use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
 use catchment::poses::{Distribution, OffsetsAt, PoseTable, parse_pose};
@@ -51,9 +52,11 @@ pub(crate) fn design_file(bytes: &[u8]) {
 /// What the STL reader accepts is a closed solid, and what it refuses has few reasons.
 pub(crate) fn stl_file(bytes: &[u8]) {
     match stl::from_bytes(bytes, bytes.len() as u64, 1.0) {
-        Ok(surface) => {
-            assert!(surface.volume() > 0.0);
-            assert!(surface.vertices.iter().all(|v| v.is_finite()));
+        Ok(half) => {
+            for surface in &half.surfaces {
+                assert!(surface.volume() > 0.0);
+                assert!(surface.vertices.iter().all(|v| v.is_finite()));
+            }
         }
         Err(problems) => assert!((1..60).contains(&problems.len()), "{} problems", problems.len()),
     }
@@ -69,8 +72,31 @@ pub(crate) fn ply_file(bytes: &[u8]) {
     mesh_file("half.ply", bytes);
 }
 
+/// The same of 3MF files.
+pub(crate) fn threemf_file(bytes: &[u8]) {
+    mesh_file("half.3mf", bytes);
+}
+
+/// What the readers of drawings accept makes a solid when it is extruded.
+pub(crate) fn drawing(bytes: &[u8]) {
+    for name in ["plate.svg", "plate.dxf"] {
+        let outline = OutlineSpec::File(FileSpec::new(name, 0.1));
+        let shape = ShapeSpec::Profile { outline, height: 0.5, chord_error: 1e-3 };
+        let part = PartSpec::new(shape, [0.0; 3]);
+        let half = || Source::Parts(vec![(part.clone(), Some(FileBytes::whole(bytes.to_vec())))]);
+        match Connector::from_sources(&half(), &half(), 0.0, Mount::X) {
+            Ok(connector) => {
+                assert!(connector.fixed.surfaces.iter().all(|surface| surface.volume() > 0.0));
+            }
+            Err(problems) => assert!((2..120).contains(&problems.len()), "{} problems", problems.len()),
+        }
+    }
+}
+
 fn mesh_file(name: &str, bytes: &[u8]) {
-    let mesh = || Source::Mesh { path: name.into(), file: FileBytes::whole(bytes.to_vec()), scale: 1.0 };
+    let unit = FileUnit::Beside;
+    let mesh =
+        || Source::Mesh { path: name.into(), file: FileBytes::whole(bytes.to_vec()), scale: 1.0, unit };
     match Connector::from_sources(&mesh(), &mesh(), 0.0, Mount::X) {
         Ok(connector) => {
             for surface in connector.fixed.surfaces.iter().chain(&connector.moving.surfaces) {

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Radius of the cone's rim, in D.
 const CONE_RADIUS: f64 = 0.5;
 /// Most corners of a polygon that stands for a circle: beyond it the pair has more elements than it repays.
-pub(super) const MAX_CORNERS: f64 = 512.0;
+pub(in crate::connector) const MAX_CORNERS: f64 = 512.0;
 
 impl Draw for Pyramid {
     /// Socket: four facets from the apex (0, 0, 0) to the rim square at z = H. Plug: its positive.
@@ -60,14 +60,14 @@ fn chord_error(radius: f64, corners: f64) -> f64 {
 
 /// Corners of the inscribed polygon that stays within `error` of a circle: a multiple of four, at least
 /// eight, so that both mounts map the polygon onto itself.
-pub(super) fn corners_of_circle(radius: f64, error: f64) -> f64 {
+pub(in crate::connector) fn corners_of_circle(radius: f64, error: f64) -> f64 {
     let half_angle = (1.0 - error / radius).clamp(-1.0, 1.0).acos();
     // Rounding must not turn the exact error of n corners into n + 4.
     ((PI / half_angle - 1e-9) / 4.0).ceil().max(2.0) * 4.0
 }
 
 /// A regular polygon, counter-clockwise; mirror images about both axes are exact.
-pub(super) fn circle(radius: f64, corners: usize) -> Vec<DVec2> {
+pub(in crate::connector) fn circle(radius: f64, corners: usize) -> Vec<DVec2> {
     let quarter = corners / 4;
     (0..corners)
         .map(|k| {

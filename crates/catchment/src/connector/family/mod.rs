@@ -17,6 +17,8 @@ mod locking;
 mod pin_hole;
 mod planar;
 
+pub(super) use fan::{MAX_CORNERS, circle, corners_of_circle};
+
 use super::{Half, Problem, Side, Surface, SurfaceError};
 use crate::design::FamilySpec;
 

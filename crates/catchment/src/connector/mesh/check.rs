@@ -1,7 +1,8 @@
 //! From loose triangles to a closed surface, or to every reason why they are none.
 
 use super::divide::divide;
-use super::{MAX_REPORTED, MeshProblem, PLAUSIBLE_WIDTH, Reported, Triangle, WELD};
+use super::shells::Shells;
+use super::{MAX_REPORTED, MeshProblem, Reported, Triangle, WELD};
 use crate::connector::Surface;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, HashMap};
@@ -10,8 +11,8 @@ use std::collections::{BTreeMap, HashMap};
 /// single-precision corners moves the area of a unit triangle by about 1e-7.
 const NO_AREA: f64 = 1e-7;
 
-/// Welds, checks and scales.
-pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec<MeshProblem>> {
+/// Welds, checks and scales. One surface, or one per shell where shells cross each other.
+pub(super) fn surfaces(triangles: &[Triangle], scale: f64) -> Result<Vec<Surface>, Vec<MeshProblem>> {
     let size =
         triangles.iter().flat_map(|t| t.corners).fold(0.0, |size: f64, c| size.max(c.abs().max_element()));
     let tolerance = WELD * size;
@@ -24,23 +25,47 @@ pub(super) fn surface(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec
     reported.extend(open_edges(triangles, &vertices, &sides));
     reported.extend(crowded_edges(&vertices, &sides));
     reported.extend(wrong_windings(triangles, &sides));
+    let mut bodies = None;
     if reported.problems.is_empty() {
-        if volume(&vertices, &indexed) <= 0.0 {
+        let shells = Shells::of(&vertices, &indexed, &sides);
+        bodies = shells.bodies();
+        if bodies.is_none() {
             reported.extend([MeshProblem::InsideOut]);
         }
-        reported.extend(crossings(triangles, &vertices, &indexed, tolerance));
-    }
-    let (lo, hi) =
-        vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
-    let width = (hi - lo).truncate().max_element() * scale;
-    if !PLAUSIBLE_WIDTH.contains(&width) {
-        reported.extend([MeshProblem::Unit { width }]);
+        let mut overlap = false;
+        reported.extend(crossings(triangles, &vertices, &indexed, tolerance, &shells.of, &mut overlap));
+        if !overlap {
+            bodies = bodies.map(|_| vec![(0..indexed.len()).collect()]);
+        }
     }
     reported.done()?;
-    let polygons: Vec<Vec<u32>> = indexed.iter().map(|t| t.to_vec()).collect();
     // Everything that the surface refuses has been looked for above; what is left can only be rounding.
-    Surface::from_polygons(vertices.iter().map(|v| *v * scale).collect(), &polygons)
-        .map_err(|_| vec![MeshProblem::InsideOut])
+    let refused = |_| vec![MeshProblem::InsideOut];
+    let bodies = bodies.unwrap_or_default();
+    bodies
+        .iter()
+        .map(|body| {
+            let (vertices, polygons) = gathered(&vertices, &indexed, body);
+            Surface::from_polygons(vertices.iter().map(|v| *v * scale).collect(), &polygons).map_err(refused)
+        })
+        .collect()
+}
+
+/// The triangles of one body, over corners of their own.
+fn gathered(vertices: &[DVec3], indexed: &[[u32; 3]], body: &[usize]) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+    if body.len() == indexed.len() {
+        return (vertices.to_vec(), indexed.iter().map(|t| t.to_vec()).collect());
+    }
+    let mut own = HashMap::new();
+    let mut gathered = Vec::new();
+    let mut renumbered = |v: u32| {
+        *own.entry(v).or_insert_with(|| {
+            gathered.push(vertices[v as usize]);
+            gathered.len() as u32 - 1
+        })
+    };
+    let polygons = body.iter().map(|&k| indexed[k].map(&mut renumbered).to_vec()).collect();
+    (gathered, polygons)
 }
 
 /// Joins corners within `tolerance` of each other. The first corner met gives the coordinates.
@@ -67,7 +92,7 @@ fn weld(triangles: &[Triangle], tolerance: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (vertices, indexed)
 }
 
-fn corners(vertices: &[DVec3], triangle: [u32; 3]) -> [DVec3; 3] {
+pub(super) fn corners(vertices: &[DVec3], triangle: [u32; 3]) -> [DVec3; 3] {
     triangle.map(|k| vertices[k as usize])
 }
 
@@ -137,25 +162,15 @@ fn wrong_windings(triangles: &[Triangle], sides: &Sides) -> Vec<MeshProblem> {
         .collect()
 }
 
-fn volume(vertices: &[DVec3], indexed: &[[u32; 3]]) -> f64 {
-    // Seen from one of its own corners: far from the origin the sum would lose its digits.
-    let origin = vertices[0];
-    indexed
-        .iter()
-        .map(|&t| {
-            let [a, b, c] = corners(vertices, t).map(|p| p - origin);
-            a.dot(b.cross(c)) / 6.0
-        })
-        .sum()
-}
-
-/// Pairs of triangles that cross: an edge of the one pierces the other. Sorted sweep along x, which ends with the first few:
-/// a mesh in which everything crosses has as many pairs as the square of its triangles.
+/// Pairs of triangles of one shell that cross: an edge of the one pierces the other. Sorted sweep along x, which ends with the first
+/// few: a mesh in which everything crosses has as many pairs as the square of its triangles. `overlap` tells whether two shells cross.
 fn crossings(
     triangles: &[Triangle],
     vertices: &[DVec3],
     indexed: &[[u32; 3]],
     tolerance: f64,
+    shell: &[usize],
+    overlap: &mut bool,
 ) -> Vec<MeshProblem> {
     let boxes: Vec<(DVec3, DVec3)> = indexed
         .iter()
@@ -174,11 +189,18 @@ fn crossings(
                 break;
             }
             let apart = boxes[i].0.cmpgt(boxes[j].1).any() || boxes[j].0.cmpgt(boxes[i].1).any();
-            if apart || sheets[i].is_clear_of(&sheets[j], tolerance) && !share_a_side(indexed[i], indexed[j])
+            let same = shell[i] == shell[j];
+            if apart
+                || !same && *overlap
+                || sheets[i].is_clear_of(&sheets[j], tolerance) && !share_a_side(indexed[i], indexed[j])
             {
                 continue;
             }
             let Some(at) = cross(vertices, indexed[i], indexed[j], tolerance) else { continue };
+            if !same {
+                *overlap = true;
+                continue;
+            }
             if found.len() == MAX_REPORTED {
                 found.push(MeshProblem::NotLookedAt { count: order.len() - position });
                 return found;

@@ -19,7 +19,7 @@ use glam::{DVec2, DVec3};
 const ON: f64 = 1e-9;
 
 /// Triangles of corners by their numbers, wound as the face is; `None` where there are none.
-pub(super) fn triangles(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
+pub(in crate::connector) fn triangles(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     let count = corners.len();
     let normal: DVec3 = (0..count).map(|k| corners[k].cross(corners[(k + 1) % count])).sum();
     let normal = normal.try_normalize()?;

@@ -9,14 +9,18 @@
 //! counter-clockwise seen from outside. Nothing else is repaired, and nothing dropped: a mesh is either closed, wound outward and free of self-intersections, or every reason
 //! against it is reported with its place. Coordinates in messages are those of the source.
 //!
+//! Closed shells that overlap are a surface each, see [`shells`]; otherwise all shells of a source are one.
+//!
 //! Not promised: solids that touch each other along an edge are refused (four triangles meet there), and
 //! coplanar overlaps of separate shells are not looked for.
 
 mod check;
-mod cut;
+pub(in crate::connector) mod cut;
 mod divide;
+mod shells;
 
-use super::Surface;
+use super::Half;
+use super::source::UnitProblem;
 use super::stl::MAX_BYTES;
 use glam::DVec3;
 use std::fmt;
@@ -135,6 +139,15 @@ pub enum MeshProblem {
         /// Where and why.
         message: String,
     },
+    /// No 3MF, or a broken one.
+    #[error("cannot be read as 3MF: {message}")]
+    NotThreeMf {
+        /// Where and why.
+        message: String,
+    },
+    /// The unit of its coordinates is not known.
+    #[error(transparent)]
+    UnitOf(#[from] UnitProblem),
     /// Something else, which the first bytes tell.
     #[error("this is {what}")]
     Foreign {
@@ -265,39 +278,77 @@ impl Triangles {
     }
 }
 
-/// A closed surface from triangles (in D), by the rules of every mesh file.
+/// A half from triangles (in D), by the rules of every mesh file.
 ///
 /// # Errors
 /// Everything that is wrong with the mesh, at most a few problems of each kind, by the number of the triangle.
-pub fn from_triangles(triangles: &[[DVec3; 3]]) -> Result<Surface, Vec<MeshProblem>> {
-    if triangles.len() > MAX_TRIANGLES {
-        return Err(vec![MeshProblem::TooMany { count: triangles.len() as u64 }]);
-    }
+pub fn from_triangles(triangles: &[[DVec3; 3]]) -> Result<Half, Vec<MeshProblem>> {
     let placed = |(triangle, &corners)| Triangle { corners, place: Place { triangle, start: Start::Memory } };
     let triangles: Vec<Triangle> = triangles.iter().enumerate().map(placed).collect();
-    sound_numbers(&triangles)?;
-    check::surface(&triangles, 1.0)
+    half(&[triangles], 1.0)
 }
 
-/// A closed surface from the triangles of a file; `scale` turns its coordinates into D.
-pub(super) fn from_file(triangles: &[Triangle], scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    check::surface(triangles, scale)
+/// A half from the triangles of a file, body by body; `scale` turns its coordinates into D.
+pub(super) fn half(bodies: &[Vec<Triangle>], scale: f64) -> Result<Half, Vec<MeshProblem>> {
+    let mut problems = Vec::new();
+    let half = part(bodies, scale).unwrap_or_else(|found| {
+        problems = found;
+        Half::default()
+    });
+    // Without numbers there is no width, and without a scale none in D.
+    let is_sized = !problems.iter().any(|problem| {
+        use MeshProblem::{NoTriangles, NotFinite, Scale, TooMany};
+        matches!(problem, NotFinite { .. } | Scale { .. } | NoTriangles | TooMany { .. })
+    });
+    let corners = bodies.iter().flatten().flat_map(|triangle| triangle.corners);
+    problems.extend(if is_sized { implausible_width(corners.map(|c| c * scale)) } else { None });
+    if problems.is_empty() { Ok(half) } else { Err(problems) }
+}
+
+/// The same of a part of a half, which may have any size.
+pub(super) fn part(bodies: &[Vec<Triangle>], scale: f64) -> Result<Half, Vec<MeshProblem>> {
+    check_scale(scale)?;
+    let count = bodies.iter().map(Vec::len).sum::<usize>() as u64;
+    if count > MAX_TRIANGLES as u64 {
+        return Err(vec![MeshProblem::TooMany { count }]);
+    }
+    sound_numbers(bodies)?;
+    let mut half = Half::default();
+    let mut problems = Vec::new();
+    for body in bodies.iter().filter(|body| !body.is_empty()) {
+        match check::surfaces(body, scale) {
+            Ok(surfaces) => half.surfaces.extend(surfaces),
+            Err(found) => problems.extend(found),
+        }
+        if problems.len() > MAX_REPORTED * MAX_REPORTED {
+            break;
+        }
+    }
+    if problems.is_empty() { Ok(half) } else { Err(problems) }
+}
+
+/// Complains about a half whose width in D can hardly be meant.
+pub(super) fn implausible_width(corners: impl Iterator<Item = DVec3>) -> Option<MeshProblem> {
+    let (lo, hi) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+    let width = (hi - lo).truncate().max_element();
+    (!PLAUSIBLE_WIDTH.contains(&width)).then_some(MeshProblem::Unit { width })
 }
 
 /// Refuses a scale that is no positive number.
-pub(super) fn check_scale(scale: f64) -> Result<(), Vec<MeshProblem>> {
+fn check_scale(scale: f64) -> Result<(), Vec<MeshProblem>> {
     if scale.is_finite() && scale > 0.0 { Ok(()) } else { Err(vec![MeshProblem::Scale { scale }]) }
 }
 
 /// Refuses a mesh without triangles, and coordinates that are no numbers.
-pub(super) fn sound_numbers(triangles: &[Triangle]) -> Result<(), Vec<MeshProblem>> {
+fn sound_numbers(bodies: &[Vec<Triangle>]) -> Result<(), Vec<MeshProblem>> {
     let mut reported = Reported::default();
-    if triangles.is_empty() {
+    if bodies.iter().all(Vec::is_empty) {
         reported.extend([MeshProblem::NoTriangles]);
     }
     reported.extend(
-        triangles
+        bodies
             .iter()
+            .flatten()
             .filter(|t| !t.corners.iter().all(|c| c.is_finite()))
             .map(|t| MeshProblem::NotFinite { place: t.place }),
     );

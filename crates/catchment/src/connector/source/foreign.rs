@@ -3,6 +3,9 @@
 
 use crate::connector::mesh::MeshProblem;
 
+/// What a ZIP archive is that is no 3MF.
+pub(in crate::connector) const ZIP: &str = "a ZIP archive, such as a FreeCAD or Fusion file (a 3MF ends in .3mf): export the part as STL, OBJ, PLY or 3MF, or unpack it";
+
 /// How files of other kinds begin, and what they are.
 const KINDS: [(&[u8], &str); 12] = [
     (
@@ -14,10 +17,7 @@ const KINDS: [(&[u8], &str); 12] = [
         "a STEP file, which holds curved faces and no triangles: export the part as STL, OBJ or PLY from the CAD program, with a chord tolerance \
          of 0.01 mm",
     ),
-    (
-        b"PK\x03\x04",
-        "a ZIP archive, such as a 3MF, FreeCAD or Fusion file: export the part as STL, OBJ or PLY, or unpack it",
-    ),
+    (b"PK\x03\x04", ZIP),
     (b"\x1f\x8b", "a file packed by gzip: unpack it"),
     (b"7z\xbc\xaf\x27\x1c", "a 7z archive: unpack it"),
     (b"glTF", "a glTF file: export the part as STL, OBJ or PLY"),
@@ -32,10 +32,11 @@ const KINDS: [(&[u8], &str); 12] = [
     (b"%PDF", "a PDF: drawings have no solid"),
 ];
 
-/// Refuses what begins like no mesh.
-pub(super) fn refuse(bytes: &[u8]) -> Result<(), Vec<MeshProblem>> {
+/// Refuses what begins like no mesh; of the formats that end so one may be an archive.
+pub(super) fn refuse(bytes: &[u8], endings: &[&str]) -> Result<(), Vec<MeshProblem>> {
     let bytes = bytes.trim_ascii_start();
-    match KINDS.iter().find(|(start, _)| bytes.starts_with(start)) {
+    let may_be = |what: &str| what == ZIP && endings.contains(&"3mf");
+    match KINDS.iter().find(|(start, what)| bytes.starts_with(start) && !may_be(what)) {
         Some((_, what)) => Err(vec![MeshProblem::Foreign { what }]),
         None => Ok(()),
     }

@@ -1,4 +1,4 @@
-//! Where a half comes from: a family, convex pieces, the bytes of a mesh file, or triangles in memory.
+//! Where a half comes from: a family, convex pieces, the bytes of a mesh file, parts, or triangles in memory.
 //!
 //! ```text
 //! HalfSpec ──of, reading files──▶ Source ──build──▶ Half, and what the mesh held
@@ -12,10 +12,14 @@
 mod content;
 pub(super) mod disk;
 mod foreign;
+pub(super) mod unit;
 
-use super::mesh::{self, MeshProblem};
-use super::{Half, Problem, Side, Surface, convex_hull, family, obj, ply, stl};
-use crate::design::{FamilySpec, HalfSpec, MeshContent};
+pub(super) use foreign::ZIP;
+pub use unit::UnitProblem;
+
+use super::mesh::{self, MeshProblem, Triangle};
+use super::{Half, Problem, Side, Surface, convex_hull, family, obj, part, ply, stl, threemf};
+use crate::design::{FamilySpec, FileSpec, FileUnit, HalfSpec, MeshContent, PartSpec, ShapeSpec};
 use glam::DVec3;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -43,21 +47,37 @@ impl FileBytes {
 /// Gives the first bytes of a file, at most as many as the second argument says.
 pub type Read<'a> = &'a dyn Fn(&Path, u64) -> io::Result<FileBytes>;
 
+/// What a mesh file holds.
+pub(super) struct Held {
+    /// The triangles of every body that the file tells apart.
+    pub(super) bodies: Vec<Vec<Triangle>>,
+    /// Metres in one of its coordinates, where it says so.
+    pub(super) metres: Option<f64>,
+}
+
+impl Held {
+    /// Of a file that tells no bodies apart and says no unit.
+    pub(super) fn of_triangles(triangles: Vec<Triangle>) -> Self {
+        Self { bodies: vec![triangles], metres: None }
+    }
+}
+
 /// A format of mesh files.
 struct Format {
     /// How its files end, in lower case.
     endings: &'static [&'static str],
     /// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
     most: u64,
-    /// From bytes and the scale to D to a closed surface.
-    read: fn(&FileBytes, f64) -> Result<Surface, Vec<MeshProblem>>,
+    /// What the bytes of a file hold.
+    read: fn(&FileBytes) -> Result<Held, Vec<MeshProblem>>,
 }
 
 /// The table of mesh formats. A file whose ending none of them has is read as the first.
-const FORMATS: [Format; 3] = [
+const FORMATS: [Format; 4] = [
     Format { endings: &["stl"], most: stl::MAX_BYTES, read: stl::read },
     Format { endings: &["obj"], most: obj::MAX_BYTES, read: obj::read },
     Format { endings: &["ply"], most: ply::MAX_BYTES, read: ply::read },
+    Format { endings: &["3mf"], most: threemf::MAX_BYTES, read: threemf::read },
 ];
 
 impl Format {
@@ -66,6 +86,47 @@ impl Format {
         let has = |format: &&Self| ending.as_ref().is_some_and(|e| format.endings.contains(&e.as_str()));
         FORMATS.iter().find(has).unwrap_or(&FORMATS[0])
     }
+}
+
+/// A half that was built, and where it came from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Built {
+    /// The solid.
+    pub(super) half: Half,
+    /// What its files held, or the triangles that were given in memory.
+    pub(super) contents: Vec<MeshContent>,
+    /// Multiplies the coordinates of its file to give D; `None` where it is no single file.
+    pub(super) scale: Option<f64>,
+}
+
+impl Built {
+    const fn of(half: Half, contents: Vec<MeshContent>) -> Self {
+        Self { half, contents, scale: None }
+    }
+}
+
+/// A mesh file as a half or a part of one, what it held, and its scale.
+pub(super) fn read_mesh(
+    spec: &FileSpec,
+    file: &FileBytes,
+    build: fn(&[Vec<Triangle>], f64) -> Result<Half, Vec<MeshProblem>>,
+) -> Result<(Half, MeshContent, f64), Vec<MeshProblem>> {
+    let format = Format::of(&spec.path);
+    foreign::refuse(&file.bytes, format.endings)?;
+    let held = (format.read)(file)?;
+    let scale = unit::scale(spec, held.metres).map_err(|problem| vec![problem.into()])?;
+    let half = build(&held.bodies, scale)?;
+    let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum();
+    let content = MeshContent { bodies: half.surfaces.len(), ..MeshContent::of(&file.bytes, facets) };
+    Ok((half, content, scale))
+}
+
+/// The bytes of a file, or why there are none.
+fn fetch(path: &Path, most: u64, read: Read<'_>) -> Result<FileBytes, MeshProblem> {
+    read(path, most).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => MeshProblem::NoFile,
+        _ => MeshProblem::Io { message: error.to_string() },
+    })
 }
 
 /// One half, drawn facing +z, before it is built.
@@ -83,7 +144,11 @@ pub enum Source {
         file: FileBytes,
         /// Multiplies the file's coordinates to give D.
         scale: f64,
+        /// Who says the unit of its coordinates.
+        unit: FileUnit,
     },
+    /// Parts, each with what its file holds where it comes from one.
+    Parts(Vec<(PartSpec, Option<FileBytes>)>),
     /// Loose triangles that bound the half, corners in D, counter-clockwise seen from outside.
     Triangles(Vec<[DVec3; 3]>),
     /// A closed surface, in D.
@@ -91,54 +156,78 @@ pub enum Source {
 }
 
 impl Source {
-    /// What a design says of a half, its mesh file read.
-    pub(super) fn of(spec: &HalfSpec, side: Side, read: Read<'_>) -> Result<Self, Problem> {
+    /// What a design says of a half, its files read.
+    pub(super) fn of(spec: &HalfSpec, side: Side, read: Read<'_>) -> Result<Self, Vec<Problem>> {
         match spec {
-            HalfSpec::Pieces(pieces) => Ok(Self::Pieces(
-                pieces.iter().map(|piece| piece.iter().copied().map(DVec3::from_array).collect()).collect(),
-            )),
-            HalfSpec::Mesh { path, scale, .. } => match read(path, Format::of(path).most) {
-                Ok(file) => Ok(Self::Mesh { path: path.clone(), file, scale: *scale }),
-                Err(error) => {
-                    let error = match error.kind() {
-                        io::ErrorKind::NotFound => MeshProblem::NoFile,
-                        _ => MeshProblem::Io { message: error.to_string() },
-                    };
-                    Err(Problem::Mesh { side, path: path.clone(), error })
+            HalfSpec::Pieces(pieces) => Ok(Self::Pieces(points(pieces))),
+            HalfSpec::Mesh(FileSpec { path, scale, unit, .. }) => {
+                let (path, scale, unit) = (path.clone(), *scale, *unit);
+                match fetch(&path, Format::of(&path).most, read) {
+                    Ok(file) => Ok(Self::Mesh { path, file, scale, unit }),
+                    Err(error) => Err(vec![Problem::Mesh { side, path, error }]),
                 }
-            },
-            HalfSpec::Memory { .. } => Err(Problem::NotInDesign { side }),
+            }
+            HalfSpec::Parts(parts) => {
+                let (mut read_parts, mut problems) = (Vec::new(), Vec::new());
+                for (index, part) in parts.iter().enumerate() {
+                    let most = |file: &FileSpec| match part.shape {
+                        ShapeSpec::Profile { .. } => part::MOST_BYTES_OF_A_DRAWING,
+                        _ => Format::of(&file.path).most,
+                    };
+                    let file = part.shape.file().map(|file| {
+                        fetch(&file.path, most(file), read).map_err(|error| {
+                            let path = file.path.clone();
+                            Problem::Part { side, part: index, error: part::PartError::Mesh { path, error } }
+                        })
+                    });
+                    match file.transpose() {
+                        Ok(file) => read_parts.push((part.clone(), file)),
+                        Err(problem) => problems.push(problem),
+                    }
+                }
+                if problems.is_empty() { Ok(Self::Parts(read_parts)) } else { Err(problems) }
+            }
+            HalfSpec::Memory { .. } => Err(vec![Problem::NotInDesign { side }]),
         }
     }
 
-    /// The solid, and what the mesh held where it is one.
-    pub(super) fn build(&self, side: Side) -> Result<(Half, Option<MeshContent>), Vec<Problem>> {
+    /// The solid, and what its files held.
+    pub(super) fn build(&self, side: Side) -> Result<Built, Vec<Problem>> {
         match self {
             Self::Family(spec) => {
                 let drawn = family::draw(spec)?;
-                Ok((if side == Side::Fixed { drawn.fixed } else { drawn.moving }, None))
+                let half = if side == Side::Fixed { drawn.fixed } else { drawn.moving };
+                Ok(Built::of(half, Vec::new()))
             }
-            Self::Pieces(pieces) => Ok((from_pieces(pieces, side)?, None)),
-            Self::Mesh { path, file, scale } => {
+            Self::Pieces(pieces) => Ok(Built::of(from_pieces(pieces, side)?, Vec::new())),
+            Self::Mesh { path, file, scale, unit } => {
                 let refused = |error| Problem::Mesh { side, path: path.clone(), error };
-                let surface = foreign::refuse(&file.bytes)
-                    .and_then(|()| (Format::of(path).read)(file, *scale))
+                let spec = FileSpec { unit: *unit, ..FileSpec::new(path, *scale) };
+                let (half, content, scale) = read_mesh(&spec, file, mesh::half)
                     .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
-                let content = MeshContent::of(&file.bytes, surface.facets.len());
-                Ok((Half { surfaces: vec![surface] }, Some(content)))
+                Ok(Built { half, contents: vec![content], scale: Some(scale) })
+            }
+            Self::Parts(parts) => {
+                let (half, contents) = part::half(parts, side)?;
+                Ok(Built::of(half, contents))
             }
             Self::Triangles(triangles) => {
                 let refused = |error| Problem::Triangles { side, error };
-                let surface = mesh::from_triangles(triangles)
+                let half = mesh::from_triangles(triangles)
                     .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
-                Ok((Half { surfaces: vec![surface] }, Some(content::of_triangles(triangles))))
+                Ok(Built::of(half, vec![content::of_triangles(triangles)]))
             }
             Self::Surface(surface) => {
                 let content = content::of_surface(surface);
-                Ok((Half { surfaces: vec![surface.clone()] }, Some(content)))
+                Ok(Built::of(Half { surfaces: vec![surface.clone()] }, vec![content]))
             }
         }
     }
+}
+
+/// Pieces as points.
+pub(super) fn points(pieces: &[Vec<[f64; 3]>]) -> Vec<Vec<DVec3>> {
+    pieces.iter().map(|piece| piece.iter().copied().map(DVec3::from_array).collect()).collect()
 }
 
 fn from_pieces(pieces: &[Vec<DVec3>], side: Side) -> Result<Half, Vec<Problem>> {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::connector::Connector;
 use crate::connector::mesh::{Place, Start};
-use crate::design::{Alignment, ConnectorSpec, Design, Family, OwnSpec};
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FileSpec, OwnSpec};
 use crate::pose::{DofSet, Mount};
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ fn cube() -> Vec<Vec<DVec3>> {
 }
 
 fn build(source: &Source) -> Result<Half, Vec<Problem>> {
-    source.build(Side::Fixed).map(|(half, _)| half)
+    source.build(Side::Fixed).map(|built| built.half)
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn a_pair_in_memory_is_the_family_without_any_file() {
     let halves = [Source::Family(spec), Source::Surface(drawn.moving.surfaces[0].clone())];
     let mixed = Connector::from_sources(&halves[0], &halves[1], drawn.face_height, Mount::X).unwrap();
     assert_eq!((&mixed.fixed, &mixed.moving), (&family.fixed, &family.moving));
-    assert!(mixed.contents.fixed.is_none() && mixed.contents.moving == connector.contents.moving);
+    assert!(mixed.contents.fixed.is_empty() && mixed.contents.moving == connector.contents.moving);
 }
 
 #[test]
@@ -60,14 +60,17 @@ fn triangles_in_memory_are_complained_about_by_number() {
         triangle.swap(0, 1);
     }
     assert_eq!(complaint(inside_out), MeshProblem::InsideOut);
+    // Two bodies that overlap are a surface each; one that crosses itself is refused.
     let shifted = good.iter().map(|t| t.map(|p| p + DVec3::new(0.3, 0.4, 0.5)));
     let crossing: Vec<_> = good.iter().copied().chain(shifted).collect();
-    assert!(matches!(complaint(crossing), MeshProblem::SelfIntersection { .. }));
+    let two = build(&Source::Triangles(crossing)).unwrap();
+    assert_eq!(two.surfaces.len(), 2);
+    assert!(two.surfaces.iter().all(|surface| surface.convex && (surface.volume() - 1.0).abs() < 1e-12));
 }
 
 /// A design of two meshes of the same cube under the given names, read from memory.
 fn mesh_design(path: &str, file: &[u8]) -> Design {
-    let half = || HalfSpec::Mesh { path: path.into(), scale: 1.0, content: None };
+    let half = || HalfSpec::Mesh(FileSpec::new(path, 1.0));
     let own = OwnSpec::new(0.5, half(), half());
     let design = Design {
         name: path.to_owned(),
@@ -95,8 +98,9 @@ fn stl_of(half: &Half) -> Vec<u8> {
 fn what_the_file_held_counts_and_not_where_it_lay() {
     let half = build(&Source::Pieces(cube())).unwrap();
     let design = mesh_design("a.stl", &stl_of(&half));
-    let ConnectorSpec::Own(OwnSpec { fixed: HalfSpec::Mesh { content: Some(content), .. }, .. }) =
-        &design.connector
+    let ConnectorSpec::Own(OwnSpec {
+        fixed: HalfSpec::Mesh(FileSpec { content: Some(content), .. }), ..
+    }) = &design.connector
     else {
         panic!("a content")
     };
@@ -114,8 +118,8 @@ fn what_the_file_held_counts_and_not_where_it_lay() {
 
 #[test]
 fn a_missing_file_and_one_that_cannot_be_read_are_told_apart() {
-    let half = HalfSpec::Mesh { path: "no/such/file.stl".into(), scale: 1.0, content: None };
-    let error = |read: Read<'_>| match Source::of(&half, Side::Moving, read).unwrap_err() {
+    let half = HalfSpec::Mesh(FileSpec::new("no/such/file.stl", 1.0));
+    let error = |read: Read<'_>| match Source::of(&half, Side::Moving, read).unwrap_err().remove(0) {
         Problem::Mesh { side: Side::Moving, error, .. } => error,
         other => panic!("{other}"),
     };
@@ -124,7 +128,7 @@ fn a_missing_file_and_one_that_cannot_be_read_are_told_apart() {
     assert!(matches!(error(&denied), MeshProblem::Io { .. }));
     let content = MeshContent::of(b"", 0);
     let gone = Source::of(&HalfSpec::Memory { content }, Side::Fixed, &disk::read);
-    assert_eq!(gone, Err(Problem::NotInDesign { side: Side::Fixed }));
+    assert_eq!(gone, Err(vec![Problem::NotInDesign { side: Side::Fixed }]));
 }
 
 proptest! {

@@ -16,16 +16,16 @@ mod write;
 
 pub use write::{Format, write};
 
-use super::Surface;
-use super::mesh::{self, MeshProblem};
-use super::source::FileBytes;
+use super::Half;
+use super::mesh::{self, MeshProblem, Triangle};
+use super::source::{FileBytes, Held};
 
 /// Longest ASCII file that can hold as many triangles as a half may have, generously written.
 pub const MAX_BYTES: u64 = 128 << 20;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    from_bytes(&file.bytes, file.size, scale)
+pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
+    parse::parse(&file.bytes, file.size).map(Held::of_triangles)
 }
 
 /// Reads an STL file from its bytes; `scale` turns its coordinates into D. `size` is the size of the whole
@@ -33,10 +33,9 @@ pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProb
 ///
 /// # Errors
 /// Everything that is wrong with the file, at most a few problems of each kind.
-pub fn from_bytes(bytes: &[u8], size: u64, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    mesh::check_scale(scale)?;
-    let triangles = parse::parse(bytes, size)?;
-    mesh::from_file(&triangles, scale)
+pub fn from_bytes(bytes: &[u8], size: u64, scale: f64) -> Result<Half, Vec<MeshProblem>> {
+    let triangles: Vec<Triangle> = parse::parse(bytes, size)?;
+    mesh::half(&[triangles], scale)
 }
 
 #[cfg(test)]

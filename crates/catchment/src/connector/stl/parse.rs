@@ -1,7 +1,7 @@
 //! From bytes to triangles, both dialects.
 
 use super::MAX_BYTES;
-use crate::connector::mesh::{self, MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
+use crate::connector::mesh::{MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
 use glam::DVec3;
 
 /// Header and triangle count of a binary file.
@@ -21,7 +21,7 @@ pub(super) fn parse(bytes: &[u8], size: u64) -> Result<Vec<Triangle>, Vec<MeshPr
         .and_then(|count| count.try_into().ok())
         .map(|count| u64::from(u32::from_le_bytes(count)));
     let expected = announced.map(|count| HEADER as u64 + RECORD as u64 * count);
-    let triangles = if expected == Some(size) || !looks_like_text(bytes) {
+    if expected == Some(size) || !looks_like_text(bytes) {
         let (Some(triangles), Some(expected)) = (announced, expected) else {
             return Err(vec![MeshProblem::NotStl { found: size }]);
         };
@@ -31,15 +31,13 @@ pub(super) fn parse(bytes: &[u8], size: u64) -> Result<Vec<Triangle>, Vec<MeshPr
         if triangles > MAX_TRIANGLES as u64 {
             return Err(vec![MeshProblem::TooMany { count: triangles }]);
         }
-        binary(&bytes[HEADER..])
+        Ok(binary(&bytes[HEADER..]))
     } else {
         if size > MAX_BYTES {
             return Err(vec![MeshProblem::TooLong { bytes: size }]);
         }
-        ascii(bytes).map_err(|problem| vec![problem])?
-    };
-    mesh::sound_numbers(&triangles)?;
-    Ok(triangles)
+        ascii(bytes).map_err(|problem| vec![problem])
+    }
 }
 
 /// Whether the file begins with the word `solid` and holds no zero byte, as every binary header does.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::connector::mesh::{MAX_REPORTED, MAX_TRIANGLES, Place, Start};
-use crate::connector::{Half, family};
+use crate::connector::{Surface, family};
 use crate::design::{Family, FamilySpec};
 use glam::DVec3;
 use proptest::prelude::*;
@@ -14,8 +14,9 @@ fn bytes(half: &Half, format: Format) -> Vec<u8> {
     out
 }
 
+/// The first surface of a file.
 fn parse(bytes: &[u8]) -> Result<Surface, Vec<MeshProblem>> {
-    from_bytes(bytes, bytes.len() as u64, 1.0)
+    from_bytes(bytes, bytes.len() as u64, 1.0).map(|mut half| half.surfaces.swap_remove(0))
 }
 
 fn socket() -> Half {
@@ -72,7 +73,7 @@ fn families_survive_both_dialects() {
 fn scale_turns_file_units_into_d() {
     let half = socket().mapped(|p| p * 50.0);
     let file = bytes(&half, Format::Binary);
-    let surface = from_bytes(&file, file.len() as u64, 1.0 / 50.0).unwrap();
+    let surface = &from_bytes(&file, file.len() as u64, 1.0 / 50.0).unwrap().surfaces[0];
     assert!((surface.volume() - socket().surfaces[0].volume()).abs() < 1e-6);
 }
 
@@ -187,10 +188,47 @@ fn inside_out_and_mixed_windings_are_told_apart() {
     assert_eq!(complaints(&triangles), [MeshProblem::InsideOut]);
 }
 
+/// A tall box on a square of half the side of a cube's.
+fn post(low: f64, high: f64, up: impl Fn(f64) -> f64) -> Vec<[[f64; 3]; 3]> {
+    let stretched = |[x, y, z]: [f64; 3]| {
+        let across = |c: f64| low + (high - low) * c;
+        [across(x), across(y), up(z)]
+    };
+    cube().into_iter().map(|t| t.map(stretched)).collect()
+}
+
+fn inward(triangles: Vec<[[f64; 3]; 3]>) -> Vec<[[f64; 3]; 3]> {
+    triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect()
+}
+
 #[test]
-fn shells_that_cross_are_located() {
-    let shifted = cube().into_iter().map(|t| t.map(|[x, y, z]| [x + 0.3, y + 0.4, z + 0.5]));
-    let problems = complaints(&cube().into_iter().chain(shifted).collect::<Vec<_>>());
+fn shells_that_cross_are_bodies_and_cavities_go_with_theirs() {
+    let volumes = |shells: &[Vec<[[f64; 3]; 3]>]| -> Result<Vec<f64>, Vec<MeshProblem>> {
+        let file = text(&shells.concat());
+        let half = from_bytes(file.as_bytes(), file.len() as u64, 1.0)?;
+        Ok(half.surfaces.iter().map(|surface| (surface.volume() * 1e6).round() / 1e6).collect())
+    };
+    let through = || post(0.6, 0.8, |z| 3.0 * z - 1.0);
+    let cavity = || inward(post(0.1, 0.3, |z| 0.1 + 0.2 * z));
+    let apart = || post(2.0, 2.5, |z| z);
+    assert_eq!(volumes(&[cube(), through()]), Ok(vec![1.0, 0.12]));
+    assert_eq!(volumes(&[cavity(), cube(), through()]), Ok(vec![0.992, 0.12]));
+    // What does not cross stays one surface; so does a body inside of another, which changes nothing.
+    assert_eq!(volumes(&[cube(), apart(), cavity()]), Ok(vec![1.242]));
+    assert_eq!(volumes(&[cube(), inward(cavity())]), Ok(vec![1.008]));
+    assert_eq!(volumes(&[cube(), inward(apart())]), Err(vec![MeshProblem::InsideOut]));
+}
+
+#[test]
+fn a_shell_that_crosses_itself_is_located() {
+    // A box with a spike that leads from its lid down through its floor.
+    let mut box_ = post(0.0, 1.0, |z| z);
+    let tip = [0.5, 0.5, -1.0];
+    let lid: Vec<_> = box_.iter().filter(|t| t.iter().all(|p| p[2] == 1.0)).copied().collect();
+    box_.retain(|t| !lid.contains(t));
+    let rim = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]];
+    box_.extend((0..4).map(|k| [rim[k], rim[(k + 1) % 4], tip]));
+    let problems = complaints(&box_);
     assert!(problems.iter().any(|p| matches!(p, MeshProblem::SelfIntersection { .. })), "{problems:?}");
 }
 

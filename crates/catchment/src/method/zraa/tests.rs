@@ -261,7 +261,7 @@ fn through_stl(pair: &Pair, format: stl::Format) -> Pair {
     let read = |half: &Half| {
         let mut file = Vec::new();
         stl::write(half, format, &mut file).unwrap();
-        Half { surfaces: vec![stl::from_bytes(&file, file.len() as u64, 1.0).unwrap()] }
+        stl::from_bytes(&file, file.len() as u64, 1.0).unwrap()
     };
     let face = glam::DVec3::new(0.0, 0.0, pair.alignment.center_of_rotation);
     let moving = pair.moving.mapped(|p| p - face);

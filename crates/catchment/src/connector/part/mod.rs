@@ -1,0 +1,158 @@
+//! A half from its parts: meshes, pieces, balls, cones, boxes and extruded profiles, each at its place.
+//!
+//! ```text
+//! PartSpec, file ──shape──▶ closed surfaces ──axis, rotate, at──▶ the half, which is their union
+//! ```
+//!
+//! Parts may overlap, as a pin does with the plate that it sits in: surfaces of a half may. What is round becomes facets with their corners on it,
+//! so that a ball is never too large, and too small by at most its chord error.
+//!
+//! Not promised: faces of two parts that fall together are not sought, and nothing tells a part that touches no other.
+
+mod prism;
+mod round;
+
+use super::mesh::{self, MAX_TRIANGLES, MeshProblem};
+use super::outline::{self, OutlineProblem};
+use super::source::{self, FileBytes};
+use super::{Half, HullError, Problem, Side, Surface, SurfaceError, convex_hull, place};
+use crate::design::{FileSpec, MeshContent, OutlineSpec, PartSpec, ShapeSpec};
+use glam::DVec2;
+use std::path::PathBuf;
+
+pub(super) use outline::MOST_BYTES as MOST_BYTES_OF_A_DRAWING;
+
+/// Why a part is none.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PartError {
+    /// A mesh file that is none.
+    #[error("{}: {error}", path.display())]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        error: MeshProblem,
+    },
+    /// Outlines that bound nothing.
+    #[error("{}{error}", path.as_ref().map_or_else(String::new, |path| format!("{}: ", path.display())))]
+    Outline {
+        /// The file, if they come from one.
+        path: Option<PathBuf>,
+        /// Why not.
+        error: OutlineProblem,
+    },
+    /// A convex piece that is none.
+    #[error("piece {piece}: {error}")]
+    Piece {
+        /// Which piece, from 0.
+        piece: usize,
+        /// Why not.
+        error: HullError,
+    },
+    /// So small a chord error that there would be too many facets, or one as large as the part.
+    #[error(
+        "the chord error {chord_error:.2e} D does not suit a radius of {radius:.2e} D: give one between {least:.2e} D and the radius"
+    )]
+    Chord {
+        /// The chord error, in D.
+        chord_error: f64,
+        /// The radius, in D.
+        radius: f64,
+        /// The smallest that is possible, in D.
+        least: f64,
+    },
+    /// Facets that do not close.
+    #[error("{0}: it is too thin to be a solid")]
+    Surface(#[from] SurfaceError),
+}
+
+/// The union of parts, and what their files held.
+pub(super) fn half(
+    parts: &[(PartSpec, Option<FileBytes>)],
+    side: Side,
+) -> Result<(Half, Vec<MeshContent>), Vec<Problem>> {
+    let (mut half, mut contents, mut problems) = (Half::default(), Vec::new(), Vec::new());
+    for (number, (spec, file)) in parts.iter().enumerate() {
+        let frame = place::part(spec);
+        match shape(&spec.shape, file.as_ref()) {
+            Ok((built, content)) => {
+                half.surfaces.extend(built.mapped(|p| frame.transform_point3(p)).surfaces);
+                contents.extend(content);
+            }
+            Err(errors) => {
+                problems.extend(errors.into_iter().map(|error| Problem::Part { side, part: number, error }));
+            }
+        }
+    }
+    if problems.is_empty() {
+        let count = half.surfaces.iter().map(|surface| surface.facets.len()).sum::<usize>() as u64;
+        let too_many = (count > MAX_TRIANGLES as u64).then_some(MeshProblem::TooMany { count });
+        let corners = half.surfaces.iter().flat_map(|surface| &surface.vertices).copied();
+        let error = too_many.or_else(|| mesh::implausible_width(corners));
+        problems.extend(error.map(|error| Problem::Triangles { side, error }));
+    }
+    if problems.is_empty() { Ok((half, contents)) } else { Err(problems) }
+}
+
+/// A part in its own coordinates, and what its file held.
+fn shape(shape: &ShapeSpec, file: Option<&FileBytes>) -> Result<(Half, Option<MeshContent>), Vec<PartError>> {
+    let alone = |surface: Result<Surface, PartError>| {
+        surface.map(|surface| (Half { surfaces: vec![surface] }, None)).map_err(|error| vec![error])
+    };
+    match shape {
+        ShapeSpec::Mesh(spec) => {
+            let refused = |error| PartError::Mesh { path: spec.path.clone(), error };
+            let refuse = |errors: Vec<MeshProblem>| errors.into_iter().map(refused).collect::<Vec<_>>();
+            let file = file.ok_or_else(|| refuse(vec![MeshProblem::NoFile]))?;
+            let (half, content, _) = source::read_mesh(spec, file, mesh::part).map_err(refuse)?;
+            Ok((half, Some(content)))
+        }
+        ShapeSpec::Pieces(pieces) => {
+            let hull = |(piece, points): (usize, &Vec<_>)| {
+                convex_hull(points).map_err(|error| PartError::Piece { piece, error })
+            };
+            let surfaces: Vec<_> = source::points(pieces).iter().enumerate().map(hull).collect();
+            let errors: Vec<_> = surfaces.iter().filter_map(|hull| hull.as_ref().err().cloned()).collect();
+            if !errors.is_empty() {
+                return Err(errors);
+            }
+            Ok((Half { surfaces: surfaces.into_iter().flatten().collect() }, None))
+        }
+        ShapeSpec::Sphere { radius, chord_error } => alone(round::sphere(*radius, *chord_error)),
+        ShapeSpec::Cone { radius, top_radius, height, chord_error } => {
+            alone(round::cone([*radius, *top_radius], *height, *chord_error))
+        }
+        ShapeSpec::Box { size } => alone(prism::cuboid(*size)),
+        ShapeSpec::Profile { outline, height, chord_error } => {
+            profile(outline, *height, *chord_error, file).map_err(|error| vec![error])
+        }
+    }
+}
+
+fn profile(
+    outline: &OutlineSpec,
+    height: f64,
+    chord_error: f64,
+    file: Option<&FileBytes>,
+) -> Result<(Half, Option<MeshContent>), PartError> {
+    let path = match outline {
+        OutlineSpec::Corners(_) => None,
+        OutlineSpec::File(FileSpec { path, .. }) => Some(path.clone()),
+    };
+    let refused = |error| PartError::Outline { path: path.clone(), error };
+    let (loops, content) = match outline {
+        OutlineSpec::Corners(corners) => {
+            (vec![corners.iter().copied().map(DVec2::from_array).collect()], None)
+        }
+        OutlineSpec::File(spec) => {
+            let file = file.ok_or_else(|| refused(OutlineProblem::NoFile))?;
+            let loops = outline::read(spec, file, chord_error).map_err(refused)?;
+            let corners = loops.iter().map(Vec::len).sum();
+            (loops, Some(MeshContent::of(&file.bytes, corners)))
+        }
+    };
+    let regions = outline::regions(loops).map_err(refused)?;
+    let extruded = regions.iter().map(|region| prism::extruded(region, height).map_err(&refused));
+    let surfaces = extruded.collect::<Result<Vec<_>, _>>()?;
+    Ok((Half { surfaces }, content))
+}

@@ -1,0 +1,156 @@
+//! Boxes and extruded profiles.
+//!
+//! ```text
+//!    ┌────────────┐        a hole is cut open along a bridge, so that the cap is one border that ear
+//!    │   ┌──┐     │        clipping takes; the walls know nothing of it
+//!    ├ ─ ┤  │     │
+//!    │   └──┘     │
+//!    └────────────┘
+//! ```
+
+use super::PartError;
+use crate::connector::Surface;
+use crate::connector::mesh::cut;
+use crate::connector::outline::{OutlineProblem, Region, crossing};
+use glam::{DVec2, DVec3};
+
+/// A box that stands on the origin, the middle of its floor.
+pub(super) fn cuboid([x, y, z]: [f64; 3]) -> Result<Surface, PartError> {
+    let half = DVec2::new(x, y) / 2.0;
+    let corner = |k: u8| {
+        let sign = |bit: u8| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };
+        DVec3::new(sign(0) * half.x, sign(1) * half.y, if k >> 2 == 0 { 0.0 } else { z })
+    };
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let sides: Vec<Vec<u32>> = sides.iter().map(|side| side.to_vec()).collect();
+    Ok(Surface::from_polygons((0..8).map(corner).collect(), &sides)?)
+}
+
+/// A region extruded from z = 0.
+pub(super) fn extruded(region: &Region, height: f64) -> Result<Surface, OutlineProblem> {
+    let flat: Vec<DVec2> = region.loops().flatten().copied().collect();
+    let n = flat.len() as u32;
+    let mut polygons = Vec::new();
+    let mut first = 0;
+    for ring in region.loops() {
+        let count = ring.len() as u32;
+        for k in 0..count {
+            let (a, b) = (first + k, first + (k + 1) % count);
+            polygons.push(vec![a, b, n + b, n + a]);
+        }
+        first += count;
+    }
+    let border = bridged(region, &flat).ok_or(OutlineProblem::TooIntricate)?;
+    let corners: Vec<DVec3> = border.iter().map(|k| flat[*k].extend(0.0)).collect();
+    let cap = cut::triangles(&corners).ok_or(OutlineProblem::TooIntricate)?;
+    for triangle in cap {
+        let [a, b, c] = triangle.map(|k| border[k] as u32);
+        polygons.push(vec![n + a, n + b, n + c]);
+        polygons.push(vec![c, b, a]);
+    }
+    let floor = flat.iter().map(|p| p.extend(0.0));
+    let vertices = floor.chain(flat.iter().map(|p| p.extend(height))).collect();
+    Surface::from_polygons(vertices, &polygons).map_err(|_| OutlineProblem::TooIntricate)
+}
+
+/// One border of the region, by the numbers of its corners: every hole is cut open to the rest along the shortest bridge that crosses
+/// nothing, which no other bridge touches.
+fn bridged(region: &Region, flat: &[DVec2]) -> Option<Vec<usize>> {
+    let mut rings: Vec<Vec<usize>> = Vec::new();
+    let mut first = 0;
+    for ring in region.loops() {
+        rings.push((first..first + ring.len()).collect());
+        first += ring.len();
+    }
+    let mut walls: Vec<[usize; 2]> = rings
+        .iter()
+        .flat_map(|ring| (0..ring.len()).map(|k| [ring[k], ring[(k + 1) % ring.len()]]))
+        .collect();
+    let mut border = rings.remove(0);
+    let mut used = vec![false; flat.len()];
+    while !rings.is_empty() {
+        let mut bridges: Vec<(f64, usize, usize, usize)> = Vec::new();
+        for (ring, corners) in rings.iter().enumerate() {
+            for (inner, p) in corners.iter().enumerate() {
+                let nearest = border.iter().enumerate().filter(|(_, q)| !used[**q]);
+                bridges.extend(
+                    nearest.map(|(outer, q)| (flat[*p].distance_squared(flat[*q]), outer, ring, inner)),
+                );
+            }
+        }
+        bridges.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2, a.3).cmp(&(b.1, b.2, b.3))));
+        let is_clear = |(_, outer, ring, inner): &(f64, usize, usize, usize)| {
+            let (p, q) = (border[*outer], rings[*ring][*inner]);
+            walls.iter().all(|[a, b]| {
+                [a, b].iter().any(|k| **k == p || **k == q)
+                    || crossing([flat[p], flat[q]], [flat[*a], flat[*b]], 0.0).is_none()
+            })
+        };
+        let (_, outer, ring, inner) = bridges.into_iter().find(is_clear)?;
+        let ring = rings.remove(ring);
+        let (p, q) = (border[outer], ring[inner]);
+        walls.push([p, q]);
+        (used[p], used[q]) = (true, true);
+        // In along the bridge, around the hole, and out again.
+        let around = (0..=ring.len()).map(|k| ring[(inner + k) % ring.len()]);
+        let inserted: Vec<usize> = around.chain([p]).collect();
+        border.splice(outer + 1..outer + 1, inserted);
+    }
+    Some(border)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::outline::regions;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    fn polygon(center: DVec2, radius: f64, corners: usize) -> Vec<DVec2> {
+        (0..corners)
+            .map(|k| center + radius * DVec2::from_angle(TAU * k as f64 / corners as f64 + 0.1))
+            .collect()
+    }
+
+    fn area(corners: usize, radius: f64) -> f64 {
+        let n = corners as f64;
+        n * radius * radius * (TAU / n).sin() / 2.0
+    }
+
+    proptest! {
+        /// A plate with holes in any places has the volume of its drawing.
+        #[test]
+        fn a_plate_with_holes(holes in prop::collection::vec((3usize..14, 0.02..0.1f64), 1..17), shift in 0.0..0.05f64) {
+            let mut loops = vec![vec![DVec2::ZERO, DVec2::new(1.0, 0.0), DVec2::ONE, DVec2::new(0.0, 1.0)]];
+            let mut left = 1.0;
+            for (k, (corners, radius)) in holes.iter().enumerate() {
+                let center = DVec2::new(0.125 + (k % 4) as f64 / 4.0, 0.125 + (k / 4) as f64 / 4.0);
+                loops.push(polygon(center + shift / 4.0, *radius, *corners));
+                left -= area(*corners, *radius);
+            }
+            let regions = regions(loops).unwrap();
+            prop_assert_eq!(regions.len(), 1);
+            let plate = extruded(&regions[0], 0.5).unwrap();
+            prop_assert!((plate.volume() - left / 2.0).abs() < 1e-12);
+        }
+
+        #[test]
+        fn a_star_has_its_volume(radii in prop::collection::vec(0.2..2.0f64, 3..40)) {
+            let n = radii.len();
+            let corners: Vec<DVec2> =
+                radii.iter().enumerate().map(|(k, r)| DVec2::from_angle(TAU * k as f64 / n as f64) * *r).collect();
+            let twice: f64 = (0..n).map(|k| corners[k].perp_dot(corners[(k + 1) % n])).sum();
+            prop_assume!(twice > 0.0);
+            let star = extruded(&regions(vec![corners]).unwrap()[0], 3.0).unwrap();
+            prop_assert!((star.volume() / (1.5 * twice) - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_box_stands_on_its_floor() {
+        let solid = cuboid([1.0, 2.0, 3.0]).unwrap();
+        assert_eq!(solid.bounds(), (DVec3::new(-0.5, -1.0, 0.0), DVec3::new(0.5, 1.0, 3.0)));
+        assert!(solid.convex && solid.edges.len() == 12);
+        assert!((solid.volume() - 6.0).abs() < 1e-12);
+    }
+}

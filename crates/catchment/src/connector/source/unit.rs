@@ -1,0 +1,45 @@
+//! From the unit that a file or the design says to D.
+
+use crate::design::{FileSpec, FileUnit, LengthUnit};
+
+/// How far two units may differ and be the same, relative to them: rounding.
+const SAME: f64 = 1e-6;
+
+/// Why the unit of a file is not known.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum UnitProblem {
+    /// The file says another unit than the design.
+    #[error(
+        "the file says that its unit is {in_file}, and the design says {}: remove `unit` from the design, or correct it",
+        stated.symbol()
+    )]
+    Other {
+        /// What the file says.
+        in_file: String,
+        /// What the design says.
+        stated: LengthUnit,
+    },
+    /// Neither the file nor the design says it.
+    #[error("the file does not say its unit: write it beside the file, unit = \"mm\"")]
+    Unsaid,
+}
+
+/// Multiplies the coordinates of a file to give D; `metres` are in one of them, where the file says it.
+pub(in crate::connector) fn scale(file: &FileSpec, metres: Option<f64>) -> Result<f64, UnitProblem> {
+    match (file.unit, metres) {
+        (FileUnit::Beside, _) | (FileUnit::Stated(_), None) => Ok(file.scale),
+        (FileUnit::Stated(stated), Some(metres)) if (metres / stated.metres() - 1.0).abs() > SAME => {
+            Err(UnitProblem::Other { in_file: shown(metres), stated })
+        }
+        (FileUnit::Stated(_), Some(_)) => Ok(file.scale),
+        (FileUnit::InFile, Some(metres)) => Ok(file.scale * metres),
+        (FileUnit::InFile, None) => Err(UnitProblem::Unsaid),
+    }
+}
+
+/// A unit by its symbol, or by how many mm it has.
+fn shown(metres: f64) -> String {
+    let known = LengthUnit::ALL.into_iter().find(|unit| (metres / unit.metres() - 1.0).abs() <= SAME);
+    let in_mm = || format!("{} mm", (metres / LengthUnit::Mm.metres() * 1e6).round() / 1e6);
+    known.map_or_else(in_mm, |unit| unit.symbol().to_owned())
+}

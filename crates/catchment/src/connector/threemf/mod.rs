@@ -1,0 +1,201 @@
+//! 3MF files: what their build puts on the plate, every item a body of its own.
+//!
+//! ```text
+//! ZIP ──_rels/.rels──▶ model part ──▶ unit, objects, build
+//!                          └ items and components: an object, of this part or of another, moved by an affine map
+//! ```
+//!
+//! By the core specification and, of the production extension, the paths of items and components. Objects that are no models (supports, surfaces)
+//! are left out, and so are colours, slices and all that does not bound the solid; an extension that the file requires and that is not
+//! read is refused. A mirrored item is turned inside out again, as the specification says.
+//!
+//! The reader is our own because it takes the XML piece by piece: an archive of a megabyte may hold gigabytes, of which no more than
+//! [`MOST_UNPACKED`] are unpacked, and none kept but numbers. Libraries for this keep the text, and do not say where it is broken.
+
+mod model;
+
+use super::mesh::{MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
+use super::source::{FileBytes, Held, ZIP};
+use glam::{DAffine3, DVec3};
+use model::{Geometry, Model};
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read};
+use zip::ZipArchive;
+
+/// Longest file that is read.
+pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
+/// Most bytes that are unpacked from it: four times what as many triangles take as a half may have.
+const MOST_UNPACKED: u64 = 64 << 20;
+/// Most model parts of a file: a program that splits them makes one per object.
+const MOST_MODELS: usize = 64;
+/// Most items and components that are followed, and how deep: two that hold two each, and so on, are soon more than any file has bytes.
+const MOST_COMPONENTS: usize = 10_000;
+const DEEPEST: usize = 16;
+/// The part with the model where no relationship names it.
+const USUAL_MODEL: &str = "3D/3dmodel.model";
+/// How the relationship to it ends.
+const MODEL_RELATION: &str = "/3dmodel";
+
+fn refused(message: impl Into<String>) -> Vec<MeshProblem> {
+    vec![MeshProblem::NotThreeMf { message: message.into() }]
+}
+
+/// As the table of formats wants it.
+pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
+    if file.bytes.is_empty() {
+        return Err(vec![MeshProblem::Empty]);
+    }
+    if file.size > MAX_BYTES {
+        return Err(refused(format!("{} bytes, more than the {MAX_BYTES} that are read", file.size)));
+    }
+    let archive = ZipArchive::new(Cursor::new(file.bytes.as_slice())).map_err(|error| {
+        refused(format!("it is no ZIP archive, or was cut off ({error}): export it again"))
+    })?;
+    let mut package =
+        Package { archive, left: MOST_UNPACKED, models: BTreeMap::new(), vertices: 0, triangles: 0 };
+    let root = package.root()?;
+    package.load(&root)?;
+    let mut build = Build { package, bodies: Vec::new(), components: 0, triangles: 0 };
+    let metres = build.package.models[&root].metres;
+    for item in build.package.models[&root].items.clone() {
+        let path = item.path.map_or_else(|| root.clone(), |path| part_name(&path));
+        build.add(&path, item.object, item.transform, 0)?;
+    }
+    Ok(Held { bodies: build.bodies, metres: Some(metres) })
+}
+
+/// The name of a part as archives have it.
+fn part_name(path: &str) -> String {
+    path.trim_start_matches('/').to_owned()
+}
+
+struct Package<'a> {
+    archive: ZipArchive<Cursor<&'a [u8]>>,
+    /// Bytes that may still be unpacked.
+    left: u64,
+    models: BTreeMap<String, Model>,
+    vertices: usize,
+    triangles: usize,
+}
+
+impl Package<'_> {
+    /// The model that the package is about.
+    fn root(&mut self) -> Result<String, Vec<MeshProblem>> {
+        let named = match self.find("_rels/.rels") {
+            Some(relations) => {
+                let part = self.archive.by_index(relations).map_err(|error| refused(error.to_string()))?;
+                let mut part = part.take(self.left);
+                let named = model::target(&mut part, MODEL_RELATION)
+                    .map_err(|error| refused(format!("_rels/.rels: {error}")))?;
+                self.left = part.limit();
+                named.map(|path| part_name(&path))
+            }
+            None => None,
+        };
+        let name = named.unwrap_or_else(|| USUAL_MODEL.to_owned());
+        if self.find(&name).is_some() { Ok(name) } else { Err(vec![MeshProblem::Foreign { what: ZIP }]) }
+    }
+
+    /// The number of a part by its name, whose case does not count.
+    fn find(&self, name: &str) -> Option<usize> {
+        (0..self.archive.len()).find(|k| {
+            self.archive
+                .name_for_index(*k)
+                .is_some_and(|own| own.is_ok_and(|own| own.eq_ignore_ascii_case(name)))
+        })
+    }
+
+    /// Reads a model part, once.
+    fn load(&mut self, name: &str) -> Result<(), Vec<MeshProblem>> {
+        if self.models.contains_key(name) {
+            return Ok(());
+        }
+        if self.models.len() == MOST_MODELS {
+            return Err(refused(format!(
+                "it has more than {MOST_MODELS} model parts: export the part alone"
+            )));
+        }
+        let number = self.find(name).ok_or_else(|| refused(format!("it has no part {name}")))?;
+        let located = |message: String| refused(format!("{name}: {message}"));
+        let left = self.left;
+        let part = self.archive.by_index(number).map_err(|error| located(error.to_string()))?;
+        // A byte more, so that what is too long is told from what was cut off.
+        let mut part = part.take(left + 1);
+        let model = Model::read(&mut part);
+        let Some(left) = part.limit().checked_sub(1) else {
+            return Err(refused(format!("it unpacks to more than {MOST_UNPACKED} bytes")));
+        };
+        self.left = left;
+        let model = model.map_err(located)?;
+        let [vertices, triangles] = model.counts();
+        self.vertices += vertices;
+        self.triangles += triangles;
+        if self.triangles > MAX_TRIANGLES || self.vertices > model::MOST_VERTICES {
+            return Err(vec![MeshProblem::TooMany { count: self.triangles as u64 }]);
+        }
+        self.models.insert(name.to_owned(), model);
+        Ok(())
+    }
+}
+
+/// What the items of a build put together.
+struct Build<'a> {
+    package: Package<'a>,
+    bodies: Vec<Vec<Triangle>>,
+    components: usize,
+    triangles: usize,
+}
+
+impl Build<'_> {
+    /// Adds an object, or all that it is composed of.
+    fn add(&mut self, path: &str, id: u32, placed: DAffine3, depth: usize) -> Result<(), Vec<MeshProblem>> {
+        self.components += 1;
+        if self.components > MOST_COMPONENTS || depth > DEEPEST {
+            return Err(refused(format!(
+                "its components are nested more than {DEEPEST} deep, or are more than {MOST_COMPONENTS}"
+            )));
+        }
+        self.package.load(path)?;
+        let Some(object) = self.package.models[path].objects.get(&id) else {
+            return Err(refused(format!("{path}: there is no object {id}")));
+        };
+        match object {
+            Geometry::LeftOut => Ok(()),
+            Geometry::Components(components) => {
+                for component in components.clone() {
+                    let path = component.path.map_or_else(|| path.to_owned(), |path| part_name(&path));
+                    self.add(&path, component.object, placed * component.transform, depth + 1)?;
+                }
+                Ok(())
+            }
+            Geometry::Mesh { vertices, triangles } => {
+                self.triangles += triangles.len();
+                if self.triangles > MAX_TRIANGLES {
+                    return Err(vec![MeshProblem::TooMany { count: self.triangles as u64 }]);
+                }
+                let mirrored = placed.matrix3.determinant() < 0.0;
+                let first: usize = self.bodies.iter().map(Vec::len).sum();
+                let mut body = Vec::with_capacity(triangles.len());
+                for (k, corners) in triangles.iter().enumerate() {
+                    let at = |v: u32| vertices.get(v as usize).map(|p| placed.transform_point3(*p));
+                    let [a, b, c] = corners.map(at);
+                    let (Some(a), Some(b), Some(c)) = (a, b, c) else {
+                        return Err(refused(format!(
+                            "{path}: triangle {k} of object {id} has a corner that is no vertex"
+                        )));
+                    };
+                    let corners: [DVec3; 3] = if mirrored { [a, c, b] } else { [a, b, c] };
+                    body.push(Triangle {
+                        corners,
+                        place: Place { triangle: first + k, start: Start::Memory },
+                    });
+                }
+                self.bodies.push(body);
+                Ok(())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

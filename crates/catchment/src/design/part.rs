@@ -1,0 +1,165 @@
+//! The parts of a half: what a person bought, printed or cut, each with its place.
+//!
+//! ```text
+//!        z, turned to `axis`
+//!        ▲                      sphere: about the origin
+//!     ┌──┴──┐                   cylinder, cone, box, extruded profile: standing on it
+//!     │     │                   mesh, pieces: in their own coordinates
+//!     └──┬──┘
+//!       at = the origin of the part in its half
+//! ```
+//!
+//! The half is the union of its parts, which may overlap. Lengths in D, angles in radians.
+
+use super::MeshContent;
+use super::model::LengthUnit;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A file of geometry, and what leads from its coordinates to D.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FileSpec {
+    /// The file, absolute or relative to the working directory.
+    pub path: PathBuf,
+    /// Multiplies the file's coordinates to give D; where [`FileUnit::InFile`] says so, metres.
+    pub scale: f64,
+    /// Who says the unit.
+    #[serde(default, skip_serializing_if = "FileUnit::is_beside")]
+    pub unit: FileUnit,
+    /// What the file held, once it was read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub content: Option<MeshContent>,
+}
+
+impl FileSpec {
+    /// A file whose coordinates times `scale` are D, whatever it says itself.
+    pub fn new(path: impl Into<PathBuf>, scale: f64) -> Self {
+        Self { path: path.into(), scale, unit: FileUnit::Beside, content: None }
+    }
+
+    /// How its name ends, in lower case.
+    pub fn ending(&self) -> String {
+        self.path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+    }
+}
+
+/// Who says in which unit the coordinates of a file are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FileUnit {
+    /// The scale alone: the file cannot say it, or the design is dimensionless.
+    #[default]
+    Beside,
+    /// The design: a file that says another one is refused.
+    Stated(LengthUnit),
+    /// The file.
+    InFile,
+}
+
+impl FileUnit {
+    fn is_beside(&self) -> bool {
+        *self == Self::Beside
+    }
+}
+
+/// A part of a half.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartSpec {
+    /// What it is.
+    pub shape: ShapeSpec,
+    /// Unit vector to which its z axis is turned, by the shortest turn; about x where that is −z.
+    pub axis: [f64; 3],
+    /// Turns about x, then y, then z, after that.
+    pub rotate: [f64; 3],
+    /// Where its origin is.
+    pub at: [f64; 3],
+}
+
+impl PartSpec {
+    /// Largest distance between something round and its facets where nothing is said, in D.
+    pub const CHORD_ERROR: f64 = 0.001;
+
+    /// A shape with its origin at a place, upright.
+    pub const fn new(shape: ShapeSpec, at: [f64; 3]) -> Self {
+        Self { shape, axis: [0.0, 0.0, 1.0], rotate: [0.0; 3], at }
+    }
+}
+
+/// What a part is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ShapeSpec {
+    /// A closed triangle mesh.
+    Mesh(FileSpec),
+    /// Convex pieces, each a list of vertices.
+    Pieces(Vec<Vec<[f64; 3]>>),
+    /// A ball about the origin.
+    Sphere {
+        /// Its radius.
+        radius: f64,
+        /// Largest distance to its facets, which lie inside.
+        chord_error: f64,
+    },
+    /// A cone that stands on the origin, or what is left of one below its top; a cylinder where both radii are the same.
+    Cone {
+        /// Radius of its floor.
+        radius: f64,
+        /// Radius of its top; 0 for an apex.
+        top_radius: f64,
+        /// Its height.
+        height: f64,
+        /// Largest distance to its facets, which lie inside.
+        chord_error: f64,
+    },
+    /// A box that stands on the origin, the middle of its floor.
+    Box {
+        /// Along x, y and z.
+        size: [f64; 3],
+    },
+    /// Outlines extruded from z = 0.
+    Profile {
+        /// The outlines.
+        outline: OutlineSpec,
+        /// How far.
+        height: f64,
+        /// Largest distance of a curve to its chords.
+        chord_error: f64,
+    },
+}
+
+/// Outlines of a profile, in the x-y plane.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OutlineSpec {
+    /// The corners of one polygon, in order.
+    Corners(Vec<[f64; 2]>),
+    /// The closed outlines of an SVG or DXF file; what lies in an odd number of them is solid.
+    File(FileSpec),
+}
+
+impl ShapeSpec {
+    /// The file that it comes from, if it comes from one.
+    pub const fn file(&self) -> Option<&FileSpec> {
+        match self {
+            Self::Mesh(file) | Self::Profile { outline: OutlineSpec::File(file), .. } => Some(file),
+            _ => None,
+        }
+    }
+
+    pub(super) const fn file_mut(&mut self) -> Option<&mut FileSpec> {
+        match self {
+            Self::Mesh(file) | Self::Profile { outline: OutlineSpec::File(file), .. } => Some(file),
+            _ => None,
+        }
+    }
+
+    /// Largest distance between what is round in it and its facets; `None` where nothing is.
+    pub const fn chord_error(&self) -> Option<f64> {
+        match self {
+            Self::Sphere { chord_error, .. }
+            | Self::Cone { chord_error, .. }
+            | Self::Profile { outline: OutlineSpec::File(_), chord_error, .. } => Some(*chord_error),
+            _ => None,
+        }
+    }
+}
