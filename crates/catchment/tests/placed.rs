@@ -170,6 +170,39 @@ fn an_assembly_that_is_not_docked_is_refused() {
     assert!(refused(-0.3).contains("3.000e-1 D deeper than it gets"), "{}", refused(-0.3));
 }
 
+/// Exported from an assembly that was put together by eye: refused as it is, and the same pair where it settles.
+#[test]
+fn an_assembly_drawn_askew_settles() {
+    let askew = DAffine3::from_mat3_translation(DMat3::from_rotation_x(0.01), DVec3::new(0.012, -0.007, 0.0));
+    let own = |settle: bool| {
+        let straight = assembled(&DAffine3::IDENTITY, 0.0);
+        let HalfSpec::Pieces(pieces) = &straight.moving else { panic!("pieces") };
+        let drawn = Drawn::Assembled { approach: [0.0, 0.0, -1.0], face_center: Some([0.0; 3]) };
+        OwnSpec { settle, drawn, moving: moved(pieces, &askew), ..straight }
+    };
+    let refused = problem(own(false)).unwrap().checked().unwrap_err().to_string();
+    assert!(refused.contains("settle = true"), "{refused}");
+    let settled = problem(own(true)).unwrap().checked().unwrap();
+    let plain = problem(plain()).unwrap();
+    assert!(difference(&plain, &settled, 0.0) < 1e-4, "{:e}", difference(&plain, &settled, 0.0));
+    let error = CheckReport::good(&settled).drawing.unwrap().settled.unwrap();
+    assert!((error.x + 0.012).abs() < 5e-3 && (error.y - 0.007).abs() < 5e-3, "{error:?}");
+    assert!((error.roll + 0.01).abs() < 1e-4, "{error:?}");
+}
+
+/// Point on point nothing holds.
+#[test]
+fn halves_that_run_off_do_not_settle() {
+    let tip = || {
+        let corners =
+            [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0], [0.0, 0.0, 0.5]];
+        HalfSpec::Pieces(vec![corners.to_vec()])
+    };
+    let own = OwnSpec { settle: true, ..OwnSpec::new(0.5, tip(), tip()) };
+    let refused = problem(own).unwrap_err().to_string();
+    assert!(refused.contains("run off"), "{refused}");
+}
+
 #[test]
 fn whatever_places_a_half_changes_the_digest() {
     let digest = |change: &dyn Fn(&mut OwnSpec)| {
@@ -186,6 +219,7 @@ fn whatever_places_a_half_changes_the_digest() {
     let mut digests = vec![
         digest(&|_| ()),
         digest(&|own| own.face_height = None),
+        digest(&|own| own.settle = true),
         digest(&|own| own.fixed_placement.facing = down),
         digest(&|own| own.moving_placement.facing = down),
         digest(&|own| own.fixed_placement.rotate[0] = 1.0),

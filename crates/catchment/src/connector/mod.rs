@@ -35,7 +35,7 @@ pub use source::{FileBytes, Read, Source, UnitProblem};
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
 use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, HalfSpec, OwnSpec};
-use crate::pose::Mount;
+use crate::pose::{Mount, PoseError};
 use glam::{DAffine3, DVec3};
 
 /// One half of a connector: the union of closed surfaces.
@@ -78,11 +78,14 @@ pub struct Origin {
     pub moving: DAffine3,
     /// How far apart the aligned halves are as drawn, along the approach, in D; negative where they overlap. `None` where nothing was moved.
     pub apart: Option<f64>,
+    /// The error at which the halves came to rest that were let go as drawn, where that is taken as mated.
+    pub settled: Option<PoseError>,
 }
 
 impl Origin {
     /// Halves that were drawn in their frames.
-    pub const HERE: Self = Self { fixed: DAffine3::IDENTITY, moving: DAffine3::IDENTITY, apart: None };
+    pub const HERE: Self =
+        Self { fixed: DAffine3::IDENTITY, moving: DAffine3::IDENTITY, apart: None, settled: None };
 }
 
 impl Connector {
@@ -155,6 +158,7 @@ impl Connector {
                     fixed: frames[0] * scale(fixed.scale),
                     moving: frames[1] * scale(moving.scale),
                     apart: None,
+                    settled: None,
                 };
                 let contents = Contents { fixed: fixed.contents, moving: moving.contents };
                 Ok(Self { fixed: placed_fixed, moving: placed_moving, contents, origin })
@@ -168,18 +172,16 @@ impl Connector {
     pub(crate) fn moved(mut self, fixed: DVec3, moving: DVec3, apart: f64) -> Self {
         self.fixed = self.fixed.mapped(|p| p + fixed);
         self.moving = self.moving.mapped(|p| p + moving);
-        let Origin { fixed: of_fixed, moving: of_moving, .. } = self.origin;
-        self.origin = Origin {
-            fixed: DAffine3::from_translation(fixed) * of_fixed,
-            moving: DAffine3::from_translation(moving) * of_moving,
-            apart: Some(apart),
-        };
+        self.origin.fixed = DAffine3::from_translation(fixed) * self.origin.fixed;
+        self.origin.moving = DAffine3::from_translation(moving) * self.origin.moving;
+        self.origin.apart = Some(apart);
         self
     }
 
-    /// The same halves, the moving one placed in its frame by a rigid map.
+    /// The same halves, the moving one where a rigid map brings it: where it came to rest, `error` off.
     #[must_use]
-    pub(crate) fn with_moving_at(mut self, map: DAffine3) -> Self {
+    pub(crate) fn settled(mut self, map: DAffine3, error: PoseError) -> Self {
+        self.origin.settled = Some(error);
         self.moving = self.moving.mapped(|p| map.transform_point3(p));
         self.origin.moving = map * self.origin.moving;
         self

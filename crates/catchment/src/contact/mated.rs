@@ -79,6 +79,12 @@ pub enum MatedProblem {
         /// How much deeper, in D.
         sinks: f64,
     },
+    /// No rest is near.
+    #[error(
+        "let go as drawn, the halves run off: nothing holds them near; draw them closer to how they dock, or check the approach, the mount \
+         and what is free"
+    )]
+    RunsOff,
     /// The seat leaves an error free.
     #[error("the seat leaves {} free: {} off the half rests as deep as without any error", dof.name(), amount(*dof, *play))]
     Free {

@@ -80,8 +80,8 @@ fn going(from: [f64; 5], way: &[f64; 5], step: f64) -> [f64; 5] {
     std::array::from_fn(|k| from[k] + step * way[k])
 }
 
-/// The connector whose mated pose is where the given one comes to rest, and the error that this was; `None` where it runs off.
-pub(crate) fn settled(connector: Connector, alignment: &Alignment) -> Option<(Connector, PoseError)> {
+/// The connector whose mated pose is where the given one comes to rest; `None` where it runs off.
+pub(crate) fn settled(connector: Connector, alignment: &Alignment) -> Option<Connector> {
     let pair = Pair::new(&connector, alignment);
     let error = rest(&pair)?;
     let cor = alignment.center_of_rotation;
@@ -90,7 +90,7 @@ pub(crate) fn settled(connector: Connector, alignment: &Alignment) -> Option<(Co
     // What lies in the world at rest is the moving half from now on; the face centres are together without any error.
     let from_cor = DAffine3::from_translation(DVec3::new(0.0, 0.0, cor));
     let at_rest = DAffine3 { matrix3: pose.rotation, translation: pose.lateral.extend(height) };
-    Some((connector.with_moving_at(at_rest * from_cor), error))
+    Some(connector.settled(at_rest * from_cor, error))
 }
 
 #[cfg(test)]
@@ -124,7 +124,7 @@ mod tests {
             let straight = Connector::build(&design).unwrap();
             let drawn = askew(&straight, &PoseError::from_array(e));
             prop_assume!(!problems(&Pair::new(&drawn, &design.alignment)).is_empty());
-            let (settled, _) = settled(drawn, &design.alignment).unwrap();
+            let settled = settled(drawn, &design.alignment).unwrap();
             let found = problems(&Pair::new(&settled, &design.alignment));
             prop_assert!(!found.iter().any(|p| matches!(p, MatedProblem::Collision { .. } | MatedProblem::Gap { .. })), "{:?}", found);
             for (a, b) in settled.moving.surfaces[0].vertices.iter().zip(&straight.moving.surfaces[0].vertices) {
@@ -138,8 +138,8 @@ mod tests {
         let design = pyramid();
         let straight = Connector::build(&design).unwrap();
         assert_eq!(rest(&Pair::new(&straight, &design.alignment)), Some(PoseError::default()));
-        let (settled, error) = settled(straight.clone(), &design.alignment).unwrap();
-        assert_eq!(error, PoseError::default());
+        let settled = settled(straight.clone(), &design.alignment).unwrap();
+        assert_eq!(settled.origin.settled, Some(PoseError::default()));
         for (a, b) in settled.moving.surfaces[0].vertices.iter().zip(&straight.moving.surfaces[0].vertices) {
             assert!(a.distance(*b) < 1e-12);
         }

@@ -90,6 +90,9 @@ impl Hash {
             self.count(u64::from(face_center.is_some()));
             self.numbers(face_center.as_ref().map_or(&[], |center| center.as_slice()));
         }
+        if own.settle {
+            self.text("settled");
+        }
         for (side, placement) in [("fixed", &own.fixed_placement), ("moving", &own.moving_placement)] {
             if !placement.is_none() {
                 let Placement { facing, rotate, translate } = placement;

@@ -362,6 +362,9 @@ keys! {
     /// `connector.approach`
     APPROACH = parameter("approach", Applies::OwnHalves, Kind::Direction,
         "Where halves are drawn assembled: the direction in which the moving half comes, -z without it.");
+    /// `connector.settle`
+    SETTLE = parameter("settle", Applies::OwnHalves, Kind::Flag,
+        "Whether the mated pose is where the halves come to rest that are let go as drawn; false without it.");
     /// `connector.face_height`
     FACE_HEIGHT = parameter("face_height", Applies::OwnHalves, Kind::DrawnLength(Range::new(-1e3, 1e3, "D")),
         "z of the face centre in each half's own frame, in the unit of the design. Without it the halves are mated where they first \

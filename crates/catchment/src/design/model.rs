@@ -81,6 +81,9 @@ pub struct OwnSpec {
     /// In which frames they are drawn.
     #[serde(default, skip_serializing_if = "Drawn::is_facing")]
     pub drawn: Drawn,
+    /// Whether the mated pose is where the halves come to rest that are let go as drawn.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub settle: bool,
     /// The fixed half.
     pub fixed: HalfSpec,
     /// The moving half.
@@ -98,7 +101,15 @@ impl OwnSpec {
     pub const fn new(face_height: f64, fixed: HalfSpec, moving: HalfSpec) -> Self {
         let (drawn, none) = (Drawn::Facing, Placement::NONE);
         let face_height = Some(face_height);
-        Self { face_height, drawn, fixed, moving, fixed_placement: none, moving_placement: none }
+        Self {
+            face_height,
+            drawn,
+            settle: false,
+            fixed,
+            moving,
+            fixed_placement: none,
+            moving_placement: none,
+        }
     }
 
     /// Whether where the face centre is has to be found.

@@ -200,10 +200,11 @@ impl<'t> Walk<'t> {
         for key in not_its_own {
             self.reader.not_drawn_so(section, key, is_assembled);
         }
+        let settle = self.reader.flag(section, &keys::SETTLE).unwrap_or_default();
         let fixed = self.half(section, &keys::FIXED, is_assembled, scale);
         let moving = self.half(section, &keys::MOVING, is_assembled, scale);
         let ((fixed, fixed_placement), (moving, moving_placement)) = (fixed?, moving?);
-        Some(OwnSpec { face_height, drawn, fixed, moving, fixed_placement, moving_placement })
+        Some(OwnSpec { face_height, drawn, settle, fixed, moving, fixed_placement, moving_placement })
     }
 
     fn alignment(

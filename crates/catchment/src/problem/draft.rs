@@ -3,7 +3,7 @@
 use super::{Problem, ProblemError, places};
 use crate::connector::Connector;
 use crate::contact::mated::{self, MatedProblem};
-use crate::contact::{Pair, face};
+use crate::contact::{Pair, face, settle};
 use crate::design::{Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, load, read};
 use std::path::Path;
 
@@ -103,7 +103,14 @@ impl Draft {
         match Connector::build(&self.design) {
             Ok(connector) => {
                 let connector = match &self.design.connector {
-                    ConnectorSpec::Own(own) => face::found(connector, own),
+                    ConnectorSpec::Own(own) => {
+                        let found = face::found(connector, own);
+                        match own.settle.then(|| settle::settled(found.clone(), &self.design.alignment)) {
+                            None => found,
+                            Some(Some(settled)) => settled,
+                            Some(None) => return Err(self.unmated(&[MatedProblem::RunsOff]).into()),
+                        }
+                    }
                     ConnectorSpec::Family(_) => connector,
                 };
                 self.with_halves(connector)
@@ -131,12 +138,15 @@ impl Draft {
         let problems = misdrawn.map_or_else(|| mated::problems(&pair), |problem| vec![problem]);
         let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         if !apart.is_empty() {
-            let list = apart
-                .iter()
-                .map(|problem| self.finding(places::of_mated(problem), problem.to_string(), problem.help()))
-                .collect();
-            return Err(Findings { source: self.source, list, omitted: 0 }.into());
+            return Err(self.unmated(&apart).into());
         }
         Ok(Problem::assembled(self, connector, pair, doubts))
+    }
+
+    fn unmated(self, problems: &[MatedProblem]) -> Findings {
+        let finding = |problem: &MatedProblem| {
+            self.finding(places::of_mated(problem), problem.to_string(), problem.help())
+        };
+        Findings { list: problems.iter().map(finding).collect(), source: self.source, omitted: 0 }
     }
 }

@@ -27,7 +27,7 @@ pub use draft::Draft;
 use crate::connector::Connector;
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
-use crate::design::{Alignment, Design, FamilySpec, Findings, LoadError, SourceText, hex};
+use crate::design::{Alignment, ConnectorSpec, Design, FamilySpec, Findings, LoadError, SourceText, hex};
 use crate::pose::Dof;
 use std::fmt;
 use std::path::Path;
@@ -80,7 +80,9 @@ impl Problem {
     /// Everything that is wrong with its geometry or its mated pose.
     pub fn with(&self, design: Design) -> Result<Self, ProblemError> {
         let own = self.design();
-        if design.connector == own.connector && design.alignment.mount == own.alignment.mount {
+        // Where halves settle depends on the alignment.
+        let settles = matches!(&design.connector, ConnectorSpec::Own(own) if own.settle);
+        if !settles && design.connector == own.connector && design.alignment.mount == own.alignment.mount {
             return Draft::from(design).with_halves(self.connector().clone());
         }
         Self::of(design)

@@ -21,6 +21,7 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
         MatedProblem::Collision { .. } | MatedProblem::Gap { .. } => "connector.face_height",
         MatedProblem::DrawnApart { .. } | MatedProblem::DrawnDeeper { .. } => "connector.drawn",
         MatedProblem::Apart => "connector",
+        MatedProblem::RunsOff => "connector.settle",
         MatedProblem::NotMinimum { .. } | MatedProblem::Free { .. } | MatedProblem::Round { .. } => {
             "alignment.free"
         }

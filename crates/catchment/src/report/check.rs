@@ -7,7 +7,7 @@ use crate::design::{
     ConnectorSpec, Design, Drawn, FileSpec, Finding, Findings, HalfSpec, OutlineSpec, OwnSpec,
 };
 use crate::design::{PartSpec, ShapeSpec, SourceText};
-use crate::pose::{Dof, DofSet};
+use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::Problem;
 use glam::{DAffine3, DVec3};
 use serde::Serialize;
@@ -47,6 +47,9 @@ pub struct DrawingReport {
     pub moving: DrawnReport,
     /// How far apart the halves are drawn along the approach, in D, where they were moved to where they first touch.
     pub apart: Option<f64>,
+    /// The error at which they came to rest that were let go as drawn, in D and radians, where that is taken as mated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settled: Option<PoseError>,
 }
 
 /// Places in the coordinates in which a half is drawn: those of its mesh file; of parts, the unit of the design; of
@@ -79,7 +82,12 @@ impl DrawingReport {
                 y: along(DVec3::Y),
             }
         };
-        Self { fixed: drawn(&origin.fixed), moving: drawn(&origin.moving), apart: origin.apart }
+        Self {
+            fixed: drawn(&origin.fixed),
+            moving: drawn(&origin.moving),
+            apart: origin.apart,
+            settled: origin.settled,
+        }
     }
 }
 
@@ -193,7 +201,7 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
             }
         }
     }
-    if let Some(DrawingReport { fixed, moving, apart }) = drawing {
+    if let Some(DrawingReport { fixed, moving, apart, settled }) = drawing {
         let point = |p: [f64; 3]| {
             let [x, y, z] = p.map(|c| rounded(c) + 0.0);
             format!("({x}, {y}, {z})")
@@ -212,6 +220,20 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
         if let Some(apart) = moved {
             let way = if apart > 0.0 { "apart" } else { "into each other" };
             row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
+        }
+        if let Some(error) = settled {
+            let amount = |(dof, off): (Dof, f64)| {
+                let off = if dof.is_rotation() {
+                    format!("{} deg", rounded(off.to_degrees()))
+                } else {
+                    length(rounded(off))
+                };
+                format!("{} {off}", dof.name())
+            };
+            let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, off)| rounded(*off) != 0.0);
+            let parts: Vec<String> = parts.map(amount).collect();
+            let off = if parts.is_empty() { "at rest as drawn".to_owned() } else { parts.join(", ") };
+            row("settled", &format!("{off}, which is taken as mated"));
         }
     }
     row("halves", if ungendered { "alike (ungendered)" } else { "different" });

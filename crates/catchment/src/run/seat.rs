@@ -210,7 +210,7 @@ impl Problem {
             MatedProblem::NotMinimum { .. } => {
                 let End { outcome, error } = self.settled();
                 format!(
-                    "{doubt}. Let go without any error it settles at {} ({}): draw the halves so that this is the mated pose",
+                    "{doubt}. Let go without any error it settles at {} ({}): draw the halves so that this is the mated pose, or say settle = true of halves of your own",
                     place(&error),
                     outcome.name()
                 )
