@@ -158,11 +158,10 @@ fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
                   [connector.fixed]\nparts = [{ profile = \"plate.svg\", height = 5, at = [-25, 25, -5] }]\n\
                   [[connector.moving.parts]]\nmesh = \"two.stl\"\nunit = \"mm\"\nat = [-12.5, -12.5, 0]\n\
                   [[connector.moving.parts]]\nsphere = { radius = 5 }\n\
+                  [[connector.moving.parts]]\nbox = [30, 30, 5]\nat = [0, 0, 21]\n\
                   [alignment]\nfree = [\"roll\"]\n";
     write("d.toml", design);
-    let told = run(dir.path(), &["check", "d.toml", "--json"]);
-    let told: serde_json::Value =
-        serde_json::from_str(&told[told.find('{').unwrap()..told.rfind('}').unwrap() + 1]).unwrap();
+    let told = json(dir.path(), &["check", "d.toml", "--json"]);
     let parts = &told["design"]["connector"]["own"]["moving"]["parts"];
     assert_eq!(parts[0]["shape"]["mesh"]["content"]["bodies"], 2, "{told:#}");
     assert_eq!(
@@ -170,6 +169,6 @@ fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
         "in-file"
     );
     let told = run(dir.path(), &["check", "d.toml"]);
-    assert!(told.contains("mesh two.stl, the union of 2 bodies, ball\n"), "{told}");
+    assert!(told.contains("mesh two.stl, the union of 2 bodies, ball, box\n"), "{told}");
     assert!(told.contains("fixed half          profile plate.svg\n"), "{told}");
 }
