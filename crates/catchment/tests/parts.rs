@@ -12,7 +12,8 @@ use catchment::pose::CorPose;
 use catchment::prelude::*;
 use catchment::report::CheckReport;
 use glam::{DAffine3, DMat3};
-use std::io::{Cursor, Write};
+use std::fmt::Write as _;
+use std::io::{Cursor, Write as _};
 use std::path::Path;
 
 const COR: f64 = 0.3;
@@ -160,20 +161,18 @@ fn pyramid() -> [Half; 2] {
 }
 
 fn threemf_of(half: &Half, unit: &str) -> Vec<u8> {
-    let mut objects = String::new();
-    let mut items = String::new();
+    let (mut objects, mut items) = (String::new(), String::new());
     for (k, surface) in half.surfaces.iter().enumerate() {
-        let vertices: String = surface
-            .vertices
-            .iter()
-            .map(|p| format!("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p.x, p.y, p.z))
-            .collect();
-        let corner = |t: [u32; 3]| format!("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>", t[0], t[1], t[2]);
-        let triangles: String = surface.triangles().into_iter().map(corner).collect();
-        objects += &format!(
-            "<object id=\"{k}\"><mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh></object>"
-        );
-        items += &format!("<item objectid=\"{k}\"/>");
+        write!(objects, "<object id=\"{k}\"><mesh><vertices>").unwrap();
+        for DVec3 { x, y, z } in &surface.vertices {
+            write!(objects, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>").unwrap();
+        }
+        objects.push_str("</vertices><triangles>");
+        for [a, b, c] in surface.triangles() {
+            write!(objects, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>").unwrap();
+        }
+        objects.push_str("</triangles></mesh></object>");
+        write!(items, "<item objectid=\"{k}\"/>").unwrap();
     }
     let space = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
     let model = format!(

@@ -118,3 +118,57 @@ fn changes_obey_the_rules_of_the_file() {
     insta::assert_snapshot!("cor_without_unit", check(planar, &["--cor", "5 mm"]));
     insta::assert_snapshot!("free_misspelt", check(planar, &["--free", "x,pich"]));
 }
+
+/// The example of a kinematic coupling, by its closed form: a hexagon of area 2 √3 h², h = 5 mm.
+#[test]
+fn balls_in_grooves_are_checked_and_answered() {
+    let told = run(&designs(), &["check", "kelvin-balls.toml"]);
+    assert!(told.starts_with("exit 0"), "{told}");
+    assert!(told.contains("fixed half          cylinder, 3 × profile\n"), "{told}");
+    assert!(told.contains("moving half         cylinder, 3 × ball\n"), "{told}");
+    assert!(told.contains("facets inside of them, by at most 0.001 D = 0.06 mm\n"), "{told}");
+    let told = run(&designs(), &["zraa", "kelvin-balls.toml"]);
+    assert!(told.contains("= 86.602540 mm²"), "{told}");
+}
+
+/// A drawing, a file of two bodies that overlap, and a primitive: one half.
+#[test]
+fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(dir.path().join(name), text).unwrap();
+    let rows = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let cube = |side: f64, shift: f64| -> String {
+        let at = |k: u8| {
+            let c = |bit: u8| f64::from(k >> bit & 1) * side + shift;
+            format!("vertex {} {} {}\n", c(0), c(1), c(2))
+        };
+        let facet =
+            |t: [u8; 3]| format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", t.map(at).concat());
+        rows.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).map(facet).collect()
+    };
+    write(
+        "two.stl",
+        &format!("solid a\n{}endsolid a\nsolid b\n{}endsolid b\n", cube(20.0, 0.0), cube(10.0, 15.0)),
+    );
+    write(
+        "plate.svg",
+        "<svg width='50mm' viewBox='0 0 50 50'><rect width='50' height='50'/><circle cx='40' cy='40' r='5'/></svg>",
+    );
+    let design = "[connector]\nwidth = 50.0\nunit = \"mm\"\n\
+                  [connector.fixed]\nparts = [{ profile = \"plate.svg\", height = 5, at = [-25, 25, -5] }]\n\
+                  [[connector.moving.parts]]\nmesh = \"two.stl\"\nunit = \"mm\"\nat = [-12.5, -12.5, 0]\n\
+                  [[connector.moving.parts]]\nsphere = { radius = 5 }\n\
+                  [[connector.moving.parts]]\nbox = [30, 30, 5]\nat = [0, 0, 21]\n\
+                  [alignment]\nfree = [\"roll\"]\n";
+    write("d.toml", design);
+    let told = json(dir.path(), &["check", "d.toml", "--json"]);
+    let parts = &told["design"]["connector"]["own"]["moving"]["parts"];
+    assert_eq!(parts[0]["shape"]["mesh"]["content"]["bodies"], 2, "{told:#}");
+    assert_eq!(
+        told["design"]["connector"]["own"]["fixed"]["parts"][0]["shape"]["profile"]["outline"]["file"]["unit"],
+        "in-file"
+    );
+    let told = run(dir.path(), &["check", "d.toml"]);
+    assert!(told.contains("mesh two.stl, the union of 2 bodies, ball, box\n"), "{told}");
+    assert!(told.contains("fixed half          profile plate.svg\n"), "{told}");
+}

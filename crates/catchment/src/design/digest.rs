@@ -160,7 +160,7 @@ impl Hash {
             ShapeSpec::Profile { outline: OutlineSpec::Corners(corners), height, .. } => {
                 self.text("profile");
                 self.count(corners.len() as u64);
-                corners.iter().for_each(|corner| self.numbers(corner));
+                self.numbers(corners.as_flattened());
                 self.number(*height);
             }
             ShapeSpec::Profile { outline: OutlineSpec::File(file), height, chord_error } => {

@@ -220,8 +220,7 @@ impl Key {
     #[must_use]
     pub const fn element(self) -> Self {
         let kind = match self.kind {
-            Kind::Point(range) => Kind::DrawnLength(range),
-            Kind::Outline(range) => Kind::DrawnLength(range),
+            Kind::Point(range) | Kind::Outline(range) => Kind::DrawnLength(range),
             Kind::Turns(range) => Kind::Angle(range),
             kind => kind,
         };

@@ -57,6 +57,7 @@ pub enum FileUnit {
 }
 
 impl FileUnit {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
     fn is_beside(&self) -> bool {
         *self == Self::Beside
     }

@@ -68,13 +68,10 @@ impl<'t> Walk<'t> {
         }
         let ways = [keys::PIECES, keys::MESH, keys::PARTS];
         let advice = "a half is drawn once: remove one of them, or make both parts of it";
+        if !ways.iter().chain(&later).any(|key| section.has(key)) {
+            self.reader.missing(section, &keys::PIECES, HALF_ADVICE);
+        }
         let way = self.one_of(section, &ways, advice)?;
-        let Some(way) = way else {
-            if !later.iter().any(|key| section.has(key)) {
-                self.reader.missing(section, &keys::PIECES, HALF_ADVICE);
-            }
-            return None;
-        };
         if way == keys::MESH {
             return self.file(section, &way, &keys::MESH_UNIT, scale).map(HalfSpec::Mesh);
         }
@@ -91,8 +88,8 @@ impl<'t> Walk<'t> {
         }
     }
 
-    /// The one of `keys` that is written, if one is; `None` after a complaint about two of them.
-    fn one_of(&mut self, section: &Section<'t>, keys: &[Key], advice: &'static str) -> Option<Option<Key>> {
+    /// The one of `keys` that is written; `None` where none is, and after a complaint about two of them.
+    fn one_of(&mut self, section: &Section<'t>, keys: &[Key], advice: &'static str) -> Option<Key> {
         let mut written = keys.iter().filter(|key| section.has(key));
         let (first, second) = (written.next(), written.next());
         if let (Some(first), Some(second)) = (first, second) {
@@ -104,7 +101,7 @@ impl<'t> Walk<'t> {
             self.reader.complain(complaint, section.key_span(second).unwrap_or_default());
             return None;
         }
-        Some(first.copied())
+        first.copied()
     }
 
     fn not_its_own(&mut self, section: &Section<'t>, key: &Key, owner: &'static str, belongs_to: &str) {
@@ -152,10 +149,10 @@ impl<'t> Walk<'t> {
 
     fn shape(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<ShapeSpec> {
         let advice = "a part has one shape: remove one of them, or make it a part of its own";
-        let Some(way) = self.one_of(section, &SHAPES, advice)? else {
+        if !SHAPES.iter().any(|key| section.has(key)) {
             self.reader.missing_shape(section, PART_ADVICE);
-            return None;
-        };
+        }
+        let way = self.one_of(section, &SHAPES, advice)?;
         let is_drawing = way == keys::PART_PROFILE && section.is_text(&way);
         if way != keys::PART_MESH && !is_drawing {
             let owner = "a part that no file draws; its numbers are in the unit of [connector]";
@@ -221,6 +218,7 @@ impl<'t> Walk<'t> {
 
     /// The corners of a polygon, or a drawing.
     fn outline(&mut self, section: &Section<'t>, key: &Key, scale: Option<&Scale>) -> Option<OutlineSpec> {
+        const FEWEST: usize = 3;
         if section.is_text(key) {
             let file = self.file(section, key, &keys::PART_UNIT, scale)?;
             if !DRAWINGS.contains(&file.ending().as_str()) {
@@ -236,7 +234,6 @@ impl<'t> Walk<'t> {
             }
             return Some(OutlineSpec::File(file));
         }
-        const FEWEST: usize = 3;
         let value = self.reader.raw(section, key)?;
         let place = section.place(key.name);
         let elements =

@@ -44,8 +44,7 @@ fn is_active(key: &Key, family: Family) -> bool {
                 || (*key == keys::DONT_CARE && family.freedom() == Freedom::Round)
         }
         Table::Errors => free.iter().any(|dof| keys::ERROR_KEYS[dof.index()] == *key),
-        Table::Half | Table::Docked => false,
-        Table::Part | Table::Sphere | Table::Cylinder | Table::Cone => false,
+        Table::Half | Table::Docked | Table::Part | Table::Sphere | Table::Cylinder | Table::Cone => false,
     }
 }
 

@@ -1,7 +1,7 @@
-//! A closed triangle mesh as half of a connector: from loose triangles to a [`Surface`], or to every reason why they are none.
+//! A closed triangle mesh as half of a connector: from loose triangles to a [`Half`], or to every reason why they are none.
 //!
 //! ```text
-//! triangles, each with its place ──weld──▶ corners shared ──check──▶ Surface, in D
+//! triangles, each with its place ──weld──▶ corners shared ──check──▶ surfaces, in D
 //! ```
 //!
 //! Every source of triangles comes through here, the files of the sources as well as triangles in memory. Corners closer
@@ -9,7 +9,7 @@
 //! counter-clockwise seen from outside. Nothing else is repaired, and nothing dropped: a mesh is either closed, wound outward and free of self-intersections, or every reason
 //! against it is reported with its place. Coordinates in messages are those of the source.
 //!
-//! Closed shells that overlap are a surface each, see [`shells`]; otherwise all shells of a source are one.
+//! Closed shells that overlap are a surface each (up to 256 of them); otherwise all shells of a source are one.
 //!
 //! Not promised: solids that touch each other along an edge are refused (four triangles meet there), and
 //! coplanar overlaps of separate shells are not looked for.

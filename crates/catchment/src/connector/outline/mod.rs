@@ -187,7 +187,7 @@ pub(super) fn regions(loops: Vec<Vec<DVec2>>) -> Result<Vec<Region>, OutlineProb
             holes: (0..loops.len()).filter(hole).map(|k| wound(&loops[k], false)).collect(),
         }
     };
-    Ok((0..loops.len()).filter(|k| depth[*k] % 2 == 0).map(region).collect())
+    Ok((0..loops.len()).filter(|k| depth[*k].is_multiple_of(2)).map(region).collect())
 }
 
 /// A loop without corners that repeat the one before.

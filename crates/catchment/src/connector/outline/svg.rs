@@ -173,6 +173,12 @@ fn shape(node: Node<'_, '_>, frame: Affine, within: Within) -> Result<Option<Bez
     Ok(Some(path))
 }
 
+/// Whether a segment is straight.
+const fn is_line(segment: &PathSegment) -> bool {
+    use PathSegment::{HorizontalLineTo, LineTo, VerticalLineTo};
+    matches!(segment, LineTo { .. } | HorizontalLineTo { .. } | VerticalLineTo { .. })
+}
+
 /// The data of a path; arcs become cubic curves within `tolerance`.
 fn path(data: &str, tolerance: f64) -> Result<BezPath, String> {
     let mut path = BezPath::new();
@@ -239,8 +245,7 @@ fn path(data: &str, tolerance: f64) -> Result<BezPath, String> {
                 start
             }
         };
-        use PathSegment::{HorizontalLineTo, LineTo, VerticalLineTo};
-        if matches!(segment, LineTo { .. } | HorizontalLineTo { .. } | VerticalLineTo { .. }) {
+        if is_line(&segment) {
             path.line_to(end);
         }
         (at, cubic, quadratic) = (end, new_cubic, new_quadratic);

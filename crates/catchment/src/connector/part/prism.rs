@@ -94,7 +94,7 @@ fn bridged(region: &Region, flat: &[DVec2]) -> Option<Vec<usize>> {
         // In along the bridge, around the hole, and out again.
         let around = (0..=ring.len()).map(|k| ring[(inner + k) % ring.len()]);
         let inserted: Vec<usize> = around.chain([p]).collect();
-        border.splice(outer + 1..outer + 1, inserted);
+        border.splice(outer + 1..=outer, inserted);
     }
     Some(border)
 }

@@ -105,11 +105,14 @@ impl Built {
     }
 }
 
+/// A half, or a part of one, from the triangles of every body and their scale.
+type BuildMesh = fn(&[Vec<Triangle>], f64) -> Result<Half, Vec<MeshProblem>>;
+
 /// A mesh file as a half or a part of one, what it held, and its scale.
 pub(super) fn read_mesh(
     spec: &FileSpec,
     file: &FileBytes,
-    build: fn(&[Vec<Triangle>], f64) -> Result<Half, Vec<MeshProblem>>,
+    build: BuildMesh,
 ) -> Result<(Half, MeshContent, f64), Vec<MeshProblem>> {
     let format = Format::of(&spec.path);
     foreign::refuse(&file.bytes, format.endings)?;

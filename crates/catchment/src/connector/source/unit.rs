@@ -27,11 +27,10 @@ pub enum UnitProblem {
 /// Multiplies the coordinates of a file to give D; `metres` are in one of them, where the file says it.
 pub(in crate::connector) fn scale(file: &FileSpec, metres: Option<f64>) -> Result<f64, UnitProblem> {
     match (file.unit, metres) {
-        (FileUnit::Beside, _) | (FileUnit::Stated(_), None) => Ok(file.scale),
         (FileUnit::Stated(stated), Some(metres)) if (metres / stated.metres() - 1.0).abs() > SAME => {
             Err(UnitProblem::Other { in_file: shown(metres), stated })
         }
-        (FileUnit::Stated(_), Some(_)) => Ok(file.scale),
+        (FileUnit::Beside | FileUnit::Stated(_), _) => Ok(file.scale),
         (FileUnit::InFile, Some(metres)) => Ok(file.scale * metres),
         (FileUnit::InFile, None) => Err(UnitProblem::Unsaid),
     }
