@@ -222,15 +222,14 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
             row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
         }
         if let Some(error) = settled {
-            let amount = |(dof, off): (Dof, f64)| {
-                let off = if dof.is_rotation() {
-                    format!("{} deg", rounded(off.to_degrees()))
-                } else {
-                    length(rounded(off))
-                };
-                format!("{} {off}", dof.name())
+            // What is less is how well the rest is known.
+            let counts = |(_, off): &(Dof, f64)| off.abs() > 1e-5;
+            let amount = |(dof, off): (Dof, f64)| match design.unit {
+                _ if dof.is_rotation() => format!("{} {:.3} deg", dof.name(), off.to_degrees()),
+                Some(unit) => format!("{} {:.4} {}", dof.name(), off * design.width, unit.symbol()),
+                None => format!("{} {off:.5} D", dof.name()),
             };
-            let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, off)| rounded(*off) != 0.0);
+            let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(counts);
             let parts: Vec<String> = parts.map(amount).collect();
             let off = if parts.is_empty() { "at rest as drawn".to_owned() } else { parts.join(", ") };
             row("settled", &format!("{off}, which is taken as mated"));
