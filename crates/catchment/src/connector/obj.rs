@@ -2,28 +2,25 @@
 //!
 //! Read by `tobj`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for STL.
 
-use super::Surface;
-use super::mesh::{self, MeshProblem, Triangle};
-use super::source::FileBytes;
+use super::mesh::{self, MeshProblem, Reading, Ready, Triangle};
+use super::source::{FileBytes, most_bytes};
 use glam::DVec3;
 use std::io::{self, BufRead, Read};
 use tobj::{LoadError, LoadOptions};
 
-/// Longest file that is read.
-pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
-
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    mesh::check_scale(scale)?;
-    if file.size > MAX_BYTES {
-        return Err(vec![MeshProblem::TooLong { bytes: file.size }]);
+pub(super) fn read(file: &FileBytes, reading: &Reading) -> Result<Ready, Vec<MeshProblem>> {
+    mesh::check_scale(reading.scale)?;
+    let most = most_bytes(reading);
+    if file.size > most {
+        return Err(vec![MeshProblem::TooLong { bytes: file.size, most }]);
     }
-    let triangles = parse(&file.bytes)?;
+    let triangles = parse(&file.bytes, reading)?;
     mesh::sound_numbers(&triangles)?;
-    mesh::from_file(&triangles, scale)
+    mesh::from_file(triangles, reading)
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+fn parse(bytes: &[u8], reading: &Reading) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let refused =
         |line: usize, expected| vec![MeshProblem::Syntax { line, expected, found: shown(bytes, line) }];
     let text = plain(bytes).map_err(|line| refused(line, CORNERS))?;
@@ -33,7 +30,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let options = LoadOptions { ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
     let (models, _) = tobj::load_obj_buf(&mut lines, &options, no_materials)
         .map_err(|error| refused(lines.line, expected(error)))?;
-    let mut triangles = mesh::Triangles::default();
+    let mut triangles = mesh::Triangles::new(reading);
     for mesh in models.iter().map(|model| &model.mesh) {
         let corner = |k: &u32| {
             let at = 3 * *k as usize;
@@ -135,12 +132,17 @@ impl BufRead for Lines<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::connector::Surface;
+    use crate::design::Treatment;
 
     const CUBE: &str = "# a cube\nmtllib none.mtl\no cube\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
                         vn 0 0 1\nusemtl red\nf 4 3 2 1\nf 5//1 6//1 7//1 8//1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\ng back\nf -8 -4 -1 -5\n";
 
     fn read(text: &str) -> Result<Surface, Vec<MeshProblem>> {
-        super::read(&FileBytes::whole(text.as_bytes().to_vec()), 0.5)
+        {
+        let reading = Reading { scale: 0.5, treatment: Treatment::AS_IT_IS };
+        super::read(&FileBytes::whole(text.as_bytes().to_vec()), &reading).map(|ready| ready.surface)
+    }
     }
 
     #[test]

@@ -3,28 +3,25 @@
 //! Read by `ply-rs-bw`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for
 //! STL.
 
-use super::Surface;
-use super::mesh::{self, MeshProblem, Triangle};
-use super::source::FileBytes;
+use super::mesh::{self, MeshProblem, Reading, Ready, Triangle};
+use super::source::{FileBytes, most_bytes};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
-/// Longest file that is read.
-pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
-
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    mesh::check_scale(scale)?;
-    if file.size > MAX_BYTES {
-        return Err(vec![MeshProblem::TooLong { bytes: file.size }]);
+pub(super) fn read(file: &FileBytes, reading: &Reading) -> Result<Ready, Vec<MeshProblem>> {
+    mesh::check_scale(reading.scale)?;
+    let most = most_bytes(reading);
+    if file.size > most {
+        return Err(vec![MeshProblem::TooLong { bytes: file.size, most }]);
     }
-    let triangles = parse(&file.bytes)?;
+    let triangles = parse(&file.bytes, reading)?;
     mesh::sound_numbers(&triangles)?;
-    mesh::from_file(&triangles, scale)
+    mesh::from_file(triangles, reading)
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+fn parse(bytes: &[u8], reading: &Reading) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let unreadable = |error: ParseError| {
         let line = error.line().map_or_else(String::new, |line| format!("line {line}: "));
         let message = error.to_string();
@@ -51,7 +48,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
         let message = "its vertices have no x, y and z".to_owned();
         return Err(vec![MeshProblem::NotPly { message }]);
     };
-    let mut triangles = mesh::Triangles::default();
+    let mut triangles = mesh::Triangles::new(reading);
     for (number, face) in faces.iter().enumerate() {
         let corner = |k: &u32| points.get(*k as usize).copied();
         let corners: Option<Vec<DVec3>> = face.corners.iter().map(corner).collect();
@@ -101,6 +98,8 @@ impl PropertyAccess for Element {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::connector::Surface;
+    use crate::design::Treatment;
 
     const CUBE: &str = "ply\nformat ascii 1.0\ncomment a cube\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n\
                         property uchar red\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n\
@@ -108,7 +107,10 @@ mod tests {
                         4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
 
     fn read(bytes: &[u8]) -> Result<Surface, Vec<MeshProblem>> {
-        super::read(&FileBytes::whole(bytes.to_vec()), 0.5)
+        {
+        let reading = Reading { scale: 0.5, treatment: Treatment::AS_IT_IS };
+        super::read(&FileBytes::whole(bytes.to_vec()), &reading).map(|ready| ready.surface)
+    }
     }
 
     fn binary() -> Vec<u8> {

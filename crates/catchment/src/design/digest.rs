@@ -106,7 +106,18 @@ impl Hash {
                 }
                 return Some(());
             }
-            HalfSpec::Mesh { scale, content, .. } => (*scale, content.as_ref()?),
+            HalfSpec::Mesh { scale, content, treatment, .. } => {
+                let content = content.as_ref()?;
+                // What a repair does follows from the bytes; where none was needed the digest is that of the mesh as it is.
+                if !content.repairs.is_none() {
+                    self.text("repaired");
+                }
+                if let Some(tolerance) = treatment.simplify {
+                    self.text("simplified");
+                    self.number(tolerance);
+                }
+                (*scale, content)
+            }
             HalfSpec::Memory { content } => (1.0, content),
         };
         self.text(if matches!(half, HalfSpec::Memory { .. }) { "memory" } else { "mesh" });
@@ -157,7 +168,7 @@ impl Hash {
 mod tests {
     use super::*;
     use crate::design::family::Cone;
-    use crate::design::{Family, FamilySpec, LengthUnit, MeshContent, OwnSpec};
+    use crate::design::{Family, FamilySpec, LengthUnit, MeshContent, OwnSpec, Repairs, Treatment};
 
     fn family(family: Family) -> Design {
         let spec = FamilySpec::new(family);
@@ -222,7 +233,8 @@ mod tests {
     fn of_a_mesh_counts_what_it_held() {
         let mesh = |path: &str, scale, held: Option<&[u8]>| {
             let content = held.map(|bytes| MeshContent::of(bytes, 4));
-            let half = HalfSpec::Mesh { path: path.into(), scale, content };
+            let (unit, treatment) = (None, Treatment::DEFAULT);
+            let half = HalfSpec::Mesh { path: path.into(), scale, unit, treatment, content };
             let own = OwnSpec::new(0.0, half.clone(), half);
             Design { connector: ConnectorSpec::Own(own), ..family(Family::Pyramid) }.digest()
         };
@@ -233,11 +245,36 @@ mod tests {
         assert_ne!(mesh("a", 1.0, Some(b"x")), mesh("a", 2.0, Some(b"x")));
     }
 
+    /// Whether repair was allowed changes nothing; that there was one, and how far a simplified surface may move, does.
+    #[test]
+    fn of_a_mesh_counts_how_it_was_treated() {
+        let mesh = |treatment, repairs| {
+            let content = Some(MeshContent { repairs, ..MeshContent::of(b"x", 4) });
+            let half = HalfSpec::Mesh { path: "a".into(), scale: 1.0, unit: None, treatment, content };
+            let own = OwnSpec::new(0.0, half.clone(), half);
+            Design { connector: ConnectorSpec::Own(own), ..family(Family::Pyramid) }.digest().unwrap()
+        };
+        let simplified = |d| Treatment { simplify: Some(d), ..Treatment::DEFAULT };
+        let repaired = Repairs { turned: 1, ..Repairs::default() };
+        let plain = mesh(Treatment::DEFAULT, Repairs::default());
+        assert_eq!(mesh(Treatment::AS_IT_IS, Repairs::default()), plain);
+        let all = [
+            plain,
+            mesh(Treatment::DEFAULT, repaired.clone()),
+            mesh(simplified(1e-3), Repairs::default()),
+            mesh(simplified(2e-3), Repairs::default()),
+            mesh(simplified(1e-3), repaired),
+        ];
+        assert!((0..all.len()).all(|i| (0..i).all(|j| all[i] != all[j])));
+    }
+
     #[test]
     fn a_mesh_without_its_content_reads_as_before() {
         let old = r#"{"mesh":{"path":"a.stl","scale":0.5}}"#;
         let half: HalfSpec = serde_json::from_str(old).unwrap();
-        assert_eq!(half, HalfSpec::Mesh { path: "a.stl".into(), scale: 0.5, content: None });
+        let (unit, treatment) = (None, Treatment::DEFAULT);
+        let expected = HalfSpec::Mesh { path: "a.stl".into(), scale: 0.5, unit, treatment, content: None };
+        assert_eq!(half, expected);
         assert_eq!(serde_json::to_string(&half).unwrap(), old);
         // SHA-256 of nothing, FIPS 180-4.
         assert!(MeshContent::of(b"", 0).sha256.starts_with("e3b0c44298fc1c14"));

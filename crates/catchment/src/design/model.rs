@@ -1,6 +1,6 @@
 //! The resolved design: no units, no defaults left open.
 
-use super::{Alignment, Drawn, FamilySpec, MeshContent, Placement};
+use super::{Alignment, Drawn, FamilySpec, MeshContent, Placement, Treatment};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -123,6 +123,12 @@ pub enum HalfSpec {
         path: PathBuf,
         /// Multiplies the file's coordinates to give D.
         scale: f64,
+        /// Unit of those coordinates, where the design has units.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        unit: Option<LengthUnit>,
+        /// What may be done to it before it is used.
+        #[serde(default, skip_serializing_if = "Treatment::is_default")]
+        treatment: Treatment,
         /// What the file held, once it was read.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         content: Option<MeshContent>,

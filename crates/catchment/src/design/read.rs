@@ -6,7 +6,7 @@ use super::keys::{self, Applies, Key, Kind, Table};
 use super::problem::{Problems, Sources};
 use super::quantity::Scale;
 use super::reader::{Reader, Section};
-use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, HalfSpec, OwnSpec, Placement};
+use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, HalfSpec, OwnSpec, Placement, Treatment};
 use crate::pose::{Dof, DofSet};
 use std::path::Path;
 use toml::Spanned;
@@ -258,13 +258,13 @@ impl<'t> Walk<'t> {
             return None;
         }
         if section.has(&keys::PIECES) {
-            if let Some(span) = section.key_span(&keys::MESH_UNIT) {
-                let complaint = Complaint::NotAParameter {
-                    key: keys::MESH_UNIT.name.to_owned(),
-                    owner: "pieces, which are drawn in the unit of [connector]",
-                    belongs_to: "a mesh".to_owned(),
-                };
-                self.reader.complain(complaint, span);
+            let drawn = "pieces, which are drawn in the unit of [connector]";
+            let exact = "pieces, which are taken as they are";
+            for (key, owner) in [(&keys::MESH_UNIT, drawn), (&keys::REPAIR, exact), (&keys::SIMPLIFY, exact)] {
+                if let Some(span) = section.key_span(key) {
+                    let (key, belongs_to) = (key.name.to_owned(), "a mesh".to_owned());
+                    self.reader.complain(Complaint::NotAParameter { key, owner, belongs_to }, span);
+                }
             }
             return self.pieces(section, scale).map(HalfSpec::Pieces);
         }
@@ -279,6 +279,10 @@ impl<'t> Walk<'t> {
 
     fn mesh(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<HalfSpec> {
         let unit = self.reader.unit(section, &keys::MESH_UNIT);
+        let treatment = Treatment {
+            repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(Treatment::DEFAULT.repair),
+            simplify: self.reader.number(section, &keys::SIMPLIFY, scale),
+        };
         let path = self.reader.string(section, &keys::MESH).and_then(|(written, span)| {
             let path = self.base_dir.join(written);
             if written.trim().is_empty() {
@@ -307,7 +311,7 @@ impl<'t> Walk<'t> {
                 return None;
             }
         };
-        Some(HalfSpec::Mesh { path: path?, scale, content: None })
+        Some(HalfSpec::Mesh { path: path?, scale, unit, treatment, content: None })
     }
 
     fn pieces(&mut self, section: &Section<'t>, scale: Option<&Scale>) -> Option<Vec<Vec<[f64; 3]>>> {

@@ -101,7 +101,7 @@ fn a_mesh_is_scaled_from_its_unit_to_d() {
         read(&text, folder)
     };
     let scale = |head: &str, unit: &str| match read_here(head, unit).unwrap().design.connector {
-        ConnectorSpec::Own(OwnSpec { fixed: HalfSpec::Mesh { scale, path, content: None }, .. }) => {
+        ConnectorSpec::Own(OwnSpec { fixed: HalfSpec::Mesh { scale, path, content: None, .. }, .. }) => {
             assert_eq!(path, folder.join("half.stl"));
             scale
         }

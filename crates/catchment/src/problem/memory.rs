@@ -32,7 +32,9 @@ fn spec(source: Source, content: Option<MeshContent>, built: &Half) -> HalfSpec 
         (Source::Pieces(pieces), _) => {
             HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(DVec3::to_array).collect()).collect())
         }
-        (Source::Mesh { path, scale, .. }, content) => HalfSpec::Mesh { path, scale, content },
+        (Source::Mesh { path, scale, unit, treatment, .. }, content) => {
+            HalfSpec::Mesh { path, scale, unit, treatment, content }
+        }
         (_, Some(content)) => HalfSpec::Memory { content },
         // A half of a family, which a design of two halves of one's own cannot name.
         (_, None) => HalfSpec::Memory { content: content_of(built) },

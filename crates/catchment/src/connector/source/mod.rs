@@ -13,9 +13,9 @@ mod content;
 pub(super) mod disk;
 mod foreign;
 
-use super::mesh::{self, MeshProblem};
+use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Reading, Ready};
 use super::{Half, Problem, Side, Surface, convex_hull, family, obj, ply, stl};
-use crate::design::{FamilySpec, HalfSpec, MeshContent};
+use crate::design::{FamilySpec, HalfSpec, LengthUnit, MeshContent, Treatment};
 use glam::DVec3;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -47,18 +47,26 @@ pub type Read<'a> = &'a dyn Fn(&Path, u64) -> io::Result<FileBytes>;
 struct Format {
     /// How its files end, in lower case.
     endings: &'static [&'static str],
-    /// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
-    most: u64,
-    /// From bytes and the scale to D to a closed surface.
-    read: fn(&FileBytes, f64) -> Result<Surface, Vec<MeshProblem>>,
+    /// From bytes to a closed surface in D.
+    read: fn(&FileBytes, &Reading) -> Result<Ready, Vec<MeshProblem>>,
+    /// What the first bytes of a file say of it as a whole.
+    refuse_early: fn(&FileBytes, &Reading) -> Result<(), Vec<MeshProblem>>,
 }
 
 /// The table of mesh formats. A file whose ending none of them has is read as the first.
 const FORMATS: [Format; 3] = [
-    Format { endings: &["stl"], most: stl::MAX_BYTES, read: stl::read },
-    Format { endings: &["obj"], most: obj::MAX_BYTES, read: obj::read },
-    Format { endings: &["ply"], most: ply::MAX_BYTES, read: ply::read },
+    Format { endings: &["stl"], read: stl::read, refuse_early: stl::refuse_early },
+    Format { endings: &["obj"], read: obj::read, refuse_early: |_, _| Ok(()) },
+    Format { endings: &["ply"], read: ply::read, refuse_early: |_, _| Ok(()) },
 ];
+
+/// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
+pub(super) const fn most_bytes(reading: &Reading) -> u64 {
+    if reading.treatment.simplify.is_some() { stl::MOST_BYTES } else { stl::MAX_BYTES }
+}
+
+/// Bytes that are read before a format may refuse a file: a binary STL file of as many triangles as a half may have, which all but few files are below.
+const FIRST_BYTES: u64 = 84 + 50 * MAX_TRIANGLES as u64;
 
 impl Format {
     fn of(path: &Path) -> &'static Self {
@@ -83,6 +91,10 @@ pub enum Source {
         file: FileBytes,
         /// Multiplies the file's coordinates to give D.
         scale: f64,
+        /// Unit of those coordinates, which messages say.
+        unit: Option<LengthUnit>,
+        /// What may be done to the mesh.
+        treatment: Treatment,
     },
     /// Loose triangles that bound the half, corners in D, counter-clockwise seen from outside.
     Triangles(Vec<[DVec3; 3]>),
@@ -97,16 +109,20 @@ impl Source {
             HalfSpec::Pieces(pieces) => Ok(Self::Pieces(
                 pieces.iter().map(|piece| piece.iter().copied().map(DVec3::from_array).collect()).collect(),
             )),
-            HalfSpec::Mesh { path, scale, .. } => match read(path, Format::of(path).most) {
-                Ok(file) => Ok(Self::Mesh { path: path.clone(), file, scale: *scale }),
-                Err(error) => {
-                    let error = match error.kind() {
-                        io::ErrorKind::NotFound => MeshProblem::NoFile,
-                        _ => MeshProblem::Io { message: error.to_string() },
-                    };
-                    Err(Problem::Mesh { side, path: path.clone(), error })
+            HalfSpec::Mesh { path, scale, unit, treatment, .. } => {
+                let reading = Reading { scale: *scale, treatment: *treatment };
+                let refused = |error| Problem::Mesh { side, path: path.clone(), error };
+                match file(path, &reading, read) {
+                    Ok(file) => Ok(Self::Mesh {
+                        path: path.clone(),
+                        file,
+                        scale: *scale,
+                        unit: *unit,
+                        treatment: *treatment,
+                    }),
+                    Err(problem) => Err(refused(problem)),
                 }
-            },
+            }
             HalfSpec::Memory { .. } => Err(Problem::NotInDesign { side }),
         }
     }
@@ -119,12 +135,14 @@ impl Source {
                 Ok((if side == Side::Fixed { drawn.fixed } else { drawn.moving }, None))
             }
             Self::Pieces(pieces) => Ok((from_pieces(pieces, side)?, None)),
-            Self::Mesh { path, file, scale } => {
-                let refused = |error| Problem::Mesh { side, path: path.clone(), error };
-                let surface = foreign::refuse(&file.bytes)
-                    .and_then(|()| (Format::of(path).read)(file, *scale))
+            Self::Mesh { path, file, scale, unit, treatment } => {
+                let refused =
+                    |error: MeshProblem| Problem::Mesh { side, path: path.clone(), error: error.in_unit(*unit) };
+                let reading = Reading { scale: *scale, treatment: *treatment };
+                let Ready { surface, repairs } = foreign::refuse(&file.bytes)
+                    .and_then(|()| (Format::of(path).read)(file, &reading))
                     .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
-                let content = MeshContent::of(&file.bytes, surface.facets.len());
+                let content = MeshContent { repairs, ..MeshContent::of(&file.bytes, surface.facets.len()) };
                 Ok((Half { surfaces: vec![surface] }, Some(content)))
             }
             Self::Triangles(triangles) => {
@@ -139,6 +157,24 @@ impl Source {
             }
         }
     }
+}
+
+/// As much of a mesh file as may be read; of a large one the beginning first.
+fn file(path: &Path, reading: &Reading, read: Read<'_>) -> Result<FileBytes, MeshProblem> {
+    let unreadable = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => MeshProblem::NoFile,
+        _ => MeshProblem::Io { message: error.to_string() },
+    };
+    let first = read(path, FIRST_BYTES).map_err(unreadable)?;
+    if first.size <= first.bytes.len() as u64 {
+        return Ok(first);
+    }
+    let refused = foreign::refuse(&first.bytes).and_then(|()| (Format::of(path).refuse_early)(&first, reading));
+    if let Some(problem) = refused.err().and_then(|problems| problems.into_iter().next()) {
+        return Err(problem);
+    }
+    drop(first);
+    read(path, most_bytes(reading)).map_err(unreadable)
 }
 
 fn from_pieces(pieces: &[Vec<DVec3>], side: Side) -> Result<Half, Vec<Problem>> {

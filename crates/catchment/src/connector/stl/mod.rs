@@ -17,26 +17,37 @@ mod write;
 pub use write::{Format, write};
 
 use super::Surface;
-use super::mesh::{self, MeshProblem};
+use super::mesh::{self, MOST_READ, MeshProblem, Reading, Ready};
 use super::source::FileBytes;
+use crate::design::Treatment;
 
 /// Longest ASCII file that can hold as many triangles as a half may have, generously written.
 pub const MAX_BYTES: u64 = 128 << 20;
+/// Longest file that is read to be simplified: a binary one of as many triangles as are read.
+pub const MOST_BYTES: u64 = 84 + 50 * MOST_READ as u64;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    from_bytes(&file.bytes, file.size, scale)
+pub(super) fn read(file: &FileBytes, reading: &Reading) -> Result<Ready, Vec<MeshProblem>> {
+    mesh::check_scale(reading.scale)?;
+    let triangles = parse::parse(&file.bytes, file.size, reading)?;
+    mesh::from_file(triangles, reading)
 }
 
-/// Reads an STL file from its bytes; `scale` turns its coordinates into D. `size` is the size of the whole
+/// What the first bytes of a file say of it as a whole: a binary file with too many triangles is refused before they are read.
+pub(super) fn refuse_early(file: &FileBytes, reading: &Reading) -> Result<(), Vec<MeshProblem>> {
+    parse::refuse_early(&file.bytes, file.size, reading)
+}
+
+/// Reads an STL file from its bytes, which are taken as they are; `scale` turns its coordinates into D. `size` is the size of the whole
 /// file, of which `bytes` may be only the first [`MAX_BYTES`].
 ///
 /// # Errors
 /// Everything that is wrong with the file, at most a few problems of each kind.
 pub fn from_bytes(bytes: &[u8], size: u64, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
+    let reading = Reading { scale, treatment: Treatment::AS_IT_IS };
     mesh::check_scale(scale)?;
-    let triangles = parse::parse(bytes, size)?;
-    mesh::from_file(&triangles, scale)
+    let triangles = parse::parse(bytes, size, &reading)?;
+    mesh::from_file(triangles, &reading).map(|ready| ready.surface)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! From bytes to triangles, both dialects.
 
-use super::MAX_BYTES;
-use crate::connector::mesh::{self, MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
+use crate::connector::mesh::{self, MeshProblem, Place, Reading, Start, Triangle};
+use crate::connector::source::most_bytes;
 use glam::DVec3;
 
 /// Header and triangle count of a binary file.
@@ -12,34 +12,54 @@ const RECORD: usize = 50;
 const SHOWN: usize = 24;
 
 /// Parses the first `bytes` of a file of `size` bytes.
-pub(super) fn parse(bytes: &[u8], size: u64) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+pub(super) fn parse(bytes: &[u8], size: u64, reading: &Reading) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     if bytes.is_empty() {
         return Err(vec![MeshProblem::Empty]);
     }
-    let announced = bytes
-        .get(HEADER - 4..HEADER)
-        .and_then(|count| count.try_into().ok())
-        .map(|count| u64::from(u32::from_le_bytes(count)));
-    let expected = announced.map(|count| HEADER as u64 + RECORD as u64 * count);
-    let triangles = if expected == Some(size) || !looks_like_text(bytes) {
-        let (Some(triangles), Some(expected)) = (announced, expected) else {
-            return Err(vec![MeshProblem::NotStl { found: size }]);
-        };
-        if expected != size {
-            return Err(vec![MeshProblem::Length { triangles, expected, found: size }]);
-        }
-        if triangles > MAX_TRIANGLES as u64 {
-            return Err(vec![MeshProblem::TooMany { count: triangles }]);
-        }
+    let triangles = if is_binary(bytes, size) {
+        refuse_binary(bytes, size, reading)?;
         binary(&bytes[HEADER..])
     } else {
-        if size > MAX_BYTES {
-            return Err(vec![MeshProblem::TooLong { bytes: size }]);
+        let most = most_bytes(reading);
+        if size > most {
+            return Err(vec![MeshProblem::TooLong { bytes: size, most }]);
         }
-        ascii(bytes).map_err(|problem| vec![problem])?
+        ascii(bytes, reading).map_err(|problem| vec![problem])?
     };
     mesh::sound_numbers(&triangles)?;
     Ok(triangles)
+}
+
+/// Refuses a binary file by its header: the first `bytes` hold it.
+pub(super) fn refuse_early(bytes: &[u8], size: u64, reading: &Reading) -> Result<(), Vec<MeshProblem>> {
+    if is_binary(bytes, size) { refuse_binary(bytes, size, reading) } else { Ok(()) }
+}
+
+/// Triangles that a binary header announces.
+fn announced(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(HEADER - 4..HEADER)?.try_into().ok()?;
+    Some(u64::from(u32::from_le_bytes(count)))
+}
+
+/// Bytes of a binary file of so many triangles.
+const fn length(triangles: u64) -> u64 {
+    HEADER as u64 + RECORD as u64 * triangles
+}
+
+fn is_binary(bytes: &[u8], size: u64) -> bool {
+    announced(bytes).is_some_and(|count| length(count) == size) || !looks_like_text(bytes)
+}
+
+fn refuse_binary(bytes: &[u8], size: u64, reading: &Reading) -> Result<(), Vec<MeshProblem>> {
+    let problem = match announced(bytes) {
+        None => MeshProblem::NotStl { found: size },
+        Some(triangles) if length(triangles) != size => {
+            MeshProblem::Length { triangles, expected: length(triangles), found: size }
+        }
+        Some(triangles) if triangles > reading.most() as u64 => reading.too_many(triangles),
+        Some(_) => return Ok(()),
+    };
+    Err(vec![problem])
 }
 
 /// Whether the file begins with the word `solid` and holds no zero byte, as every binary header does.
@@ -115,7 +135,7 @@ fn shown(words: &[&[u8]]) -> String {
     format!("`{}`", text.escape_debug())
 }
 
-fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, MeshProblem> {
+fn ascii(bytes: &[u8], reading: &Reading) -> Result<Vec<Triangle>, MeshProblem> {
     let is_newline: fn(&u8) -> bool = |b| *b == b'\n';
     let mut lines = Lines { lines: bytes.split(is_newline).enumerate(), last: 1 };
     let mut triangles = Vec::new();
@@ -131,8 +151,8 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, MeshProblem> {
         };
         if inside && begins(&words, "facet") {
             let triangle = triangles.len();
-            if triangle == MAX_TRIANGLES {
-                return Err(MeshProblem::TooMany { count: count_facets(bytes) });
+            if triangle == reading.most() {
+                return Err(reading.too_many(count_facets(bytes)));
             }
             lines.expect("outer loop")?;
             let mut corners = [DVec3::ZERO; 3];

@@ -1,0 +1,130 @@
+//! The connected parts of a mesh, their volumes, and which lies in which.
+//!
+//! ```text
+//! V = Σ a·(b × c)/6        w(p) = Σ Ω(a − p, b − p, c − p)/4π        over the triangles of a shell
+//! ```
+//!
+//! A shell lies in another where that winds around one of its corners, |w| > ½, by the solid angles of van Oosterom and Strackee (1983).
+//! Not promised: an answer for shells that cross, of which one is neither in nor outside of the other.
+
+use super::indexed::Indexed;
+use super::sides::Sides;
+use super::tree::{Bounds, around};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Most steps spent on asking which shell lies in which; beyond it a shell counts as inside where its box is.
+const MOST_STEPS: usize = 50_000_000;
+
+/// Triangles that hang together by their edges.
+#[derive(Debug)]
+pub(super) struct Shell {
+    /// Their numbers, ascending.
+    pub(super) triangles: Vec<u32>,
+    /// Enclosed volume, negative where it is turned inside out.
+    pub(super) volume: f64,
+    bounds: Bounds,
+}
+
+/// The shells of a mesh, in the order of their first triangles. Triangles are neighbours across edges that just two of them share.
+pub(super) fn of(mesh: &Indexed, sides: &Sides) -> Vec<Shell> {
+    let count = mesh.triangles.len();
+    let mut parts = Parts::new(count);
+    for sides in sides.edges() {
+        if let [a, b] = sides {
+            parts.join(a.triangle, b.triangle);
+        }
+    }
+    let mut number = vec![u32::MAX; count];
+    let mut lists: Vec<Vec<u32>> = Vec::new();
+    for k in 0..count as u32 {
+        let root = parts.root(k) as usize;
+        if number[root] == u32::MAX {
+            number[root] = lists.len() as u32;
+            lists.push(Vec::new());
+        }
+        lists[number[root] as usize].push(k);
+    }
+    lists
+        .into_iter()
+        .map(|triangles| {
+            let volume = volume(mesh, &triangles);
+            let bounds = triangles.iter().map(|k| around(mesh.corners(*k as usize))).fold(
+                (DVec3::INFINITY, DVec3::NEG_INFINITY),
+                |(lo, hi), (a, b)| (lo.min(a), hi.max(b)),
+            );
+            Shell { triangles, volume, bounds }
+        })
+        .collect()
+}
+
+/// In how many of the others a shell lies.
+pub(super) fn depth(mesh: &Indexed, shells: &[Shell], shell: &Shell) -> usize {
+    let others = || {
+        shells.iter().filter(|other| {
+            !std::ptr::eq(*other, shell)
+                && other.bounds.0.cmple(shell.bounds.0).all()
+                && shell.bounds.1.cmple(other.bounds.1).all()
+        })
+    };
+    let steps: usize = others().map(|other| other.triangles.len()).sum();
+    if steps.saturating_mul(shells.len().min(mesh.triangles.len())) > MOST_STEPS {
+        return others().count();
+    }
+    let [a, b, c] = mesh.corners(shell.triangles[0] as usize);
+    // In the middle of a triangle: at its corners it may touch another shell.
+    let point = (a + b + c) / 3.0;
+    others().filter(|other| winding(mesh, &other.triangles, point).abs() > 0.5).count()
+}
+
+/// How many times triangles wind around a point.
+pub(super) fn winding(mesh: &Indexed, triangles: &[u32], point: DVec3) -> f64 {
+    triangles.iter().map(|k| solid_angle(mesh.corners(*k as usize), point)).sum::<f64>() / (4.0 * PI)
+}
+
+/// The solid angle of a triangle seen from a point, positive from inside: tan(Ω/2) = a·(b × c) / (abc + (a·b)c + (b·c)a + (c·a)b).
+fn solid_angle(corners: [DVec3; 3], point: DVec3) -> f64 {
+    let [a, b, c] = corners.map(|corner| corner - point);
+    let [la, lb, lc] = [a, b, c].map(DVec3::length);
+    let numerator = a.dot(b.cross(c));
+    let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * numerator.atan2(denominator)
+}
+
+fn volume(mesh: &Indexed, triangles: &[u32]) -> f64 {
+    // Seen from one of its own corners: far from the origin the sum would lose its digits.
+    let origin = mesh.corners(triangles[0] as usize)[0];
+    triangles
+        .iter()
+        .map(|k| {
+            let [a, b, c] = mesh.corners(*k as usize).map(|p| p - origin);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum()
+}
+
+/// Disjoint sets of numbers.
+#[derive(Debug)]
+pub(super) struct Parts(Vec<u32>);
+
+impl Parts {
+    pub(super) fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    /// The number that stands for a set.
+    pub(super) fn root(&mut self, of: u32) -> u32 {
+        let mut k = of;
+        while self.0[k as usize] != k {
+            self.0[k as usize] = self.0[self.0[k as usize] as usize];
+            k = self.0[k as usize];
+        }
+        k
+    }
+
+    /// Makes two sets one, which the lower number stands for.
+    pub(super) fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
