@@ -4,7 +4,9 @@
 
 use catchment::connector::{Connector, Half, Problem, Side, stl};
 use catchment::contact::{Pair, mated};
-use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec};
+use catchment::design::{
+    Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec, Treatment,
+};
 use catchment::pose::{CorPose, DofSet, Mount, PoseError};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -40,6 +42,8 @@ fn meshes(format: stl::Format, folder: &Path, size: f64) -> Design {
     let mesh = |half, name| HalfSpec::Mesh {
         path: write(half, format, folder, name, size),
         scale: 1.0 / size,
+        unit: None,
+        treatment: Treatment::DEFAULT,
         content: None,
     };
     let own = OwnSpec::new(0.0, mesh(&connector.fixed, "socket.stl"), mesh(&drawn, "plug.stl"));
@@ -110,7 +114,13 @@ fn all_problems_of_both_halves_come_at_once() {
     let own = OwnSpec::new(
         0.0,
         HalfSpec::Pieces(vec![vec![[0.0; 3]; 3], vec![[0.0, f64::NAN, 0.0]; 4]]),
-        HalfSpec::Mesh { path: "no/such.stl".into(), scale: 1.0, content: None },
+        HalfSpec::Mesh {
+            path: "no/such.stl".into(),
+            scale: 1.0,
+            unit: None,
+            treatment: Treatment::DEFAULT,
+            content: None,
+        },
     );
     let problems = Connector::build(&design(ConnectorSpec::Own(own))).unwrap_err();
     let places: Vec<_> = problems

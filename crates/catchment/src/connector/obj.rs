@@ -174,7 +174,7 @@ mod tests {
         );
         assert_eq!(read("# nothing\n").unwrap_err(), [MeshProblem::NoTriangles]);
         let crossed = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1.1 0\nf 1 2 3 4\n";
-        assert_eq!(read(crossed).unwrap_err(), [MeshProblem::NotSimple { triangle: 0 }]);
+        assert_eq!(read(crossed).unwrap_err(), [MeshProblem::NotSimple { triangle: 0, at: DVec3::ZERO.into() }]);
     }
 
     /// One face of the cube is subdivided and its neighbours are not: their edges are divided too, and it is closed.

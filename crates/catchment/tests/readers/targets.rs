@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
 use catchment::connector::{Connector, FileBytes, Source, stl};
-use catchment::design::{Design, Problems, Quantity, keys, parse_dofs, read};
+use catchment::design::{Design, Problems, Quantity, Treatment, keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
 use catchment::poses::{Distribution, OffsetsAt, PoseTable, parse_pose};
@@ -50,6 +50,7 @@ pub(crate) fn design_file(bytes: &[u8]) {
 
 /// What the STL reader accepts is a closed solid, and what it refuses has few reasons.
 pub(crate) fn stl_file(bytes: &[u8]) {
+    mesh_file("half.stl", bytes);
     match stl::from_bytes(bytes, bytes.len() as u64, 1.0) {
         Ok(surface) => {
             assert!(surface.volume() > 0.0);
@@ -70,15 +71,35 @@ pub(crate) fn ply_file(bytes: &[u8]) {
 }
 
 fn mesh_file(name: &str, bytes: &[u8]) {
-    let mesh = || Source::Mesh { path: name.into(), file: FileBytes::whole(bytes.to_vec()), scale: 1.0 };
+    // As it is, repaired, and simplified: what is accepted of any is a closed solid.
+    let treated = |repair, simplify| mesh_treated(name, bytes, Treatment { repair, simplify });
+    let as_it_is = treated(false, None);
+    let repaired = treated(true, None);
+    assert!(!as_it_is || repaired, "repair refuses what needs none");
+    treated(true, Some(0.01));
+}
+
+/// Whether a mesh file is accepted.
+fn mesh_treated(name: &str, bytes: &[u8], treatment: Treatment) -> bool {
+    let mesh = || Source::Mesh {
+        path: name.into(),
+        file: FileBytes::whole(bytes.to_vec()),
+        scale: 1.0,
+        unit: None,
+        treatment,
+    };
     match Connector::from_sources(&mesh(), &mesh(), 0.0, Mount::X) {
         Ok(connector) => {
             for surface in connector.fixed.surfaces.iter().chain(&connector.moving.surfaces) {
                 assert!(surface.volume() > 0.0);
                 assert!(surface.vertices.iter().all(|v| v.is_finite()));
             }
+            true
         }
-        Err(problems) => assert!((2..120).contains(&problems.len()), "{} problems", problems.len()),
+        Err(problems) => {
+            assert!((2..120).contains(&problems.len()), "{} problems", problems.len());
+            false
+        }
     }
 }
 

@@ -488,3 +488,6 @@ impl Reported {
         if self.problems.is_empty() { Ok(()) } else { Err(self.problems) }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -127,7 +127,7 @@ fn more_triangles_than_the_limit_are_refused_before_they_are_read() {
     let many = vec![cube()[0]; MAX_TRIANGLES + 5];
     assert_eq!(complaints(&many), [MeshProblem::TooMany { count: MAX_TRIANGLES as u64 + 5 }]);
     let problems = from_bytes(b"solid x", 1 << 40, 1.0).unwrap_err();
-    assert_eq!(problems, [MeshProblem::TooLong { bytes: 1 << 40 }]);
+    assert_eq!(problems, [MeshProblem::TooLong { bytes: 1 << 40, most: MAX_BYTES }]);
 }
 
 #[test]
@@ -136,7 +136,8 @@ fn a_corner_that_is_not_finite_is_located() {
         let mut triangles = cube();
         triangles[3][1][2] = bad;
         let place = Place { triangle: 3, start: Start::Line(2 + 3 * 7) };
-        assert_eq!(complaints(&triangles), [MeshProblem::NotFinite { place }]);
+        let problems = complaints(&triangles);
+        assert!(matches!(problems[..], [MeshProblem::NotFinite { place: of, .. }] if of == place), "{problems:?}");
     }
 }
 
@@ -163,7 +164,7 @@ fn a_triangle_without_area_is_located_not_dropped() {
     triangles.push([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
     let problems = complaints(&triangles);
     let place = Place { triangle: 12, start: Start::Line(2 + 12 * 7) };
-    assert!(problems.contains(&MeshProblem::ZeroArea { place, at: DVec3::ZERO }), "{problems:?}");
+    assert!(problems.contains(&MeshProblem::ZeroArea { place, at: DVec3::ZERO.into() }), "{problems:?}");
 }
 
 #[test]
@@ -184,7 +185,7 @@ fn inside_out_and_mixed_windings_are_told_apart() {
         t.swap(0, 1);
     }
     triangles[7].swap(0, 1);
-    assert_eq!(complaints(&triangles), [MeshProblem::InsideOut]);
+    assert!(matches!(complaints(&triangles)[..], [MeshProblem::InsideOut { .. }]));
 }
 
 #[test]

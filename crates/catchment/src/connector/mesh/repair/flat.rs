@@ -41,6 +41,7 @@ pub(super) fn drop(mesh: &mut Indexed) -> usize {
         }
     }
     let mut is_gone = vec![false; mesh.triangles.len()];
+    let mut count = 0;
     while let Some(Waiting { length, triangle: std::cmp::Reverse(k) }) = heap.pop() {
         let flat = k as usize;
         // It may have changed since it began to wait.
@@ -51,6 +52,7 @@ pub(super) fn drop(mesh: &mut Indexed) -> usize {
             break;
         }
         left -= 1;
+        count += 1;
         let [a, b, m] = from_longest(mesh, flat);
         is_gone[flat] = true;
         mesh.triangles[flat].iter().for_each(|corner| around[*corner as usize].retain(|t| *t != k));
@@ -86,7 +88,8 @@ pub(super) fn drop(mesh: &mut Indexed) -> usize {
             }
         }
     }
-    mesh.retain(|k| !is_gone[k])
+    mesh.retain(|k| !is_gone[k]);
+    count
 }
 
 fn waiting(mesh: &Indexed, k: usize) -> Waiting {

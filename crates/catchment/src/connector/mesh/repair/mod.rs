@@ -101,6 +101,8 @@ fn tidy(mesh: &mut Indexed, repairs: &mut Repairs) {
     let doubled = doubled::drop(mesh);
     repairs.without_area += doubled.without_area;
     repairs.doubled += doubled.doubled;
+    // A neighbour is known by its sense.
+    repairs.turned += winding::unify(mesh, &Sides::of(&mesh.triangles));
     repairs.without_area += flat::drop(mesh);
     // Taking flat triangles away may lay others on each other.
     repairs.doubled += doubled::drop(mesh).doubled;
