@@ -4,9 +4,7 @@
 
 use catchment::connector::{Connector, Half, Problem, Side, stl};
 use catchment::contact::{Pair, mated};
-use catchment::design::{
-    Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec, Treatment,
-};
+use catchment::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec, HalfSpec, OwnSpec, Treatment};
 use catchment::pose::{CorPose, DofSet, Mount, PoseError};
 use std::fs::File;
 use std::path::{Path, PathBuf};

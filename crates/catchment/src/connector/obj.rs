@@ -140,9 +140,9 @@ mod tests {
 
     fn read(text: &str) -> Result<Surface, Vec<MeshProblem>> {
         {
-        let reading = Reading { scale: 0.5, treatment: Treatment::AS_IT_IS };
-        super::read(&FileBytes::whole(text.as_bytes().to_vec()), &reading).map(|ready| ready.surface)
-    }
+            let reading = Reading { scale: 0.5, treatment: Treatment::AS_IT_IS };
+            super::read(&FileBytes::whole(text.as_bytes().to_vec()), &reading).map(|ready| ready.surface)
+        }
     }
 
     #[test]
@@ -174,7 +174,10 @@ mod tests {
         );
         assert_eq!(read("# nothing\n").unwrap_err(), [MeshProblem::NoTriangles]);
         let crossed = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1.1 0\nf 1 2 3 4\n";
-        assert_eq!(read(crossed).unwrap_err(), [MeshProblem::NotSimple { triangle: 0, at: DVec3::ZERO.into() }]);
+        assert_eq!(
+            read(crossed).unwrap_err(),
+            [MeshProblem::NotSimple { triangle: 0, at: DVec3::ZERO.into() }]
+        );
     }
 
     /// One face of the cube is subdivided and its neighbours are not: their edges are divided too, and it is closed.

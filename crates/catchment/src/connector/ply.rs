@@ -108,9 +108,9 @@ mod tests {
 
     fn read(bytes: &[u8]) -> Result<Surface, Vec<MeshProblem>> {
         {
-        let reading = Reading { scale: 0.5, treatment: Treatment::AS_IT_IS };
-        super::read(&FileBytes::whole(bytes.to_vec()), &reading).map(|ready| ready.surface)
-    }
+            let reading = Reading { scale: 0.5, treatment: Treatment::AS_IT_IS };
+            super::read(&FileBytes::whole(bytes.to_vec()), &reading).map(|ready| ready.surface)
+        }
     }
 
     fn binary() -> Vec<u8> {

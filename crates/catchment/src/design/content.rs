@@ -23,7 +23,12 @@ pub struct MeshContent {
 impl MeshContent {
     /// Of these bytes, which make so many triangles.
     pub fn of(bytes: &[u8], triangles: usize) -> Self {
-        Self { sha256: hex(&Sha256::digest(bytes)), bytes: bytes.len() as u64, triangles, repairs: Repairs::default() }
+        Self {
+            sha256: hex(&Sha256::digest(bytes)),
+            bytes: bytes.len() as u64,
+            triangles,
+            repairs: Repairs::default(),
+        }
     }
 }
 

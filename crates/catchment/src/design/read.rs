@@ -6,7 +6,9 @@ use super::keys::{self, Applies, Key, Kind, Table};
 use super::problem::{Problems, Sources};
 use super::quantity::Scale;
 use super::reader::{Reader, Section};
-use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, HalfSpec, OwnSpec, Placement, Treatment};
+use super::{
+    Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, HalfSpec, OwnSpec, Placement, Treatment,
+};
 use crate::pose::{Dof, DofSet};
 use std::path::Path;
 use toml::Spanned;
@@ -260,7 +262,8 @@ impl<'t> Walk<'t> {
         if section.has(&keys::PIECES) {
             let drawn = "pieces, which are drawn in the unit of [connector]";
             let exact = "pieces, which are taken as they are";
-            for (key, owner) in [(&keys::MESH_UNIT, drawn), (&keys::REPAIR, exact), (&keys::SIMPLIFY, exact)] {
+            for (key, owner) in [(&keys::MESH_UNIT, drawn), (&keys::REPAIR, exact), (&keys::SIMPLIFY, exact)]
+            {
                 if let Some(span) = section.key_span(key) {
                     let (key, belongs_to) = (key.name.to_owned(), "a mesh".to_owned());
                     self.reader.complain(Complaint::NotAParameter { key, owner, belongs_to }, span);

@@ -2,6 +2,7 @@
 //!
 //! Repairs change a mesh and not the solid that it bounds, but for the deviation that is told; holes are not closed.
 
+use super::{Design, HalfSpec};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -97,6 +98,30 @@ impl Repairs {
             "the surface did not move".to_owned()
         };
         format!("{}; {moved}", parts.join(", "))
+    }
+}
+
+impl HalfSpec {
+    /// What was done to its mesh, as a line in the unit of the design; `None` where nothing was.
+    pub fn repairs_told(&self, design: &Design) -> Option<String> {
+        match self {
+            Self::Mesh { content: Some(content), .. } if !content.repairs.is_none() => {
+                Some(content.repairs.told(|d| moved(d, design)))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// How far a surface moved, in millimetres where the design has units, rounded up to two digits.
+fn moved(d: f64, design: &Design) -> String {
+    let up = |value: f64| {
+        let digit = 10f64.powf(value.log10().floor() - 1.0);
+        format!("{:.1e}", (value / digit).ceil() * digit)
+    };
+    match design.unit {
+        Some(unit) => format!("{} mm", up(d * design.width * unit.metres() * 1e3)),
+        None => format!("{} D", up(d)),
     }
 }
 

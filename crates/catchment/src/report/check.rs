@@ -3,7 +3,7 @@
 use super::envelope::{Body, Envelope};
 use super::text::line;
 use crate::connector::Origin;
-use crate::design::{ConnectorSpec, Design, Drawn, Finding, Findings, HalfSpec, OwnSpec, Repairs, SourceText};
+use crate::design::{ConnectorSpec, Design, Drawn, Finding, Findings, HalfSpec, OwnSpec, SourceText};
 use crate::pose::{Dof, DofSet};
 use crate::problem::Problem;
 use glam::{DAffine3, DVec3};
@@ -183,8 +183,8 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
         ConnectorSpec::Own(own) => {
             for (name, spec) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
                 row(name, &half(spec));
-                if let Some(repairs) = repairs(spec) {
-                    row("", &repairs.told(|d| repaired_by(d, design)));
+                if let Some(done) = spec.repairs_told(design) {
+                    row("", &done);
                 }
             }
         }
@@ -252,29 +252,6 @@ fn half(half: &HalfSpec) -> String {
         HalfSpec::Pieces(pieces) => format!("{} convex pieces", pieces.len()),
         HalfSpec::Mesh { path, .. } => format!("mesh {}", path.display()),
         HalfSpec::Memory { content } => format!("{} triangles in memory", content.triangles),
-    }
-}
-
-/// What was done to the mesh of a half, if anything was.
-fn repairs(half: &HalfSpec) -> Option<&Repairs> {
-    match half {
-        HalfSpec::Mesh { content: Some(content), .. } => Some(&content.repairs).filter(|done| !done.is_none()),
-        _ => None,
-    }
-}
-
-/// How far a repair moved the surface, rounded up to two digits.
-fn repaired_by(d: f64, design: &Design) -> String {
-    let up = |value: f64| {
-        let digit = 10f64.powf(value.log10().floor() - 1.0);
-        format!("{:.1e}", (value / digit).ceil() * digit)
-    };
-    match design.unit {
-        Some(_) if d > 0.0 && design.width > 0.0 => {
-            let millimetres = d * design.width * design.unit.map_or(1.0, |unit| unit.metres() * 1e3);
-            format!("{} mm", up(millimetres))
-        }
-        _ => format!("{} D", up(d)),
     }
 }
 

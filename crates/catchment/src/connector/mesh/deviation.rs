@@ -19,6 +19,7 @@ pub(super) fn between(a: &Indexed, b: &Indexed) -> f64 {
 
 /// The largest distance of a point of `from` to `to`.
 pub(super) fn one_sided(from: &Indexed, to: &Indexed) -> f64 {
+    const ROUNDING: f64 = 1e-6;
     let Some(target) = Target::of(to) else { return f64::INFINITY };
     let mut seen = vec![false; from.vertices.len()];
     let mut largest: f64 = 0.0;
@@ -28,7 +29,8 @@ pub(super) fn one_sided(from: &Indexed, to: &Indexed) -> f64 {
         let [a, b, c] = corners;
         let middle = (a + b + c) / 3.0;
         // Each edge is shared: the one that runs up is looked at.
-        let edges = (0..3).filter(|i| t[*i] < t[(i + 1) % 3]).map(|i| corners[i].midpoint(corners[(i + 1) % 3]));
+        let edges =
+            (0..3).filter(|i| t[*i] < t[(i + 1) % 3]).map(|i| corners[i].midpoint(corners[(i + 1) % 3]));
         let new = t.iter().filter(|v| !std::mem::replace(&mut seen[**v as usize], true)).map(|v| from.at(*v));
         for point in new.chain(edges).chain([middle]) {
             let (near, distance) = target.nearest(point, last);
@@ -36,7 +38,8 @@ pub(super) fn one_sided(from: &Indexed, to: &Indexed) -> f64 {
             largest = largest.max(distance);
         }
     }
-    largest
+    // What measuring itself rounds, relative to what welding joins: 1e-12 of the size.
+    if largest < ROUNDING * to.tolerance { 0.0 } else { largest }
 }
 
 /// A surface to which distances are asked.

@@ -80,10 +80,8 @@ impl Indexed {
         for corner in self.triangles.iter().flatten() {
             numbers[*corner as usize] = 0;
         }
-        let mut next = 0;
-        for number in numbers.iter_mut().filter(|number| **number == 0) {
-            *number = next;
-            next += 1;
+        for (next, number) in numbers.iter_mut().filter(|number| **number == 0).enumerate() {
+            *number = next as u32;
         }
         let mut k = 0..numbers.len();
         self.vertices.retain(|_| k.next().is_some_and(|k| numbers[k] != u32::MAX));

@@ -133,7 +133,9 @@ pub enum MeshProblem {
         count: u64,
     },
     /// More triangles than are read at all.
-    #[error("{count} triangles, more than the {MOST_READ} that are simplified: export the mesh with a coarser tolerance")]
+    #[error(
+        "{count} triangles, more than the {MOST_READ} that are simplified: export the mesh with a coarser tolerance"
+    )]
     TooManyToSimplify {
         /// How many there are, as far as is known.
         count: u64,
@@ -147,13 +149,17 @@ pub enum MeshProblem {
         count: usize,
     },
     /// Fewer triangles do not bound the same solid closely enough.
-    #[error("no mesh with fewer triangles keeps to {most:.1e} D of this one: leave simplify out, or let it move the surface farther")]
+    #[error(
+        "no mesh with fewer triangles keeps to {most:.1e} D of this one: leave simplify out, or let it move the surface farther"
+    )]
     NotSimplified {
         /// How far the surface may move, in D.
         most: f64,
     },
     /// It would take more memory than there is.
-    #[error("{count} triangles need {needed} of memory, more than the {budget} that are free: export the mesh with a coarser tolerance")]
+    #[error(
+        "{count} triangles need {needed} of memory, more than the {budget} that are free: export the mesh with a coarser tolerance"
+    )]
     Memory {
         /// How many triangles there are.
         count: usize,
@@ -163,9 +169,7 @@ pub enum MeshProblem {
         budget: Bytes,
     },
     /// A text file too long to hold an acceptable mesh.
-    #[error(
-        "{bytes} bytes, more than the {most} that are read: export a coarser mesh, or a binary STL"
-    )]
+    #[error("{bytes} bytes, more than the {most} that are read: export a coarser mesh, or a binary STL")]
     TooLong {
         /// Size of the file.
         bytes: u64,

@@ -49,10 +49,10 @@ pub(super) fn of(mesh: &Indexed, sides: &Sides) -> Vec<Shell> {
         .into_iter()
         .map(|triangles| {
             let volume = volume(mesh, &triangles);
-            let bounds = triangles.iter().map(|k| around(mesh.corners(*k as usize))).fold(
-                (DVec3::INFINITY, DVec3::NEG_INFINITY),
-                |(lo, hi), (a, b)| (lo.min(a), hi.max(b)),
-            );
+            let bounds = triangles
+                .iter()
+                .map(|k| around(mesh.corners(*k as usize)))
+                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)));
             Shell { triangles, volume, bounds }
         })
         .collect()

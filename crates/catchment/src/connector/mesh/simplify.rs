@@ -6,11 +6,11 @@
 //!
 //! Not promised: the fewest triangles possible.
 
+use super::MeshProblem;
 use super::check;
 use super::deviation;
 use super::indexed::Indexed;
 use super::sides::Sides;
-use super::MeshProblem;
 use glam::DVec3;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64};

@@ -98,7 +98,8 @@ fn windings_are_made_one() {
     let ready = repaired(&cube);
     assert!(ready.repairs.turned == 3 && (ready.surface.volume() - 1.0).abs() < 1e-15);
     // Inside out as a whole, and a cavity that stays one.
-    let hollow = [block([0.0; 3], [1.0; 3]), block([0.2; 3], [0.6; 3]).iter().map(|t| [t[0], t[2], t[1]]).collect()];
+    let hollow =
+        [block([0.0; 3], [1.0; 3]), block([0.2; 3], [0.6; 3]).iter().map(|t| [t[0], t[2], t[1]]).collect()];
     let sound = repaired(&hollow.concat());
     assert!(sound.repairs.is_none() && (sound.surface.volume() - 0.936).abs() < 1e-15);
     let turned: Soup = block([0.0; 3], [1.0; 3]).iter().map(|t| [t[0], t[2], t[1]]).collect();
@@ -143,7 +144,10 @@ fn dome(rings: usize) -> Soup {
     for k in 0..sectors {
         soup.push([at(0, 0), at(1, k), at(1, k + 1)]);
         for i in 1..rings {
-            soup.extend([[at(i, k), at(i + 1, k), at(i + 1, k + 1)], [at(i, k), at(i + 1, k + 1), at(i, k + 1)]]);
+            soup.extend([
+                [at(i, k), at(i + 1, k), at(i + 1, k + 1)],
+                [at(i, k), at(i + 1, k + 1), at(i, k + 1)],
+            ]);
         }
         soup.push([DVec3::ZERO, at(rings, k + 1), at(rings, k)]);
     }
@@ -154,15 +158,19 @@ fn dome(rings: usize) -> Soup {
 fn a_simplified_surface_keeps_to_its_tolerance() {
     let dome = dome(40);
     for tolerance in [1e-4, 1e-3, 1e-2] {
-        let ready =
-            treated(&dome, Treatment { repair: true, simplify: Some(tolerance) }).unwrap_or_else(|p| panic!("{p:?}"));
+        let ready = treated(&dome, Treatment { repair: true, simplify: Some(tolerance) })
+            .unwrap_or_else(|p| panic!("{p:?}"));
         let [before, after] = ready.repairs.simplified.unwrap();
         assert!(before == dome.len() && after == ready.surface.facets.len() && after < before, "{after}");
         let Repairs { deviation, .. } = ready.repairs;
         assert!(deviation > 0.0 && deviation <= tolerance, "{deviation}");
         // Every corner is near the sphere, the disc or their edge, and the volume changes by less than area times tolerance.
         let whole = std::f64::consts::PI / 12.0;
-        assert!((ready.surface.volume() - whole).abs() < 2.4 * tolerance + 2e-4, "{}", ready.surface.volume());
+        assert!(
+            (ready.surface.volume() - whole).abs() < 2.4 * tolerance + 2e-4,
+            "{}",
+            ready.surface.volume()
+        );
     }
     let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { repair: true, simplify: Some(1e-3) }).unwrap();
     assert!(none.repairs.simplified == Some([12, 12]) && none.repairs.deviation < 1e-15);

@@ -40,10 +40,10 @@ impl Tree {
 
     fn build(&mut self, boxes: &[Bounds], order: &mut [u32], first: u32) {
         let around = |order: &[u32]| {
-            order.iter().map(|k| boxes[*k as usize]).fold(
-                (DVec3::INFINITY, DVec3::NEG_INFINITY),
-                |(lo, hi), (a, b)| (lo.min(a), hi.max(b)),
-            )
+            order
+                .iter()
+                .map(|k| boxes[*k as usize])
+                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)))
         };
         let here = self.nodes.len();
         self.nodes.push(Node { bounds: around(order), link: first, count: order.len() as u32 });
@@ -51,10 +51,10 @@ impl Tree {
             return;
         }
         let middle = |k: u32| boxes[k as usize].0.midpoint(boxes[k as usize].1);
-        let (lo, hi) = order.iter().map(|k| middle(*k)).fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(lo, hi), p| (lo.min(p), hi.max(p)),
-        );
+        let (lo, hi) = order
+            .iter()
+            .map(|k| middle(*k))
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
         let axis = (hi - lo).max_position();
         let half = order.len() / 2;
         order.select_nth_unstable_by(half, |a, b| {
@@ -110,8 +110,7 @@ impl Tree {
                 }
                 continue;
             }
-            let mut pair =
-                [k + 1, node.link as usize].map(|k| (away(point, self.nodes[k].bounds), k));
+            let mut pair = [k + 1, node.link as usize].map(|k| (away(point, self.nodes[k].bounds), k));
             // The nearer one is looked at first: it is pushed last.
             if pair[0].0 < pair[1].0 {
                 pair.swap(0, 1);

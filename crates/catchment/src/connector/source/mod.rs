@@ -136,8 +136,11 @@ impl Source {
             }
             Self::Pieces(pieces) => Ok((from_pieces(pieces, side)?, None)),
             Self::Mesh { path, file, scale, unit, treatment } => {
-                let refused =
-                    |error: MeshProblem| Problem::Mesh { side, path: path.clone(), error: error.in_unit(*unit) };
+                let refused = |error: MeshProblem| Problem::Mesh {
+                    side,
+                    path: path.clone(),
+                    error: error.in_unit(*unit),
+                };
                 let reading = Reading { scale: *scale, treatment: *treatment };
                 let Ready { surface, repairs } = foreign::refuse(&file.bytes)
                     .and_then(|()| (Format::of(path).read)(file, &reading))
@@ -169,7 +172,8 @@ fn file(path: &Path, reading: &Reading, read: Read<'_>) -> Result<FileBytes, Mes
     if first.size <= first.bytes.len() as u64 {
         return Ok(first);
     }
-    let refused = foreign::refuse(&first.bytes).and_then(|()| (Format::of(path).refuse_early)(&first, reading));
+    let refused =
+        foreign::refuse(&first.bytes).and_then(|()| (Format::of(path).refuse_early)(&first, reading));
     if let Some(problem) = refused.err().and_then(|problems| problems.into_iter().next()) {
         return Err(problem);
     }

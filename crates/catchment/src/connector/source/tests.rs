@@ -3,7 +3,7 @@
 use super::*;
 use crate::connector::Connector;
 use crate::connector::mesh::{Place, Start};
-use crate::design::{Treatment, Alignment, ConnectorSpec, Design, Family, OwnSpec};
+use crate::design::{Alignment, ConnectorSpec, Design, Family, OwnSpec, Treatment};
 use crate::pose::{DofSet, Mount};
 use proptest::prelude::*;
 
@@ -50,7 +50,10 @@ fn triangles_in_memory_are_complained_about_by_number() {
     bad[3][1].y = f64::NAN;
     let place = Place { triangle: 3, start: Start::Memory };
     let problem = complaint(bad);
-    assert!(matches!(problem, MeshProblem::NotFinite { place: of, at } if of == place && at.at.y.is_nan()), "{problem}");
+    assert!(
+        matches!(problem, MeshProblem::NotFinite { place: of, at } if of == place && at.at.y.is_nan()),
+        "{problem}"
+    );
     assert_eq!(place.to_string(), "triangle 3");
     assert_eq!(complaint(Vec::new()), MeshProblem::NoTriangles);
     assert!(matches!(complaint(good[1..].to_vec()), MeshProblem::Open { .. }));
@@ -68,7 +71,13 @@ fn triangles_in_memory_are_complained_about_by_number() {
 
 /// A design of two meshes of the same cube under the given names, read from memory.
 fn mesh_design(path: &str, file: &[u8]) -> Design {
-    let half = || HalfSpec::Mesh { path: path.into(), scale: 1.0, unit: None, treatment: Treatment::DEFAULT, content: None };
+    let half = || HalfSpec::Mesh {
+        path: path.into(),
+        scale: 1.0,
+        unit: None,
+        treatment: Treatment::DEFAULT,
+        content: None,
+    };
     let own = OwnSpec::new(0.5, half(), half());
     let design = Design {
         name: path.to_owned(),

@@ -137,7 +137,10 @@ fn a_corner_that_is_not_finite_is_located() {
         triangles[3][1][2] = bad;
         let place = Place { triangle: 3, start: Start::Line(2 + 3 * 7) };
         let problems = complaints(&triangles);
-        assert!(matches!(problems[..], [MeshProblem::NotFinite { place: of, .. }] if of == place), "{problems:?}");
+        assert!(
+            matches!(problems[..], [MeshProblem::NotFinite { place: of, .. }] if of == place),
+            "{problems:?}"
+        );
     }
 }
 

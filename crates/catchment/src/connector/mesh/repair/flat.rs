@@ -70,7 +70,9 @@ pub(super) fn drop(mesh: &mut Indexed) -> usize {
         if c == m {
             // The neighbour lies on it: both go.
             is_gone[other as usize] = true;
-            corners.iter().for_each(|corner| around[*corner as usize].retain(|t| *t != other));
+            for corner in corners {
+                around[corner as usize].retain(|t| *t != other);
+            }
             continue;
         }
         // One half in the place of the neighbour, the other in that of the flat one, with the neighbour's place in the file.

@@ -32,6 +32,9 @@ const MOST_CROSSINGS: usize = 20_000;
 /// Most rounds of uniting: rounding the corners of a union may leave a crossing of its own.
 const ROUNDS: usize = 3;
 
+/// Tolerances by which a repair may move the surface: several steps move it by one each, and what moves it farther is no repair.
+const MOST_MOVED: f64 = 20.0;
+
 /// A mesh as far as it could be mended.
 pub(super) struct Mended {
     pub(super) mesh: Indexed,
@@ -73,6 +76,9 @@ pub(super) fn mended(before: &Indexed, scale: f64) -> Mended {
         if !is_less {
             repairs.deviation = repairs.deviation.max(deviation::one_sided(before, &mesh));
         }
+        if repairs.deviation > MOST_MOVED * before.tolerance {
+            problems = check::problems(before, &Sides::of(&before.triangles), scale);
+        }
     }
     Mended { mesh, repairs, problems }
 }
@@ -89,9 +95,8 @@ fn tidied(mesh: &mut Indexed, repairs: &mut Repairs, scale: f64) -> Vec<MeshProb
 
 /// Whether a union may help: surfaces cross, or more than two triangles share an edge that could not be parted.
 fn needs_union(problems: &[MeshProblem]) -> bool {
-    let crossing = |p: &MeshProblem| {
-        matches!(p, MeshProblem::SelfIntersection { .. } | MeshProblem::NonManifold { .. })
-    };
+    let crossing =
+        |p: &MeshProblem| matches!(p, MeshProblem::SelfIntersection { .. } | MeshProblem::NonManifold { .. });
     let open = |p: &MeshProblem| matches!(p, MeshProblem::Open { .. } | MeshProblem::Winding { .. });
     problems.iter().any(crossing) && !problems.iter().any(open)
 }

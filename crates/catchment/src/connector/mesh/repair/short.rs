@@ -22,7 +22,9 @@ pub(super) fn collapse(mesh: &mut Indexed) -> usize {
     }
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); mesh.vertices.len()];
     for (k, t) in mesh.triangles.iter().enumerate() {
-        t.iter().for_each(|corner| around[*corner as usize].push(k as u32));
+        for corner in t {
+            around[*corner as usize].push(k as u32);
+        }
     }
     let mut is_gone = vec![false; mesh.triangles.len()];
     let mut count = 0;
@@ -61,26 +63,32 @@ pub(super) fn collapse(mesh: &mut Indexed) -> usize {
 /// Whether one end of an edge may be moved to the other.
 fn may_go(mesh: &Indexed, around: &[Vec<u32>], stays: u32, goes: u32) -> bool {
     let neighbours = |of: u32| {
-        let mut list: Vec<u32> =
-            around[of as usize].iter().flat_map(|t| mesh.triangles[*t as usize]).filter(|v| *v != of).collect();
+        let mut list: Vec<u32> = around[of as usize]
+            .iter()
+            .flat_map(|t| mesh.triangles[*t as usize])
+            .filter(|v| *v != of)
+            .collect();
         list.sort_unstable();
         list.dedup();
         list
     };
     let (of_stays, of_goes) = (neighbours(stays), neighbours(goes));
     let common = of_goes.iter().filter(|v| of_stays.binary_search(v).is_ok()).count();
-    let beside = around[goes as usize].iter().filter(|t| mesh.triangles[**t as usize].contains(&stays)).count();
+    let beside =
+        around[goes as usize].iter().filter(|t| mesh.triangles[**t as usize].contains(&stays)).count();
     if beside != 2 || common != 2 {
         return false;
     }
-    around[goes as usize].iter().map(|t| mesh.triangles[*t as usize]).filter(|t| !t.contains(&stays)).all(|t| {
-        let before = normal(t.map(|corner| mesh.at(corner)));
-        let after = normal(t.map(|corner| mesh.at(if corner == goes { stays } else { corner })));
-        // What is thinner than the tolerance has no direction to keep.
-        let longest = (0..3).map(|k| mesh.at(t[k]).distance(mesh.at(t[(k + 1) % 3]))).fold(0.0, f64::max);
-        let sliver = before.length() <= 2.0 * mesh.tolerance * longest;
-        sliver || before.dot(after) > 0.0
-    })
+    around[goes as usize].iter().map(|t| mesh.triangles[*t as usize]).filter(|t| !t.contains(&stays)).all(
+        |t| {
+            let before = normal(t.map(|corner| mesh.at(corner)));
+            let after = normal(t.map(|corner| mesh.at(if corner == goes { stays } else { corner })));
+            // What is thinner than the tolerance has no direction to keep.
+            let longest = (0..3).map(|k| mesh.at(t[k]).distance(mesh.at(t[(k + 1) % 3]))).fold(0.0, f64::max);
+            let sliver = before.length() <= 2.0 * mesh.tolerance * longest;
+            sliver || before.dot(after) > 0.0
+        },
+    )
 }
 
 fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {

@@ -36,7 +36,10 @@ pub(super) fn united(mesh: &Indexed) -> Option<Indexed> {
 
 fn solid(mesh: &Indexed) -> Option<Indexed> {
     // How often a surface winds around a point is a whole number only where it is closed.
-    if Sides::of(&mesh.triangles).edges().any(|sides| 2 * sides.iter().filter(|s| s.is_up).count() != sides.len()) {
+    if Sides::of(&mesh.triangles)
+        .edges()
+        .any(|sides| 2 * sides.iter().filter(|s| s.is_up).count() != sides.len())
+    {
         return None;
     }
     let soup: Vec<[Vec3; 3]> = (0..mesh.triangles.len())

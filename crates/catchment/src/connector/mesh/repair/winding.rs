@@ -29,7 +29,11 @@ pub(super) fn unify(mesh: &mut Indexed, sides: &Sides) -> usize {
                 return false;
             }
             let depth = shells::depth(mesh, &shells, shell);
-            if is_mixed { (shell.volume > 0.0) != (depth % 2 == 0) } else { depth == 0 && shell.volume < 0.0 }
+            if is_mixed {
+                (shell.volume > 0.0) != depth.is_multiple_of(2)
+            } else {
+                depth == 0 && shell.volume < 0.0
+            }
         })
         .collect();
     let mut whole = vec![false; count];
