@@ -147,3 +147,56 @@ fn meshes_and_pieces_give_the_familys_outcomes() {
         assert_eq!(a.0, b.0, "pose {k}");
     }
 }
+
+/// A triangle turned over, one twice, one without area: everything that is repaired without moving anything.
+fn spoil(bytes: &mut Vec<u8>) {
+    let at = |k: usize| HEADER + TRIANGLE * k;
+    let doubled = bytes[at(1)..at(2)].to_vec();
+    let mut flat = bytes[at(0)..at(1)].to_vec();
+    flat.copy_within(12..24, 24);
+    for k in 0..12 {
+        bytes.swap(at(2) + 12 + k, at(2) + 24 + k);
+    }
+    bytes.extend(doubled);
+    bytes.extend(flat);
+    bytes[80] += 2;
+}
+
+#[test]
+fn a_spoilt_mesh_is_repaired_and_told() {
+    let (sound, spoilt) = (folder(|_| ()), folder(plug(spoil)));
+    let done = "1 triangle without area dropped, 1 doubled triangle dropped, 1 triangle turned over; the surface did not move";
+    let said = run(spoilt.path(), &["check", "design.toml"]);
+    assert!(said.starts_with("exit 0") && said.contains(done), "{said}");
+    assert!(!run(sound.path(), &["check", "design.toml"]).contains("dropped"));
+    let json = run(spoilt.path(), &["check", "design.toml", "--json"]);
+    let json: String = json.split_whitespace().collect();
+    assert!(
+        json.contains(r#""repairs":{"without_area":1,"doubled":1,"turned":1,"deviation":0.0}"#),
+        "{json}"
+    );
+    assert_eq!(
+        finals(sound.path(), Path::new("design.toml")),
+        finals(spoilt.path(), Path::new("design.toml"))
+    );
+    let quick = ["run", "design.toml", "--free", "x,y", "--resolution", "5"];
+    let words = run(spoilt.path(), &quick).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains(&format!("moving half: {done}")), "{words}");
+    // Taken as it is, it is refused.
+    fs::write(
+        spoilt.path().join("design.toml"),
+        DESIGN.replace("plug.stl\",", "plug.stl\", repair = false,"),
+    )
+    .unwrap();
+    let said = run(spoilt.path(), &["check", "design.toml"]);
+    assert!(said.starts_with("exit 2") && said.contains("has no area") && said.contains(" mm"), "{said}");
+}
+
+#[test]
+fn a_simplified_mesh_says_how_far_it_moved() {
+    let dir = folder(|_| ());
+    let design = DESIGN.replace("plug.stl\",", "plug.stl\", simplify = \"0.01 mm\",");
+    fs::write(dir.path().join("design.toml"), design).unwrap();
+    let said = run(dir.path(), &["check", "design.toml"]);
+    assert!(said.starts_with("exit 0") && said.contains("triangles simplified to"), "{said}");
+}

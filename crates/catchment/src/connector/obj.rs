@@ -3,23 +3,22 @@
 //! Read by `tobj`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for STL.
 
 use super::mesh::{self, MeshProblem, Triangle};
-use super::source::{FileBytes, Held};
+use super::source::{FileBytes, Held, most_bytes};
+use crate::design::Treatment;
 use glam::DVec3;
 use std::io::{self, BufRead, Read};
 use tobj::{LoadError, LoadOptions};
 
-/// Longest file that is read.
-pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
-
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
-    if file.size > MAX_BYTES {
-        return Err(vec![MeshProblem::TooLong { bytes: file.size }]);
+pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
+    let most = most_bytes(treatment);
+    if file.size > most {
+        return Err(vec![MeshProblem::TooLong { bytes: file.size, most }]);
     }
-    parse(&file.bytes).map(Held::of_triangles)
+    parse(&file.bytes, treatment).map(Held::of_triangles)
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let refused =
         |line: usize, expected| vec![MeshProblem::Syntax { line, expected, found: shown(bytes, line) }];
     let text = plain(bytes).map_err(|line| refused(line, CORNERS))?;
@@ -29,7 +28,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let options = LoadOptions { ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
     let (models, _) = tobj::load_obj_buf(&mut lines, &options, no_materials)
         .map_err(|error| refused(lines.line, expected(error)))?;
-    let mut triangles = mesh::Triangles::default();
+    let mut triangles = mesh::Triangles::new(treatment);
     for mesh in models.iter().map(|model| &model.mesh) {
         let corner = |k: &u32| {
             let at = 3 * *k as usize;
@@ -136,8 +135,9 @@ mod tests {
                         vn 0 0 1\nusemtl red\nf 4 3 2 1\nf 5//1 6//1 7//1 8//1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\ng back\nf -8 -4 -1 -5\n";
 
     fn read(text: &str) -> Result<crate::connector::Surface, Vec<MeshProblem>> {
-        let held = super::read(&FileBytes::whole(text.as_bytes().to_vec()))?;
-        mesh::half(&held.bodies, 0.5).map(|mut half| half.surfaces.swap_remove(0))
+        let as_it_is = Treatment::AS_IT_IS;
+        let held = super::read(&FileBytes::whole(text.as_bytes().to_vec()), as_it_is)?;
+        mesh::half(held.bodies, 0.5, as_it_is).map(|mut ready| ready.half.surfaces.swap_remove(0))
     }
 
     #[test]
@@ -169,7 +169,10 @@ mod tests {
         );
         assert_eq!(read("# nothing\n").unwrap_err(), [MeshProblem::NoTriangles]);
         let crossed = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1.1 0\nf 1 2 3 4\n";
-        assert_eq!(read(crossed).unwrap_err(), [MeshProblem::NotSimple { triangle: 0 }]);
+        assert_eq!(
+            read(crossed).unwrap_err(),
+            [MeshProblem::NotSimple { triangle: 0, at: DVec3::ZERO.into() }]
+        );
     }
 
     /// One face of the cube is subdivided and its neighbours are not: their edges are divided too, and it is closed.

@@ -4,23 +4,22 @@
 //! STL.
 
 use super::mesh::{self, MeshProblem, Triangle};
-use super::source::{FileBytes, Held};
+use super::source::{FileBytes, Held, most_bytes};
+use crate::design::Treatment;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
-/// Longest file that is read.
-pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
-
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
-    if file.size > MAX_BYTES {
-        return Err(vec![MeshProblem::TooLong { bytes: file.size }]);
+pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
+    let most = most_bytes(treatment);
+    if file.size > most {
+        return Err(vec![MeshProblem::TooLong { bytes: file.size, most }]);
     }
-    parse(&file.bytes).map(Held::of_triangles)
+    parse(&file.bytes, treatment).map(Held::of_triangles)
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     let unreadable = |error: ParseError| {
         let line = error.line().map_or_else(String::new, |line| format!("line {line}: "));
         let message = error.to_string();
@@ -47,7 +46,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
         let message = "its vertices have no x, y and z".to_owned();
         return Err(vec![MeshProblem::NotPly { message }]);
     };
-    let mut triangles = mesh::Triangles::default();
+    let mut triangles = mesh::Triangles::new(treatment);
     for (number, face) in faces.iter().enumerate() {
         let corner = |k: &u32| points.get(*k as usize).copied();
         let corners: Option<Vec<DVec3>> = face.corners.iter().map(corner).collect();
@@ -104,8 +103,9 @@ mod tests {
                         4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
 
     fn read(bytes: &[u8]) -> Result<crate::connector::Surface, Vec<MeshProblem>> {
-        let held = super::read(&FileBytes::whole(bytes.to_vec()))?;
-        mesh::half(&held.bodies, 0.5).map(|mut half| half.surfaces.swap_remove(0))
+        let as_it_is = Treatment::AS_IT_IS;
+        let held = super::read(&FileBytes::whole(bytes.to_vec()), as_it_is)?;
+        mesh::half(held.bodies, 0.5, as_it_is).map(|mut ready| ready.half.surfaces.swap_remove(0))
     }
 
     fn binary() -> Vec<u8> {

@@ -1,12 +1,12 @@
 //! What a file held, so that a stored design says what was computed and not only where it lay.
 
-use super::{ConnectorSpec, Design};
+use super::{ConnectorSpec, Design, Repairs};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
 /// What a mesh file, or a mesh given in memory, held.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshContent {
     /// SHA-256 of its bytes, 64 hexadecimal digits. Of triangles in memory: of their corners in order, as
     /// little-endian doubles, in D.
@@ -18,6 +18,9 @@ pub struct MeshContent {
     /// How many closed bodies it is the union of; shells that are apart count as one unless the file tells them apart.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub bodies: usize,
+    /// What was done to them.
+    #[serde(default, skip_serializing_if = "Repairs::is_none")]
+    pub repairs: Repairs,
 }
 
 const fn one() -> usize {
@@ -32,7 +35,8 @@ const fn is_one(count: &usize) -> bool {
 impl MeshContent {
     /// Of these bytes, which make so many triangles.
     pub fn of(bytes: &[u8], triangles: usize) -> Self {
-        Self { sha256: hex(&Sha256::digest(bytes)), bytes: bytes.len() as u64, triangles, bodies: 1 }
+        let (sha256, repairs) = (hex(&Sha256::digest(bytes)), Repairs::default());
+        Self { sha256, bytes: bytes.len() as u64, triangles, bodies: 1, repairs }
     }
 }
 
@@ -45,7 +49,7 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 }
 
 /// What the files of both halves held, or the triangles that were given in memory, in their order; nothing of a half without any.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Contents {
     /// Of the fixed half.
     pub fixed: Vec<MeshContent>,

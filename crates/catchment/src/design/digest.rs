@@ -134,6 +134,14 @@ impl Hash {
 
     fn file(&mut self, file: &FileSpec) -> Option<()> {
         let content = file.content.as_ref()?;
+        // What a repair does follows from the bytes; where none was needed the digest is that of the mesh as it is.
+        if !content.repairs.is_none() {
+            self.text("repaired");
+        }
+        if let Some(tolerance) = file.treatment.simplify {
+            self.text("simplified");
+            self.number(tolerance);
+        }
         // A unit that the design states is in the scale; where the file says it, its bytes do.
         self.text(if file.unit == FileUnit::InFile { "mesh in its own unit" } else { "mesh" });
         self.number(file.scale);
@@ -216,7 +224,7 @@ impl Hash {
 mod tests {
     use super::*;
     use crate::design::family::Cone;
-    use crate::design::{Family, FamilySpec, LengthUnit, MeshContent, OwnSpec};
+    use crate::design::{Family, FamilySpec, LengthUnit, MeshContent, OwnSpec, Repairs, Treatment};
 
     fn family(family: Family) -> Design {
         let spec = FamilySpec::new(family);
@@ -290,6 +298,29 @@ mod tests {
         assert_eq!(mesh("a", 1.0, Some(b"x")), mesh("b", 1.0, Some(b"x")));
         assert_ne!(mesh("a", 1.0, Some(b"x")), mesh("a", 1.0, Some(b"y")));
         assert_ne!(mesh("a", 1.0, Some(b"x")), mesh("a", 2.0, Some(b"x")));
+    }
+
+    /// Whether repair was allowed changes nothing; that there was one, and how far a simplified surface may move, does.
+    #[test]
+    fn of_a_mesh_counts_how_it_was_treated() {
+        let mesh = |treatment, repairs| {
+            let content = Some(MeshContent { repairs, ..MeshContent::of(b"x", 4) });
+            let half = HalfSpec::Mesh(FileSpec { treatment, content, ..FileSpec::new("a", 1.0) });
+            let own = OwnSpec::new(0.0, half.clone(), half);
+            Design { connector: ConnectorSpec::Own(own), ..family(Family::Pyramid) }.digest().unwrap()
+        };
+        let simplified = |d| Treatment { simplify: Some(d), ..Treatment::DEFAULT };
+        let repaired = Repairs { turned: 1, ..Repairs::default() };
+        let plain = mesh(Treatment::DEFAULT, Repairs::default());
+        assert_eq!(mesh(Treatment::AS_IT_IS, Repairs::default()), plain);
+        let all = [
+            plain,
+            mesh(Treatment::DEFAULT, repaired.clone()),
+            mesh(simplified(1e-3), Repairs::default()),
+            mesh(simplified(2e-3), Repairs::default()),
+            mesh(simplified(1e-3), repaired),
+        ];
+        assert!((0..all.len()).all(|i| (0..i).all(|j| all[i] != all[j])));
     }
 
     #[test]

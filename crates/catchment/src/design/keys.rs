@@ -391,6 +391,14 @@ keys! {
     /// `parts` of a half
     PARTS = key(Table::Half, "parts", Kind::Parts,
         "Meshes, pieces, spheres, cylinders, cones, boxes and extruded profiles whose union is the half, each at a place of its own.");
+    /// `repair` of a half
+    REPAIR = key(Table::Half, "repair", Kind::Flag,
+        "Whether a mesh that needs it is repaired, which is told; true without it. Triangles without area and doubled ones are dropped, \
+         windings unified, solids that touch along an edge parted, shells that cross united. Holes are never closed.");
+    /// `simplify` of a half
+    SIMPLIFY = key(Table::Half, "simplify", Kind::DrawnLength(Range::new(1e-6, 0.05, "D")),
+        "Describes the mesh with fewer triangles: how far its surface may move, as in \"0.01 mm\"; bare in the unit of the design. \
+         With it a file may have 5 million triangles.");
     /// `facing` of a half
     FACING = key(Table::Half, "facing", Kind::Direction,
         "The direction in which the part faces in its file: +x, -x, +y, -y, +z, -z or [x, y, z]. It is turned to +z.");

@@ -35,6 +35,7 @@ mod schema;
 mod template;
 #[cfg(test)]
 mod tests;
+mod treatment;
 
 pub use crate::suggest::nearest;
 pub use alignment::Alignment;
@@ -56,3 +57,4 @@ pub use quantity::{Quantity, Scale, Unit};
 pub use read::{DesignFile, LARGEST_FILE, read};
 pub use schema::json_schema;
 pub use template::template;
+pub use treatment::{Repairs, Treatment};

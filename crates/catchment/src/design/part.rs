@@ -11,8 +11,8 @@
 //!
 //! The half is the union of its parts, which may overlap. Lengths in D, angles in radians.
 
-use super::MeshContent;
 use super::model::LengthUnit;
+use super::{MeshContent, Treatment};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -26,6 +26,12 @@ pub struct FileSpec {
     /// Who says the unit.
     #[serde(default, skip_serializing_if = "FileUnit::is_beside")]
     pub unit: FileUnit,
+    /// The unit that the design writes beside it, which messages say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub written: Option<LengthUnit>,
+    /// What may be done to a mesh before it is used.
+    #[serde(default, skip_serializing_if = "Treatment::is_default")]
+    pub treatment: Treatment,
     /// What the file held, once it was read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub content: Option<MeshContent>,
@@ -34,7 +40,14 @@ pub struct FileSpec {
 impl FileSpec {
     /// A file whose coordinates times `scale` are D, whatever it says itself.
     pub fn new(path: impl Into<PathBuf>, scale: f64) -> Self {
-        Self { path: path.into(), scale, unit: FileUnit::Beside, content: None }
+        Self {
+            path: path.into(),
+            scale,
+            unit: FileUnit::Beside,
+            written: None,
+            treatment: Treatment::DEFAULT,
+            content: None,
+        }
     }
 
     /// How its name ends, in lower case.

@@ -5,7 +5,7 @@ use super::keys::{self, Key, Table};
 use super::quantity::Scale;
 use super::read::Walk;
 use super::reader::Section;
-use super::{FileSpec, FileUnit, HalfSpec, OutlineSpec, PartSpec, Placement, ShapeSpec};
+use super::{FileSpec, FileUnit, HalfSpec, OutlineSpec, PartSpec, Placement, ShapeSpec, Treatment};
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -73,7 +73,20 @@ impl<'t> Walk<'t> {
         }
         let way = self.one_of(section, &ways, advice)?;
         if way == keys::MESH {
-            return self.file(section, &way, &keys::MESH_UNIT, scale).map(HalfSpec::Mesh);
+            let treatment = Treatment {
+                repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(Treatment::DEFAULT.repair),
+                simplify: self.reader.number(section, &keys::SIMPLIFY, scale),
+            };
+            let file = self.file(section, &way, &keys::MESH_UNIT, scale);
+            return file.map(|file| HalfSpec::Mesh(FileSpec { treatment, ..file }));
+        }
+        let exact = if way == keys::PIECES {
+            "pieces, which are taken as they are"
+        } else {
+            "a half of parts, whose meshes are repaired where they need it"
+        };
+        for key in [&keys::REPAIR, &keys::SIMPLIFY] {
+            self.not_its_own(section, key, exact, "a mesh");
         }
         let owner = if way == keys::PIECES {
             "pieces, which are drawn in the unit of [connector]"
@@ -277,6 +290,7 @@ impl<'t> Walk<'t> {
         let file = path.map(|path| FileSpec::new(path, 1.0));
         let says_it = file.as_ref().is_some_and(|file| SAY_THEIR_UNIT.contains(&file.ending().as_str()));
         let scale = scale?;
+        let written = unit;
         let (scale, unit) = match (unit, scale.unit) {
             (Some(file), Some(design)) => {
                 let unit = if says_it { FileUnit::Stated(file) } else { FileUnit::Beside };
@@ -300,7 +314,7 @@ impl<'t> Walk<'t> {
                 return None;
             }
         };
-        Some(FileSpec { scale, unit, ..file? })
+        Some(FileSpec { scale, unit, written, ..file? })
     }
 
     fn pieces(

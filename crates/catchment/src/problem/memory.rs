@@ -2,7 +2,7 @@
 
 use super::{Draft, Problem, ProblemError, places};
 use crate::connector::{Connector, Half, Source};
-use crate::design::{Alignment, ConnectorSpec, Design, FileSpec, HalfSpec, MeshContent, OwnSpec};
+use crate::design::{Alignment, ConnectorSpec, Design, HalfSpec, MeshContent, OwnSpec};
 use glam::DVec3;
 
 impl Problem {
@@ -32,9 +32,7 @@ fn spec(source: Source, contents: &[MeshContent], built: &Half) -> HalfSpec {
         Source::Pieces(pieces) => {
             HalfSpec::Pieces(pieces.iter().map(|piece| piece.iter().map(DVec3::to_array).collect()).collect())
         }
-        Source::Mesh { path, scale, unit, .. } => {
-            HalfSpec::Mesh(FileSpec { path, scale, unit, content: None })
-        }
+        Source::Mesh { spec, .. } => HalfSpec::Mesh(spec),
         Source::Parts(parts) => HalfSpec::Parts(parts.into_iter().map(|(part, _)| part).collect()),
         // A half of a family is one that a design of two halves of one's own cannot name.
         Source::Triangles(_) | Source::Surface(_) | Source::Family(_) => {

@@ -193,8 +193,12 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
             row("connector", &format!("{}, H/D = {}", spec.family().name(), spec.aspect_ratio()));
         }
         ConnectorSpec::Own(own) => {
-            row("fixed half", &half(&own.fixed));
-            row("moving half", &half(&own.moving));
+            for (name, spec) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
+                row(name, &half(spec));
+                if let Some(done) = spec.repairs_told(design) {
+                    row("", &done);
+                }
+            }
             let round = [&own.fixed, &own.moving].into_iter().filter_map(chord_error).reduce(f64::max);
             if let Some(error) = round {
                 row("round parts", &format!("facets inside of them, by at most {}", length(error)));

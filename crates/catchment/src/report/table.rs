@@ -19,6 +19,13 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     heading(&mut text, &report.design);
     let method = format!("{}, {}", report.method, tried(report));
     row(&mut text, "method", &method);
+    if let ConnectorSpec::Own(own) = &report.design.connector {
+        for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
+            if let Some(done) = half.repairs_told(&report.design) {
+                wrapped(&mut text, &format!("{name}: "), &done);
+            }
+        }
+    }
     text.push('\n');
     acceptance(&mut text, report);
     if let Some(onaa) = &report.onaa {

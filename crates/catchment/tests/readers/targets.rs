@@ -4,7 +4,9 @@
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
 use catchment::connector::{Connector, FileBytes, Source, stl};
-use catchment::design::{Design, FileSpec, FileUnit, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec};
+use catchment::design::{
+    Design, FileSpec, FileUnit, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, Treatment,
+};
 use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
@@ -51,6 +53,7 @@ pub(crate) fn design_file(bytes: &[u8]) {
 
 /// What the STL reader accepts is a closed solid, and what it refuses has few reasons.
 pub(crate) fn stl_file(bytes: &[u8]) {
+    mesh_file("half.stl", bytes);
     match stl::from_bytes(bytes, bytes.len() as u64, 1.0) {
         Ok(half) => {
             for surface in &half.surfaces {
@@ -94,17 +97,30 @@ pub(crate) fn drawing(bytes: &[u8]) {
 }
 
 fn mesh_file(name: &str, bytes: &[u8]) {
-    let unit = FileUnit::Beside;
-    let mesh =
-        || Source::Mesh { path: name.into(), file: FileBytes::whole(bytes.to_vec()), scale: 1.0, unit };
+    // As it is, repaired, and simplified: what is accepted of any is a closed solid.
+    let treated = |repair, simplify| mesh_treated(name, bytes, Treatment { repair, simplify });
+    let as_it_is = treated(false, None);
+    let repaired = treated(true, None);
+    assert!(!as_it_is || repaired, "repair refuses what needs none");
+    treated(true, Some(0.01));
+}
+
+/// Whether a mesh file is accepted.
+fn mesh_treated(name: &str, bytes: &[u8], treatment: Treatment) -> bool {
+    let spec = FileSpec { treatment, ..FileSpec::new(name, 1.0) };
+    let mesh = || Source::Mesh { spec: spec.clone(), file: FileBytes::whole(bytes.to_vec()) };
     match Connector::from_sources(&mesh(), &mesh(), 0.0, Mount::X) {
         Ok(connector) => {
             for surface in connector.fixed.surfaces.iter().chain(&connector.moving.surfaces) {
                 assert!(surface.volume() > 0.0);
                 assert!(surface.vertices.iter().all(|v| v.is_finite()));
             }
+            true
         }
-        Err(problems) => assert!((2..120).contains(&problems.len()), "{} problems", problems.len()),
+        Err(problems) => {
+            assert!((2..120).contains(&problems.len()), "{} problems", problems.len());
+            false
+        }
     }
 }
 

@@ -12,9 +12,8 @@
 //!
 //! Not promised: anything for meshes with more open edges than [`MOST`], which are no solids.
 
-use super::Triangle;
-use super::check::{Sides, sides};
-use glam::DVec3;
+use super::indexed::Indexed;
+use super::sides::Sides;
 
 /// Most open edges that are looked at: each is compared with the ends of all others.
 const MOST: usize = 4096;
@@ -22,18 +21,13 @@ const MOST: usize = 4096;
 const PASSES: usize = 3;
 
 /// Divides triangles along edges that nothing else shares as a whole, at corners of other such edges on them; who shares which edge then.
-pub(super) fn divide(
-    triangles: &mut Vec<Triangle>,
-    indexed: &mut Vec<[u32; 3]>,
-    vertices: &[DVec3],
-    tolerance: f64,
-) -> Sides {
-    let mut shared = sides(indexed);
+pub(super) fn divide(mesh: &mut Indexed) -> Sides {
+    let mut shared = Sides::of(&mesh.triangles);
     for _ in 0..PASSES {
         let open: Vec<([u32; 2], usize)> = shared
-            .iter()
-            .filter(|(_, owners)| owners.len() == 1)
-            .map(|(edge, owners)| (*edge, owners[0].0))
+            .edges()
+            .filter(|sides| sides.len() == 1)
+            .map(|sides| (sides[0].edge, sides[0].triangle as usize))
             .take(MOST + 1)
             .collect();
         if open.is_empty() || open.len() > MOST {
@@ -42,53 +36,51 @@ pub(super) fn divide(
         let mut ends: Vec<u32> = open.iter().flat_map(|(edge, _)| *edge).collect();
         ends.sort_unstable();
         ends.dedup();
-        let mut is_done = vec![false; indexed.len()];
+        let mut is_done = vec![false; mesh.triangles.len()];
         let mut any = false;
         for (edge, owner) in open {
             if std::mem::replace(&mut is_done[owner], true) {
                 continue;
             }
-            let triangle = indexed[owner];
+            let triangle = mesh.triangles[owner];
             // As the triangle has it: from a to b, across from c.
             let k = (0..3).find(|&k| edge.contains(&triangle[k]) && edge.contains(&triangle[(k + 1) % 3]));
             let Some(k) = k else { continue };
             let [a, b, c] = [triangle[k], triangle[(k + 1) % 3], triangle[(k + 2) % 3]];
-            let on = on_edge([a, b], &ends, vertices, tolerance);
+            let on = on_edge([a, b], &ends, mesh);
             if on.is_empty() {
                 is_done[owner] = false;
                 continue;
             }
             any = true;
             let stops: Vec<u32> = std::iter::once(a).chain(on).chain([b]).collect();
-            let place = triangles[owner].place;
             for (n, pair) in stops.windows(2).enumerate() {
                 let part = [pair[0], pair[1], c];
-                let piece = Triangle { corners: part.map(|v| vertices[v as usize]), place };
                 if n == 0 {
-                    (indexed[owner], triangles[owner]) = (part, piece);
+                    mesh.triangles[owner] = part;
                 } else {
-                    indexed.push(part);
-                    triangles.push(piece);
+                    mesh.triangles.push(part);
+                    mesh.places.push(mesh.places[owner]);
                 }
             }
         }
         if !any {
             break;
         }
-        shared = sides(indexed);
+        shared = Sides::of(&mesh.triangles);
     }
     shared
 }
 
 /// Those of `ends` that lie between the ends of an edge, on it, in their order from its first.
-fn on_edge([a, b]: [u32; 2], ends: &[u32], vertices: &[DVec3], tolerance: f64) -> Vec<u32> {
-    let (from, to) = (vertices[a as usize], vertices[b as usize]);
+fn on_edge([a, b]: [u32; 2], ends: &[u32], mesh: &Indexed) -> Vec<u32> {
+    let (from, to, tolerance) = (mesh.at(a), mesh.at(b), mesh.tolerance);
     let Some(along) = (to - from).try_normalize() else { return Vec::new() };
     let length = (to - from).dot(along);
     let mut found: Vec<(f64, u32)> = ends
         .iter()
         .filter_map(|&p| {
-            let to_p = vertices[p as usize] - from;
+            let to_p = mesh.at(p) - from;
             let at = to_p.dot(along);
             let beside = (to_p - along * at).length();
             (at > tolerance && at < length - tolerance && beside <= tolerance).then_some((at, p))

@@ -1,33 +1,47 @@
-//! A closed triangle mesh as half of a connector: from loose triangles to a [`Half`], or to every reason why they are none.
+//! A closed triangle mesh as half of a connector: from loose triangles to a [`Surface`], or to every reason why they are none.
 //!
 //! ```text
-//! triangles, each with its place ──weld──▶ corners shared ──check──▶ surfaces, in D
+//! triangles, each with its place ──weld──▶ corners shared ──check──▶ [repair] ──▶ [simplify] ──▶ Surface, in D
 //! ```
 //!
 //! Every source of triangles comes through here, the files of the sources as well as triangles in memory. Corners closer
 //! than [`WELD`] of the model's size are one, and an edge is divided where a corner of its neighbours lies on it as nearly. The winding counts,
-//! counter-clockwise seen from outside. Nothing else is repaired, and nothing dropped: a mesh is either closed, wound outward and free of self-intersections, or every reason
-//! against it is reported with its place. Coordinates in messages are those of the source.
+//! counter-clockwise seen from outside. A mesh that is then closed, wound outward and free of self-intersections is taken as it is. Another one is
+//! repaired where the [`Treatment`] allows it, and what was done is told; if that leaves anything, every reason
+//! against it is reported with its place. Coordinates in messages are those of the source. Triangles in memory are never repaired.
 //!
-//! Closed shells that overlap are a surface each (up to 256 of them); otherwise all shells of a source are one.
-//!
-//! Not promised: solids that touch each other along an edge are refused (four triangles meet there), and
-//! coplanar overlaps of separate shells are not looked for.
+//! Not promised: holes are not closed, and coplanar overlaps of separate shells are not looked for.
 
 mod check;
+mod crossing;
 pub(in crate::connector) mod cut;
+mod deviation;
 mod divide;
+mod indexed;
+mod point;
+mod repair;
 mod shells;
+mod sides;
+mod simplify;
+mod tree;
 
-use super::Half;
+pub use point::Point;
+
 use super::source::UnitProblem;
-use super::stl::MAX_BYTES;
+use super::{Half, Surface};
+use crate::design::{LengthUnit, Repairs, Treatment};
+use crate::exec::{Bytes, Exec};
 use glam::DVec3;
+use indexed::Indexed;
 use std::fmt;
 
-/// Most triangles of a half: the largest for which a motion was measured to take seconds rather than minutes. Docking faces need
+/// Most triangles of a half as it is used: the largest for which a motion was measured to take seconds rather than minutes. Docking faces need
 /// hundreds, as CAD exports them ten thousands.
 pub const MAX_TRIANGLES: usize = 200_000;
+/// Most triangles of a file that is simplified: what is measured to take a minute and 4 GiB.
+pub const MOST_READ: usize = 5_000_000;
+/// Bytes that reading, repairing and simplifying take for each triangle, as measured.
+const BYTES_PER_TRIANGLE: u64 = 900;
 /// Corners closer than this, relative to the largest coordinate, are one: ten times the rounding of single
 /// precision.
 pub const WELD: f64 = 1e-6;
@@ -61,6 +75,8 @@ pub enum Start {
     Byte(usize),
     /// In no file: the triangle was given in memory.
     Memory,
+    /// In no file: the triangle was made when the mesh was repaired.
+    Made,
 }
 
 impl fmt::Display for Place {
@@ -69,6 +85,7 @@ impl fmt::Display for Place {
             Start::Line(line) => write!(f, "triangle {} (line {line})", self.triangle),
             Start::Byte(byte) => write!(f, "triangle {} (byte {byte})", self.triangle),
             Start::Memory => write!(f, "triangle {}", self.triangle),
+            Start::Made => write!(f, "triangle {} of the repaired mesh", self.triangle),
         }
     }
 }
@@ -109,19 +126,56 @@ pub enum MeshProblem {
     },
     /// More triangles than one half may have.
     #[error(
-        "{count} triangles, more than the {MAX_TRIANGLES} that a half may have: export the mating faces with a coarser tolerance, or decimate the mesh"
+        "{count} triangles, more than the {MAX_TRIANGLES} that a half may have: write simplify = \"0.01 mm\" beside the file, which says how far the \
+         surface may move, or export the mating faces with a coarser tolerance"
     )]
     TooMany {
         /// How many there are, as far as is known.
         count: u64,
     },
-    /// A text file too long to hold an acceptable mesh.
+    /// More triangles than are read at all.
     #[error(
-        "{bytes} bytes of text, more than the {MAX_BYTES} that {MAX_TRIANGLES} triangles need: export a coarser mesh"
+        "{count} triangles, more than the {MOST_READ} that are simplified: export the mesh with a coarser tolerance"
     )]
+    TooManyToSimplify {
+        /// How many there are, as far as is known.
+        count: u64,
+    },
+    /// More triangles than one half may have, although it was simplified.
+    #[error(
+        "{count} triangles are left, more than the {MAX_TRIANGLES} that a half may have: let simplify move the surface farther"
+    )]
+    TooManyLeft {
+        /// How many are left.
+        count: usize,
+    },
+    /// Fewer triangles do not bound the same solid closely enough.
+    #[error(
+        "no mesh with fewer triangles keeps to {most:.1e} D of this one: leave simplify out, or let it move the surface farther"
+    )]
+    NotSimplified {
+        /// How far the surface may move, in D.
+        most: f64,
+    },
+    /// It would take more memory than there is.
+    #[error(
+        "{count} triangles need {needed} of memory, more than the {budget} that are free: export the mesh with a coarser tolerance"
+    )]
+    Memory {
+        /// How many triangles there are.
+        count: usize,
+        /// Bytes needed.
+        needed: Bytes,
+        /// Bytes that may be used.
+        budget: Bytes,
+    },
+    /// A text file too long to hold an acceptable mesh.
+    #[error("{bytes} bytes, more than the {most} that are read: export a coarser mesh, or a binary STL")]
     TooLong {
         /// Size of the file.
         bytes: u64,
+        /// Bytes that are read.
+        most: u64,
     },
     /// Text that is no STL.
     #[error("line {line}: expected {expected}, found {found}")]
@@ -156,20 +210,24 @@ pub enum MeshProblem {
     },
     /// A face of more than three corners that cannot be cut into triangles.
     #[error(
-        "the border of the face that triangle {triangle} begins crosses itself, or has no area: triangulate the mesh when it is exported"
+        "the border of the face that triangle {triangle} begins, at {at}, crosses itself, or has no area: triangulate the mesh when it is exported"
     )]
     NotSimple {
         /// The number that its first triangle would have.
         triangle: usize,
+        /// Its first corner.
+        at: Point,
     },
     /// A file without triangles.
     #[error("the file holds no triangles")]
     NoTriangles,
     /// A coordinate that is no number.
-    #[error("{place} has a corner that is not finite")]
+    #[error("{place} has a corner that is not finite, {at}")]
     NotFinite {
         /// Which triangle.
         place: Place,
+        /// The corner.
+        at: Point,
     },
     /// A triangle without area.
     #[error("{place} at {at} has no area: its corners fall together or lie on a line")]
@@ -177,7 +235,7 @@ pub enum MeshProblem {
         /// Which triangle.
         place: Place,
         /// One of its corners.
-        at: DVec3,
+        at: Point,
     },
     /// An edge with a triangle on one side only.
     #[error("the mesh is open along the edge of {place} from {from} to {to}: close the hole")]
@@ -185,9 +243,9 @@ pub enum MeshProblem {
         /// The triangle on the one side.
         place: Place,
         /// One end.
-        from: DVec3,
+        from: Point,
         /// The other end.
-        to: DVec3,
+        to: Point,
     },
     /// An edge with more than two triangles.
     #[error(
@@ -197,21 +255,26 @@ pub enum MeshProblem {
         /// How many.
         count: usize,
         /// One end.
-        from: DVec3,
+        from: Point,
         /// The other end.
-        to: DVec3,
+        to: Point,
     },
     /// Two neighbours wound in opposite senses.
-    #[error("{first} and {second} are wound in opposite senses: unify the normals")]
+    #[error("{first} and {second} are wound in opposite senses at {at}: unify the normals")]
     Winding {
         /// One of them.
         first: Place,
         /// The other.
         second: Place,
+        /// The middle of the edge between them.
+        at: Point,
     },
-    /// The whole mesh is wound inward.
-    #[error("the mesh is turned inside out: flip its normals")]
-    InsideOut,
+    /// The mesh, or a part of it that lies in no other, is wound inward.
+    #[error("the mesh is turned inside out at {at}: flip its normals")]
+    InsideOut {
+        /// One of its corners.
+        at: Point,
+    },
     /// Two triangles cross.
     #[error("{first} and {second} cross near {at}: unite the solids before exporting")]
     SelfIntersection {
@@ -220,7 +283,7 @@ pub enum MeshProblem {
         /// The other.
         second: Place,
         /// Where.
-        at: DVec3,
+        at: Point,
     },
     /// More triangles may cross than those before it.
     #[error("and {count} triangles were not looked at, which may cross others too")]
@@ -250,13 +313,60 @@ pub enum MeshProblem {
     },
 }
 
+impl MeshProblem {
+    /// The same with the unit of its coordinates.
+    #[must_use]
+    pub fn in_unit(mut self, of: Option<LengthUnit>) -> Self {
+        match &mut self {
+            Self::NotSimple { at, .. }
+            | Self::NotFinite { at, .. }
+            | Self::ZeroArea { at, .. }
+            | Self::Winding { at, .. }
+            | Self::InsideOut { at }
+            | Self::SelfIntersection { at, .. } => at.unit = of,
+            Self::Open { from, to, .. } | Self::NonManifold { from, to, .. } => {
+                (from.unit, to.unit) = (of, of);
+            }
+            _ => {}
+        }
+        self
+    }
+}
+
+/// Most triangles that are read.
+pub(super) const fn most_read(treatment: Treatment) -> usize {
+    if treatment.simplify.is_some() { MOST_READ } else { MAX_TRIANGLES }
+}
+
+/// What there is to say of more.
+pub(super) const fn too_many(treatment: Treatment, count: u64) -> MeshProblem {
+    if treatment.simplify.is_some() {
+        MeshProblem::TooManyToSimplify { count }
+    } else {
+        MeshProblem::TooMany { count }
+    }
+}
+
+/// A half, or a part of one, and what was done to its meshes.
+#[derive(Debug)]
+pub(super) struct Ready {
+    pub(super) half: Half,
+    pub(super) repairs: Repairs,
+}
+
 /// The triangles of a file of faces, numbered in their order.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Triangles {
     pub(super) list: Vec<Triangle>,
+    treatment: Treatment,
 }
 
 impl Triangles {
+    /// None yet.
+    pub(super) const fn new(treatment: Treatment) -> Self {
+        Self { list: Vec::new(), treatment }
+    }
+
     /// Appends a face, cut into triangles.
     pub(super) fn push(&mut self, corners: &[DVec3]) -> Result<(), Vec<MeshProblem>> {
         // A triangle is what it is; whether it has an area, and whether all are numbers, is asked of all of them together.
@@ -266,65 +376,78 @@ impl Triangles {
             cut::triangles(corners)
         };
         let first = self.list.len();
-        let cut = cut.ok_or_else(|| vec![MeshProblem::NotSimple { triangle: first }])?;
+        let at = corners[0].into();
+        let cut = cut.ok_or_else(|| vec![MeshProblem::NotSimple { triangle: first, at }])?;
         self.list.extend(cut.into_iter().enumerate().map(|(k, ids)| Triangle {
             corners: ids.map(|id| corners[id]),
             place: Place { triangle: first + k, start: Start::Memory },
         }));
-        if self.list.len() > MAX_TRIANGLES {
-            return Err(vec![MeshProblem::TooMany { count: self.list.len() as u64 }]);
+        if self.list.len() > most_read(self.treatment) {
+            return Err(vec![too_many(self.treatment, self.list.len() as u64)]);
         }
         Ok(())
     }
 }
 
-/// A half from triangles (in D), by the rules of every mesh file.
+/// A half from triangles (in D), by the rules of every mesh file; they are taken as they are.
 ///
 /// # Errors
 /// Everything that is wrong with the mesh, at most a few problems of each kind, by the number of the triangle.
 pub fn from_triangles(triangles: &[[DVec3; 3]]) -> Result<Half, Vec<MeshProblem>> {
     let placed = |(triangle, &corners)| Triangle { corners, place: Place { triangle, start: Start::Memory } };
     let triangles: Vec<Triangle> = triangles.iter().enumerate().map(placed).collect();
-    half(&[triangles], 1.0)
+    half(vec![triangles], 1.0, Treatment::AS_IT_IS).map(|ready| ready.half)
 }
 
-/// A half from the triangles of a file, body by body; `scale` turns its coordinates into D.
-pub(super) fn half(bodies: &[Vec<Triangle>], scale: f64) -> Result<Half, Vec<MeshProblem>> {
-    let mut problems = Vec::new();
-    let half = part(bodies, scale).unwrap_or_else(|found| {
-        problems = found;
-        Half::default()
-    });
-    // Without numbers there is no width, and without a scale none in D.
-    let is_sized = !problems.iter().any(|problem| {
-        use MeshProblem::{NoTriangles, NotFinite, Scale, TooMany};
-        matches!(problem, NotFinite { .. } | Scale { .. } | NoTriangles | TooMany { .. })
-    });
+/// A half from the triangles of a file, body by body, treated as it is said; `scale` turns its coordinates into D.
+pub(super) fn half(
+    bodies: Vec<Vec<Triangle>>,
+    scale: f64,
+    treatment: Treatment,
+) -> Result<Ready, Vec<MeshProblem>> {
+    check_scale(scale)?;
     let corners = bodies.iter().flatten().flat_map(|triangle| triangle.corners);
-    problems.extend(if is_sized { implausible_width(corners.map(|c| c * scale)) } else { None });
-    if problems.is_empty() { Ok(half) } else { Err(problems) }
+    let width = implausible_width(corners.map(|c| c * scale));
+    let (ready, mut problems) = match part(bodies, scale, treatment) {
+        Ok(ready) => (Some(ready), Vec::new()),
+        Err(problems) => (None, problems),
+    };
+    // Without numbers there is no width.
+    let is_sized = !problems.iter().any(|problem| {
+        use MeshProblem::{NoTriangles, NotFinite, TooMany, TooManyToSimplify};
+        matches!(problem, NotFinite { .. } | NoTriangles | TooMany { .. } | TooManyToSimplify { .. })
+    });
+    problems.extend(width.filter(|_| is_sized));
+    ready.filter(|_| problems.is_empty()).ok_or(problems)
 }
 
 /// The same of a part of a half, which may have any size.
-pub(super) fn part(bodies: &[Vec<Triangle>], scale: f64) -> Result<Half, Vec<MeshProblem>> {
+pub(super) fn part(
+    bodies: Vec<Vec<Triangle>>,
+    scale: f64,
+    treatment: Treatment,
+) -> Result<Ready, Vec<MeshProblem>> {
     check_scale(scale)?;
-    let count = bodies.iter().map(Vec::len).sum::<usize>() as u64;
-    if count > MAX_TRIANGLES as u64 {
-        return Err(vec![MeshProblem::TooMany { count }]);
+    let count = bodies.iter().map(Vec::len).sum::<usize>();
+    if count > most_read(treatment) {
+        return Err(vec![too_many(treatment, count as u64)]);
     }
-    sound_numbers(bodies)?;
-    let mut half = Half::default();
+    sound_numbers(&bodies)?;
+    let mut ready = Ready { half: Half::default(), repairs: Repairs::default() };
     let mut problems = Vec::new();
-    for body in bodies.iter().filter(|body| !body.is_empty()) {
-        match check::surfaces(body, scale) {
-            Ok(surfaces) => half.surfaces.extend(surfaces),
+    for body in bodies.into_iter().filter(|body| !body.is_empty()) {
+        match solid(body, scale, treatment) {
+            Ok((surface, repairs)) => {
+                ready.half.surfaces.push(surface);
+                ready.repairs.add(&repairs);
+            }
             Err(found) => problems.extend(found),
         }
         if problems.len() > MAX_REPORTED * MAX_REPORTED {
             break;
         }
     }
-    if problems.is_empty() { Ok(half) } else { Err(problems) }
+    if problems.is_empty() { Ok(ready) } else { Err(problems) }
 }
 
 /// Complains about a half whose width in D can hardly be meant.
@@ -332,6 +455,50 @@ pub(super) fn implausible_width(corners: impl Iterator<Item = DVec3>) -> Option<
     let (lo, hi) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
     let width = (hi - lo).truncate().max_element();
     (!PLAUSIBLE_WIDTH.contains(&width)).then_some(MeshProblem::Unit { width })
+}
+
+/// A closed surface from the triangles of one body, and what was done to it.
+fn solid(
+    triangles: Vec<Triangle>,
+    scale: f64,
+    treatment: Treatment,
+) -> Result<(Surface, Repairs), Vec<MeshProblem>> {
+    fits(triangles.len())?;
+    let (mut mesh, sides) = Indexed::of(triangles);
+    let mut problems = check::problems(&mesh, &sides);
+    drop(sides);
+    let mut repairs = Repairs::default();
+    if treatment.repair && !problems.is_empty() {
+        let mended = repair::mended(&mesh);
+        problems = mended.problems;
+        if problems.is_empty() {
+            (mesh, repairs) = (mended.mesh, mended.repairs);
+        }
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    if let Some(most) = treatment.simplify {
+        let simplified = simplify::simplified(&mesh, most / scale, scale)?;
+        repairs.simplified = Some([mesh.triangles.len(), simplified.mesh.triangles.len()]);
+        // Both moved it, one after the other.
+        repairs.deviation += simplified.deviation;
+        mesh = simplified.mesh;
+    }
+    repairs.deviation *= scale;
+    if mesh.triangles.len() > MAX_TRIANGLES {
+        return Err(vec![MeshProblem::TooManyLeft { count: mesh.triangles.len() }]);
+    }
+    Ok((check::surface(&mesh, scale)?, repairs))
+}
+
+/// Refuses a large mesh for which there is too little memory.
+fn fits(count: usize) -> Result<(), Vec<MeshProblem>> {
+    let (needed, budget) = (BYTES_PER_TRIANGLE * count as u64, Exec::new().memory_budget());
+    if count <= MAX_TRIANGLES || needed <= budget {
+        return Ok(());
+    }
+    Err(vec![MeshProblem::Memory { count, needed: Bytes(needed), budget: Bytes(budget) }])
 }
 
 /// Refuses a scale that is no positive number.
@@ -349,8 +516,8 @@ fn sound_numbers(bodies: &[Vec<Triangle>]) -> Result<(), Vec<MeshProblem>> {
         bodies
             .iter()
             .flatten()
-            .filter(|t| !t.corners.iter().all(|c| c.is_finite()))
-            .map(|t| MeshProblem::NotFinite { place: t.place }),
+            .filter_map(|t| Some((t, t.corners.iter().find(|corner| !corner.is_finite())?)))
+            .map(|(t, corner)| MeshProblem::NotFinite { place: t.place, at: (*corner).into() }),
     );
     reported.done()
 }
@@ -381,3 +548,6 @@ impl Reported {
         if self.problems.is_empty() { Ok(()) } else { Err(self.problems) }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,114 +1,130 @@
-//! The shells of a mesh: what hangs together by shared edges, each closed by itself.
+//! The connected parts of a mesh, their volumes, and which lies in which.
 //!
 //! ```text
-//!    ┌──────┐            two shells that cross: a body each, and the half is their union
-//!    │   ┌──┼───┐
-//!    │   │  │   │        ┌─────────┐
-//!    └───┼──┘   │        │  ┌───┐  │   a shell turned inward is a cavity: it goes with the
-//!        └──────┘        │  └───┘  │   smallest shell around it
-//!                        └─────────┘
+//! V = Σ a·(b × c)/6        w(p) = Σ Ω(a − p, b − p, c − p)/4π        over the triangles of a shell
 //! ```
 //!
-//! Not promised: shells that share an edge are no shells here, four triangles meet there. Of more than [`MOST`] shells nothing is taken apart.
+//! A shell lies in another where that winds around one of its corners, |w| > ½, by the solid angles of van Oosterom and Strackee (1983).
+//! Not promised: an answer for shells that cross, of which one is neither in nor outside of the other.
 
-use super::check::{Sides, corners};
+use super::indexed::Indexed;
+use super::sides::Sides;
+use super::tree::{Bounds, around};
 use glam::DVec3;
+use std::f64::consts::PI;
 
-/// Most shells that are told apart, as many as a half may have pieces: every two bodies of both halves are compared.
-const MOST: usize = 256;
-/// Share of all directions in which a point sees a shell from inside above which it counts as inside: on the shell it is half.
-const INSIDE: f64 = 0.25;
+/// Most steps spent on asking which shell lies in which; beyond it a shell counts as inside where its box is.
+const MOST_STEPS: usize = 50_000_000;
 
-/// The shells of a mesh.
-pub(super) struct Shells {
-    /// Of every triangle, the number of its shell.
-    pub(super) of: Vec<usize>,
-    /// Of every shell, its triangles.
-    triangles: Vec<Vec<usize>>,
-    /// Of every shell, its volume; negative where it is turned inward.
-    volumes: Vec<f64>,
-    /// Of every shell that is turned inward, the one around it.
-    around: Vec<Option<usize>>,
+/// Triangles that hang together by their edges.
+#[derive(Debug)]
+pub(super) struct Shell {
+    /// Their numbers, ascending.
+    pub(super) triangles: Vec<u32>,
+    /// Enclosed volume, negative where it is turned inside out.
+    pub(super) volume: f64,
+    bounds: Bounds,
 }
 
-impl Shells {
-    /// Of a mesh in which two triangles meet along every edge.
-    pub(super) fn of(vertices: &[DVec3], indexed: &[[u32; 3]], sides: &Sides) -> Self {
-        let mut leader: Vec<usize> = (0..indexed.len()).collect();
-        for owners in sides.values() {
-            for pair in owners.windows(2) {
-                let (a, b) = (find(&mut leader, pair[0].0), find(&mut leader, pair[1].0));
-                leader[a.max(b)] = a.min(b);
-            }
+/// The shells of a mesh, in the order of their first triangles. Triangles are neighbours across edges that just two of them share.
+pub(super) fn of(mesh: &Indexed, sides: &Sides) -> Vec<Shell> {
+    let count = mesh.triangles.len();
+    let mut parts = Parts::new(count);
+    for sides in sides.edges() {
+        if let [a, b] = sides {
+            parts.join(a.triangle, b.triangle);
         }
-        let mut number = vec![usize::MAX; indexed.len()];
-        let mut triangles: Vec<Vec<usize>> = Vec::new();
-        let mut of = Vec::with_capacity(indexed.len());
-        for k in 0..indexed.len() {
-            let first = find(&mut leader, k);
-            if number[first] == usize::MAX {
-                number[first] = triangles.len();
-                triangles.push(Vec::new());
-            }
-            of.push(number[first]);
-            triangles[number[first]].push(k);
-        }
-        if triangles.len() > MOST {
-            of.fill(0);
-            triangles = vec![(0..indexed.len()).collect()];
-        }
-        let at = |k: usize| corners(vertices, indexed[k]);
-        // Seen from one of its own corners: far from the origin the sum would lose its digits.
-        let volume = |shell: &Vec<usize>| {
-            let origin = at(shell[0])[0];
-            let six = |k: &usize| {
-                let [a, b, c] = at(*k).map(|p| p - origin);
-                a.dot(b.cross(c))
-            };
-            shell.iter().map(six).sum::<f64>() / 6.0
-        };
-        let volumes: Vec<f64> = triangles.iter().map(volume).collect();
-        let around = |inner: usize| {
-            let [a, b, c] = at(triangles[inner][0]);
-            let point = (a + b + c) / 3.0;
-            let holds = |outer: &usize| {
-                let angle: f64 = triangles[*outer].iter().map(|k| solid_angle(at(*k), point)).sum();
-                volumes[*outer] > 0.0 && angle / (4.0 * std::f64::consts::PI) > INSIDE
-            };
-            (0..triangles.len()).filter(holds).min_by(|a, b| volumes[*a].total_cmp(&volumes[*b]))
-        };
-        let around = (0..triangles.len()).map(|k| if volumes[k] > 0.0 { None } else { around(k) }).collect();
-        Self { of, triangles, volumes, around }
     }
-
-    /// The triangles of every body, which is a shell and its cavities; `None` where a shell is turned inward and lies in no other.
-    pub(super) fn bodies(&self) -> Option<Vec<Vec<usize>>> {
-        let mut bodies: Vec<Vec<usize>> = Vec::new();
-        let mut body_of = vec![usize::MAX; self.triangles.len()];
-        for (k, shell) in self.triangles.iter().enumerate().filter(|(k, _)| self.volumes[*k] > 0.0) {
-            body_of[k] = bodies.len();
-            bodies.push(shell.clone());
+    let mut number = vec![u32::MAX; count];
+    let mut lists: Vec<Vec<u32>> = Vec::new();
+    for k in 0..count as u32 {
+        let root = parts.root(k) as usize;
+        if number[root] == u32::MAX {
+            number[root] = lists.len() as u32;
+            lists.push(Vec::new());
         }
-        for (k, shell) in self.triangles.iter().enumerate().filter(|(k, _)| self.volumes[*k] <= 0.0) {
-            bodies[body_of[self.around[k]?]].extend(shell);
-        }
-        Some(bodies)
+        lists[number[root] as usize].push(k);
     }
+    lists
+        .into_iter()
+        .map(|triangles| {
+            let volume = volume(mesh, &triangles);
+            let bounds = triangles
+                .iter()
+                .map(|k| around(mesh.corners(*k as usize)))
+                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)));
+            Shell { triangles, volume, bounds }
+        })
+        .collect()
 }
 
-fn find(leader: &mut [usize], mut k: usize) -> usize {
-    while leader[k] != k {
-        leader[k] = leader[leader[k]];
-        k = leader[k];
+/// In how many of the others a shell lies.
+pub(super) fn depth(mesh: &Indexed, shells: &[Shell], shell: &Shell) -> usize {
+    let others = || {
+        shells.iter().filter(|other| {
+            !std::ptr::eq(*other, shell)
+                && other.bounds.0.cmple(shell.bounds.0).all()
+                && shell.bounds.1.cmple(other.bounds.1).all()
+        })
+    };
+    let steps: usize = others().map(|other| other.triangles.len()).sum();
+    if steps.saturating_mul(shells.len().min(mesh.triangles.len())) > MOST_STEPS {
+        return others().count();
     }
-    k
+    let [a, b, c] = mesh.corners(shell.triangles[0] as usize);
+    // In the middle of a triangle: at its corners it may touch another shell.
+    let point = (a + b + c) / 3.0;
+    others().filter(|other| winding(mesh, &other.triangles, point).abs() > 0.5).count()
 }
 
-/// The solid angle under which a point sees a triangle, positive from behind (van Oosterom and Strackee 1983).
+/// How many times triangles wind around a point.
+pub(super) fn winding(mesh: &Indexed, triangles: &[u32], point: DVec3) -> f64 {
+    triangles.iter().map(|k| solid_angle(mesh.corners(*k as usize), point)).sum::<f64>() / (4.0 * PI)
+}
+
+/// The solid angle of a triangle seen from a point, positive from inside: tan(Ω/2) = a·(b × c) / (abc + (a·b)c + (b·c)a + (c·a)b).
 fn solid_angle(corners: [DVec3; 3], point: DVec3) -> f64 {
-    let [a, b, c] = corners.map(|p| p - point);
-    let (la, lb, lc) = (a.length(), b.length(), c.length());
-    let across = a.dot(b.cross(c));
-    let along = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    2.0 * across.atan2(along)
+    let [a, b, c] = corners.map(|corner| corner - point);
+    let [la, lb, lc] = [a, b, c].map(DVec3::length);
+    let numerator = a.dot(b.cross(c));
+    let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * numerator.atan2(denominator)
+}
+
+fn volume(mesh: &Indexed, triangles: &[u32]) -> f64 {
+    // Seen from one of its own corners: far from the origin the sum would lose its digits.
+    let origin = mesh.corners(triangles[0] as usize)[0];
+    triangles
+        .iter()
+        .map(|k| {
+            let [a, b, c] = mesh.corners(*k as usize).map(|p| p - origin);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum()
+}
+
+/// Disjoint sets of numbers.
+#[derive(Debug)]
+pub(super) struct Parts(Vec<u32>);
+
+impl Parts {
+    pub(super) fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    /// The number that stands for a set.
+    pub(super) fn root(&mut self, of: u32) -> u32 {
+        let mut k = of;
+        while self.0[k as usize] != k {
+            self.0[k as usize] = self.0[self.0[k as usize] as usize];
+            k = self.0[k as usize];
+        }
+        k
+    }
+
+    /// Makes two sets one, which the lower number stands for.
+    pub(super) fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
 }

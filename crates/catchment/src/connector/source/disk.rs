@@ -10,6 +10,8 @@ pub(in crate::connector) fn read(path: &Path, most: u64) -> io::Result<FileBytes
     let mut file = File::open(path)?;
     let size = file.metadata()?.len();
     let mut bytes = Vec::new();
+    // Not twice as much as needed, which growing step by step may take.
+    bytes.try_reserve_exact(size.min(most) as usize)?;
     (&mut file).take(most).read_to_end(&mut bytes)?;
     let size = size.max(bytes.len() as u64);
     Ok(FileBytes { bytes, size })

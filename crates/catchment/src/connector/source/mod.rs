@@ -17,12 +17,12 @@ pub(super) mod unit;
 pub(super) use foreign::ZIP;
 pub use unit::UnitProblem;
 
-use super::mesh::{self, MeshProblem, Triangle};
+use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Ready, Triangle};
 use super::{Half, Problem, Side, Surface, convex_hull, family, obj, part, ply, stl, threemf};
-use crate::design::{FamilySpec, FileSpec, FileUnit, HalfSpec, MeshContent, PartSpec, ShapeSpec};
+use crate::design::{FamilySpec, FileSpec, HalfSpec, MeshContent, PartSpec, ShapeSpec, Treatment};
 use glam::DVec3;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Most convex pieces of a half: beyond it a mesh says the same with less.
 const MAX_PIECES: usize = 256;
@@ -66,19 +66,27 @@ impl Held {
 struct Format {
     /// How its files end, in lower case.
     endings: &'static [&'static str],
-    /// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
-    most: u64,
     /// What the bytes of a file hold.
-    read: fn(&FileBytes) -> Result<Held, Vec<MeshProblem>>,
+    read: fn(&FileBytes, Treatment) -> Result<Held, Vec<MeshProblem>>,
+    /// What the first bytes of a file say of it as a whole.
+    refuse_early: fn(&FileBytes, Treatment) -> Result<(), Vec<MeshProblem>>,
 }
 
 /// The table of mesh formats. A file whose ending none of them has is read as the first.
 const FORMATS: [Format; 4] = [
-    Format { endings: &["stl"], most: stl::MAX_BYTES, read: stl::read },
-    Format { endings: &["obj"], most: obj::MAX_BYTES, read: obj::read },
-    Format { endings: &["ply"], most: ply::MAX_BYTES, read: ply::read },
-    Format { endings: &["3mf"], most: threemf::MAX_BYTES, read: threemf::read },
+    Format { endings: &["stl"], read: stl::read, refuse_early: stl::refuse_early },
+    Format { endings: &["obj"], read: obj::read, refuse_early: |_, _| Ok(()) },
+    Format { endings: &["ply"], read: ply::read, refuse_early: |_, _| Ok(()) },
+    Format { endings: &["3mf"], read: |file, _| threemf::read(file), refuse_early: |_, _| Ok(()) },
 ];
+
+/// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
+pub(super) const fn most_bytes(treatment: Treatment) -> u64 {
+    if treatment.simplify.is_some() { stl::MOST_BYTES } else { stl::MAX_BYTES }
+}
+
+/// Bytes that are read before a format may refuse a file: a binary STL file of as many triangles as a half may have, which all but few files are below.
+const FIRST_BYTES: u64 = 84 + 50 * MAX_TRIANGLES as u64;
 
 impl Format {
     fn of(path: &Path) -> &'static Self {
@@ -106,7 +114,7 @@ impl Built {
 }
 
 /// A half, or a part of one, from the triangles of every body and their scale.
-type BuildMesh = fn(&[Vec<Triangle>], f64) -> Result<Half, Vec<MeshProblem>>;
+type BuildMesh = fn(Vec<Vec<Triangle>>, f64, Treatment) -> Result<Ready, Vec<MeshProblem>>;
 
 /// A mesh file as a half or a part of one, what it held, and its scale.
 pub(super) fn read_mesh(
@@ -115,13 +123,34 @@ pub(super) fn read_mesh(
     build: BuildMesh,
 ) -> Result<(Half, MeshContent, f64), Vec<MeshProblem>> {
     let format = Format::of(&spec.path);
-    foreign::refuse(&file.bytes, format.endings)?;
-    let held = (format.read)(file)?;
-    let scale = unit::scale(spec, held.metres).map_err(|problem| vec![problem.into()])?;
-    let half = build(&held.bodies, scale)?;
+    let read = || {
+        foreign::refuse(&file.bytes, format.endings)?;
+        let held = (format.read)(file, spec.treatment)?;
+        let scale = unit::scale(spec, held.metres).map_err(|problem| vec![problem.into()])?;
+        build(held.bodies, scale, spec.treatment).map(|ready| (ready, scale))
+    };
+    let in_unit = |problem: MeshProblem| problem.in_unit(spec.written);
+    let (Ready { half, repairs }, scale) =
+        read().map_err(|problems| problems.into_iter().map(in_unit).collect::<Vec<_>>())?;
     let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum();
-    let content = MeshContent { bodies: half.surfaces.len(), ..MeshContent::of(&file.bytes, facets) };
-    Ok((half, content, scale))
+    let bodies = half.surfaces.len();
+    Ok((half, MeshContent { bodies, repairs, ..MeshContent::of(&file.bytes, facets) }, scale))
+}
+
+/// As much of a mesh file as may be read; of a large one the beginning first.
+fn fetch_mesh(spec: &FileSpec, read: Read<'_>) -> Result<FileBytes, MeshProblem> {
+    let format = Format::of(&spec.path);
+    let first = fetch(&spec.path, FIRST_BYTES, read)?;
+    if first.size <= first.bytes.len() as u64 {
+        return Ok(first);
+    }
+    let refused = foreign::refuse(&first.bytes, format.endings)
+        .and_then(|()| (format.refuse_early)(&first, spec.treatment));
+    if let Some(problem) = refused.err().and_then(|problems| problems.into_iter().next()) {
+        return Err(problem);
+    }
+    drop(first);
+    fetch(&spec.path, most_bytes(spec.treatment), read)
 }
 
 /// The bytes of a file, or why there are none.
@@ -141,14 +170,10 @@ pub enum Source {
     Pieces(Vec<Vec<DVec3>>),
     /// A mesh file.
     Mesh {
-        /// What messages call it; its ending tells the format.
-        path: PathBuf,
+        /// What messages call it, what leads from its coordinates to D, and what may be done to it; its ending tells the format.
+        spec: FileSpec,
         /// What it holds.
         file: FileBytes,
-        /// Multiplies the file's coordinates to give D.
-        scale: f64,
-        /// Who says the unit of its coordinates.
-        unit: FileUnit,
     },
     /// Parts, each with what its file holds where it comes from one.
     Parts(Vec<(PartSpec, Option<FileBytes>)>),
@@ -163,22 +188,19 @@ impl Source {
     pub(super) fn of(spec: &HalfSpec, side: Side, read: Read<'_>) -> Result<Self, Vec<Problem>> {
         match spec {
             HalfSpec::Pieces(pieces) => Ok(Self::Pieces(points(pieces))),
-            HalfSpec::Mesh(FileSpec { path, scale, unit, .. }) => {
-                let (path, scale, unit) = (path.clone(), *scale, *unit);
-                match fetch(&path, Format::of(&path).most, read) {
-                    Ok(file) => Ok(Self::Mesh { path, file, scale, unit }),
-                    Err(error) => Err(vec![Problem::Mesh { side, path, error }]),
-                }
-            }
+            HalfSpec::Mesh(spec) => match fetch_mesh(spec, read) {
+                Ok(file) => Ok(Self::Mesh { spec: spec.clone(), file }),
+                Err(error) => Err(vec![Problem::Mesh { side, path: spec.path.clone(), error }]),
+            },
             HalfSpec::Parts(parts) => {
                 let (mut read_parts, mut problems) = (Vec::new(), Vec::new());
                 for (index, part) in parts.iter().enumerate() {
-                    let most = |file: &FileSpec| match part.shape {
-                        ShapeSpec::Profile { .. } => part::MOST_BYTES_OF_A_DRAWING,
-                        _ => Format::of(&file.path).most,
+                    let fetched = |file: &FileSpec| match part.shape {
+                        ShapeSpec::Profile { .. } => fetch(&file.path, part::MOST_BYTES_OF_A_DRAWING, read),
+                        _ => fetch_mesh(file, read),
                     };
                     let file = part.shape.file().map(|file| {
-                        fetch(&file.path, most(file), read).map_err(|error| {
+                        fetched(file).map_err(|error| {
                             let path = file.path.clone();
                             Problem::Part { side, part: index, error: part::PartError::Mesh { path, error } }
                         })
@@ -203,10 +225,9 @@ impl Source {
                 Ok(Built::of(half, Vec::new()))
             }
             Self::Pieces(pieces) => Ok(Built::of(from_pieces(pieces, side)?, Vec::new())),
-            Self::Mesh { path, file, scale, unit } => {
-                let refused = |error| Problem::Mesh { side, path: path.clone(), error };
-                let spec = FileSpec { unit: *unit, ..FileSpec::new(path, *scale) };
-                let (half, content, scale) = read_mesh(&spec, file, mesh::half)
+            Self::Mesh { spec, file } => {
+                let refused = |error| Problem::Mesh { side, path: spec.path.clone(), error };
+                let (half, content, scale) = read_mesh(spec, file, mesh::half)
                     .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
                 Ok(Built { half, contents: vec![content], scale: Some(scale) })
             }

@@ -17,25 +17,33 @@ mod write;
 pub use write::{Format, write};
 
 use super::Half;
-use super::mesh::{self, MeshProblem, Triangle};
+use super::mesh::{self, MOST_READ, MeshProblem};
 use super::source::{FileBytes, Held};
+use crate::design::Treatment;
 
 /// Longest ASCII file that can hold as many triangles as a half may have, generously written.
 pub const MAX_BYTES: u64 = 128 << 20;
+/// Longest file that is read to be simplified: a binary one of as many triangles as are read.
+pub const MOST_BYTES: u64 = 84 + 50 * MOST_READ as u64;
 
 /// As the table of formats wants it.
-pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
-    parse::parse(&file.bytes, file.size).map(Held::of_triangles)
+pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
+    parse::parse(&file.bytes, file.size, treatment).map(Held::of_triangles)
 }
 
-/// Reads an STL file from its bytes; `scale` turns its coordinates into D. `size` is the size of the whole
+/// What the first bytes of a file say of it as a whole: a binary file with too many triangles is refused before they are read.
+pub(super) fn refuse_early(file: &FileBytes, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+    parse::refuse_early(&file.bytes, file.size, treatment)
+}
+
+/// Reads an STL file from its bytes, which are taken as they are; `scale` turns its coordinates into D. `size` is the size of the whole
 /// file, of which `bytes` may be only the first [`MAX_BYTES`].
 ///
 /// # Errors
 /// Everything that is wrong with the file, at most a few problems of each kind.
 pub fn from_bytes(bytes: &[u8], size: u64, scale: f64) -> Result<Half, Vec<MeshProblem>> {
-    let triangles: Vec<Triangle> = parse::parse(bytes, size)?;
-    mesh::half(&[triangles], scale)
+    let triangles = parse::parse(bytes, size, Treatment::AS_IT_IS)?;
+    mesh::half(vec![triangles], scale, Treatment::AS_IT_IS).map(|ready| ready.half)
 }
 
 #[cfg(test)]

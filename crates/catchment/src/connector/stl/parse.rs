@@ -1,7 +1,8 @@
 //! From bytes to triangles, both dialects.
 
-use super::MAX_BYTES;
-use crate::connector::mesh::{MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
+use crate::connector::mesh::{self, MeshProblem, Place, Start, Triangle};
+use crate::connector::source::most_bytes;
+use crate::design::Treatment;
 use glam::DVec3;
 
 /// Header and triangle count of a binary file.
@@ -12,32 +13,58 @@ const RECORD: usize = 50;
 const SHOWN: usize = 24;
 
 /// Parses the first `bytes` of a file of `size` bytes.
-pub(super) fn parse(bytes: &[u8], size: u64) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
+pub(super) fn parse(
+    bytes: &[u8],
+    size: u64,
+    treatment: Treatment,
+) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
     if bytes.is_empty() {
         return Err(vec![MeshProblem::Empty]);
     }
-    let announced = bytes
-        .get(HEADER - 4..HEADER)
-        .and_then(|count| count.try_into().ok())
-        .map(|count| u64::from(u32::from_le_bytes(count)));
-    let expected = announced.map(|count| HEADER as u64 + RECORD as u64 * count);
-    if expected == Some(size) || !looks_like_text(bytes) {
-        let (Some(triangles), Some(expected)) = (announced, expected) else {
-            return Err(vec![MeshProblem::NotStl { found: size }]);
-        };
-        if expected != size {
-            return Err(vec![MeshProblem::Length { triangles, expected, found: size }]);
-        }
-        if triangles > MAX_TRIANGLES as u64 {
-            return Err(vec![MeshProblem::TooMany { count: triangles }]);
-        }
-        Ok(binary(&bytes[HEADER..]))
+    Ok(if is_binary(bytes, size) {
+        refuse_binary(bytes, size, treatment)?;
+        binary(&bytes[HEADER..])
     } else {
-        if size > MAX_BYTES {
-            return Err(vec![MeshProblem::TooLong { bytes: size }]);
+        let most = most_bytes(treatment);
+        if size > most {
+            return Err(vec![MeshProblem::TooLong { bytes: size, most }]);
         }
-        ascii(bytes).map_err(|problem| vec![problem])
-    }
+        ascii(bytes, treatment).map_err(|problem| vec![problem])?
+    })
+}
+
+/// Refuses a binary file by its header: the first `bytes` hold it.
+pub(super) fn refuse_early(bytes: &[u8], size: u64, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+    if is_binary(bytes, size) { refuse_binary(bytes, size, treatment) } else { Ok(()) }
+}
+
+/// Triangles that a binary header announces.
+fn announced(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(HEADER - 4..HEADER)?.try_into().ok()?;
+    Some(u64::from(u32::from_le_bytes(count)))
+}
+
+/// Bytes of a binary file of so many triangles.
+const fn length(triangles: u64) -> u64 {
+    HEADER as u64 + RECORD as u64 * triangles
+}
+
+fn is_binary(bytes: &[u8], size: u64) -> bool {
+    announced(bytes).is_some_and(|count| length(count) == size) || !looks_like_text(bytes)
+}
+
+fn refuse_binary(bytes: &[u8], size: u64, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+    let problem = match announced(bytes) {
+        None => MeshProblem::NotStl { found: size },
+        Some(triangles) if length(triangles) != size => {
+            MeshProblem::Length { triangles, expected: length(triangles), found: size }
+        }
+        Some(triangles) if triangles > mesh::most_read(treatment) as u64 => {
+            mesh::too_many(treatment, triangles)
+        }
+        Some(_) => return Ok(()),
+    };
+    Err(vec![problem])
 }
 
 /// Whether the file begins with the word `solid` and holds no zero byte, as every binary header does.
@@ -113,7 +140,7 @@ fn shown(words: &[&[u8]]) -> String {
     format!("`{}`", text.escape_debug())
 }
 
-fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, MeshProblem> {
+fn ascii(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, MeshProblem> {
     let is_newline: fn(&u8) -> bool = |b| *b == b'\n';
     let mut lines = Lines { lines: bytes.split(is_newline).enumerate(), last: 1 };
     let mut triangles = Vec::new();
@@ -129,8 +156,8 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, MeshProblem> {
         };
         if inside && begins(&words, "facet") {
             let triangle = triangles.len();
-            if triangle == MAX_TRIANGLES {
-                return Err(MeshProblem::TooMany { count: count_facets(bytes) });
+            if triangle == mesh::most_read(treatment) {
+                return Err(mesh::too_many(treatment, count_facets(bytes)));
             }
             lines.expect("outer loop")?;
             let mut corners = [DVec3::ZERO; 3];

@@ -1,0 +1,146 @@
+//! Triangles by the numbers of their corners: corners that fall together are one.
+//!
+//! Corners closer than [`WELD`] of the largest coordinate are joined; the first one met gives the coordinates. Nothing is promised of corners
+//! that lie in a chain of such distances: which of them are joined depends on their order in the file, and on nothing else.
+
+use super::divide::divide;
+use super::sides::Sides;
+use super::{Place, Start, Triangle, WELD};
+use glam::{DVec3, I64Vec3};
+use manifold_rust::types::MeshGL64;
+use std::collections::HashMap;
+
+/// Triangles that share corners, in the coordinates of their source.
+#[derive(Debug, Clone)]
+pub(super) struct Indexed {
+    pub(super) vertices: Vec<DVec3>,
+    /// Corners of each triangle, counter-clockwise seen from outside.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Where each triangle stands in its file.
+    pub(super) places: Vec<Place>,
+    /// Distance below which two points are one.
+    pub(super) tolerance: f64,
+}
+
+impl Indexed {
+    /// Welds corners, and divides edges that one neighbour divides; who shares which edge then.
+    pub(super) fn of(triangles: Vec<Triangle>) -> (Self, Sides) {
+        let size = triangles
+            .iter()
+            .flat_map(|t| t.corners)
+            .fold(0.0, |size: f64, c| size.max(c.abs().max_element()));
+        let tolerance = WELD * size;
+        let (vertices, indexed) = weld(&triangles, tolerance);
+        let places = triangles.iter().map(|t| t.place).collect();
+        drop(triangles);
+        let mut mesh = Self { vertices, triangles: indexed, places, tolerance };
+        let sides = divide(&mut mesh);
+        (mesh, sides)
+    }
+
+    /// What a library gave back: its corners are shared already.
+    pub(super) fn made(found: &MeshGL64, tolerance: f64) -> Self {
+        let width = found.num_prop as usize;
+        let vertices: Vec<DVec3> =
+            found.vert_properties.chunks_exact(width).map(|v| DVec3::new(v[0], v[1], v[2])).collect();
+        // Corners that are given twice, as where properties part.
+        let mut same: Vec<u32> = (0..vertices.len() as u32).collect();
+        for (from, to) in found.merge_from_vert.iter().zip(&found.merge_to_vert) {
+            same[*from as usize] = *to as u32;
+        }
+        let corners = |t: &[u64]| [t[0], t[1], t[2]].map(|k| same[k as usize]);
+        let triangles: Vec<[u32; 3]> = found.tri_verts.chunks_exact(3).map(corners).collect();
+        let places = (0..triangles.len()).map(|triangle| Place { triangle, start: Start::Made }).collect();
+        Self { vertices, triangles, places, tolerance }
+    }
+
+    /// The corners of a triangle.
+    pub(super) fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|k| self.vertices[k as usize])
+    }
+
+    /// The point with a number.
+    pub(super) fn at(&self, vertex: u32) -> DVec3 {
+        self.vertices[vertex as usize]
+    }
+
+    /// Keeps the triangles that `keep` says, by their numbers; how many went.
+    pub(super) fn retain(&mut self, keep: impl Fn(usize) -> bool) -> usize {
+        let before = self.triangles.len();
+        let mut k = 0..before;
+        self.triangles.retain(|_| k.next().is_some_and(&keep));
+        let mut k = 0..before;
+        self.places.retain(|_| k.next().is_some_and(&keep));
+        before - self.triangles.len()
+    }
+
+    /// Leaves out points that are no corners.
+    pub(super) fn compact(&mut self) {
+        let mut numbers = vec![u32::MAX; self.vertices.len()];
+        for corner in self.triangles.iter().flatten() {
+            numbers[*corner as usize] = 0;
+        }
+        for (next, number) in numbers.iter_mut().filter(|number| **number == 0).enumerate() {
+            *number = next as u32;
+        }
+        let mut k = 0..numbers.len();
+        self.vertices.retain(|_| k.next().is_some_and(|k| numbers[k] != u32::MAX));
+        self.triangles.iter_mut().flatten().for_each(|corner| *corner = numbers[*corner as usize]);
+    }
+
+    /// Lowest and highest coordinates.
+    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+        self.vertices
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), v| (lo.min(*v), hi.max(*v)))
+    }
+}
+
+/// Joins corners within `tolerance` of each other. The first corner met gives the coordinates.
+fn weld(triangles: &[Triangle], tolerance: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    /// No vertex, or no further one in its cell.
+    const NONE: u32 = u32::MAX;
+    let pitch = tolerance.max(f64::MIN_POSITIVE);
+    let key = |p: DVec3| (p / pitch).floor().as_i64vec3();
+    // Of each cell the vertex met first, and of each vertex the next in its cell.
+    let mut cells: HashMap<I64Vec3, u32> = HashMap::with_capacity(triangles.len() / 2);
+    let mut vertices: Vec<DVec3> = Vec::new();
+    let mut next: Vec<u32> = Vec::new();
+    let mut locate = |p: DVec3| {
+        let home = key(p);
+        let near = (0..27i64).find_map(|k| {
+            let step = I64Vec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+            let mut v = cells.get(&home.saturating_add(step)).copied().unwrap_or(NONE);
+            while v != NONE {
+                if vertices[v as usize].distance(p) <= tolerance {
+                    return Some(v);
+                }
+                v = next[v as usize];
+            }
+            None
+        });
+        near.unwrap_or_else(|| {
+            let index = vertices.len() as u32;
+            vertices.push(p);
+            next.push(NONE);
+            let mut last = *cells.entry(home).or_insert(index);
+            while last != index {
+                let following = next[last as usize];
+                if following == NONE {
+                    next[last as usize] = index;
+                    break;
+                }
+                last = following;
+            }
+            index
+        })
+    };
+    // Most corners are written again with the same digits.
+    let mut known: HashMap<[u64; 3], u32> = HashMap::with_capacity(triangles.len() / 2);
+    let mut find = |p: DVec3| {
+        let digits = p.to_array().map(|c| (c + 0.0).to_bits());
+        *known.entry(digits).or_insert_with(|| locate(p))
+    };
+    let indexed = triangles.iter().map(|t| t.corners.map(&mut find)).collect();
+    (vertices, indexed)
+}

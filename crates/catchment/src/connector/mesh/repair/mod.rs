@@ -1,0 +1,121 @@
+//! A mesh that bounds no solid as it is written, mended where the solid that it means is beyond doubt.
+//!
+//! ```text
+//! weld, divide ─▶ what is wrong? ─▶ nothing: as it is
+//!                       │
+//!                       └▶ doubled ─▶ flat ─▶ divide ─▶ winding ─▶ crowded ─▶ what is wrong? ─▶ crossings: unite, and again
+//! ```
+//!
+//! Each step is a file of its own and says what it changes. Corners stay where they are, but for those that welding joins; new ones arise on edges
+//! and where surfaces cross. [`Repairs`] counts what was done, and how far the surface moved.
+//!
+//! Not promised: holes are not closed, and what is left open, crowded or crossed is refused as without repair.
+
+mod crowded;
+mod doubled;
+mod flat;
+mod short;
+mod unite;
+mod winding;
+
+use super::check;
+use super::crossing::crossings;
+use super::deviation;
+use super::divide::divide;
+use super::indexed::Indexed;
+use super::sides::Sides;
+use super::{MAX_TRIANGLES, MeshProblem};
+use crate::design::Repairs;
+
+/// Most crossings that are united: what crosses more often is no part but a tangle.
+const MOST_CROSSINGS: usize = 20_000;
+/// Most rounds of uniting: rounding the corners of a union may leave a crossing of its own.
+const ROUNDS: usize = 3;
+
+/// Tolerances by which a repair may move the surface: several steps move it by one each, and what moves it farther is no repair.
+const MOST_MOVED: f64 = 20.0;
+
+/// A mesh as far as it could be mended.
+pub(super) struct Mended {
+    pub(super) mesh: Indexed,
+    /// What was done; its deviation in the coordinates of the mesh.
+    pub(super) repairs: Repairs,
+    /// What is still wrong.
+    pub(super) problems: Vec<MeshProblem>,
+}
+
+/// Mends a mesh with which something is wrong.
+pub(super) fn mended(before: &Indexed) -> Mended {
+    let mut mesh = before.clone();
+    let mut repairs = Repairs::default();
+    let mut problems = tidied(&mut mesh, &mut repairs);
+    for _ in 0..ROUNDS {
+        if !needs_union(&problems) || mesh.triangles.len() > MAX_TRIANGLES {
+            break;
+        }
+        let (found, not_looked_at) = crossings(&mesh, MOST_CROSSINGS);
+        if not_looked_at > 0 {
+            break;
+        }
+        let Some(mut united) = unite::united(&mesh) else { break };
+        crowded::part(&mut united);
+        short::collapse(&mut united);
+        // What tidies up after a union is a part of it.
+        let left = tidied(&mut united, &mut Repairs::default());
+        repairs.united += found.len().max(1);
+        (mesh, problems) = (united, left);
+    }
+    if mesh.triangles.is_empty() {
+        // Nothing was left: what was wrong says more.
+        problems = check::problems(before, &Sides::of(&before.triangles));
+    }
+    if problems.is_empty() && !repairs.is_none() {
+        // Walls inside of the solid went: how far they lay from the surface that is left says nothing.
+        let is_less = repairs.united + repairs.doubled > 0;
+        repairs.deviation = deviation::one_sided(&mesh, before);
+        if !is_less {
+            repairs.deviation = repairs.deviation.max(deviation::one_sided(before, &mesh));
+        }
+        if repairs.deviation > MOST_MOVED * before.tolerance {
+            problems = check::problems(before, &Sides::of(&before.triangles));
+        }
+    }
+    Mended { mesh, repairs, problems }
+}
+
+/// Tidies up; what is still wrong.
+fn tidied(mesh: &mut Indexed, repairs: &mut Repairs) -> Vec<MeshProblem> {
+    tidy(mesh, repairs);
+    mesh.compact();
+    if mesh.triangles.is_empty() {
+        return Vec::new();
+    }
+    check::problems(mesh, &Sides::of(&mesh.triangles))
+}
+
+/// Whether a union may help: surfaces cross, or more than two triangles share an edge that could not be parted.
+fn needs_union(problems: &[MeshProblem]) -> bool {
+    let crossing =
+        |p: &MeshProblem| matches!(p, MeshProblem::SelfIntersection { .. } | MeshProblem::NonManifold { .. });
+    let open = |p: &MeshProblem| matches!(p, MeshProblem::Open { .. } | MeshProblem::Winding { .. });
+    problems.iter().any(crossing) && !problems.iter().any(open)
+}
+
+/// Everything that leaves the surface where it is.
+fn tidy(mesh: &mut Indexed, repairs: &mut Repairs) {
+    let doubled = doubled::drop(mesh);
+    repairs.without_area += doubled.without_area;
+    repairs.doubled += doubled.doubled;
+    // A neighbour is known by its sense.
+    repairs.turned += winding::unify(mesh, &Sides::of(&mesh.triangles));
+    repairs.without_area += flat::drop(mesh);
+    // Taking flat triangles away may lay others on each other.
+    repairs.doubled += doubled::drop(mesh).doubled;
+    let sides = divide(mesh);
+    repairs.turned += winding::unify(mesh, &sides);
+    let parted = crowded::part(mesh);
+    repairs.parted += parted;
+    if parted > 0 {
+        repairs.turned += winding::unify(mesh, &Sides::of(&mesh.triangles));
+    }
+}

@@ -1,0 +1,60 @@
+//! A closed mesh described with fewer triangles.
+//!
+//! `manifold-rust` collapses edges whose removal moves the surface by less than a tolerance. What comes out is not believed: its distance from the surface
+//! before is measured both ways ([`deviation`](super::deviation)) and has to keep to what was asked for, and it passes every check of a mesh; if it
+//! does not, a smaller tolerance is tried. Nothing of the surface is left out.
+//!
+//! Not promised: the fewest triangles possible.
+
+use super::MeshProblem;
+use super::check;
+use super::deviation;
+use super::indexed::Indexed;
+use super::sides::Sides;
+use glam::DVec3;
+use manifold_rust::manifold::Manifold;
+use manifold_rust::types::{Error, MeshGL64};
+
+/// Tolerances tried, each half of the one before it.
+const TRIES: usize = 5;
+
+/// A simplified mesh.
+pub(super) struct Simplified {
+    pub(super) mesh: Indexed,
+    /// Largest distance from the surface before, in the coordinates of the mesh.
+    pub(super) deviation: f64,
+}
+
+/// Simplifies a mesh with which nothing is wrong; the surface moves by no more than `most`, in its coordinates.
+pub(super) fn simplified(mesh: &Indexed, most: f64, scale: f64) -> Result<Simplified, Vec<MeshProblem>> {
+    let refused = vec![MeshProblem::NotSimplified { most: most * scale }];
+    let given = MeshGL64 {
+        num_prop: 3,
+        vert_properties: mesh.vertices.iter().flat_map(DVec3::to_array).collect(),
+        tri_verts: mesh.triangles.iter().flatten().map(|k| u64::from(*k)).collect(),
+        ..MeshGL64::default()
+    };
+    let whole = Manifold::from_mesh_gl64(&given);
+    drop(given);
+    if whole.status() != Error::NoError {
+        return Err(refused);
+    }
+    let mut tolerance = most;
+    for _ in 0..TRIES {
+        let fewer = whole.simplify(tolerance);
+        tolerance /= 2.0;
+        if fewer.status() != Error::NoError || fewer.is_empty() {
+            continue;
+        }
+        let result = Indexed::made(&fewer.get_mesh_gl64(-1), mesh.tolerance);
+        let sides = Sides::of(&result.triangles);
+        if !check::problems(&result, &sides).is_empty() {
+            continue;
+        }
+        let deviation = deviation::between(mesh, &result);
+        if deviation <= most {
+            return Ok(Simplified { mesh: result, deviation });
+        }
+    }
+    Err(refused)
+}

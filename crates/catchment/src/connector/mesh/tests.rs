@@ -1,0 +1,246 @@
+//! What is repaired bounds the solid that the sound mesh bounds; what is sound stays as it is, to the bit.
+
+use super::*;
+use crate::connector::convex_hull;
+use proptest::prelude::*;
+
+type Soup = Vec<[DVec3; 3]>;
+
+fn soup(surface: &Surface) -> Soup {
+    surface.triangles().into_iter().map(|t| t.map(|k| surface.vertices[k as usize])).collect()
+}
+
+/// A box from a corner to the other.
+fn block(lo: [f64; 3], hi: [f64; 3]) -> Soup {
+    let pick = |i: u8| {
+        let at = |k: usize| if i >> k & 1 == 0 { lo[k] } else { hi[k] };
+        DVec3::new(at(0), at(1), at(2))
+    };
+    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        .iter()
+        .flat_map(|q: &[u8; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]])
+        .map(|t| t.map(pick))
+        .collect()
+}
+
+/// What became of one body.
+struct Solid {
+    surface: Surface,
+    repairs: Repairs,
+}
+
+fn treated(soup: &Soup, treatment: Treatment) -> Result<Solid, Vec<MeshProblem>> {
+    let place = |triangle| Place { triangle, start: Start::Memory };
+    let list = soup.iter().enumerate().map(|(k, corners)| Triangle { corners: *corners, place: place(k) });
+    let (surface, repairs) = solid(list.collect(), 1.0, treatment)?;
+    Ok(Solid { surface, repairs })
+}
+
+fn repaired(soup: &Soup) -> Solid {
+    treated(soup, Treatment::DEFAULT).unwrap_or_else(|problems| panic!("{problems:?}"))
+}
+
+fn refused(soup: &Soup) -> Vec<MeshProblem> {
+    treated(soup, Treatment::DEFAULT).map(|ready| ready.repairs).unwrap_err()
+}
+
+#[test]
+fn what_is_sound_stays_as_it_is() {
+    let cube = block([0.0; 3], [1.0; 3]);
+    let (kept, ready) = (treated(&cube, Treatment::AS_IT_IS).unwrap(), repaired(&cube));
+    assert_eq!(kept.surface, ready.surface);
+    assert!(ready.repairs.is_none() && kept.repairs.is_none());
+    assert_eq!(from_triangles(&cube).unwrap().surfaces, [ready.surface]);
+}
+
+#[test]
+fn a_triangle_without_area_goes_and_its_neighbour_is_divided() {
+    let mut cube = block([0.0; 3], [1.0; 3]);
+    // The top's first triangle is cut short of its edge, and what is missing is a triangle on a line.
+    let [a, b, c] = cube[2];
+    let middle = a.midpoint(b);
+    cube[2] = [a, middle, c];
+    cube.push([middle, b, c]);
+    cube.push([b, middle, a]);
+    let problems = treated(&cube, Treatment::AS_IT_IS).map(|ready| ready.repairs).unwrap_err();
+    assert!(matches!(problems[0], MeshProblem::ZeroArea { .. }), "{problems:?}");
+    let ready = repaired(&cube);
+    assert!(ready.repairs.without_area == 1 && ready.repairs.deviation < 1e-15, "{:?}", ready.repairs);
+    assert!((ready.surface.volume() - 1.0).abs() < 1e-15);
+    assert_eq!((ready.surface.facets.len(), ready.surface.edges.len()), (14, 13));
+}
+
+#[test]
+fn solids_that_touch_along_an_edge_are_parted() {
+    let touching: Soup = [block([0.0; 3], [1.0; 3]), block([1.0, 1.0, 0.0], [2.0, 2.0, 1.0])].concat();
+    let ready = repaired(&touching);
+    assert!(ready.repairs.parted == 1 && ready.repairs.deviation < 1e-15, "{:?}", ready.repairs);
+    assert!((ready.surface.volume() - 2.0).abs() < 1e-15);
+    // Every edge of both is convex.
+    assert_eq!((ready.surface.vertices.len(), ready.surface.edges.len()), (16, 24));
+}
+
+/// A ring of blocks that touches itself along one edge: both ends of it belong to one fan of triangles.
+#[test]
+fn a_solid_that_touches_itself_is_parted_in_the_middle() {
+    // Around a hole, from (1, 1) to (1, 1): the blocks at (0, 0) and (1, 1) meet along the edge x = y = 1 only.
+    let blocks = [
+        ([0.0, 0.0, 0.0], [1.0, 1.0, 1.0]),
+        ([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]),
+        ([0.0, 0.0, -1.0], [1.0, 1.0, 0.0]),
+        ([1.0, 0.0, -1.0], [2.0, 1.0, 0.0]),
+        ([1.0, 1.0, -1.0], [2.0, 2.0, 0.0]),
+    ];
+    let ready = repaired(&blocks.map(|(lo, hi)| block(lo, hi)).concat());
+    assert!(ready.repairs.doubled > 0 && ready.repairs.parted == 1, "{:?}", ready.repairs);
+    assert!((ready.surface.volume() - 5.0).abs() < 1e-12, "{}", ready.surface.volume());
+}
+
+#[test]
+fn windings_are_made_one() {
+    let mut cube = block([0.0; 3], [1.0; 3]);
+    for k in [1, 7, 8] {
+        cube[k].swap(0, 1);
+    }
+    let ready = repaired(&cube);
+    assert!(ready.repairs.turned == 3 && (ready.surface.volume() - 1.0).abs() < 1e-15);
+    // Inside out as a whole, and a cavity that stays one.
+    let hollow =
+        [block([0.0; 3], [1.0; 3]), block([0.2; 3], [0.6; 3]).iter().map(|t| [t[0], t[2], t[1]]).collect()];
+    let sound = repaired(&hollow.concat());
+    assert!(sound.repairs.is_none() && (sound.surface.volume() - 0.936).abs() < 1e-15);
+    let turned: Soup = block([0.0; 3], [1.0; 3]).iter().map(|t| [t[0], t[2], t[1]]).collect();
+    assert_eq!(repaired(&turned).repairs.turned, 12);
+    // Beside a sound one, a solid that is inside out takes volume away; it is told apart from a cavity.
+    let beside: Soup = block([1.5, 0.0, 0.0], [2.0, 0.5, 0.5]).iter().map(|t| [t[0], t[2], t[1]]).collect();
+    let both = [block([0.0; 3], [1.0; 3]), beside].concat();
+    let problems = treated(&both, Treatment::AS_IT_IS).map(|ready| ready.repairs).unwrap_err();
+    assert!(matches!(problems[..], [MeshProblem::InsideOut { .. }]), "{problems:?}");
+    assert!((repaired(&both).surface.volume() - 1.125).abs() < 1e-15);
+}
+
+#[test]
+fn shells_that_cross_are_united() {
+    let cross = [block([0.0; 3], [1.0; 3]), block([0.25, 0.5, 0.5], [0.75, 1.5, 2.0])].concat();
+    let ready = repaired(&cross);
+    assert!(ready.repairs.united > 0 && ready.repairs.deviation < 1e-12, "{:?}", ready.repairs);
+    // 1 + 0.5 · 1 · 1.5 − 0.5 · 0.5 · 0.5
+    assert!((ready.surface.volume() - 1.625).abs() < 1e-12, "{}", ready.surface.volume());
+    assert!(treated(&cross, Treatment::AS_IT_IS).is_err());
+}
+
+#[test]
+fn a_hole_is_not_closed() {
+    let mut cube = block([0.0; 3], [1.0; 3]);
+    cube.pop();
+    assert!(refused(&cube).iter().all(|p| matches!(p, MeshProblem::Open { .. })));
+    // Neither is what crosses itself and has a hole.
+    let cross = [cube, block([0.3, 0.4, 0.5], [1.3, 1.4, 1.5])].concat();
+    assert!(matches!(refused(&cross)[0], MeshProblem::Open { .. }));
+}
+
+/// A half sphere of so many rings, closed by a disc.
+fn dome(rings: usize) -> Soup {
+    use std::f64::consts::{FRAC_PI_2, TAU};
+    let sectors = 4 * rings;
+    let at = |i: usize, k: usize| {
+        let (up, around) = (FRAC_PI_2 * i as f64 / rings as f64, TAU * (k % sectors) as f64 / sectors as f64);
+        DVec3::new(0.5 * up.sin() * around.cos(), 0.5 * up.sin() * around.sin(), 0.5 * up.cos())
+    };
+    let mut soup = Vec::new();
+    for k in 0..sectors {
+        soup.push([at(0, 0), at(1, k), at(1, k + 1)]);
+        for i in 1..rings {
+            soup.extend([
+                [at(i, k), at(i + 1, k), at(i + 1, k + 1)],
+                [at(i, k), at(i + 1, k + 1), at(i, k + 1)],
+            ]);
+        }
+        soup.push([DVec3::ZERO, at(rings, k + 1), at(rings, k)]);
+    }
+    soup
+}
+
+#[test]
+fn a_simplified_surface_keeps_to_its_tolerance() {
+    let dome = dome(40);
+    for tolerance in [1e-4, 1e-3, 1e-2] {
+        let ready = treated(&dome, Treatment { repair: true, simplify: Some(tolerance) })
+            .unwrap_or_else(|p| panic!("{p:?}"));
+        let [before, after] = ready.repairs.simplified.unwrap();
+        assert!(before == dome.len() && after == ready.surface.facets.len() && after < before, "{after}");
+        let Repairs { deviation, .. } = ready.repairs;
+        assert!(deviation > 0.0 && deviation <= tolerance, "{deviation}");
+        // Every corner is near the sphere, the disc or their edge, and the volume changes by less than area times tolerance.
+        let whole = std::f64::consts::PI / 12.0;
+        assert!(
+            (ready.surface.volume() - whole).abs() < 2.4 * tolerance + 2e-4,
+            "{}",
+            ready.surface.volume()
+        );
+    }
+    let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { repair: true, simplify: Some(1e-3) }).unwrap();
+    assert!(none.repairs.simplified == Some([12, 12]) && none.repairs.deviation < 1e-15);
+}
+
+proptest! {
+    /// A convex solid, spoilt in every way that does not change it, is repaired to what it was.
+    #[test]
+    fn a_spoilt_solid_is_the_sound_one(
+        points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 6..16),
+        flat in prop::collection::vec((0usize..1000, 0usize..3, 0.2..0.8f64), 0..4),
+        turned in prop::collection::vec(0usize..1000, 0..4),
+        doubled in prop::collection::vec(0usize..1000, 0..3),
+    ) {
+        let sphere: Vec<DVec3> = points.into_iter().filter_map(|p| DVec3::from_array(p).try_normalize()).collect();
+        prop_assume!((0..sphere.len()).all(|i| (0..i).all(|j| sphere[i].distance(sphere[j]) > 0.2)));
+        let Ok(hull) = convex_hull(&sphere) else { return Ok(()) };
+        let mut spoilt = soup(&hull);
+        let Ok(sound) = treated(&spoilt, Treatment::AS_IT_IS) else { return Ok(()) };
+        for (k, side, part) in flat {
+            // A side is divided for one neighbour, and a triangle on a line fills the gap.
+            let count = spoilt.len();
+            let [a, b, c] = [0, 1, 2].map(|i| spoilt[k % count][(side + i) % 3]);
+            let on = a.lerp(b, part);
+            prop_assume!(on.distance(a) > 1e-3 && on.distance(b) > 1e-3 && (b - a).cross(c - a).length() > 1e-3);
+            spoilt[k % count] = [a, on, c];
+            spoilt.extend([[on, b, c], [b, on, a]]);
+        }
+        for k in turned {
+            let count = spoilt.len();
+            spoilt[k % count].swap(0, 2);
+        }
+        // Of the same winding: two of opposite ones are a sheet without thickness, which goes.
+        let count = spoilt.len();
+        for k in doubled {
+            spoilt.push(spoilt[k % count]);
+        }
+        let ready = match treated(&spoilt, Treatment::DEFAULT) {
+            Ok(ready) => ready,
+            Err(problems) => return Err(TestCaseError::fail(format!("{problems:?}"))),
+        };
+        // Points on an edge are rounded to it, and what is left of a triangle on a line has slender neighbours.
+        prop_assert!((ready.surface.volume() - sound.surface.volume()).abs() < 1e-12);
+        prop_assert!(ready.repairs.deviation < 1e-9, "{}", ready.repairs.deviation);
+        for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE, DVec3::new(1.0, -2.0, 0.5)] {
+            let height = |s: &Surface| s.vertices.iter().map(|v| v.dot(direction)).fold(f64::NEG_INFINITY, f64::max);
+            prop_assert_eq!(height(&ready.surface), height(&sound.surface));
+        }
+    }
+
+    /// Two boxes that overlap, or not, have the volume of their union.
+    #[test]
+    fn a_union_has_the_volume_of_both_without_what_they_share(
+        shift in prop::array::uniform3(0.05..1.4f64), size in prop::array::uniform3(0.3..1.2f64)
+    ) {
+        let (lo, hi) = (DVec3::from_array(shift), DVec3::from_array(shift) + DVec3::from_array(size));
+        prop_assume!([lo, hi].iter().all(|p| (*p - DVec3::ONE).abs().min_element() > 1e-3));
+        let both = [block([0.0; 3], [1.0; 3]), block(shift, hi.to_array())].concat();
+        let shared = (hi.min(DVec3::ONE) - lo).max(DVec3::ZERO);
+        let expected = 1.0 + size.iter().product::<f64>() - shared.x * shared.y * shared.z;
+        // A box wholly inside of the other crosses nothing and stays as it is: its walls cannot be touched.
+        prop_assume!(hi.max_element() > 1.0);
+        let ready = repaired(&both);
+        prop_assert!((ready.surface.volume() - expected).abs() < 1e-9, "{} {}", ready.surface.volume(), expected);
+    }
+}

@@ -1,0 +1,184 @@
+//! What may be done to a mesh before it is used, and what was done.
+//!
+//! Repairs change a mesh and not the solid that it bounds, but for the deviation that is told; holes are not closed.
+
+use super::{Design, FileSpec, HalfSpec};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What may be done to a mesh before it is used.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Treatment {
+    /// Whether it may be repaired where it bounds a solid beyond doubt. Nothing is done to a mesh that needs nothing.
+    #[serde(default = "yes")]
+    pub repair: bool,
+    /// How far its surface may move where it is described with fewer triangles, in D; `None`: it stays as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simplify: Option<f64>,
+}
+
+const fn yes() -> bool {
+    true
+}
+
+impl Treatment {
+    /// Repaired where needed, not simplified.
+    pub const DEFAULT: Self = Self { repair: true, simplify: None };
+    /// Taken as it is, or refused.
+    pub const AS_IT_IS: Self = Self { repair: false, simplify: None };
+
+    /// Whether it is the default.
+    pub fn is_default(&self) -> bool {
+        *self == Self::DEFAULT
+    }
+}
+
+impl Default for Treatment {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// What was done to a mesh before it was used.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Repairs {
+    /// Triangles without area that were taken away; where such a one lay along an edge, the edge was divided for its neighbour.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub without_area: usize,
+    /// Triangles taken away that lay on others with the same corners.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub doubled: usize,
+    /// Triangles that were turned over.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub turned: usize,
+    /// Edges where solids touched, at which they were parted.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub parted: usize,
+    /// Places at which the surface crossed itself, which were united; counted up to a limit.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub united: usize,
+    /// How many triangles there were and are, where the mesh was simplified.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simplified: Option<[usize; 2]>,
+    /// Largest distance between the surface before and after, in D, as measured at corners, middles of edges and of triangles of both.
+    pub deviation: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl Repairs {
+    /// Whether nothing was done.
+    pub const fn is_none(&self) -> bool {
+        self.without_area + self.doubled + self.turned + self.parted + self.united == 0
+            && self.simplified.is_none()
+    }
+
+    /// Counts what was done to another body, too.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.without_area += other.without_area;
+        self.doubled += other.doubled;
+        self.turned += other.turned;
+        self.parted += other.parted;
+        self.united += other.united;
+        if let Some([before, after]) = other.simplified {
+            let [all, left] = self.simplified.unwrap_or_default();
+            self.simplified = Some([all + before, left + after]);
+        }
+        self.deviation = self.deviation.max(other.deviation);
+    }
+
+    /// As a line, with lengths in D written by `length`.
+    pub fn told(&self, length: impl Fn(f64) -> String) -> String {
+        let mut parts = Vec::new();
+        let mut part = |count: usize, one: &str, many: &str| match count {
+            0 => {}
+            1 => parts.push(format!("1 {one}")),
+            count => parts.push(format!("{count} {many}")),
+        };
+        part(self.without_area, "triangle without area dropped", "triangles without area dropped");
+        part(self.doubled, "doubled triangle dropped", "doubled triangles dropped");
+        part(self.turned, "triangle turned over", "triangles turned over");
+        part(self.parted, "edge parted where solids touch", "edges parted where solids touch");
+        part(self.united, "crossing united", "crossings united");
+        if let Some([before, after]) = self.simplified {
+            parts.push(format!("{before} triangles simplified to {after}"));
+        }
+        let moved = if self.deviation > 0.0 {
+            format!("the surface moved by no more than {}", length(self.deviation))
+        } else {
+            "the surface did not move".to_owned()
+        };
+        format!("{}; {moved}", parts.join(", "))
+    }
+}
+
+impl HalfSpec {
+    /// What was done to its meshes, as a line in the unit of the design; `None` where nothing was.
+    pub fn repairs_told(&self, design: &Design) -> Option<String> {
+        match self {
+            Self::Mesh(file) => told(file, design),
+            Self::Parts(parts) => {
+                let told: Vec<String> = parts
+                    .iter()
+                    .filter_map(|part| {
+                        let file = part.shape.file()?;
+                        Some(format!("{}: {}", file.path.display(), told(file, design)?))
+                    })
+                    .collect();
+                (!told.is_empty()).then(|| told.join("; "))
+            }
+            Self::Pieces(_) | Self::Memory { .. } => None,
+        }
+    }
+}
+
+/// What was done to a mesh file.
+fn told(file: &FileSpec, design: &Design) -> Option<String> {
+    let repairs = &file.content.as_ref()?.repairs;
+    (!repairs.is_none()).then(|| repairs.told(|d| moved(d, design)))
+}
+
+/// How far a surface moved, in millimetres where the design has units, rounded up to two digits.
+fn moved(d: f64, design: &Design) -> String {
+    let up = |value: f64| {
+        let digit = 10f64.powf(value.log10().floor() - 1.0);
+        format!("{:.1e}", (value / digit).ceil() * digit)
+    };
+    match design.unit {
+        Some(unit) => format!("{} mm", up(d * design.width * unit.metres() * 1e3)),
+        None => format!("{} D", up(d)),
+    }
+}
+
+impl fmt::Display for Repairs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.told(|d| format!("{d:.1e} D")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_done_is_one_line() {
+        let mut repairs = Repairs { without_area: 12, united: 1, deviation: 2e-6, ..Repairs::default() };
+        assert_eq!(
+            repairs.to_string(),
+            "12 triangles without area dropped, 1 crossing united; the surface moved by no more than 2.0e-6 D"
+        );
+        repairs = Repairs { simplified: Some([9, 4]), ..Repairs::default() };
+        assert_eq!(repairs.to_string(), "9 triangles simplified to 4; the surface did not move");
+        assert!(!repairs.is_none() && Repairs::default().is_none());
+    }
+
+    #[test]
+    fn only_what_was_done_is_written() {
+        let json = serde_json::to_string(&Repairs { turned: 2, ..Repairs::default() }).unwrap();
+        assert_eq!(json, r#"{"turned":2,"deviation":0.0}"#);
+        assert_eq!(serde_json::from_str::<Treatment>("{}").unwrap(), Treatment::DEFAULT);
+    }
+}
