@@ -4,9 +4,7 @@
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
 use catchment::connector::{Connector, FileBytes, Source, stl};
-use catchment::design::{
-    Design, FileSpec, FileUnit, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, Treatment,
-};
+use catchment::design::{Design, FileSpec, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, Treatment};
 use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
