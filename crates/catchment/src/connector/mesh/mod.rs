@@ -376,7 +376,7 @@ impl Triangles {
             cut::triangles(corners)
         };
         let first = self.list.len();
-        let at = corners[0].into();
+        let at = corners.first().copied().unwrap_or_default().into();
         let cut = cut.ok_or_else(|| vec![MeshProblem::NotSimple { triangle: first, at }])?;
         self.list.extend(cut.into_iter().enumerate().map(|(k, ids)| Triangle {
             corners: ids.map(|id| corners[id]),
