@@ -244,3 +244,30 @@ proptest! {
         prop_assert!((ready.surface.volume() - expected).abs() < 1e-9, "{} {}", ready.surface.volume(), expected);
     }
 }
+
+proptest! {
+    /// Tetrahedra with corners on a small lattice, which touch in every way: what is not refused has at least the volume of the largest and at
+    /// most that of all.
+    #[test]
+    fn tangles_are_united_or_refused(
+        corners in prop::collection::vec(prop::array::uniform4(prop::array::uniform3(0u8..4)), 2..5)
+    ) {
+        let mut soup = Soup::new();
+        let (mut largest, mut all) = (0.0, 0.0);
+        for four in corners {
+            let [a, b, c, d] = four.map(|p| DVec3::from_array(p.map(f64::from)) / 3.0);
+            let six = (b - a).cross(c - a).dot(d - a);
+            if six.abs() < 1e-3 {
+                continue;
+            }
+            let (b, c) = if six > 0.0 { (c, b) } else { (b, c) };
+            soup.extend([[a, b, c], [a, c, d], [c, b, d], [b, a, d]]);
+            largest = f64::max(largest, six.abs() / 6.0);
+            all += six.abs() / 6.0;
+        }
+        if let (Ok(ready), false) = (treated(&soup, Treatment::DEFAULT), soup.is_empty()) {
+            let volume = ready.surface.volume();
+            prop_assert!(volume > largest - 1e-9 && volume < all + 1e-9, "{} of {} to {}", volume, largest, all);
+        }
+    }
+}
