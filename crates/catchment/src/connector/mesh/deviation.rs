@@ -12,13 +12,8 @@ use super::indexed::Indexed;
 use super::tree::{Tree, around};
 use glam::DVec3;
 
-/// The larger of both one-sided distances, in the coordinates of the meshes.
-pub(super) fn between(a: &Indexed, b: &Indexed) -> f64 {
-    one_sided(a, b).max(one_sided(b, a))
-}
-
-/// The largest distance of a point of `from` to `to`.
-pub(super) fn one_sided(from: &Indexed, to: &Indexed) -> f64 {
+/// The largest distance of a point of `from` to `to`; where it is more than `most`, the first that is.
+pub(super) fn one_sided(from: &Indexed, to: &Indexed, most: f64) -> f64 {
     const ROUNDING: f64 = 1e-6;
     let Some(target) = Target::of(to) else { return f64::INFINITY };
     let mut seen = vec![false; from.vertices.len()];
@@ -36,6 +31,9 @@ pub(super) fn one_sided(from: &Indexed, to: &Indexed) -> f64 {
             let (near, distance) = target.nearest(point, last);
             last = near;
             largest = largest.max(distance);
+            if largest > most {
+                return largest;
+            }
         }
     }
     // What measuring itself rounds, relative to what welding joins: 1e-12 of the size.

@@ -38,7 +38,7 @@ use std::fmt;
 /// Most triangles of a half as it is used: the largest for which a motion was measured to take seconds rather than minutes. Docking faces need
 /// hundreds, as CAD exports them ten thousands.
 pub const MAX_TRIANGLES: usize = 200_000;
-/// Most triangles of a file that is simplified: what is measured to take a minute and 4 GiB.
+/// Most triangles of a file that is simplified: measured to take a minute and a half and 3.3 GiB.
 pub const MOST_READ: usize = 5_000_000;
 /// Bytes that reading, repairing and simplifying take for each triangle, as measured.
 const BYTES_PER_TRIANGLE: u64 = 900;

@@ -8,7 +8,7 @@
 
 use super::MeshProblem;
 use super::check;
-use super::deviation;
+use super::deviation::one_sided;
 use super::indexed::Indexed;
 use super::sides::Sides;
 use glam::DVec3;
@@ -47,12 +47,13 @@ pub(super) fn simplified(mesh: &Indexed, most: f64, scale: f64) -> Result<Simpli
             continue;
         }
         let result = Indexed::made(&fewer.get_mesh_gl64(-1), mesh.tolerance);
-        let sides = Sides::of(&result.triangles);
-        if !check::problems(&result, &sides).is_empty() {
+        let deviation = one_sided(mesh, &result, most);
+        if deviation > most {
             continue;
         }
-        let deviation = deviation::between(mesh, &result);
-        if deviation <= most {
+        let deviation = deviation.max(one_sided(&result, mesh, most));
+        let is_sound = || check::problems(&result, &Sides::of(&result.triangles)).is_empty();
+        if deviation <= most && is_sound() {
             return Ok(Simplified { mesh: result, deviation });
         }
     }

@@ -20,7 +20,7 @@ mod winding;
 
 use super::check;
 use super::crossing::crossings;
-use super::deviation;
+use super::deviation::one_sided;
 use super::divide::divide;
 use super::indexed::Indexed;
 use super::sides::Sides;
@@ -72,9 +72,9 @@ pub(super) fn mended(before: &Indexed) -> Mended {
     if problems.is_empty() && !repairs.is_none() {
         // Walls inside of the solid went: how far they lay from the surface that is left says nothing.
         let is_less = repairs.united + repairs.doubled > 0;
-        repairs.deviation = deviation::one_sided(&mesh, before);
+        repairs.deviation = one_sided(&mesh, before, f64::INFINITY);
         if !is_less {
-            repairs.deviation = repairs.deviation.max(deviation::one_sided(before, &mesh));
+            repairs.deviation = repairs.deviation.max(one_sided(before, &mesh, f64::INFINITY));
         }
         if repairs.deviation > MOST_MOVED * before.tolerance {
             problems = check::problems(before, &Sides::of(&before.triangles));
