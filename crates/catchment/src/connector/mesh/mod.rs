@@ -19,6 +19,7 @@ mod deviation;
 mod divide;
 mod indexed;
 mod point;
+mod problem;
 mod repair;
 mod shells;
 mod sides;
@@ -26,14 +27,15 @@ mod simplify;
 mod tree;
 
 pub use point::Point;
+pub(super) use problem::MAX_REPORTED;
+pub use problem::{MeshProblem, Place, Start};
 
-use super::source::UnitProblem;
 use super::{Half, Surface};
-use crate::design::{LengthUnit, Repairs, Treatment};
+use crate::design::{Repairs, Treatment};
 use crate::exec::{Bytes, Exec};
 use glam::DVec3;
 use indexed::Indexed;
-use std::fmt;
+use problem::Reported;
 
 /// Most triangles of a half as it is used: the largest for which a motion was measured to take seconds rather than minutes. Docking faces need
 /// hundreds, as CAD exports them ten thousands.
@@ -45,8 +47,6 @@ const BYTES_PER_TRIANGLE: u64 = 900;
 /// Corners closer than this, relative to the largest coordinate, are one: ten times the rounding of single
 /// precision.
 pub const WELD: f64 = 1e-6;
-/// Most problems reported of one kind.
-pub(super) const MAX_REPORTED: usize = 5;
 /// Widths of a half, in D, that can be meant.
 const PLAUSIBLE_WIDTH: std::ops::RangeInclusive<f64> = 0.25..=4.0;
 
@@ -55,282 +55,6 @@ const PLAUSIBLE_WIDTH: std::ops::RangeInclusive<f64> = 0.25..=4.0;
 pub(super) struct Triangle {
     pub(super) corners: [DVec3; 3],
     pub(super) place: Place,
-}
-
-/// Where a triangle stands in its file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
-    /// Which triangle, from 0.
-    pub triangle: usize,
-    /// Its first line (text, from 1) or first byte (binary, from 0).
-    pub start: Start,
-}
-
-/// Where something begins in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
-    /// Line of a text, from 1.
-    Line(usize),
-    /// Byte of a binary file, from 0.
-    Byte(usize),
-    /// In no file: the triangle was given in memory.
-    Memory,
-    /// In no file: the triangle was made when the mesh was repaired.
-    Made,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.start {
-            Start::Line(line) => write!(f, "triangle {} (line {line})", self.triangle),
-            Start::Byte(byte) => write!(f, "triangle {} (byte {byte})", self.triangle),
-            Start::Memory => write!(f, "triangle {}", self.triangle),
-            Start::Made => write!(f, "triangle {} of the repaired mesh", self.triangle),
-        }
-    }
-}
-
-/// One reason why triangles are no half of a connector.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MeshProblem {
-    /// There is no such file.
-    #[error("there is no such file; a path is relative to the folder of the design file")]
-    NoFile,
-    /// The file could not be read.
-    #[error("cannot be read: {message}")]
-    Io {
-        /// What the system says.
-        message: String,
-    },
-    /// Nothing in it.
-    #[error("the file is empty")]
-    Empty,
-    /// A binary file shorter or longer than its header claims.
-    #[error(
-        "the header announces {triangles} triangles, which end at byte {expected}, but the file has {found} bytes: {}",
-        if found < expected { "it was cut off; export it again" } else { "it carries something else; export it again" }
-    )]
-    Length {
-        /// Triangles announced.
-        triangles: u64,
-        /// Bytes needed for them.
-        expected: u64,
-        /// Bytes there are.
-        found: u64,
-    },
-    /// Too short for a header, and no text either.
-    #[error("{found} bytes are neither ASCII STL (which begins with `solid`) nor a binary header (84 bytes)")]
-    NotStl {
-        /// Bytes there are.
-        found: u64,
-    },
-    /// More triangles than one half may have.
-    #[error(
-        "{count} triangles, more than the {MAX_TRIANGLES} that a half may have: write simplify = \"0.01 mm\" beside the file, which says how far the \
-         surface may move, or export the mating faces with a coarser tolerance"
-    )]
-    TooMany {
-        /// How many there are, as far as is known.
-        count: u64,
-    },
-    /// More triangles than are read at all.
-    #[error(
-        "{count} triangles, more than the {MOST_READ} that are simplified: export the mesh with a coarser tolerance"
-    )]
-    TooManyToSimplify {
-        /// How many there are, as far as is known.
-        count: u64,
-    },
-    /// More triangles than one half may have, although it was simplified.
-    #[error(
-        "{count} triangles are left, more than the {MAX_TRIANGLES} that a half may have: let simplify move the surface farther"
-    )]
-    TooManyLeft {
-        /// How many are left.
-        count: usize,
-    },
-    /// Fewer triangles do not bound the same solid closely enough.
-    #[error(
-        "no mesh with fewer triangles keeps to {most:.1e} D of this one: leave simplify out, or let it move the surface farther"
-    )]
-    NotSimplified {
-        /// How far the surface may move, in D.
-        most: f64,
-    },
-    /// It would take more memory than there is.
-    #[error(
-        "{count} triangles need {needed} of memory, more than the {budget} that are free: export the mesh with a coarser tolerance"
-    )]
-    Memory {
-        /// How many triangles there are.
-        count: usize,
-        /// Bytes needed.
-        needed: Bytes,
-        /// Bytes that may be used.
-        budget: Bytes,
-    },
-    /// A text file too long to hold an acceptable mesh.
-    #[error("{bytes} bytes, more than the {most} that are read: export a coarser mesh, or a binary STL")]
-    TooLong {
-        /// Size of the file.
-        bytes: u64,
-        /// Bytes that are read.
-        most: u64,
-    },
-    /// Text that is no STL.
-    #[error("line {line}: expected {expected}, found {found}")]
-    Syntax {
-        /// Line, from 1.
-        line: usize,
-        /// What the format wants there.
-        expected: &'static str,
-        /// What stands there, shortened.
-        found: String,
-    },
-    /// No PLY, or a broken one.
-    #[error("cannot be read as PLY: {message}")]
-    NotPly {
-        /// Where and why.
-        message: String,
-    },
-    /// No 3MF, or a broken one.
-    #[error("cannot be read as 3MF: {message}")]
-    NotThreeMf {
-        /// Where and why.
-        message: String,
-    },
-    /// The unit of its coordinates is not known.
-    #[error(transparent)]
-    UnitOf(#[from] UnitProblem),
-    /// Something else, which the first bytes tell.
-    #[error("this is {what}")]
-    Foreign {
-        /// What it is, and what to do about it.
-        what: &'static str,
-    },
-    /// A face of more than three corners that cannot be cut into triangles.
-    #[error(
-        "the border of the face that triangle {triangle} begins, at {at}, crosses itself, or has no area: triangulate the mesh when it is exported"
-    )]
-    NotSimple {
-        /// The number that its first triangle would have.
-        triangle: usize,
-        /// Its first corner.
-        at: Point,
-    },
-    /// A file without triangles.
-    #[error("the file holds no triangles")]
-    NoTriangles,
-    /// A coordinate that is no number.
-    #[error("{place} has a corner that is not finite, {at}")]
-    NotFinite {
-        /// Which triangle.
-        place: Place,
-        /// The corner.
-        at: Point,
-    },
-    /// A triangle without area.
-    #[error("{place} at {at} has no area: its corners fall together or lie on a line")]
-    ZeroArea {
-        /// Which triangle.
-        place: Place,
-        /// One of its corners.
-        at: Point,
-    },
-    /// An edge with a triangle on one side only.
-    #[error("the mesh is open along the edge of {place} from {from} to {to}: close the hole")]
-    Open {
-        /// The triangle on the one side.
-        place: Place,
-        /// One end.
-        from: Point,
-        /// The other end.
-        to: Point,
-    },
-    /// An edge with more than two triangles.
-    #[error(
-        "{count} triangles meet along the edge from {from} to {to}: separate or join the solids that touch there"
-    )]
-    NonManifold {
-        /// How many.
-        count: usize,
-        /// One end.
-        from: Point,
-        /// The other end.
-        to: Point,
-    },
-    /// Two neighbours wound in opposite senses.
-    #[error("{first} and {second} are wound in opposite senses at {at}: unify the normals")]
-    Winding {
-        /// One of them.
-        first: Place,
-        /// The other.
-        second: Place,
-        /// The middle of the edge between them.
-        at: Point,
-    },
-    /// The mesh, or a part of it that lies in no other, is wound inward.
-    #[error("the mesh is turned inside out at {at}: flip its normals")]
-    InsideOut {
-        /// One of its corners.
-        at: Point,
-    },
-    /// Two triangles cross.
-    #[error("{first} and {second} cross near {at}: unite the solids before exporting")]
-    SelfIntersection {
-        /// One of them.
-        first: Place,
-        /// The other.
-        second: Place,
-        /// Where.
-        at: Point,
-    },
-    /// More triangles may cross than those before it.
-    #[error("and {count} triangles were not looked at, which may cross others too")]
-    NotLookedAt {
-        /// How many.
-        count: usize,
-    },
-    /// The size makes no sense beside D.
-    #[error(
-        "the half is {width:.3e} D wide; a connector's half is about 1 D: check the mesh's unit and the design's width"
-    )]
-    Unit {
-        /// Width in D.
-        width: f64,
-    },
-    /// The scale from the file's coordinates to D is no positive number.
-    #[error("the scale {scale} from the file's coordinates to D must be a number above 0")]
-    Scale {
-        /// The scale.
-        scale: f64,
-    },
-    /// More problems of the kind before it.
-    #[error("and {count} more like the last")]
-    More {
-        /// How many.
-        count: usize,
-    },
-}
-
-impl MeshProblem {
-    /// The same with the unit of its coordinates.
-    #[must_use]
-    pub fn in_unit(mut self, of: Option<LengthUnit>) -> Self {
-        match &mut self {
-            Self::NotSimple { at, .. }
-            | Self::NotFinite { at, .. }
-            | Self::ZeroArea { at, .. }
-            | Self::Winding { at, .. }
-            | Self::InsideOut { at }
-            | Self::SelfIntersection { at, .. } => at.unit = of,
-            Self::Open { from, to, .. } | Self::NonManifold { from, to, .. } => {
-                (from.unit, to.unit) = (of, of);
-            }
-            _ => {}
-        }
-        self
-    }
 }
 
 /// Most triangles that are read.
@@ -520,33 +244,6 @@ fn sound_numbers(bodies: &[Vec<Triangle>]) -> Result<(), Vec<MeshProblem>> {
             .map(|(t, corner)| MeshProblem::NotFinite { place: t.place, at: (*corner).into() }),
     );
     reported.done()
-}
-
-/// Collects problems, a few of each kind.
-#[derive(Default)]
-struct Reported {
-    problems: Vec<MeshProblem>,
-}
-
-impl Reported {
-    /// Appends the problems of one kind, of which only the first few are spelled out.
-    fn extend(&mut self, kind: impl IntoIterator<Item = MeshProblem>) {
-        let mut rest = 0;
-        for (k, problem) in kind.into_iter().enumerate() {
-            if k < MAX_REPORTED || matches!(problem, MeshProblem::NotLookedAt { .. }) {
-                self.problems.push(problem);
-            } else {
-                rest += 1;
-            }
-        }
-        if rest > 0 {
-            self.problems.push(MeshProblem::More { count: rest });
-        }
-    }
-
-    fn done(self) -> Result<(), Vec<MeshProblem>> {
-        if self.problems.is_empty() { Ok(()) } else { Err(self.problems) }
-    }
 }
 
 #[cfg(test)]
