@@ -134,7 +134,7 @@ mod tests {
             vec![DVec2::new(x, y), DVec2::new(x + w, y), DVec2::new(x + w, y + h), DVec2::new(x, y + h)]
         };
         let area = parts.iter().map(|part| part[2] * part[3]).sum();
-        Zraa::Region { polygons: parts.iter().copied().map(tile).collect(), area }
+        Zraa::Region { polygons: parts.iter().copied().map(tile).collect(), area, seam: 0.0 }
     }
 
     #[test]

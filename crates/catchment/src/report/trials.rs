@@ -206,7 +206,7 @@ mod tests {
                 Trial { error, outcome: if aligned { Outcome::Aligned } else { Outcome::Missed }, inside }
             })
             .collect();
-        let region = Trials { zraa: Zraa::Region { polygons, area: 1.0 }, grid, last, ..line };
+        let region = Trials { zraa: Zraa::Region { polygons, area: 1.0, seam: 0.0 }, grid, last, ..line };
         let picture = crate::report::figure::trials(&design, &region);
         look("trials-region", &picture);
         assert!(picture.svg().contains("on the wrong side") && !picture.svg().contains("NaN"));

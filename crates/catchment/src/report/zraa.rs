@@ -161,7 +161,7 @@ impl ZraaBody {
                 onaa_d: square.edge,
                 nilsson: nilsson.map(NilssonReport::from),
             },
-            Zraa::Region { polygons, area } => ZraaFound::Region {
+            Zraa::Region { polygons, area, .. } => ZraaFound::Region {
                 area_d2: *area,
                 circle_area_d2: bounds,
                 onaa_d: square.edge,
@@ -271,8 +271,12 @@ mod tests {
         let corners = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
         let center = DVec2::new(0.25, 0.25);
         let square = Square { edge: 0.5, center, centered_edge: 0.0 };
-        let region =
-            ZraaReport::new(&design, &Zraa::Region { polygons: vec![corners], area: 0.5 }, &square, None);
+        let region = ZraaReport::new(
+            &design,
+            &Zraa::Region { polygons: vec![corners], area: 0.5, seam: 0.0 },
+            &square,
+            None,
+        );
         let json: serde_json::Value = serde_json::from_str(&region.to_json().unwrap()).unwrap();
         assert_eq!(
             (&json["kind"], &json["area_d2"], &json["polygons_d"][0][1][0]),

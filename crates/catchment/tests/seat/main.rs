@@ -278,8 +278,16 @@ fn equal_chamfers_have_an_n_gon_as_exact_region() {
         let right = peg.captured();
         for problem in [peg.pieces(), peg.triangles()].map(|source| peg.problem(source)) {
             match zraa::run(problem.pair(), &zraa::Settings::default(), &Exec::new()) {
-                Ok(Zraa::Region { area, .. }) => {
+                Ok(ref region @ Zraa::Region { area, .. }) => {
                     assert!((area - right).abs() < 1e-4 * right, "{peg:?}: {area} for {right}");
+                    // No gap between tiles counts as border: a square fits into the circle inside of the n-gon.
+                    let square = zraa::Square::of(region, &Exec::new()).unwrap();
+                    let inner = peg.inside(&at(0.0, 0.0)) * 2f64.sqrt();
+                    assert!(
+                        square.edge > inner - 1e-3 && square.edge < right.sqrt(),
+                        "{peg:?}: {square:?}, {inner}"
+                    );
+                    assert!(square.centered_edge > inner - 1e-3, "{peg:?}: {square:?}, {inner}");
                 }
                 Err(zraa::ZraaError::Disputed { .. }) => refused += 1,
                 other => panic!("{peg:?}: {other:?}"),

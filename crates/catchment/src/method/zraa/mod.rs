@@ -85,6 +85,8 @@ pub enum Zraa {
         polygons: Vec<Vec<DVec2>>,
         /// Their area, in D².
         area: f64,
+        /// The seam with which they were cut, in D: gaps of some of it between them are none.
+        seam: f64,
     },
 }
 
@@ -229,7 +231,7 @@ fn region(pair: &Pair, sheets: &[sheet::Sheet], seam: f64, exec: &Exec) -> Resul
         return Err(ZraaError::Tangled { cells: cells.len(), seam });
     }
     let area = polygons.iter().map(|p| sheet::area(p)).sum();
-    Ok(Zraa::Region { polygons, area })
+    Ok(Zraa::Region { polygons, area, seam })
 }
 
 #[cfg(test)]

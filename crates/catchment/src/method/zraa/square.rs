@@ -29,6 +29,8 @@ use rstar::{AABB, RTree};
 /// Sides nearer to each other than this, in D, are the two sides of one seam; gaps below it are closed. Above the slivers that cutting
 /// leaves out.
 const JOIN: f64 = 1e-9;
+/// The same in seams of a region that was cut with coarse ones: what cutting leaves out is some tens of them wide.
+const SEAMS: f64 = 40.0;
 /// Slack of comparisons, in D: a few roundings of numbers of the order of 1.
 const ROUNDING: f64 = 1e-13;
 
@@ -44,7 +46,7 @@ pub struct Square {
 }
 
 impl Square {
-    /// How far the edge may be from that of the tiling, in D.
+    /// How far the edge may be from that of the tiling, in D; of a region with coarse seams, some tens of those.
     pub const TOLERANCE: f64 = 1e-8;
 
     /// The square of a zero-rotation area of acceptance; of an interval, the interval.
@@ -58,7 +60,7 @@ impl Square {
                 let centered_edge = 2.0 * to.min(-from).max(0.0);
                 Ok(Self { edge: to - from, center: along * (from + to) / 2.0, centered_edge })
             }
-            Zraa::Region { polygons, .. } => Self::within(polygons, exec),
+            Zraa::Region { polygons, seam, .. } => Search::new(polygons, JOIN.max(SEAMS * seam)).run(exec),
         }
     }
 
@@ -67,7 +69,7 @@ impl Square {
     /// # Errors
     /// If it is cancelled.
     pub fn within(polygons: &[Vec<DVec2>], exec: &Exec) -> Result<Self, Cancelled> {
-        Search::new(polygons).run(exec)
+        Search::new(polygons, JOIN).run(exec)
     }
 }
 
@@ -138,6 +140,8 @@ struct Search<'a> {
     polygons: &'a [Vec<DVec2>],
     index: RTree<Indexed>,
     border: Vec<Stretch>,
+    /// Sides nearer to each other than this are the two sides of one seam.
+    join: f64,
     low: DVec2,
     high: DVec2,
 }
@@ -168,23 +172,23 @@ impl Best {
 }
 
 impl<'a> Search<'a> {
-    fn new(polygons: &'a [Vec<DVec2>]) -> Self {
+    fn new(polygons: &'a [Vec<DVec2>], join: f64) -> Self {
         let boxed = |(k, polygon): (usize, &Vec<DVec2>)| {
             let (low, high) = bounds(polygon);
             GeomWithData::new(Rectangle::from_corners(low.to_array(), high.to_array()), k)
         };
         let index = RTree::bulk_load(polygons.iter().enumerate().map(boxed).collect());
         let (low, high) = bounds(polygons.iter().flatten());
-        let mut search = Self { polygons, index, border: Vec::new(), low, high };
+        let mut search = Self { polygons, index, border: Vec::new(), join, low, high };
         for k in 0..polygons.len() {
             search.border_of(k);
         }
         search
     }
 
-    /// Polygons whose boxes come within [`JOIN`] of this one.
+    /// Polygons whose boxes come within a seam of this one.
     fn around(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = usize> + '_ {
-        let boxed = AABB::from_corners((low - JOIN).to_array(), (high + JOIN).to_array());
+        let boxed = AABB::from_corners((low - self.join).to_array(), (high + self.join).to_array());
         self.index.locate_in_envelope_intersecting(boxed).map(|found| found.data)
     }
 
@@ -192,19 +196,21 @@ impl<'a> Search<'a> {
     fn border_of(&mut self, own: usize) {
         for [from, to] in sides(&self.polygons[own]) {
             let length = from.distance(to);
-            if length <= JOIN {
+            if length <= self.join {
                 continue;
             }
             let along = (to - from) / length;
             let mut covered: Vec<[f64; 2]> = Vec::new();
             for k in self.around(from.min(to), from.max(to)).filter(|&k| k != own) {
-                covered.extend(sides(&self.polygons[k]).filter_map(|side| beside(side, from, along, length)));
+                covered.extend(
+                    sides(&self.polygons[k]).filter_map(|side| beside(side, from, along, length, self.join)),
+                );
             }
             covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
             covered.push([length, length]);
             let mut reached = 0.0;
             for [start, end] in covered {
-                if start - reached > JOIN {
+                if start - reached > self.join {
                     self.border.push(Stretch::new(from + along * reached, from + along * start));
                 }
                 reached = end.max(reached);
@@ -215,7 +221,7 @@ impl<'a> Search<'a> {
     /// Whether a place is accepted, or on a seam.
     fn holds(&self, p: DVec2) -> bool {
         let inside = |polygon: &[DVec2]| {
-            sides(polygon).all(|[a, b]| (b - a).perp_dot(p - a) >= -JOIN * (b - a).length())
+            sides(polygon).all(|[a, b]| (b - a).perp_dot(p - a) >= -self.join * (b - a).length())
         };
         self.around(p, p).any(|k| inside(&self.polygons[k]))
     }
@@ -307,7 +313,7 @@ fn highest(planes: &[Plane], middle: DVec2, corners: &[DVec2; 4], cap: f64) -> (
 }
 
 /// Which part of a side, as distances from its start, another side covers from across: none where it runs the same way, or is too far.
-fn beside([c, d]: [DVec2; 2], from: DVec2, along: DVec2, length: f64) -> Option<[f64; 2]> {
+fn beside([c, d]: [DVec2; 2], from: DVec2, along: DVec2, length: f64, join: f64) -> Option<[f64; 2]> {
     let place = |p: DVec2| (along.dot(p - from), along.perp_dot(p - from));
     let ((tc, oc), (td, od)) = (place(c), place(d));
     let (start, end) = (td.max(0.0), tc.min(length));
@@ -315,7 +321,7 @@ fn beside([c, d]: [DVec2; 2], from: DVec2, along: DVec2, length: f64) -> Option<
         return None;
     }
     let off = |t: f64| oc + (od - oc) * (t - tc) / (td - tc);
-    (off(start).abs() <= JOIN && off(end).abs() <= JOIN).then_some([start, end])
+    (off(start).abs() <= join && off(end).abs() <= join).then_some([start, end])
 }
 
 fn sides(polygon: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> + '_ {

@@ -101,7 +101,7 @@ mod tests {
             DVec2::new(-0.5, 0.5),
         ]];
         let square = Square { edge: 1.0, center: DVec2::ZERO, centered_edge: 1.0 };
-        let picture = region(&design(free), &Zraa::Region { polygons, area: 1.0 }, &square);
+        let picture = region(&design(free), &Zraa::Region { polygons, area: 1.0, seam: 0.0 }, &square);
         look("zraa-region", &picture);
         assert!(
             picture.svg().contains("1.000000 D² accepted, ONAA 1.000 D") && picture.svg().contains("y [mm]")
