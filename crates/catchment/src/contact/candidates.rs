@@ -20,7 +20,7 @@
 use super::Pair;
 use super::element::{Element, Features, Meeting};
 use super::plan::Plan;
-use super::shape::{Ridge, Shape};
+use super::shape::{INSIDE, Ridge, Shape};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Sine of the angle by which a feature may fail to support a normal and still count, at least: rounding.
@@ -266,6 +266,13 @@ pub(super) fn edge_edge(
     }
     let edges = EdgesAt { w: *rotation * m.along, moving: m };
     let normal = edges.normal(f, seen, slack).filter(|n| n.z > lowest)?;
+    if slack > FLUSH {
+        // As of corners: see `Shape::supports`.
+        let own = rotation.transpose() * normal;
+        let outside = f.normals.iter().any(|n| normal.dot(*n) > -INSIDE)
+            && m.normals.iter().any(|n| own.dot(*n) < INSIDE);
+        outside.then_some(())?;
+    }
     let offset = normal.dot(*rotation * moving.at(m.ends[0]) - fixed.at(f.ends[0]));
     let features = Features::EdgeEdge { fixed: f.ends, moving: m.ends };
     Some(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset })

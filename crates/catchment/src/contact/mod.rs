@@ -11,8 +11,10 @@
 //! corner of one half on a facet of the other, or from two crossing edges. [`brute`] writes that definition
 //! down in plain loops and judges every fast path.
 
+mod bounds;
 pub mod brute;
 mod candidates;
+mod cone;
 mod element;
 mod envelope;
 pub(crate) mod face;
@@ -96,8 +98,8 @@ impl Pair {
         let count = facets(&fixed) * facets(&moving);
         let lists = count < MOST_LISTED;
         let trees = (count >= MANY).then(|| Trees {
-            fixed: Tree::over(&fixed, &fixed_shapes),
-            moving: Tree::over(&moving, &moving_shapes),
+            fixed: Tree::over(&fixed_shapes, true),
+            moving: Tree::over(&moving_shapes, false),
         });
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);

@@ -8,10 +8,11 @@
 //! The answers are those of the list of all elements ([`super::turned`]): the same elements are tried where they may count, and among
 //! equals the first in the order of that list counts. Two nodes may tie within rounding: what is [`SURE`] to be lower is left out.
 
+use super::bounds::{Four, One, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
 use super::element::Element;
 use super::shape::Shape;
-use super::tree::{Leaf, Part, Placed, Tree};
+use super::tree::{Child, Kind, Leaf, MARGIN, Node, SLACKS, Tree};
 use super::turned::VERTICAL;
 use super::{Pair, brute::SEAM};
 use glam::{DMat3, DVec2, DVec3};
@@ -30,14 +31,26 @@ const LOOSE: f64 = 1e-5;
 
 /// Which kinds of features meet, in the order of the list of all elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
+pub(super) enum Meets {
     FacetCorner,
     CornerFacet,
     EdgeEdge,
 }
 
 /// The place of an element in the list of all.
-pub(super) type Number = (Kind, Candidate);
+pub(super) type Number = (Meets, Candidate);
+
+/// The element that two features may be.
+fn meeting(fixed: &Leaf, moving: &Leaf) -> Option<Number> {
+    let meets = match (fixed.kind, moving.kind) {
+        (Kind::Facet, Kind::Corner) => Meets::FacetCorner,
+        (Kind::Corner, Kind::Facet) => Meets::CornerFacet,
+        (Kind::Ridge, Kind::Ridge) => Meets::EdgeEdge,
+        _ => return None,
+    };
+    let shapes = [fixed.shape, moving.shape];
+    Some((meets, Candidate { shapes, fixed: fixed.index, moving: moving.index }))
+}
 
 /// The trees of both halves.
 #[derive(Debug, Clone)]
@@ -77,11 +90,60 @@ struct Turned<'a> {
     rotation: DMat3,
     back: DMat3,
     counts: Counts,
+    /// Which cones hold.
+    cones: Option<usize>,
+    /// Sine and cosine of how far beyond the horizontal normals may lean.
+    overhang: [f32; 2],
+    /// Where the moving half is, and by how much bounds may be wrong there.
+    placed: Placed,
+    rounding: f32,
 }
 
 impl<'a> Turned<'a> {
-    fn new(pair: &'a Pair, trees: &'a Trees, rotation: &DMat3, counts: Counts) -> Self {
-        Self { pair, trees, rotation: *rotation, back: rotation.transpose(), counts }
+    fn new(pair: &'a Pair, trees: &'a Trees, rotation: &DMat3, position: DVec3, counts: Counts) -> Self {
+        let cones = SLACKS.iter().position(|slack| counts.slack <= *slack);
+        let sine = (-counts.lowest).clamp(0.0, 1.0);
+        let overhang = [sine as f32, (1.0 - sine * sine).sqrt() as f32];
+        let extent = trees.fixed.extent + 2.0 * trees.moving.extent + position.abs().max_element();
+        let (placed, rounding) = (Placed::new(rotation, position), rounding(extent));
+        let (rotation, back) = (*rotation, rotation.transpose());
+        Self { pair, trees, rotation, back, counts, cones, overhang, placed, rounding }
+    }
+
+    /// The parts below two, of which one is a node: the four of the larger one, each beside the other.
+    fn below(&self, fixed: &Side, moving: &Side) -> Below<'a> {
+        let divides_fixed = moving.child.is_leaf
+            || !fixed.child.is_leaf && SOONER * fixed.bounds.size() >= moving.bounds.size();
+        if divides_fixed {
+            let node = self.trees.fixed.node(fixed.child);
+            Below {
+                node,
+                other: moving.child,
+                is_fixed: true,
+                fixed: node.parts,
+                moving: moving.bounds.repeated(),
+            }
+        } else {
+            let node = self.trees.moving.node(moving.child);
+            let parts = self.placed.four(&node.parts);
+            Below { node, other: fixed.child, is_fixed: false, fixed: fixed.bounds.repeated(), moving: parts }
+        }
+    }
+
+    /// Which of them may touch as they face, as bits.
+    fn may_touch(&self, below: &Below<'_>) -> u32 {
+        let facing = |slack| below.fixed.may_touch(&below.moving, slack, self.overhang).to_bitmask();
+        let meets = |lane: &usize| below.node.child(*lane).meets(below.other);
+        let kinds = (0..4).filter(meets).fold(0, |bits, lane| bits | 1 << lane);
+        self.cones.map_or(0b1111, facing) & kinds
+    }
+
+    /// Both halves, unless one has no features.
+    fn roots(&self) -> Option<[Side; 2]> {
+        let ((fixed, f), (moving, m)) = (self.trees.fixed.root()?, self.trees.moving.root()?);
+        let f = Four::of([f; 4]).with_planes(true).lane(0);
+        let m = self.placed.four(&Four::of([m; 4])).lane(0);
+        Some([Side { child: fixed, bounds: f }, Side { child: moving, bounds: m }])
     }
 
     fn shapes(&self, [fixed, moving]: [u32; 2]) -> (&'a Shape, &'a Shape) {
@@ -97,16 +159,16 @@ impl<'a> Turned<'a> {
         let (fixed, moving) = self.shapes(candidate.shapes);
         let Counts { slack, lowest } = counts;
         match kind {
-            Kind::FacetCorner => {
+            Meets::FacetCorner => {
                 let normal = fixed.facets[candidate.fixed as usize].normal;
                 let element = || facet_corner(candidate, fixed, moving, self.back * normal, slack);
                 (normal.z > lowest).then(element)?
             }
-            Kind::CornerFacet => {
+            Meets::CornerFacet => {
                 let normal = self.rotation * moving.facets[candidate.moving as usize].normal;
                 corner_facet(candidate, fixed, moving, normal, slack, lowest)
             }
-            Kind::EdgeEdge => {
+            Meets::EdgeEdge => {
                 let ridge = &fixed.ridges[candidate.fixed as usize];
                 let element = || {
                     let seen = self.back * ridge.along;
@@ -117,16 +179,11 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// Calls `meet` with every pair of features of two leaves that may be an element.
-    fn numbers(&self, fixed: &Leaf, moving: &Leaf, mut meet: impl FnMut(Number)) {
-        let shapes = [fixed.shape, moving.shape];
-        let Trees { fixed: of_fixed, moving: of_moving } = self.trees;
-        let mut meet = |kind, fixed: u32, moving: u32| meet((kind, Candidate { shapes, fixed, moving }));
-        of_moving.corners(moving).iter().for_each(|corner| meet(Kind::FacetCorner, fixed.facet, *corner));
-        of_fixed.corners(fixed).iter().for_each(|corner| meet(Kind::CornerFacet, *corner, moving.facet));
-        for ridge in of_moving.ridges(moving) {
-            of_fixed.ridges(fixed).iter().for_each(|other| meet(Kind::EdgeEdge, *other, *ridge));
-        }
+    /// Where the heights of two features may lie, the position being counted from `position`.
+    fn heights(&self, fixed: &Leaf, moving: &Leaf, position: DVec3) -> Option<[f64; 2]> {
+        let (f, m) = self.shapes([fixed.shape, moving.shape]);
+        let fixed = fixed.part(f, |p| p, |n| n);
+        fixed.heights(&moving.part(m, |p| self.rotation * p + position, |n| self.rotation * n))
     }
 
     /// Whether an element touches its features with the COR at `position`.
@@ -139,7 +196,6 @@ impl<'a> Turned<'a> {
 /// The search for what carries a half.
 struct Lowered<'a> {
     turned: Turned<'a>,
-    placed: Placed,
     lateral: DVec2,
     asked: Asked,
     found: Carried,
@@ -148,68 +204,66 @@ struct Lowered<'a> {
 }
 
 impl Lowered<'_> {
-    /// Whether anything between these heights may still count.
-    fn may_count(&self, [least, most]: [f64; 2]) -> bool {
+    /// Whether anything between these heights may still count, which are right to some rounding.
+    fn may_count(&self, [least, most]: [f64; 2], sure: f64) -> bool {
         let Asked { ceiling, enough } = self.asked;
         let best = self.found.height().unwrap_or(f64::NEG_INFINITY);
         if best > enough {
             return false;
         }
-        if most + SURE <= ceiling {
-            most + SURE >= best.max(self.floor)
+        if most + sure <= ceiling {
+            most + sure >= best.max(self.floor)
         } else {
-            !self.found.covered || (least <= ceiling + SURE && ceiling >= best)
+            !self.found.covered || (least <= ceiling + sure && ceiling >= best)
         }
     }
 
-    /// Tries the features of two leaves, no height of which is above `most`.
-    fn try_leaves(&mut self, fixed: &Leaf, moving: &Leaf, most: f64) {
+    /// Tries two features.
+    fn try_leaves(&mut self, fixed: &Leaf, moving: &Leaf) {
+        let Some(number) = meeting(fixed, moving) else { return };
+        let bounds = self.turned.heights(fixed, moving, self.lateral.extend(0.0));
+        let Some(bounds) = bounds.filter(|bounds| self.may_count(*bounds, SURE)) else { return };
+        let [_, most] = bounds;
         let Self { turned, lateral, asked, found, floor, .. } = self;
         let any = Counts { slack: f64::INFINITY, lowest: VERTICAL };
-        turned.numbers(fixed, moving, |number| {
-            // Of the features of these facets, beside which it may be.
-            let height = |element: &Element| {
-                let z = element.height(*lateral);
-                (z <= most + STEEPEST).then(|| z.min(most + SURE))
-            };
-            if asked.ceiling == f64::INFINITY && number.0 != Kind::EdgeEdge {
-                let Some(element) = turned.element_within(&number, any) else { return };
-                let on = |z: &f64| *z >= *floor && turned.is_on(&element, lateral.extend(*z));
-                let Some(z) = height(&element).filter(on) else { return };
-                *floor = floor.max(z - LOOSE);
-            }
-            let element = turned.element(&number).and_then(|element| Some((element, height(&element)?)));
-            if let Some((element, z)) = element {
-                found.meet(turned, lateral.extend(z), asked.ceiling, number, element);
-            }
-        });
-    }
-
-    /// Tries two nodes, no height of which is above `most`; `m` is where that of the moving half is.
-    fn descend(&mut self, fixed: u32, moving: u32, m: &Part, most: f64) {
-        let trees = self.turned.trees;
-        match trees.split(fixed, moving) {
-            Split::Leaves(fixed, moving) => self.try_leaves(fixed, moving, most),
-            Split::Fixed(a, b) => {
-                let heights = |k| trees.fixed.node(k).part.heights(m);
-                self.both([(a, moving, m, heights(a)), (b, moving, m, heights(b))]);
-            }
-            Split::Moving(a, b) => {
-                let f = &trees.fixed.node(fixed).part;
-                let p = self.placed.part(&trees.moving.node(a).part);
-                let q = self.placed.part(&trees.moving.node(b).part);
-                self.both([(fixed, a, &p, f.heights(&p)), (fixed, b, &q, f.heights(&q))]);
-            }
+        // Above their bounds it may be beside them.
+        let height = |element: &Element| {
+            let z = element.height(*lateral);
+            (z <= most + STEEPEST).then(|| z.min(most + SURE))
+        };
+        if asked.ceiling == f64::INFINITY && number.0 != Meets::EdgeEdge {
+            let Some(element) = turned.element_within(&number, any) else { return };
+            let on = |z: &f64| *z >= *floor && turned.is_on(&element, lateral.extend(*z));
+            let Some(z) = height(&element).filter(on) else { return };
+            *floor = floor.max(z - LOOSE);
+        }
+        let element = turned.element(&number).and_then(|element| Some((element, height(&element)?)));
+        if let Some((element, z)) = element {
+            found.meet(turned, lateral.extend(z), asked.ceiling, number, element);
         }
     }
 
-    /// Tries two pairs of nodes, the one that may be higher first.
-    fn both(&mut self, pairs: [(u32, u32, &Part, Option<[f64; 2]>); 2]) {
-        let higher = |k: usize| pairs[k].3.map_or(f64::NEG_INFINITY, |[_, most]| most);
-        let first = usize::from(higher(1) > higher(0));
-        for (fixed, moving, m, bounds) in [pairs[first], pairs[1 - first]] {
-            if let Some(bounds) = bounds.filter(|bounds| self.may_count(*bounds)) {
-                self.descend(fixed, moving, m, bounds[1]);
+    /// Tries two parts.
+    fn descend(&mut self, fixed: &Side, moving: &Side) {
+        let trees = self.turned.trees;
+        if fixed.child.is_leaf && moving.child.is_leaf {
+            return self.try_leaves(trees.fixed.leaf(fixed.child), trees.moving.leaf(moving.child));
+        }
+        let below = self.turned.below(fixed, moving);
+        let rounding = self.turned.rounding;
+        let (most, beside) = below.fixed.most(&below.moving, MARGIN as f32 + rounding);
+        let alive = beside.to_bitmask() & self.turned.may_touch(&below);
+        if alive == 0 {
+            return;
+        }
+        let (most, least) = (most.to_array(), below.fixed.least(&below.moving).to_array());
+        let mut lanes = [0, 1, 2, 3];
+        // The one that may be higher first.
+        lanes.sort_unstable_by(|a: &usize, b| most[*b].total_cmp(&most[*a]));
+        for lane in lanes.into_iter().filter(|lane| alive & 1 << lane != 0) {
+            if self.may_count([least[lane], most[lane]].map(f64::from), f64::from(rounding)) {
+                let [fixed, moving] = below.pair(lane, fixed, moving);
+                self.descend(&fixed, &moving);
             }
         }
     }
@@ -238,72 +292,63 @@ impl Carried {
 /// The search for what is near.
 struct Close<'a> {
     turned: Turned<'a>,
-    placed: Placed,
     position: DVec3,
     reach: f64,
     out: &'a mut Vec<(Number, Element)>,
 }
 
 impl Close<'_> {
-    /// Tries two nodes; `m` is where that of the moving half is.
-    fn descend(&mut self, fixed: u32, moving: u32, m: &Part) {
-        let trees = self.turned.trees;
-        if !trees.fixed.node(fixed).part.is_near(m, self.reach) {
+    /// Tries two parts.
+    fn descend(&mut self, fixed: &Side, moving: &Side) {
+        let Self { turned, position, reach, out } = self;
+        if fixed.child.is_leaf && moving.child.is_leaf {
+            let (fixed, moving) =
+                (turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child));
+            let Some(number) = meeting(fixed, moving) else { return };
+            let element = turned.element(&number);
+            let near = element.filter(|element| element.gap(*position).abs() <= *reach);
+            out.extend(near.map(|element| (number, element)));
             return;
         }
-        match trees.split(fixed, moving) {
-            Split::Leaves(fixed, moving) => {
-                let Self { turned, position, reach, out, .. } = self;
-                turned.numbers(fixed, moving, |number| {
-                    let element = turned.element(&number);
-                    let near = element.filter(|element| element.gap(*position).abs() <= *reach);
-                    out.extend(near.map(|element| (number, element)));
-                });
-            }
-            Split::Fixed(a, b) => [a, b].iter().for_each(|fixed| self.descend(*fixed, moving, m)),
-            Split::Moving(a, b) => {
-                for moving in [a, b] {
-                    let m = self.placed.part(&trees.moving.node(moving).part);
-                    self.descend(fixed, moving, &m);
-                }
-            }
+        let below = turned.below(fixed, moving);
+        let near = below.fixed.is_near(&below.moving, *reach as f32 + turned.rounding);
+        let alive = near.to_bitmask() & turned.may_touch(&below);
+        for lane in (0..4).filter(|lane| alive & 1 << lane != 0) {
+            let [fixed, moving] = below.pair(lane, fixed, moving);
+            self.descend(&fixed, &moving);
         }
     }
 }
 
-/// How much smaller a node of the fixed half may be and still be split first: where it is, is known.
-const SOONER: f64 = 1.5;
+/// How much smaller a part of the fixed half may be and still be divided first: where it is, is known.
+const SOONER: f32 = 1.5;
 
-/// What is below two nodes.
-enum Split<'a> {
-    /// Two leaves.
-    Leaves(&'a Leaf, &'a Leaf),
-    /// The children of the fixed half's node.
-    Fixed(u32, u32),
-    /// The children of the moving half's node.
-    Moving(u32, u32),
+/// A part of a half, and what bounds it in the world.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    child: Child,
+    bounds: One,
+}
+
+/// Four parts of one half, each beside the same part of the other.
+struct Below<'a> {
+    node: &'a Node,
+    other: Child,
+    /// Whether the four are of the fixed half.
+    is_fixed: bool,
+    fixed: Four,
+    moving: Four,
+}
+
+impl Below<'_> {
+    /// One of the four and the other part, the fixed one first; they are below these.
+    fn pair(&self, lane: usize, fixed: &Side, moving: &Side) -> [Side; 2] {
+        let side = |parts: &Four| Side { child: self.node.child(lane), bounds: parts.lane(lane) };
+        if self.is_fixed { [side(&self.fixed), *moving] } else { [*fixed, side(&self.moving)] }
+    }
 }
 
 impl Trees {
-    /// What to look at next below two nodes.
-    fn split(&self, fixed: u32, moving: u32) -> Split<'_> {
-        let (f, m) = (self.fixed.node(fixed), self.moving.node(moving));
-        if f.is_leaf && m.is_leaf {
-            Split::Leaves(self.fixed.leaf(fixed), self.moving.leaf(moving))
-        } else if m.is_leaf || !f.is_leaf && SOONER * f.part.size() >= m.part.size() {
-            let [a, b] = self.fixed.children(fixed);
-            Split::Fixed(a, b)
-        } else {
-            let [a, b] = self.moving.children(moving);
-            Split::Moving(a, b)
-        }
-    }
-
-    /// The roots, unless a half has no facets.
-    fn roots(&self) -> Option<(u32, u32)> {
-        Some((self.fixed.root()?, self.moving.root()?))
-    }
-
     /// What carries a lowered half; `seed` did so nearby, and saves time.
     pub(super) fn carried(
         &self,
@@ -314,19 +359,18 @@ impl Trees {
         asked: Asked,
         seed: Option<Number>,
     ) -> Carried {
-        let turned = Turned::new(pair, self, rotation, counts);
+        let turned = Turned::new(pair, self, rotation, lateral.extend(0.0), counts);
         let mut found = Carried::default();
         let seed = seed.and_then(|number| Some((number, turned.element(&number)?)));
         if let Some((number, element)) = seed.filter(|(_, element)| element.normal.z > GENTLE) {
             let z = element.height(lateral);
             found.meet(&turned, lateral.extend(z), asked.ceiling, number, element);
         }
-        let placed = Placed::new(*rotation, lateral.extend(0.0));
         // What is lower than enough is not asked for.
         let floor = if asked.enough < f64::INFINITY { asked.enough } else { f64::NEG_INFINITY };
-        let mut search = Lowered { turned, placed, lateral, asked, found, floor };
-        if let Some((fixed, moving)) = self.roots() {
-            search.descend(fixed, moving, &placed.part(&self.moving.node(moving).part), f64::INFINITY);
+        let mut search = Lowered { turned, lateral, asked, found, floor };
+        if let Some([fixed, moving]) = search.turned.roots() {
+            search.descend(&fixed, &moving);
         }
         search.found
     }
@@ -342,11 +386,9 @@ impl Trees {
         out: &mut Vec<(Number, Element)>,
     ) {
         out.clear();
-        let turned = Turned::new(pair, self, rotation, counts);
-        let placed = Placed::new(*rotation, position);
-        if let Some((fixed, moving)) = self.roots() {
-            let m = placed.part(&self.moving.node(moving).part);
-            Close { turned, placed, position, reach, out }.descend(fixed, moving, &m);
+        let turned = Turned::new(pair, self, rotation, position, counts);
+        if let Some([fixed, moving]) = turned.roots() {
+            Close { turned, position, reach, out }.descend(&fixed, &moving);
         }
         out.sort_unstable_by_key(|(number, _)| *number);
     }

@@ -11,6 +11,7 @@
 //!
 //! (for the fixed half; ≥ for the moving one). All other contacts are dominated by a supported one.
 
+use super::candidates::FLUSH;
 use super::plan::{Plan, PlanTree};
 use crate::connector::{Facet, Surface};
 use glam::DVec3;
@@ -36,6 +37,9 @@ pub(super) struct Ridge {
     pub(super) normals: [DVec3; 2],
 }
 
+/// A feature that is touched against all of its facets, by more than this cosine, is touched from inside.
+pub(super) const INSIDE: f64 = 0.5;
+
 /// Plan views of all features of a shape.
 #[derive(Debug, Clone)]
 pub(super) struct Plans {
@@ -54,6 +58,8 @@ pub(super) struct Shape {
     pub(super) corners: Vec<Corner>,
     /// Unit vectors from the corners to their neighbours along edges.
     pub(super) spokes: Vec<DVec3>,
+    /// Outward normals of the facets that the spokes border on.
+    pub(super) normals: Vec<DVec3>,
     pub(super) ridges: Vec<Ridge>,
     pub(super) convex: bool,
     pub(super) plans: Plans,
@@ -67,7 +73,7 @@ impl Shape {
             let n = facet.corners.len();
             for k in 0..n {
                 // Each edge is met once in each direction, so every neighbour is entered exactly once.
-                neighbors[facet.corners[k] as usize].push(facet.corners[(k + 1) % n]);
+                neighbors[facet.corners[k] as usize].push((facet.corners[(k + 1) % n], facet.normal));
             }
         }
         let mut pointed = vec![false; surface.vertices.len()];
@@ -81,11 +87,12 @@ impl Shape {
             pointed[b as usize] = true;
         }
         let mut corners = Vec::new();
-        let mut spokes = Vec::new();
+        let (mut spokes, mut normals) = (Vec::new(), Vec::new());
         for (v, neighbors) in neighbors.iter().enumerate().filter(|(v, _)| pointed[*v]) {
             let first = spokes.len() as u32;
             let from = surface.vertices[v];
-            spokes.extend(neighbors.iter().map(|&w| (at(w) - from).normalize_or_zero()));
+            spokes.extend(neighbors.iter().map(|(w, _)| (at(*w) - from).normalize_or_zero()));
+            normals.extend(neighbors.iter().map(|(_, normal)| normal));
             corners.push(Corner { vertex: v as u32, spokes: first..spokes.len() as u32 });
         }
         let around = |ids: &[u32]| Plan::around(ids.iter().map(|&k| at(k).truncate()));
@@ -100,6 +107,7 @@ impl Shape {
             facets: surface.facets.clone(),
             corners,
             spokes,
+            normals,
             ridges,
             convex: surface.convex,
             plans,
@@ -107,10 +115,20 @@ impl Shape {
     }
 
     /// Whether a corner is locally extreme against `toward`: no neighbour lies further along −`toward`, up to
-    /// the sine `slack`.
+    /// the sine `slack`. Within it a corner that is nearly flat would touch from inside, too, which is not meant.
     pub(super) fn supports(&self, corner: &Corner, toward: DVec3, slack: f64) -> bool {
-        let spokes = &self.spokes[corner.spokes.start as usize..corner.spokes.end as usize];
-        spokes.iter().all(|s| toward.dot(*s) >= -slack)
+        self.spokes_of(corner).iter().all(|s| toward.dot(*s) >= -slack)
+            && (slack <= FLUSH || self.normals_of(corner).iter().any(|n| toward.dot(*n) < INSIDE))
+    }
+
+    /// Unit vectors from a corner to its neighbours.
+    pub(super) fn spokes_of(&self, corner: &Corner) -> &[DVec3] {
+        &self.spokes[corner.spokes.start as usize..corner.spokes.end as usize]
+    }
+
+    /// Outward normals of the facets around a corner.
+    pub(super) fn normals_of(&self, corner: &Corner) -> &[DVec3] {
+        &self.normals[corner.spokes.start as usize..corner.spokes.end as usize]
     }
 
     /// Whether an edge of this shape, moved by `seen` into the other's frame, passes through a facet of the other.

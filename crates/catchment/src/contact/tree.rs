@@ -1,193 +1,258 @@
-//! A tree over the facets of a half, for halves of many facets.
+//! A tree over the features of a half, for halves of many facets.
 //!
 //! ```text
-//!        ┌───────────┐        node: the box around its facets, and the plane across their mean normal
-//!        │  ╲__      │ ╲      that all of them lie behind
-//!        │     ╲__   │  n
-//!        └───────────┘        two of them, one of each half: no height above `Part::heights`, no contact unless `Part::is_near`
+//!   node ──┬── four parts, each with its bounds: a node, or a feature
+//!          ├──                                          two parts, one of each half: no height above `Bounds::most`,
+//!          ├──                                          no contact unless `Bounds::is_near` and `Bounds::may_touch`
+//!          └──
 //! ```
 //!
-//! Every corner and every convex edge belongs to one facet that it borders on, so that the pairs of leaves of two trees
-//! hold every pair of features once. What is asked of two trees walks down both of them at once ([`super::search`]).
+//! Every facet, corner and convex edge is a leaf, so that the pairs of leaves of two trees hold every pair of features once. What is asked of
+//! two trees walks down both of them at once ([`super::search`]).
 
+use super::bounds::{Four, One};
+use super::candidates::FLUSH;
+use super::cone::{self, Cone};
 use super::shape::Shape;
-use crate::connector::{Half, Surface};
-use glam::{DMat3, DVec2, DVec3};
-use std::ops::Range;
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 
-/// A facet and the features that belong to it.
-#[derive(Debug, Clone)]
+/// A facet, a corner or a convex edge.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Leaf {
     pub(super) shape: u32,
-    pub(super) facet: u32,
-    corners: Range<u32>,
-    ridges: Range<u32>,
+    pub(super) kind: Kind,
+    /// Which of the facets, corners or ridges of its shape.
+    pub(super) index: u32,
 }
 
-/// A node, and what bounds all that is below it.
+/// What a feature is; as bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub(super) enum Kind {
+    Facet = 1,
+    Corner = 2,
+    Ridge = 4,
+}
+
+/// Sines of the angles by which features may fail to support a normal and still count: those of heights, and those of the steps of a motion.
+pub(super) const SLACKS: [f64; 2] = [FLUSH, 0.1];
+/// How much of its size a node gains by being split into features that face differently, for each radian.
+const TURN: f64 = 0.5;
+
+/// What is below a node: four parts at most, each another node or a feature.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
-    /// Where it is in its half's frame: of the fixed half, in the world.
-    pub(super) part: Part,
-    /// The right child of an inner node, whose left one follows it; the number of the leaf of a leaf.
-    next: u32,
+    /// Where they are in their half's frame: of the fixed half, in the world.
+    pub(super) parts: Four,
+    children: [Child; 4],
+}
+
+/// A part of a half.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Child {
+    /// The number of a node, or of a leaf.
+    number: u32,
+    /// The kinds of its features, as bits.
+    kinds: u8,
     pub(super) is_leaf: bool,
 }
 
 /// The tree of a half.
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
-    /// In preorder; the root is the first.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    /// Of all shapes, leaf by leaf: indices into their corners and ridges.
-    corners: Vec<u32>,
-    ridges: Vec<u32>,
+    root: Option<(Child, One)>,
+    /// The largest coordinate, in D.
+    pub(super) extent: f64,
 }
 
-/// A facet while the tree is built.
+/// A feature while the tree is built.
 struct Built {
     low: DVec3,
     high: DVec3,
-    /// Twice its area along its normal.
-    area: DVec3,
+    /// Around which it touches, unit or 0, and up to which angles, with each slack.
+    axis: DVec3,
+    angles: [f64; 2],
     leaf: Leaf,
 }
 
 impl Tree {
-    /// The tree of a half whose surfaces were prepared as `shapes`.
-    pub(super) fn over(half: &Half, shapes: &[Shape]) -> Self {
-        let mut tree =
-            Self { nodes: Vec::new(), leaves: Vec::new(), corners: Vec::new(), ridges: Vec::new() };
+    /// The tree of a half that was prepared as `shapes`; of the fixed half its planes are prepared, too.
+    pub(super) fn over(shapes: &[Shape], is_fixed: bool) -> Self {
         let mut built = Vec::new();
-        for (k, (surface, shape)) in half.surfaces.iter().zip(shapes).enumerate() {
-            tree.take(k as u32, surface, shape, &mut built);
+        for (shape, number) in shapes.iter().zip(0..) {
+            features(number, shape, &mut built);
         }
+        let extent = built.iter().map(|f| f.low.abs().max(f.high.abs()).max_element()).fold(0.0, f64::max);
+        let mut tree = Self { nodes: Vec::new(), leaves: Vec::new(), root: None, extent };
         if !built.is_empty() {
-            tree.build(&mut built, shapes);
+            tree.root = Some((tree.build(&mut built, shapes, is_fixed), bounds(&built, shapes)));
         }
         tree
     }
 
-    /// Deals the features of a shape to its facets.
-    fn take(&mut self, number: u32, surface: &Surface, shape: &Shape, out: &mut Vec<Built>) {
-        const NOBODY: u32 = u32::MAX;
-        let mut corner_of = vec![NOBODY; surface.vertices.len()];
-        for (k, corner) in shape.corners.iter().enumerate() {
-            corner_of[corner.vertex as usize] = k as u32;
+    fn build(&mut self, features: &mut [Built], shapes: &[Shape], is_fixed: bool) -> Child {
+        let kinds = features.iter().fold(0, |kinds, f| kinds | f.leaf.kind as u8);
+        if let [feature] = features {
+            self.leaves.push(feature.leaf);
+            return Child { number: self.leaves.len() as u32 - 1, kinds, is_leaf: true };
         }
-        let mut ridges: Vec<(u32, u32)> =
-            surface.edges.iter().zip(0..).map(|(edge, k)| (edge.facets[0], k)).collect();
-        ridges.sort_unstable();
-        let mut ridges = ridges.into_iter().peekable();
-        for (facet, f) in surface.facets.iter().zip(0..) {
-            let starts = (self.corners.len() as u32, self.ridges.len() as u32);
-            for vertex in &facet.corners {
-                let corner = std::mem::replace(&mut corner_of[*vertex as usize], NOBODY);
-                self.corners.extend((corner != NOBODY).then_some(corner));
+        let number = self.nodes.len();
+        let mut node = Node { parts: Four::of([One::NONE; 4]), children: [Child::NONE; 4] };
+        self.nodes.push(node.clone());
+        let (left, right) = halves(features);
+        let mut parts = [One::NONE; 4];
+        let mut place = 0;
+        for half in [left, right] {
+            let quarters = if half.len() > 1 { <[_; 2]>::from(halves(half)) } else { [half, &mut []] };
+            for quarter in quarters.into_iter().filter(|quarter| !quarter.is_empty()) {
+                parts[place] = bounds(quarter, shapes);
+                node.children[place] = self.build(quarter, shapes, is_fixed);
+                place += 1;
             }
-            while let Some((_, ridge)) = ridges.next_if(|(owner, _)| *owner == f) {
-                self.ridges.push(ridge);
-            }
-            let at = |k: &u32| surface.vertices[*k as usize];
-            let origin = at(&facet.corners[0]);
-            out.push(Built {
-                low: facet.corners.iter().map(at).fold(DVec3::INFINITY, DVec3::min),
-                high: facet.corners.iter().map(at).fold(DVec3::NEG_INFINITY, DVec3::max),
-                area: facet.corners.windows(2).map(|w| (at(&w[0]) - origin).cross(at(&w[1]) - origin)).sum(),
-                leaf: Leaf {
-                    shape: number,
-                    facet: f,
-                    corners: starts.0..self.corners.len() as u32,
-                    ridges: starts.1..self.ridges.len() as u32,
-                },
-            });
+        }
+        node.parts = Four::of(parts);
+        if is_fixed {
+            node.parts = node.parts.with_planes(true);
+        }
+        self.nodes[number] = node;
+        Child { number: number as u32, kinds, is_leaf: false }
+    }
+
+    /// All of it, unless it has no features.
+    pub(super) const fn root(&self) -> Option<(Child, One)> {
+        self.root
+    }
+
+    pub(super) fn node(&self, child: Child) -> &Node {
+        &self.nodes[child.number as usize]
+    }
+
+    pub(super) fn leaf(&self, child: Child) -> &Leaf {
+        &self.leaves[child.number as usize]
+    }
+}
+
+/// Divides features by where they are, or by where they face, whichever differs more.
+fn halves(features: &mut [Built]) -> (&mut [Built], &mut [Built]) {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for feature in &*features {
+        (low, high) = (low.min(feature.low), high.max(feature.high));
+        (least, most) = (least.min(feature.axis), most.max(feature.axis));
+    }
+    let half = (high - low) / 2.0;
+    let turns = (most - least) * (TURN * half.max_element());
+    let by_normal = turns.max_element() > half.max_element();
+    let widths = if by_normal { turns } else { half };
+    let widest = |e: &DVec3| e.dot(widths) == widths.max_element();
+    let along = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().find(widest).unwrap_or(DVec3::X);
+    let place = |f: &Built| along.dot(if by_normal { f.axis } else { f.low + f.high });
+    let number = |f: &Built| (f.leaf.shape, f.leaf.kind, f.leaf.index);
+    let middle = features.len() / 2;
+    features.select_nth_unstable_by(middle, |a, b| {
+        place(a).total_cmp(&place(b)).then_with(|| number(a).cmp(&number(b)))
+    });
+    features.split_at_mut(middle)
+}
+
+/// What bounds some features.
+fn bounds(features: &[Built], shapes: &[Shape]) -> One {
+    let low = features.iter().map(|f| f.low).fold(DVec3::INFINITY, DVec3::min);
+    let high = features.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
+    let normal = features.iter().map(|f| f.axis).sum::<DVec3>().normalize_or_zero();
+    let center = (low + high) / 2.0;
+    let (mut level, mut radius, mut angles) = (f64::NEG_INFINITY, 0.0_f64, [0.0_f64; 2]);
+    for feature in features {
+        feature.leaf.points(&shapes[feature.leaf.shape as usize], |p| {
+            level = level.max(normal.dot(p));
+            radius = radius.max(center.distance(p));
+        });
+        // Where a mean is none, this is no number.
+        let off = feature.axis.angle_between(normal);
+        angles = [0, 1].map(|k| if off.is_nan() { PI } else { angles[k].max(off + feature.angles[k]) });
+    }
+    One::new([low, high], radius, normal, level, angles.map(Cone::of))
+}
+
+/// The features of a shape.
+fn features(number: u32, shape: &Shape, out: &mut Vec<Built>) {
+    let mut add = |kind, index, axis: DVec3, angle: &dyn Fn(f64) -> f64| {
+        let leaf = Leaf { shape: number, kind, index };
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        leaf.points(shape, |p| (low, high) = (low.min(p), high.max(p)));
+        out.push(Built { low, high, axis, angles: SLACKS.map(angle), leaf });
+    };
+    for (facet, index) in shape.facets.iter().zip(0..) {
+        add(Kind::Facet, index, facet.normal, &|_| 0.0);
+    }
+    for (corner, index) in shape.corners.iter().zip(0..) {
+        let axis = shape.normals_of(corner).iter().sum::<DVec3>().normalize_or_zero();
+        add(Kind::Corner, index, axis, &|slack| cone::of_corner(axis, shape, corner, slack));
+    }
+    for (ridge, index) in shape.ridges.iter().zip(0..) {
+        let axis = ridge.normals.iter().sum::<DVec3>().normalize_or_zero();
+        add(Kind::Ridge, index, axis, &|slack| cone::of_ridge(axis, ridge, slack));
+    }
+}
+
+impl Leaf {
+    /// Visits its corners.
+    fn points(&self, shape: &Shape, mut see: impl FnMut(DVec3)) {
+        let index = self.index as usize;
+        match self.kind {
+            Kind::Facet => shape.facets[index].corners.iter().for_each(|k| see(shape.at(*k))),
+            Kind::Corner => see(shape.at(shape.corners[index].vertex)),
+            Kind::Ridge => shape.ridges[index].ends.iter().for_each(|k| see(shape.at(*k))),
         }
     }
 
-    fn build(&mut self, facets: &mut [Built], shapes: &[Shape]) {
-        let low = facets.iter().map(|f| f.low).fold(DVec3::INFINITY, DVec3::min);
-        let high = facets.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
-        let normal = facets.iter().map(|f| f.area).sum::<DVec3>().normalize_or_zero();
-        let points = facets.iter().flat_map(|f| {
-            let shape = &shapes[f.leaf.shape as usize];
-            shape.facets[f.leaf.facet as usize].corners.iter().map(|k| shape.at(*k))
-        });
-        let level = points.map(|p| normal.dot(p)).fold(f64::NEG_INFINITY, f64::max);
-        let node = self.nodes.len();
-        let (center, half) = ((low + high) / 2.0, (high - low) / 2.0);
-        let is_leaf = facets.len() == 1;
-        let part = Part::new(center, half, normal, level);
-        self.nodes.push(Node { part, next: self.leaves.len() as u32, is_leaf });
-        if is_leaf {
-            self.leaves.push(facets[0].leaf.clone());
-            return;
-        }
-        let along = if half.x >= half.y.max(half.z) {
-            DVec3::X
-        } else if half.y >= half.z {
-            DVec3::Y
-        } else {
-            DVec3::Z
+    /// What bounds it where it is `placed`.
+    pub(super) fn part(
+        &self,
+        shape: &Shape,
+        placed: impl Fn(DVec3) -> DVec3,
+        turned: impl Fn(DVec3) -> DVec3,
+    ) -> Part {
+        let normal = match self.kind {
+            Kind::Facet => turned(shape.facets[self.index as usize].normal),
+            Kind::Corner | Kind::Ridge => DVec3::ZERO,
         };
-        let place = |f: &Built| along.dot(f.low + f.high);
-        let number = |f: &Built| (f.leaf.shape, f.leaf.facet);
-        let middle = facets.len() / 2;
-        facets.select_nth_unstable_by(middle, |a, b| {
-            place(a).total_cmp(&place(b)).then_with(|| number(a).cmp(&number(b)))
+        let (mut low, mut high, mut level) = (DVec3::INFINITY, DVec3::NEG_INFINITY, f64::NEG_INFINITY);
+        self.points(shape, |p| {
+            let p = placed(p);
+            (low, high, level) = (low.min(p), high.max(p), level.max(normal.dot(p)));
         });
-        let (left, right) = facets.split_at_mut(middle);
-        self.build(left, shapes);
-        self.nodes[node].next = self.nodes.len() as u32;
-        self.build(right, shapes);
-    }
-
-    pub(super) fn root(&self) -> Option<u32> {
-        (!self.nodes.is_empty()).then_some(0)
-    }
-
-    pub(super) fn node(&self, node: u32) -> &Node {
-        &self.nodes[node as usize]
-    }
-
-    pub(super) fn children(&self, node: u32) -> [u32; 2] {
-        [node + 1, self.node(node).next]
-    }
-
-    pub(super) fn leaf(&self, node: u32) -> &Leaf {
-        &self.leaves[self.node(node).next as usize]
-    }
-
-    /// The corners that belong to a leaf, as indices into those of its shape.
-    pub(super) fn corners(&self, leaf: &Leaf) -> &[u32] {
-        &self.corners[leaf.corners.start as usize..leaf.corners.end as usize]
-    }
-
-    /// The ridges that belong to a leaf, as indices into those of its shape.
-    pub(super) fn ridges(&self, leaf: &Leaf) -> &[u32] {
-        &self.ridges[leaf.ridges.start as usize..leaf.ridges.end as usize]
+        Part::new((low + high) / 2.0, (high - low) / 2.0, normal, level)
     }
 }
 
-/// Where the moving half is, as its nodes need it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Placed {
-    rotation: DMat3,
-    /// Its entries without their signs: how boxes grow.
-    grows: DMat3,
-    position: DVec3,
+impl Child {
+    const NONE: Self = Self { number: 0, kinds: 0, is_leaf: true };
+
+    /// Whether features of two parts may meet: a facet and a corner, or two edges.
+    pub(super) const fn meets(self, other: Self) -> bool {
+        const SWAPPED: [u8; 8] = [0, 2, 1, 3, 4, 6, 5, 7];
+        self.kinds & SWAPPED[other.kinds as usize] != 0
+    }
 }
 
-/// A part of a half: a box around it, and a plane that all of it lies behind.
+impl Node {
+    pub(super) const fn child(&self, lane: usize) -> Child {
+        self.children[lane]
+    }
+}
+
+/// What bounds a feature: a box around it, and a plane that all of it lies behind.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     center: DVec3,
     /// Half of the size of the box.
     half: DVec3,
-    /// `normal·p ≤ level` for all points: the mean normal of the facets, unit, or 0 where they cancel.
+    /// `normal·p ≤ level` for all points, as z = `over` + `slope`·(x, y); 0 where there is none.
     normal: DVec3,
-    level: f64,
-    /// The same plane as z = `over` + `slope`·(x, y), where it is not [`STEEP`].
     slope: DVec2,
     over: f64,
 }
@@ -195,17 +260,12 @@ pub(super) struct Part {
 /// Normals that face up or down by less have steep planes, which bound no height.
 const STEEP: f64 = 0.05;
 /// Feet may lie outside their features by twice the seam, in D: how much wider boxes are than what they hold.
-const MARGIN: f64 = 2.0 * super::brute::SEAM;
+pub(super) const MARGIN: f64 = 2.0 * super::brute::SEAM;
 
 impl Part {
     fn new(center: DVec3, half: DVec3, normal: DVec3, level: f64) -> Self {
         let inverse = 1.0 / normal.z;
-        Self { center, half, normal, level, slope: normal.truncate() * -inverse, over: level * inverse }
-    }
-
-    /// Half of the largest side of its box.
-    pub(super) fn size(&self) -> f64 {
-        self.half.max_element()
+        Self { center, half, normal, slope: normal.truncate() * -inverse, over: level * inverse }
     }
 
     /// Where heights of contact of a part of the fixed half and one of the moving half may lie: none is below the first number nor above
@@ -236,30 +296,5 @@ impl Part {
         }
         let least = self.center.z - self.half.z - (moving.center.z + moving.half.z);
         Some([least, most])
-    }
-
-    /// Whether anything of the two parts may be as close as `reach`.
-    pub(super) fn is_near(&self, moving: &Self, reach: f64) -> bool {
-        let apart = moving.center - self.center;
-        let most = self.half + moving.half + reach;
-        // Else in front of the plane that all of the other part lies behind.
-        apart.abs().cmple(most).all()
-            && self.normal.dot(moving.center) - self.normal.abs().dot(moving.half) <= self.level + reach
-            && moving.normal.dot(self.center) - moving.normal.abs().dot(self.half) <= moving.level + reach
-    }
-}
-
-impl Placed {
-    pub(super) fn new(rotation: DMat3, position: DVec3) -> Self {
-        let grows = DMat3::from_cols(rotation.x_axis.abs(), rotation.y_axis.abs(), rotation.z_axis.abs());
-        Self { rotation, grows, position }
-    }
-
-    /// A part of the moving half in the world.
-    #[inline]
-    pub(super) fn part(&self, own: &Part) -> Part {
-        let normal = self.rotation * own.normal;
-        let level = own.level + normal.dot(self.position);
-        Part::new(self.rotation * own.center + self.position, self.grows * own.half, normal, level)
     }
 }

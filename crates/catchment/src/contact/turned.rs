@@ -110,8 +110,10 @@ impl<'a> Turned<'a> {
         self.trees.and_then(|trees| self.carried(trees, lateral, whole).by)
     }
 
+    /// By what supports: what does only within a slack is above the other half, and carries nothing.
     fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: Asked) -> Carried {
-        let carried = trees.carried(self.pair, &self.rotation, lateral, self.counts, asked, self.carrier);
+        let counts = Counts { slack: FLUSH, lowest: VERTICAL };
+        let carried = trees.carried(self.pair, &self.rotation, lateral, counts, asked, self.carrier);
         self.carrier = carried.by.map(|(_, number, _)| number).or(self.carrier);
         carried
     }

@@ -15,11 +15,8 @@ mod meshes;
 /// The pair with trees, however small it is.
 fn with_trees(connector: &Connector) -> Pair {
     let mut pair = Pair::new(connector, &Alignment::new(DofSet::ALL, Mount::X));
-    let tree = |half: &Half, shapes: &[Shape]| Tree::over(half, shapes);
-    pair.trees = Some(Trees {
-        fixed: tree(&pair.fixed, &pair.fixed_shapes),
-        moving: tree(&pair.moving, &pair.moving_shapes),
-    });
+    let [fixed, moving] = [Tree::over(&pair.fixed_shapes, true), Tree::over(&pair.moving_shapes, false)];
+    pair.trees = Some(Trees { fixed, moving });
     pair
 }
 
@@ -74,8 +71,8 @@ fn poses(lateral: f64, turn: f64) -> impl Strategy<Value = CorPose> {
 
 /// Heights, heights below a ceiling, and contacts are those of the list.
 fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Result<(), TestCaseError> {
-    let counts = Counts { slack: slack.max(FLUSH), lowest: -0.5 };
-    let [mut listed, mut searched] = both(pair, &pose.rotation, counts);
+    let heights = Counts { slack: FLUSH, lowest: VERTICAL };
+    let [mut listed, mut searched] = both(pair, &pose.rotation, heights);
     let whole = listed.height_below(pose.lateral, f64::INFINITY);
     prop_assert_eq!(searched.height_below(pose.lateral, f64::INFINITY), whole);
     let Some(z) = whole.0 else { return Ok(()) };
@@ -87,6 +84,8 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
     for level in [z - 1e-3, z, z + 1e-3] {
         prop_assert_eq!(searched.is_stopped_above(pose.lateral, level), z > level);
     }
+    let counts = Counts { slack: slack.max(FLUSH), lowest: -0.5 };
+    let [mut listed, mut searched] = both(pair, &pose.rotation, counts);
     let position = pose.lateral.extend(z - below.min(reach));
     prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
     Ok(())

@@ -7,7 +7,7 @@
 
 use super::homing;
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
-use super::rows::{OVERLAP, horizon};
+use super::rows::{OVERLAP, Rows, horizon};
 use super::sliding::Sliding;
 use super::{Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
@@ -95,8 +95,7 @@ pub(super) struct Motion<'a> {
     /// Scratch for [`Motion::cut`] and [`Motion::meet`].
     pub(super) carrying: Vec<(Contact, Meeting)>,
     /// What holds for the displacement of this step: [`super::rows`].
-    pub(super) rows: Vec<Vector>,
-    pub(super) gaps: Vec<f64>,
+    pub(super) rows: Rows,
     pub(super) projection: Projection,
     /// Buffers of [`super::sliding`], for pairs with tight fits.
     pub(super) sliding: Sliding,
@@ -126,8 +125,7 @@ impl<'a> Motion<'a> {
             nearby: pair.nearby(slack, near),
             contacts: Vec::new(),
             carrying: Vec::new(),
-            rows: Vec::new(),
-            gaps: Vec::new(),
+            rows: Rows::default(),
             projection: Projection::default(),
             sliding: Sliding::default(),
             radius,
@@ -306,7 +304,7 @@ impl<'a> Motion<'a> {
     fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
         let Pace { step, reach, share } = pace;
         let step = *step;
-        let Self { projection, rows, gaps, .. } = self;
+        let Self { projection, rows: Rows { rows, gaps, .. }, .. } = self;
         let mut solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;

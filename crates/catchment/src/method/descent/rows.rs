@@ -14,6 +14,7 @@ use super::projection::{MAX_COORDINATES, Vector, dot};
 use crate::contact::Contact;
 use crate::pose::{Dof, ROTATIONS, euler_axes};
 use glam::{DMat3, DVec2, DVec3};
+use std::collections::BTreeSet;
 
 /// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
 const WALL: f64 = 0.05;
@@ -25,6 +26,62 @@ pub(super) const OVERLAP: f64 = 1e-9;
 const WIDEST: f64 = 0.2;
 /// Rows that differ by less are one contact.
 const SAME: f64 = 1e-12;
+/// By more than this sums over equal rows do not differ.
+const SUM_SAME: f64 = 8.0 * SAME;
+
+/// What holds for a displacement, each once.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rows {
+    pub(super) rows: Vec<Vector>,
+    pub(super) gaps: Vec<f64>,
+    /// Sums over the numbers of each row, in order, with its place: equal rows have equal ones. Of the first rows only where there are many.
+    sums: BTreeSet<(u64, u32)>,
+}
+
+impl Rows {
+    /// Beyond so many rows they are looked up by their sums.
+    const FEW: usize = 32;
+
+    fn clear(&mut self) {
+        self.rows.clear();
+        self.gaps.clear();
+        self.sums.clear();
+    }
+
+    /// Adds a row unless it is known; says whether it was new.
+    fn learn(&mut self, row: Vector, gap: f64) -> bool {
+        let is = |k: usize| {
+            (self.gaps[k] - gap).abs() < SAME
+                && self.rows[k].iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
+        };
+        let known = if self.rows.len() < Self::FEW {
+            (0..self.rows.len()).any(is)
+        } else {
+            for k in self.sums.len()..self.rows.len() {
+                self.sums.insert((in_order(sum(&self.rows[k], self.gaps[k])), k as u32));
+            }
+            let sum = sum(&row, gap);
+            let near = [sum - SUM_SAME, sum + SUM_SAME].map(in_order);
+            self.sums.range((near[0], 0)..=(near[1], u32::MAX)).any(|(_, k)| is(*k as usize))
+        };
+        if !known {
+            self.rows.push(row);
+            self.gaps.push(gap);
+        }
+        !known
+    }
+}
+
+/// A sum by which rows differ that differ at all.
+fn sum(row: &Vector, gap: f64) -> f64 {
+    row.iter().zip([1.0, 0.618, 0.382, 0.236, 0.146, 0.09]).map(|(x, weight)| x * weight).sum::<f64>() + gap
+}
+
+/// Whole numbers in the order of numbers.
+const fn in_order(x: f64) -> u64 {
+    let bits = x.to_bits();
+    if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
+}
 
 impl Motion<'_> {
     /// Finds all contacts that a step may close, as rows of the projection.
@@ -33,7 +90,6 @@ impl Motion<'_> {
         self.nearby.contacts(state.cor, near, &mut self.contacts);
         self.contacts.retain(|(c, _)| c.gap > -OVERLAP);
         self.rows.clear();
-        self.gaps.clear();
         let axes = self.axes(state);
         let contacts = std::mem::take(&mut self.contacts);
         for (contact, _) in &contacts {
@@ -41,22 +97,9 @@ impl Motion<'_> {
             let clear = margin(contact);
             let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
             // Corners, edges and facets that meet at one point say the same thing several times.
-            self.learn(row, gap);
+            self.rows.learn(row, gap);
         }
         self.contacts = contacts;
-    }
-
-    /// Adds a row unless it is known; says whether it was new.
-    fn learn(&mut self, row: Vector, gap: f64) -> bool {
-        let known =
-            self.rows.iter().zip(&self.gaps).any(|(r, g)| {
-                (g - gap).abs() < SAME && r.iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
-            });
-        if !known {
-            self.rows.push(row);
-            self.gaps.push(gap);
-        }
-        !known
     }
 
     /// What a displacement does to the gap of a contact.
@@ -88,7 +131,7 @@ impl Motion<'_> {
             let here = there - dot(&row, u);
             // A contact this step already respects tells nothing new.
             if there < -OVERLAP && here > 0.25 * there {
-                added |= self.learn(row, here.max(0.0));
+                added |= self.rows.learn(row, here.max(0.0));
             }
         }
         self.carrying = carrying;
@@ -108,7 +151,7 @@ impl Motion<'_> {
             let here = there - dot(&row, u);
             // A contact that was as deep before is another way through the same wall.
             if here > 0.25 * there {
-                added |= self.learn(row, here);
+                added |= self.rows.learn(row, here);
             }
         }
         self.carrying = met;
@@ -138,14 +181,13 @@ impl Motion<'_> {
         let middle = self.moved(state, &half);
         let axes = self.axes(&middle);
         self.rows.clear();
-        self.gaps.clear();
         let contacts = std::mem::take(&mut self.contacts);
         for (before, meeting) in &contacts {
             let contact = self.pair.contact(before, meeting, &middle.rotation, middle.cor);
             let row = self.row(&contact, &middle, &axes);
             let gap = contact.gap - dot(&row, &half);
             let clear = margin(&contact);
-            self.learn(row, if clear > 0.0 { gap - clear } else { gap.max(0.0) });
+            self.rows.learn(row, if clear > 0.0 { gap - clear } else { gap.max(0.0) });
         }
         self.contacts = contacts;
     }

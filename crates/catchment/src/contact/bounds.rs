@@ -1,0 +1,254 @@
+//! What bounds a part of a half, alone or four at once.
+//!
+//! ```text
+//!        ┌───────────┐        the box around its features, the plane across their mean normal that all of them lie
+//!        │  ╲__      │ ╲      behind, and the cone of all normals by which they touch
+//!        │     ╲__   │  n
+//!        └───────────┘
+//! ```
+//!
+//! In single precision, four to an instruction: whoever asks widens what it asks for by [`rounding`].
+
+use super::cone::Cone;
+use glam::{DMat3, DVec3};
+use wide::f32x4;
+
+/// Normals that face up or down by less have steep planes, which bound no height.
+const STEEP: f32 = 0.05;
+/// Beyond all heights.
+const FAR: f32 = 1e30;
+
+/// Bounds of one part (`f32`) or of four (`f32x4`).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds<T> {
+    center: [T; 3],
+    /// Half of the size of the box.
+    half: [T; 3],
+    /// Largest distance from the centre.
+    radius: T,
+    /// Mean normal of the features, unit, or 0 where they cancel.
+    normal: [T; 3],
+    /// How far in front of the centre the plane lies across the normal.
+    ahead: T,
+    /// The plane over the centre, where it is not steep, and its slopes in x and y; else far above a fixed part and far below a moving one.
+    over: T,
+    slope: [T; 2],
+    /// Cosine and sine of half the angle of the cone around the normal, for each slack; no numbers where it is wide.
+    cones: [[T; 2]; 2],
+}
+
+/// Four parts.
+pub(super) type Four = Bounds<f32x4>;
+/// One part.
+pub(super) type One = Bounds<f32>;
+
+/// By how much bounds of parts whose coordinates are up to `extent` may be wrong, in D.
+pub(super) fn rounding(extent: f64) -> f32 {
+    (5e-6 * extent) as f32
+}
+
+impl<T: Copy> Bounds<T> {
+    fn map<U>(&self, mut to: impl FnMut(T) -> U) -> Bounds<U> {
+        Bounds {
+            center: self.center.map(&mut to),
+            half: self.half.map(&mut to),
+            radius: to(self.radius),
+            normal: self.normal.map(&mut to),
+            ahead: to(self.ahead),
+            over: to(self.over),
+            slope: self.slope.map(&mut to),
+            cones: self.cones.map(|cone| cone.map(&mut to)),
+        }
+    }
+}
+
+impl One {
+    /// Of features in the box from `low` to `high`, up to `radius` from its middle, up to `level` along `normal`.
+    pub(super) fn new(
+        [low, high]: [DVec3; 2],
+        radius: f64,
+        normal: DVec3,
+        level: f64,
+        cones: [Cone; 2],
+    ) -> Self {
+        let center = (low + high) / 2.0;
+        let single = |v: DVec3| v.as_vec3().to_array();
+        Self {
+            center: single(center),
+            half: single((high - low) / 2.0),
+            radius: radius as f32,
+            normal: single(normal),
+            ahead: (level - normal.dot(center)) as f32,
+            over: FAR,
+            slope: [0.0; 2],
+            cones: cones.map(Cone::single),
+        }
+    }
+
+    /// Nothing.
+    pub(super) const NONE: Self = Self {
+        center: [0.0; 3],
+        half: [-FAR; 3],
+        radius: -FAR,
+        normal: [0.0; 3],
+        ahead: 0.0,
+        over: FAR,
+        slope: [0.0; 2],
+        cones: [[0.0; 2]; 2],
+    };
+
+    /// Four times itself.
+    pub(super) fn repeated(&self) -> Four {
+        self.map(f32x4::splat)
+    }
+
+    /// Half of the larger side of the box in plan view.
+    pub(super) fn size(&self) -> f32 {
+        self.half[0].max(self.half[1])
+    }
+}
+
+impl Four {
+    /// These four.
+    pub(super) fn of(parts: [One; 4]) -> Self {
+        let [a, b, c, d] = parts;
+        let three = |get: fn(&One) -> [f32; 3]| {
+            let [a, b, c, d] = [get(&a), get(&b), get(&c), get(&d)];
+            [0, 1, 2].map(|k| f32x4::from([a[k], b[k], c[k], d[k]]))
+        };
+        let one = |get: fn(&One) -> f32| f32x4::from([get(&a), get(&b), get(&c), get(&d)]);
+        let cone = |k: usize| [0, 1].map(|i| f32x4::from([a, b, c, d].map(|part| part.cones[k][i])));
+        Self {
+            center: three(|part| part.center),
+            half: three(|part| part.half),
+            radius: one(|part| part.radius),
+            normal: three(|part| part.normal),
+            ahead: one(|part| part.ahead),
+            over: one(|part| part.over),
+            slope: [f32x4::ZERO; 2],
+            cones: [0, 1].map(cone),
+        }
+    }
+
+    /// One of them.
+    pub(super) fn lane(&self, k: usize) -> One {
+        self.map(|four| four.to_array()[k])
+    }
+
+    /// Their planes as heights, of parts that touch from `below` or from above.
+    pub(super) fn with_planes(mut self, below: bool) -> Self {
+        let [nx, ny, nz] = self.normal;
+        let (gentle, far) = if below {
+            (nz.simd_gt(f32x4::splat(STEEP)), FAR)
+        } else {
+            (nz.simd_lt(f32x4::splat(-STEEP)), -FAR)
+        };
+        let inverse = f32x4::ONE / nz;
+        self.over = gentle.bitselect(self.center[2] + self.ahead * inverse, f32x4::splat(far));
+        self.slope = [nx, ny].map(|n| gentle.bitselect(-n * inverse, f32x4::ZERO));
+        self
+    }
+
+    /// How far above where it is the moving part may be carried by the fixed one, at most, where they are not farther than `reach` beside each
+    /// other.
+    #[inline]
+    pub(super) fn most(&self, moving: &Self, reach: f32) -> (f32x4, f32x4) {
+        let reach = f32x4::splat(reach);
+        let across = |k: usize| {
+            let (own, its) = (self.half[k] + reach, moving.half[k]);
+            let low = (self.center[k] - own).fast_max(moving.center[k] - its);
+            let high = (self.center[k] + own).fast_min(moving.center[k] + its);
+            (low, high)
+        };
+        let ((low_x, high_x), (low_y, high_y)) = (across(0), across(1));
+        let beside = low_x.simd_le(high_x) & low_y.simd_le(high_y);
+        let half = f32x4::splat(0.5);
+        let (mid_x, mid_y) = ((low_x + high_x) * half, (low_y + high_y) * half);
+        let (wide_x, wide_y) = ((high_x - low_x) * half, (high_y - low_y) * half);
+        let (top, bottom) = (self.center[2] + self.half[2], moving.center[2] - moving.half[2]);
+        // Highest over what both boxes have in common: at its middle, and by how much it rises from there.
+        let over = |part: &Self| {
+            part.over + part.slope[0] * (mid_x - part.center[0]) + part.slope[1] * (mid_y - part.center[1])
+        };
+        let rise = |slope: [f32x4; 2]| slope[0].abs() * wide_x + slope[1].abs() * wide_y;
+        let (f, m) = (over(self), over(moving));
+        let both = f - m + rise([self.slope[0] - moving.slope[0], self.slope[1] - moving.slope[1]]);
+        let fixed = f + rise(self.slope) - bottom;
+        let other = top - m + rise(moving.slope);
+        ((top - bottom).fast_min(both).fast_min(fixed.fast_min(other)), beside)
+    }
+
+    /// The least that heights of the two may be.
+    pub(super) fn least(&self, moving: &Self) -> f32x4 {
+        self.center[2] - self.half[2] - (moving.center[2] + moving.half[2])
+    }
+
+    /// Whether anything of the two parts may be as close as `reach`.
+    #[inline]
+    pub(super) fn is_near(&self, moving: &Self, reach: f32) -> f32x4 {
+        let (most, beside) = self.most(moving, reach);
+        let reach = f32x4::splat(reach);
+        let apart = [0, 1, 2].map(|k| moving.center[k] - self.center[k]);
+        let dot = |a: &[f32x4; 3], b: &[f32x4; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let size = |n: &[f32x4; 3], half: &[f32x4; 3]| {
+            n[0].abs() * half[0] + n[1].abs() * half[1] + n[2].abs() * half[2]
+        };
+        // Else in front of the plane that all of the other part lies behind.
+        let ahead =
+            (dot(&self.normal, &apart) - size(&self.normal, &moving.half)).simd_le(self.ahead + reach);
+        let behind =
+            (-dot(&moving.normal, &apart) - size(&moving.normal, &self.half)).simd_le(moving.ahead + reach);
+        // Or above it by more than the slope of the fixed plane makes of the reach.
+        let slope = f32x4::ONE + self.slope[0].abs() + self.slope[1].abs();
+        let under = most.simd_ge(-reach * slope);
+        let level = (self.least(moving)).simd_le(reach);
+        beside & ahead & behind & under & level
+    }
+
+    /// Whether features of the two parts may touch as they face, with a slack, where normals may lean beyond the horizontal by this angle.
+    #[inline]
+    pub(super) fn may_touch(&self, moving: &Self, slack: usize, overhang: [f32; 2]) -> f32x4 {
+        let ([c, s], [d, t]) = (self.cones[slack], moving.cones[slack]);
+        let [x, y, z] = [0, 1, 2].map(|k| self.normal[k] * moving.normal[k]);
+        let rounding = f32x4::splat(Cone::ROUNDING);
+        let apart = (-(x + y + z)).simd_lt(c * d - s * t - rounding);
+        let [sine, level] = overhang.map(f32x4::splat);
+        let beyond = |[c, s]: [f32x4; 2], away: f32x4| {
+            (c * level - s * sine).simd_gt(f32x4::ZERO) & away.simd_gt(s * level + c * sine + rounding)
+        };
+        !(apart | beyond([c, s], -self.normal[2]) | beyond([d, t], moving.normal[2]))
+    }
+}
+
+/// Where the moving half is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Placed {
+    /// Rows of its rotation, and how boxes grow by it: the same without signs.
+    rotation: [[f32; 3]; 3],
+    grows: [[f32; 3]; 3],
+    position: [f32; 3],
+}
+
+impl Placed {
+    pub(super) fn new(rotation: &DMat3, position: DVec3) -> Self {
+        let rotation = [0, 1, 2].map(|k| rotation.row(k).as_vec3().to_array());
+        let grows = rotation.map(|row| row.map(f32::abs));
+        Self { rotation, grows, position: position.as_vec3().to_array() }
+    }
+
+    /// Parts of the moving half in the world.
+    #[inline]
+    pub(super) fn four(&self, own: &Four) -> Four {
+        let turned =
+            |by: &[[f32; 3]; 3], v: &[f32x4; 3]| by.map(|row| v[0] * row[0] + v[1] * row[1] + v[2] * row[2]);
+        let center = turned(&self.rotation, &own.center);
+        let placed = Four {
+            center: [0, 1, 2].map(|k| center[k] + self.position[k]),
+            // Of a turned box no more than of the ball around what it holds.
+            half: turned(&self.grows, &own.half).map(|half| half.fast_min(own.radius)),
+            normal: turned(&self.rotation, &own.normal),
+            ..*own
+        };
+        placed.with_planes(false)
+    }
+}
