@@ -12,7 +12,7 @@ use super::bounds::{Four, One, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
 use super::element::Element;
 use super::shape::Shape;
-use super::tree::{Child, Kind, Leaf, MARGIN, Node, SLACKS, Tree};
+use super::tree::{Child, Kind, Leaf, MARGIN, SLACKS, Tree};
 use super::turned::VERTICAL;
 use super::{Pair, brute::SEAM};
 use glam::{DMat3, DVec2, DVec3};
@@ -110,32 +110,60 @@ impl<'a> Turned<'a> {
         Self { pair, trees, rotation, back, counts, cones, overhang, placed, rounding }
     }
 
-    /// The parts below two, of which one is a node: the four of the larger one, each beside the other.
-    fn below(&self, fixed: &Side, moving: &Side) -> Below<'a> {
-        let divides_fixed = moving.child.is_leaf
-            || !fixed.child.is_leaf && SOONER * fixed.bounds.size() >= moving.bounds.size();
-        if divides_fixed {
-            let node = self.trees.fixed.node(fixed.child);
-            Below {
-                node,
-                other: moving.child,
-                is_fixed: true,
-                fixed: node.parts,
-                moving: moving.bounds.repeated(),
-            }
-        } else {
-            let node = self.trees.moving.node(moving.child);
-            let parts = self.placed.four(&node.parts);
-            Below { node, other: fixed.child, is_fixed: false, fixed: fixed.bounds.repeated(), moving: parts }
-        }
+    /// Which of two is divided first: the larger one, in plan view.
+    fn divides_fixed(fixed: &Side, moving: &Side) -> bool {
+        moving.child.is_leaf || !fixed.child.is_leaf && fixed.bounds.size() >= LARGER * moving.bounds.size()
     }
 
-    /// Which of them may touch as they face, as bits.
-    fn may_touch(&self, below: &Below<'_>) -> u32 {
-        let facing = |slack| below.fixed.may_touch(&below.moving, slack, self.overhang).to_bitmask();
-        let meets = |lane: &usize| below.node.child(*lane).meets(below.other);
-        let kinds = (0..4).filter(meets).fold(0, |bits, lane| bits | 1 << lane);
-        self.cones.map_or(0b1111, facing) & kinds
+    /// Divides one of two parts, at least one of which is a node: `test` sees four pairs of parts and says which are looked into, as bits, and in
+    /// which order, the greatest first; `look` is shown these, as long as it wants to see the next.
+    #[inline]
+    fn divide(
+        &self,
+        fixed: &Side,
+        moving: &Side,
+        test: impl FnOnce(&Four, &Four) -> (u32, [f32; 4], [f32; 4]),
+        mut look: impl FnMut(&Side, &Side, [f32; 2]),
+    ) {
+        let (node, other, own);
+        let divides_fixed = Self::divides_fixed(fixed, moving);
+        let (f, m): (&Four, &Four);
+        let repeated;
+        if divides_fixed {
+            (node, other) = (self.trees.fixed.node(fixed.child), moving.child);
+            repeated = moving.bounds.repeated();
+            (f, m) = (&node.parts, &repeated);
+        } else {
+            (node, other) = (self.trees.moving.node(moving.child), fixed.child);
+            repeated = fixed.bounds.repeated();
+            own = self.placed.four(&node.parts);
+            (f, m) = (&repeated, &own);
+        }
+        let (mut alive, least, most) = test(f, m);
+        if alive == 0 {
+            return;
+        }
+        if let Some(slack) = self.cones {
+            alive &= f.may_touch(m, slack, self.overhang).to_bitmask();
+        }
+        while alive != 0 {
+            let mut lane = alive.trailing_zeros() as usize;
+            for k in lane + 1..4 {
+                if alive & 1 << k != 0 && most[k] > most[lane] {
+                    lane = k;
+                }
+            }
+            alive &= !(1 << lane);
+            let child = node.child(lane);
+            if child.meets(other) {
+                let heights = [least[lane], most[lane]];
+                if divides_fixed {
+                    look(&Side { child, bounds: f.lane(lane) }, moving, heights);
+                } else {
+                    look(fixed, &Side { child, bounds: m.lane(lane) }, heights);
+                }
+            }
+        }
     }
 
     /// Both halves, unless one has no features.
@@ -195,7 +223,7 @@ impl<'a> Turned<'a> {
 
 /// The search for what carries a half.
 struct Lowered<'a> {
-    turned: Turned<'a>,
+    turned: &'a Turned<'a>,
     lateral: DVec2,
     asked: Asked,
     found: Carried,
@@ -249,23 +277,17 @@ impl Lowered<'_> {
         if fixed.child.is_leaf && moving.child.is_leaf {
             return self.try_leaves(trees.fixed.leaf(fixed.child), trees.moving.leaf(moving.child));
         }
-        let below = self.turned.below(fixed, moving);
-        let rounding = self.turned.rounding;
-        let (most, beside) = below.fixed.most(&below.moving, MARGIN as f32 + rounding);
-        let alive = beside.to_bitmask() & self.turned.may_touch(&below);
-        if alive == 0 {
-            return;
-        }
-        let (most, least) = (most.to_array(), below.fixed.least(&below.moving).to_array());
-        let mut lanes = [0, 1, 2, 3];
-        // The one that may be higher first.
-        lanes.sort_unstable_by(|a: &usize, b| most[*b].total_cmp(&most[*a]));
-        for lane in lanes.into_iter().filter(|lane| alive & 1 << lane != 0) {
-            if self.may_count([least[lane], most[lane]].map(f64::from), f64::from(rounding)) {
-                let [fixed, moving] = below.pair(lane, fixed, moving);
-                self.descend(&fixed, &moving);
+        let turned = self.turned;
+        let rounding = turned.rounding;
+        let test = |f: &Four, m: &Four| {
+            let (most, beside) = f.most(m, MARGIN as f32 + rounding);
+            (beside.to_bitmask(), f.least(m).to_array(), most.to_array())
+        };
+        turned.divide(fixed, moving, test, |fixed, moving, heights| {
+            if self.may_count(heights.map(f64::from), f64::from(rounding)) {
+                self.descend(fixed, moving);
             }
-        }
+        });
     }
 }
 
@@ -291,7 +313,7 @@ impl Carried {
 
 /// The search for what is near.
 struct Close<'a> {
-    turned: Turned<'a>,
+    turned: &'a Turned<'a>,
     position: DVec3,
     reach: f64,
     out: &'a mut Vec<(Number, Element)>,
@@ -310,42 +332,21 @@ impl Close<'_> {
             out.extend(near.map(|element| (number, element)));
             return;
         }
-        let below = turned.below(fixed, moving);
-        let near = below.fixed.is_near(&below.moving, *reach as f32 + turned.rounding);
-        let alive = near.to_bitmask() & turned.may_touch(&below);
-        for lane in (0..4).filter(|lane| alive & 1 << lane != 0) {
-            let [fixed, moving] = below.pair(lane, fixed, moving);
-            self.descend(&fixed, &moving);
-        }
+        let turned = *turned;
+        let reach = *reach as f32 + turned.rounding;
+        let test = |f: &Four, m: &Four| (f.is_near(m, reach).to_bitmask(), [0.0; 4], [0.0; 4]);
+        turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
     }
 }
 
-/// How much smaller a part of the fixed half may be and still be divided first: where it is, is known.
-const SOONER: f32 = 1.5;
+/// How much larger a part of the fixed half is that is divided first. Of a turned part the box is larger than it need be.
+const LARGER: f32 = 1.25;
 
 /// A part of a half, and what bounds it in the world.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     child: Child,
     bounds: One,
-}
-
-/// Four parts of one half, each beside the same part of the other.
-struct Below<'a> {
-    node: &'a Node,
-    other: Child,
-    /// Whether the four are of the fixed half.
-    is_fixed: bool,
-    fixed: Four,
-    moving: Four,
-}
-
-impl Below<'_> {
-    /// One of the four and the other part, the fixed one first; they are below these.
-    fn pair(&self, lane: usize, fixed: &Side, moving: &Side) -> [Side; 2] {
-        let side = |parts: &Four| Side { child: self.node.child(lane), bounds: parts.lane(lane) };
-        if self.is_fixed { [side(&self.fixed), *moving] } else { [*fixed, side(&self.moving)] }
-    }
 }
 
 impl Trees {
@@ -368,8 +369,8 @@ impl Trees {
         }
         // What is lower than enough is not asked for.
         let floor = if asked.enough < f64::INFINITY { asked.enough } else { f64::NEG_INFINITY };
-        let mut search = Lowered { turned, lateral, asked, found, floor };
-        if let Some([fixed, moving]) = search.turned.roots() {
+        let mut search = Lowered { turned: &turned, lateral, asked, found, floor };
+        if let Some([fixed, moving]) = turned.roots() {
             search.descend(&fixed, &moving);
         }
         search.found
@@ -388,7 +389,7 @@ impl Trees {
         out.clear();
         let turned = Turned::new(pair, self, rotation, position, counts);
         if let Some([fixed, moving]) = turned.roots() {
-            Close { turned, position, reach, out }.descend(&fixed, &moving);
+            Close { turned: &turned, position, reach, out }.descend(&fixed, &moving);
         }
         out.sort_unstable_by_key(|(number, _)| *number);
     }

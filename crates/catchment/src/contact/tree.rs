@@ -37,9 +37,6 @@ pub(super) enum Kind {
 
 /// Sines of the angles by which features may fail to support a normal and still count: those of heights, and those of the steps of a motion.
 pub(super) const SLACKS: [f64; 2] = [FLUSH, 0.1];
-/// How much of its size a node gains by being split into features that face differently, for each radian.
-const TURN: f64 = 0.5;
-
 /// What is below a node: four parts at most, each another node or a feature.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
@@ -135,21 +132,14 @@ impl Tree {
     }
 }
 
-/// Divides features by where they are, or by where they face, whichever differs more.
+/// Divides features across the longest side of the box around them.
 fn halves(features: &mut [Built]) -> (&mut [Built], &mut [Built]) {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for feature in &*features {
-        (low, high) = (low.min(feature.low), high.max(feature.high));
-        (least, most) = (least.min(feature.axis), most.max(feature.axis));
-    }
-    let half = (high - low) / 2.0;
-    let turns = (most - least) * (TURN * half.max_element());
-    let by_normal = turns.max_element() > half.max_element();
-    let widths = if by_normal { turns } else { half };
-    let widest = |e: &DVec3| e.dot(widths) == widths.max_element();
-    let along = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().find(widest).unwrap_or(DVec3::X);
-    let place = |f: &Built| along.dot(if by_normal { f.axis } else { f.low + f.high });
+    let low = features.iter().map(|f| f.low).fold(DVec3::INFINITY, DVec3::min);
+    let high = features.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
+    let size = high - low;
+    let longest = |e: &DVec3| e.dot(size) == size.max_element();
+    let along = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().find(longest).unwrap_or(DVec3::X);
+    let place = |f: &Built| along.dot(f.low + f.high);
     let number = |f: &Built| (f.leaf.shape, f.leaf.kind, f.leaf.index);
     let middle = features.len() / 2;
     features.select_nth_unstable_by(middle, |a, b| {
