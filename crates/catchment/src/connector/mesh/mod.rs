@@ -47,8 +47,8 @@ const BYTES_PER_TRIANGLE: u64 = 900;
 /// Corners closer than this, relative to the largest coordinate, are one: ten times the rounding of single
 /// precision.
 pub const WELD: f64 = 1e-6;
-/// Widths of a half, in D, that can be meant.
-const PLAUSIBLE_WIDTH: std::ops::RangeInclusive<f64> = 0.25..=4.0;
+/// Widths of a half as drawn, in D, that can be meant: a pin in a plate is far narrower than the plate; an inch is 25 mm.
+pub(crate) const PLAUSIBLE_WIDTH: std::ops::RangeInclusive<f64> = 0.1..=16.0;
 
 /// A triangle in the coordinates of its source.
 #[derive(Debug, Clone, Copy)]
