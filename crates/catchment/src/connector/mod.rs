@@ -30,11 +30,12 @@ pub use hull::{HullError, MAX_POINTS, convex_hull};
 pub use mesh::MeshProblem;
 pub use outline::OutlineProblem;
 pub use part::PartError;
+pub(crate) use place::turn_between;
 pub use problem::{Problem, Side};
 pub use source::{FileBytes, Read, Source, UnitProblem};
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
-use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, HalfSpec, OwnSpec};
+use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, FileSpec, HalfSpec, OwnSpec};
 use crate::pose::{Mount, PoseError};
 use glam::{DAffine3, DVec3};
 
@@ -51,6 +52,11 @@ impl Half {
     pub fn mapped(&self, map: impl Fn(DVec3) -> DVec3 + Copy) -> Self {
         Self { surfaces: self.surfaces.iter().map(|s| s.mapped(map)).collect() }
     }
+}
+
+/// The half that one mesh file holds, read from disk, as its scale makes it: of any size.
+pub(crate) fn of_file(file: &FileSpec, side: Side) -> Result<Half, Vec<Problem>> {
+    source::alone(file, side, &source::disk::read)
 }
 
 /// A half and what its files held, or everything that is wrong with it.

@@ -55,7 +55,7 @@ fn placed(placement: &Placement) -> DAffine3 {
 }
 
 /// The shortest turn from one unit vector to another; between opposite ones about x, or about y where they lie along x.
-fn turn_between(from: DVec3, to: DVec3) -> DMat3 {
+pub(crate) fn turn_between(from: DVec3, to: DVec3) -> DMat3 {
     if from.dot(to) > RIGHT - 1.0 {
         return exact(DMat3::from_quat(DQuat::from_rotation_arc(from, to)));
     }

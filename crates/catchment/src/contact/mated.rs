@@ -192,7 +192,7 @@ fn loose(pair: &Pair, found: &Play) -> Option<MatedProblem> {
 }
 
 /// A half that is round where it can meet the other, if the yaw counts although nobody said how much.
-fn round_half(pair: &Pair) -> Option<&'static str> {
+pub(crate) fn round_half(pair: &Pair) -> Option<&'static str> {
     let Alignment { free, dont_care, docked, .. } = &pair.alignment;
     if !free.contains(Dof::Yaw) || dont_care.contains(Dof::Yaw) || docked.limit(Dof::Yaw).is_some() {
         return None;

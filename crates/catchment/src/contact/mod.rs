@@ -36,6 +36,7 @@ mod tests;
 mod tree;
 mod turned;
 mod walls;
+pub(crate) mod width;
 
 pub(crate) use candidates::FLUSH;
 pub use element::Meeting;
@@ -43,6 +44,7 @@ pub use envelope::Envelope;
 pub use mirror::Mirror;
 pub use nearby::Nearby;
 pub use play::{Play, play};
+pub(crate) use raster::fill_convex;
 pub use seat::Seat;
 
 use crate::connector::{Connector, Half};

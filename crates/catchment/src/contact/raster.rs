@@ -6,7 +6,7 @@ use glam::DVec2;
 use std::ops::Range;
 
 /// Calls `visit(row, columns)` for every row of the lattice that meets the convex polygon, borders included.
-pub(super) fn fill_convex(
+pub(crate) fn fill_convex(
     polygon: &[DVec2],
     x: Lattice,
     y: Lattice,

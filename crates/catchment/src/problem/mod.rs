@@ -23,6 +23,7 @@ mod places;
 mod tests;
 
 pub use draft::Draft;
+pub(crate) use places::findings;
 
 use crate::connector::Connector;
 use crate::contact::mated::MatedProblem;

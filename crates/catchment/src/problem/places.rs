@@ -38,7 +38,7 @@ pub(super) fn of_geometry(problems: &[Problem]) -> Vec<(String, String, Option<S
 }
 
 /// Geometric problems of halves that no file describes.
-pub(super) fn findings(problems: &[Problem]) -> Findings {
+pub(crate) fn findings(problems: &[Problem]) -> Findings {
     let finding = |(_, message, help)| Finding::new(message, help);
     let list = of_geometry(problems).into_iter().map(finding).collect();
     Findings { source: None, list, omitted: 0 }

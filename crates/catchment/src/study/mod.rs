@@ -6,11 +6,13 @@
 //!   convergence  finer and finer grids until stable               one design, every method
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
 //!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
+//!   proposal     all ways in which two parts may dock           two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
 //! ```
 
 pub mod agreement;
 pub mod convergence;
+pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;
 pub mod slices;

@@ -1,0 +1,292 @@
+//! Whether a place is a seat, by exact heights: where it is, how wide, what it holds.
+//!
+//! ```text
+//!   place ──▶ D ──▶ moved to where it lies deepest, in the middle of its play ──▶ which errors it holds ──▶ settled, if it must be
+//!                                                                    └ climb: what an offset of 0.1 D and 0.3 D takes, all around
+//! ```
+//!
+//! Errors that the seat leaves free (along a groove, the yaw of what is round) are left out of what is free.
+
+use super::relief::{broadest, plan_box};
+use super::way::Lie;
+use crate::connector::mesh::PLAUSIBLE_WIDTH;
+use crate::connector::{Connector, Half};
+use crate::contact::mated::{MatedProblem, problems, round_half};
+use crate::contact::{Pair, face, play, settle, width};
+use crate::design::{Alignment, Drawn, HalfSpec, OwnSpec};
+use crate::pose::{CorPose, Dof, DofSet, Mount};
+use glam::{DMat3, DVec2};
+use std::f64::consts::TAU;
+
+/// How far apart what is drawn docked may be, in D.
+const MOST_APART: f64 = 0.05;
+/// How much wider than D a half may be as drawn: a little less than designs allow.
+const MOST_WIDE: f64 = 0.99 * *PLAUSIBLE_WIDTH.end();
+/// How far off the climb is asked, in D, and what of it counts at most.
+const OFF: [f64; 2] = [0.1, 0.3];
+const MOST_CLIMB: f64 = 0.3;
+/// What a seat counts that does not hold.
+const LOOSE: f64 = 0.1;
+/// What one counts that holds neither x nor y, one of them, both.
+const HELD: [f64; 3] = [0.25, 0.75, 1.0];
+/// Turned by a part of a turn the halves are mated where they come as near as this, in D.
+const ALIKE: f64 = 2e-3;
+/// Rest nearer than this to where it is drawn, in D and radians, is there.
+const AT_REST: f64 = 1e-5;
+/// Play is put in its middle up to this much, in D.
+const MOST_PLAY: f64 = 0.05;
+
+/// A candidate that was judged. Lengths in the unit of the halves.
+#[derive(Debug, Clone)]
+pub(super) struct Judged {
+    pub(super) lie: Lie,
+    pub(super) width: f64,
+    /// Whether that is more than what can touch, because a half may only be so much wider than D.
+    pub(super) is_widened: bool,
+    /// Where the middle of what can touch is in plan view, in the frame of the fixed half, turned.
+    pub(super) center: DVec2,
+    /// Where the origin of the turned moving half is.
+    pub(super) offset: DVec2,
+    /// How much a half climbs that is off, 0 to 1, and the share of the smaller part's broadest side that can touch.
+    pub(super) climb: f64,
+    pub(super) shared: f64,
+    /// What it holds, or why it is no seat; nothing while nobody asked.
+    pub(super) seat: Option<Result<Seat, String>>,
+    /// The halves in D, mated.
+    connector: Connector,
+}
+
+/// What a seat holds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seat {
+    pub(super) free: DofSet,
+    pub(super) dont_care: DofSet,
+    /// Whether the halves have to settle.
+    pub(super) settle: bool,
+    /// Turned by this part of a turn they are mated as well; 1 for none.
+    pub(super) symmetry: u32,
+}
+
+impl Judged {
+    pub(super) fn score(&self) -> f64 {
+        let held = match &self.seat {
+            None => 1.0,
+            Some(Err(_)) => LOOSE,
+            Some(Ok(seat)) => {
+                let lateral = [Dof::X, Dof::Y].into_iter().filter(|dof| seat.free.contains(*dof)).count();
+                HELD[lateral]
+            }
+        };
+        (self.climb * self.shared * held).max(0.0)
+    }
+
+    /// Asks what it holds, which takes the longest.
+    pub(super) fn ask(&mut self, free: Option<DofSet>) {
+        if self.seat.is_none() {
+            self.seat = Some(seat(&self.connector, free));
+        }
+    }
+}
+
+/// Judges halves that lie to each other as `lie` says, the moving one `offset` beside; more offsets may be given that are taken where the
+/// half lies as deep there. Why not, where the halves do not meet or are not docked as drawn.
+pub(super) fn judge(halves: [&Half; 2], lie: Lie, offset: DVec2, others: &[DVec2]) -> Result<Judged, String> {
+    const APART: &str = "they pass each other by";
+    let turns = lie.turns();
+    let [fixed, moving] = [0, 1].map(|k| halves[k].mapped(|p| turns[k] * p));
+    let drawn = match lie {
+        Lie::Assembled { approach } => {
+            Drawn::Assembled { approach: approach.vector().to_array(), face_center: None }
+        }
+        Lie::Facing { .. } => Drawn::Facing,
+    };
+    let pair = Pair::new(&Connector::from_halves(fixed.clone(), moving.clone()), &nothing_free());
+    let height = |pair: &Pair, lateral: DVec2| pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
+    let mut lift = height(&pair, offset).ok_or(APART)?;
+    let at = |offset: DVec2| moving.mapped(move |p| p + offset.extend(0.0));
+    let mut offset = offset;
+    let wide = width::width(&fixed, &at(offset), lift).ok_or(APART)?;
+    if let Lie::Facing { .. } = lie {
+        for other in others {
+            // Round numbers win where the half lies as deep.
+            if let Some(z) =
+                height(&pair, *other).filter(|z| *z <= lift + 1e-4 * wide && other.distance(offset) < wide)
+            {
+                (offset, lift) = (*other, z);
+            }
+        }
+        offset += deepest(&fixed, &at(offset), wide);
+        lift = height(&pair, offset).ok_or(APART)?;
+    } else {
+        if lift > MOST_APART * wide {
+            return Err(format!("blocked: {:.2} D above where they are drawn", lift / wide));
+        }
+        if lift < -MOST_APART * wide {
+            return Err(format!("drawn {:.2} D apart", -lift / wide));
+        }
+    }
+    let placed = at(offset);
+    let [low, high] = width::touching(&fixed, &placed, lift).ok_or(APART)?;
+    let width = (high - low).max_element();
+    if width <= 0.0 {
+        return Err(APART.to_owned());
+    }
+    let widest = halves.map(|half| {
+        let (low, high) = plan_box(half, &DMat3::IDENTITY);
+        (high - low).max_element() / MOST_WIDE
+    });
+    let least = widest.into_iter().fold(0.0, f64::max);
+    let (width, is_widened) = (width.max(least), width < least);
+    let center = low.midpoint(high);
+    let smaller = halves.map(broadest).into_iter().fold(f64::INFINITY, f64::min);
+    let shared = ((high - low).element_product() / smaller).clamp(0.0, 1.0);
+    let scaled = |half: &Half| half.mapped(|p| p - center.extend(0.0)).scaled(1.0 / width);
+    let nothing = || HalfSpec::Pieces(Vec::new());
+    let own = OwnSpec { drawn, face_height: None, ..OwnSpec::new(0.0, nothing(), nothing()) };
+    let connector = face::found(Connector::from_halves(scaled(&fixed), scaled(&placed)), &own);
+    let climb = climb(&Pair::new(&connector, &nothing_free()));
+    Ok(Judged { lie, width, is_widened, center, offset, climb, shared, seat: None, connector })
+}
+
+const fn nothing_free() -> Alignment {
+    Alignment::new(DofSet::EMPTY, Mount::X)
+}
+
+/// How far from where it is the half lies deepest near, in the middle of its play.
+fn deepest(fixed: &Half, moving: &Half, width: f64) -> DVec2 {
+    let lateral = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
+    let alignment = Alignment::new(lateral, Mount::X);
+    let moved = |by: DVec2| {
+        let moving = moving.mapped(move |p| p + by.extend(0.0)).scaled(1.0 / width);
+        Pair::new(&Connector::from_halves(fixed.scaled(1.0 / width), moving), &alignment)
+    };
+    let mut by = DVec2::ZERO;
+    let pair = moved(by);
+    let pair = match settle::rest(&pair) {
+        Some(error) if DVec2::new(error.x, error.y).length() > AT_REST => {
+            by = DVec2::new(error.x, error.y) * width;
+            moved(by)
+        }
+        Some(_) => pair,
+        None => return by,
+    };
+    for play in play(&pair) {
+        let middle = 0.5 * (play.plus - play.minus);
+        if play.most() <= MOST_PLAY && middle.abs() > AT_REST {
+            by[play.axis.index()] += middle * width;
+        }
+    }
+    by
+}
+
+/// How much a half climbs that is off, as a share of what counts at most.
+fn climb(pair: &Pair) -> f64 {
+    const WAYS: u32 = 8;
+    let mut sum = 0.0;
+    for off in OFF {
+        for way in 0..WAYS {
+            let lateral = DVec2::from_angle(TAU * f64::from(way) / f64::from(WAYS)) * off;
+            let height = pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
+            let climb = height.map_or(-MOST_CLIMB, |height| height - pair.mated_height());
+            sum += climb.clamp(-MOST_CLIMB, MOST_CLIMB) / MOST_CLIMB;
+        }
+    }
+    sum / (OFF.len() as f64 * f64::from(WAYS))
+}
+
+/// The largest part of a turn after which the halves are mated as well.
+fn symmetry(pair: &Pair) -> u32 {
+    const FOLDS: [u32; 6] = [8, 6, 5, 4, 3, 2];
+    let mated = |fold: &u32| {
+        let rotation = DMat3::from_rotation_z(TAU / f64::from(*fold));
+        let height = pair.height(&CorPose { lateral: DVec2::ZERO, rotation });
+        height.is_some_and(|height| (height - pair.mated_height()).abs() < ALIKE)
+    };
+    FOLDS.into_iter().find(mated).unwrap_or(1)
+}
+
+/// What the seat holds, of what may be free.
+fn seat(connector: &Connector, wanted: Option<DofSet>) -> Result<Seat, String> {
+    // What does not hold may hold where it cannot tip, or where it only shifts.
+    let level = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
+    let sets = wanted.map_or_else(|| vec![DofSet::ALL, level.with(Dof::Yaw), level], |set| vec![set]);
+    let mut first = None;
+    for set in sets {
+        match held(connector, set, wanted.is_some()) {
+            Ok(seat) => return Ok(seat),
+            Err(reason) => first = first.or(Some(reason)),
+        }
+    }
+    Err(first.unwrap_or_default())
+}
+
+/// The same, starting from one set; `exactly` that one, but for a yaw that does not matter.
+fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, String> {
+    let mut alignment = Alignment::new(free, Mount::X);
+    let pair = Pair::new(connector, &alignment);
+    if round_half(&pair).is_some() {
+        alignment.free = free.without(Dof::Yaw);
+        alignment.dont_care = DofSet::EMPTY.with(Dof::Yaw);
+    }
+    let symmetry = if alignment.free.contains(Dof::Yaw) { symmetry(&pair) } else { 1 };
+    drop(pair);
+    // Every step leaves one out.
+    loop {
+        let mut settles = false;
+        let mut found = problems(&Pair::new(connector, &alignment));
+        if found.iter().any(|problem| matches!(problem, MatedProblem::NotMinimum { .. })) {
+            let settled = settle::settled(connector.clone(), &alignment).ok_or("it runs off")?;
+            let off = settled.origin.settled.unwrap_or_default().to_array();
+            settles = off.iter().any(|off| off.abs() > AT_REST);
+            found = problems(&Pair::new(&settled, &alignment));
+        }
+        let loose = found.iter().find_map(|problem| match problem {
+            MatedProblem::Round { .. } => Some(Dof::Yaw),
+            MatedProblem::Free { dof, .. } => Some(*dof),
+            _ => None,
+        });
+        let loose = loose.filter(|dof| !exactly || *dof == Dof::Yaw);
+        match (found.first(), loose) {
+            (None, _) => {
+                let Alignment { free, dont_care, .. } = alignment;
+                return Ok(Seat { free, dont_care, settle: settles, symmetry });
+            }
+            (Some(_), Some(dof)) => {
+                alignment.free = alignment.free.without(dof);
+                if dof == Dof::Yaw {
+                    alignment.dont_care = alignment.dont_care.with(dof);
+                }
+                if alignment.free.is_empty() {
+                    return Err("it holds nothing".to_owned());
+                }
+            }
+            (Some(MatedProblem::NotMinimum { .. }), None) => return Err("it does not hold".to_owned()),
+            (Some(problem), None) => return Err(problem.to_string()),
+        }
+    }
+}
+
+impl Half {
+    /// The same half, every length times `factor`.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        let mut half = self.clone();
+        for point in half.surfaces.iter_mut().flat_map(|surface| &mut surface.vertices) {
+            *point *= factor;
+        }
+        half
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn a_half_is_scaled() {
+        let surface = crate::connector::convex_hull(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
+        let volume = surface.volume();
+        let half = Half { surfaces: vec![surface] }.scaled(3.0);
+        assert!((half.surfaces[0].volume() - 27.0 * volume).abs() < 1e-12);
+    }
+}

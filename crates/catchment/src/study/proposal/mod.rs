@@ -1,0 +1,427 @@
+//! Two parts as they come from CAD, and the design that docks them: how they lie, where they seat, how wide they are.
+//!
+//! ```text
+//!   two files ──▶ drawn docked, in one frame?   6 directions of approach: moved to first contact, how far, does it hold
+//!             └─▶ each in its own frame?        6 × 6 facings × 4 turns, all lateral offsets: where one sinks into the other
+//!                        └──▶ ranked by what a half climbs that is off, and by how much of the parts can touch ──▶ a design file
+//! ```
+//!
+//! The score of a candidate is climb · shared: how much a half that is 0.1 D and 0.3 D off has to climb, on average all around, 1 standing
+//! for 0.3 D or more; and the area that can touch as a share of the broadest side of the smaller part's box. What holds x and y not both
+//! counts less, what is no seat a tenth.
+//!
+//! D is the larger lateral extent of the facets that can touch (`contact::width`). The centre of rotation is put into the face
+//! centre, which no geometry says better. The design is read back and checked as any other before it is given.
+//!
+//! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes, need
+//! a word; a proposal whose second best is nearly as good says so.
+
+mod file;
+mod judge;
+mod relief;
+mod search;
+mod way;
+
+pub use way::{Lie, Way};
+
+use crate::connector::{Half, Side, of_file};
+use crate::design::{FileSpec, FileUnit, LengthUnit, SourceText};
+use crate::exec::{Cancelled, Exec};
+use crate::pose::DofSet;
+use crate::problem::{Draft, Problem, ProblemError, findings};
+use glam::{DMat3, DVec2, DVec3};
+use judge::{Judged, judge};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// In which frames the parts are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Frames {
+    /// Whichever gives a seat: in one frame, docked, where the parts meet as drawn.
+    #[default]
+    Any,
+    /// Both in one, docked.
+    Assembled,
+    /// Each in its own.
+    Facing,
+}
+
+/// What is known already.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Settings {
+    /// In which frames the parts are drawn.
+    pub frames: Frames,
+    /// The direction in which the moving half comes, of parts drawn docked.
+    pub approach: Option<Way>,
+    /// Where the fixed and the moving half face, of parts in frames of their own.
+    pub facing: [Option<Way>; 2],
+    /// The unit of files that do not say theirs, and of the design; millimetres without it.
+    pub unit: Option<LengthUnit>,
+    /// Errors that are free; whichever the seat holds without it.
+    pub free: Option<DofSet>,
+    /// The name of the design.
+    pub name: Option<String>,
+}
+
+/// A part.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PartFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// How the design names it: relative to the folder of the design.
+    pub written: String,
+}
+
+/// One way in which the parts may dock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// How they lie.
+    pub lie: Lie,
+    /// 0 to 1; the more, the likelier.
+    pub score: f64,
+    /// How much a half climbs that is off, 0 to 1.
+    pub climb: f64,
+    /// The area that can touch as a share of the broadest side of the smaller part's box.
+    pub shared: f64,
+    /// D, in the unit of the design.
+    pub width: f64,
+    /// Whether it is a seat.
+    pub seat: Held,
+}
+
+/// Whether a candidate is a seat.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Held {
+    /// As drawn.
+    Holds,
+    /// Where the halves have settled.
+    Settles,
+    /// It is none, and why.
+    Refused(String),
+    /// Others are better, so that it was not asked.
+    NotAsked,
+}
+
+impl fmt::Display for Held {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Holds => "holds",
+            Self::Settles => "settles",
+            Self::Refused(reason) => reason,
+            Self::NotAsked => "not looked at any closer",
+        })
+    }
+}
+
+/// A design that docks two parts.
+#[derive(Debug, Clone)]
+pub struct Proposal {
+    /// The design file.
+    pub text: String,
+    /// What it says, checked.
+    pub problem: Problem,
+    /// All ways that were judged, the best first.
+    pub candidates: Vec<Candidate>,
+    /// What a person should look at, as sentences.
+    pub doubts: Vec<String>,
+}
+
+/// Why there is no proposal.
+#[derive(Debug, thiserror::Error)]
+pub enum ProposalError {
+    /// A part cannot be read, or the design that was found is refused.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// A file does not say its unit, and nobody else does.
+    #[error("{} does not say its unit: the part is {} in its file", path.display(), told(*size))]
+    NoUnit {
+        /// The file.
+        path: PathBuf,
+        /// Its extent along x, y and z, in its own coordinates.
+        size: [f64; 3],
+        /// What it may be.
+        guess: LengthUnit,
+    },
+    /// The parts do not dock.
+    #[error("the parts dock in no direction along an axis{}", listed(tried))]
+    NoSeat {
+        /// What was tried, the best first, and why not.
+        tried: Vec<String>,
+    },
+    /// The computation was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Candidates that a refusal tells.
+const MOST_TOLD: usize = 6;
+
+fn listed(tried: &[String]) -> String {
+    tried.iter().take(MOST_TOLD).fold(String::new(), |told, line| told + "\n  " + line)
+}
+
+fn told(size: [f64; 3]) -> String {
+    size.map(|side| file::number(side, 1e-3 * size.into_iter().fold(0.0, f64::max))).join(" × ")
+}
+
+/// A score below this is no seat: flat faces that slide.
+const LEAST: f64 = 0.02;
+/// A second best with this share of the score is nearly as good.
+const NEARLY: f64 = 0.8;
+/// Parts whose boxes are nearer than this, in the smaller one's middle extent, may be drawn docked.
+const NEAR: f64 = 0.05;
+
+/// Proposes a design for two parts; it will lie at `place`, to whose folder the parts are written relative.
+///
+/// # Errors
+/// A part that is none or whose unit nobody says, parts that do not dock.
+pub fn propose(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    place: &Path,
+    exec: &Exec,
+) -> Result<Proposal, ProposalError> {
+    let halves = read(parts, settings)?;
+    exec.check()?;
+    let unit = halves.each_ref().map(middle_extent).into_iter().fold(f64::INFINITY, f64::min);
+    let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
+    let pair = [&fixed, &moving];
+    let pinned = settings.facing.iter().any(Option::is_some);
+    let may_be = |frames: Frames| match settings.frames {
+        Frames::Any => {
+            frames == if settings.approach.is_some() { Frames::Assembled } else { frames }
+                && !(pinned && frames == Frames::Assembled)
+        }
+        known => known == frames,
+    };
+    let (mut judged, mut refused) = (Vec::new(), Vec::new());
+    let meet = settings.frames != Frames::Any || settings.approach.is_some() || are_near(pair);
+    if may_be(Frames::Assembled) && meet {
+        let ways = ways(settings.approach);
+        let found = exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
+            let lie = Lie::Assembled { approach: ways[k] };
+            judge(pair, lie, DVec2::ZERO, &[]).map_err(|reason| format!("{lie}: {reason}"))
+        });
+        sort(found, &mut judged, &mut refused);
+        rank(&mut judged, settings.free, exec)?;
+    }
+    let docked = judged.first().is_some_and(is_seat);
+    if may_be(Frames::Facing) && !docked {
+        let facing = settings.facing.map(ways);
+        let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
+        let found = exec.each(places.len(), usize::MAX, "seats", |k, _| {
+            let search::Place { lie, offset, .. } = places[k];
+            judge(pair, lie, offset, &round_numbers(pair, lie)).map_err(|reason| format!("{lie}: {reason}"))
+        });
+        if places.is_empty() {
+            refused.insert(
+                0,
+                "facing each other: nowhere along the axes does one sink into the other".to_owned(),
+            );
+        }
+        sort(found, &mut judged, &mut refused);
+        rank(&mut judged, settings.free, exec)?;
+    }
+    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, unit)).collect();
+    let best = judged.first().filter(|best| is_seat(best));
+    let Some((best, Some(Ok(seat)))) = best.map(|best| (best, &best.seat)) else {
+        let slack = |one: &Candidate| {
+            let flat = "a half that is off does not climb";
+            let why = if let Held::Refused(why) = &one.seat { why } else { flat };
+            format!("{}: {why}", one.lie)
+        };
+        return Err(ProposalError::NoSeat { tried: candidates.iter().map(slack).chain(refused).collect() });
+    };
+    let doubts = doubts(&candidates, settings);
+    let text = file::text(parts, settings, best, *seat, unit);
+    let problem = Draft::read(SourceText::new(place, text.clone()))?.build()?.checked()?;
+    Ok(Proposal { text, problem, candidates, doubts })
+}
+
+fn is_seat(judged: &Judged) -> bool {
+    matches!(judged.seat, Some(Ok(_))) && judged.score() > LEAST
+}
+
+/// The best first, and what the best and those nearly as good hold.
+fn rank(judged: &mut Vec<Judged>, free: Option<DofSet>, exec: &Exec) -> Result<(), Cancelled> {
+    let sort = |judged: &mut Vec<Judged>| judged.sort_by(|a, b| b.score().total_cmp(&a.score()));
+    sort(judged);
+    // Places that came to the same seat.
+    let mut kept: Vec<Judged> = Vec::new();
+    for one in judged.drain(..) {
+        if !kept
+            .iter()
+            .any(|other| other.lie == one.lie && other.offset.distance(one.offset) < NEAR * one.width)
+        {
+            kept.push(one);
+        }
+    }
+    *judged = kept;
+    // Whoever is asked and refused falls back.
+    loop {
+        exec.check()?;
+        let level = judged.first().map_or(0.0, |best| (NEARLY * best.score()).max(LEAST));
+        let Some(next) = judged.iter_mut().find(|one| one.seat.is_none() && one.score() > level) else {
+            return Ok(());
+        };
+        next.ask(free);
+        sort(judged);
+    }
+}
+
+fn ways(known: Option<Way>) -> Vec<Way> {
+    known.map_or_else(|| Way::ALL.to_vec(), |way| vec![way])
+}
+
+fn sort(found: Vec<Result<Judged, String>>, judged: &mut Vec<Judged>, refused: &mut Vec<String>) {
+    for one in found {
+        match one {
+            Ok(one) => judged.push(one),
+            Err(reason) => refused.push(reason),
+        }
+    }
+}
+
+/// The halves, in the unit of the design.
+fn read(parts: &[PartFile; 2], settings: &Settings) -> Result<[Half; 2], ProposalError> {
+    let unit = design_unit(settings);
+    let one = |part: &PartFile, side: Side| {
+        let mut spec = FileSpec::new(&part.path, 1.0);
+        if says_its_unit(&part.path) {
+            (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit.metres());
+        }
+        of_file(&spec, side)
+    };
+    let (fixed, moving) = match (one(&parts[0], Side::Fixed), one(&parts[1], Side::Moving)) {
+        (Ok(fixed), Ok(moving)) => (fixed, moving),
+        (fixed, moving) => {
+            let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
+            return Err(ProposalError::Problem(findings(&all).into()));
+        }
+    };
+    for (part, half) in parts.iter().zip([&fixed, &moving]) {
+        if settings.unit.is_none() && !says_its_unit(&part.path) {
+            let size = extent(half);
+            return Err(ProposalError::NoUnit {
+                path: part.path.clone(),
+                size: size.to_array(),
+                guess: guess(size),
+            });
+        }
+    }
+    Ok([fixed, moving])
+}
+
+/// The unit of the design.
+fn design_unit(settings: &Settings) -> LengthUnit {
+    settings.unit.unwrap_or(LengthUnit::Mm)
+}
+
+/// Whether a file says its unit itself.
+fn says_its_unit(path: &Path) -> bool {
+    FileSpec::new(path, 1.0).ending() == "3mf"
+}
+
+/// The unit in which a part of this size is between a pea and a door, if it is one of the usual ones.
+fn guess(size: DVec3) -> LengthUnit {
+    match size.max_element() {
+        most if most < 1.0 => LengthUnit::M,
+        most if most < 4.0 => LengthUnit::In,
+        most if most < 5e3 => LengthUnit::Mm,
+        _ => LengthUnit::Um,
+    }
+}
+
+fn extent(half: &Half) -> DVec3 {
+    let (low, high) = around(half);
+    high - low
+}
+
+fn around(half: &Half) -> (DVec3, DVec3) {
+    let boxes = half.surfaces.iter().map(crate::connector::Surface::bounds);
+    boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
+}
+
+/// The middle one of a half's three extents.
+fn middle_extent(half: &Half) -> f64 {
+    let mut sides = extent(half).to_array();
+    sides.sort_by(f64::total_cmp);
+    sides[1]
+}
+
+/// Whether the boxes of the parts overlap or nearly touch.
+fn are_near([fixed, moving]: [&Half; 2]) -> bool {
+    let ((a, b), (c, d)) = (around(fixed), around(moving));
+    (c - b).max(a - d).max_element() < NEAR
+}
+
+/// Offsets that a person would choose: the middles of the parts' boxes together, the origins of their files together.
+fn round_numbers([fixed, moving]: [&Half; 2], lie: Lie) -> [DVec2; 2] {
+    let turns = lie.turns();
+    let middle = |half: &Half, turn: &DMat3| {
+        let (low, high) = relief::plan_box(half, turn);
+        low.midpoint(high)
+    };
+    [middle(fixed, &turns[0]) - middle(moving, &turns[1]), DVec2::ZERO]
+}
+
+fn candidate(judged: &Judged, unit: f64) -> Candidate {
+    let Judged { lie, width, climb, shared, seat, .. } = judged;
+    Candidate {
+        lie: *lie,
+        score: judged.score(),
+        climb: climb.max(0.0),
+        shared: *shared,
+        width: width * unit,
+        seat: match seat {
+            None => Held::NotAsked,
+            Some(Ok(seat)) if seat.settle => Held::Settles,
+            Some(Ok(_)) => Held::Holds,
+            Some(Err(reason)) => Held::Refused(reason.clone()),
+        },
+    }
+}
+
+/// What a person should look at.
+fn doubts(candidates: &[Candidate], settings: &Settings) -> Vec<String> {
+    let [best, others @ ..] = candidates else { return Vec::new() };
+    let mut doubts = Vec::new();
+    let nearly: Vec<&Candidate> = others.iter().filter(|other| other.score > NEARLY * best.score).collect();
+    if let Some(other) = nearly.iter().find(|other| !other.lie.is_turned(best.lie)) {
+        doubts.push(format!(
+            "in doubt: another way is nearly as good ({}; {:.2} beside {:.2}): look at the picture, and say which it is",
+            other.lie, other.score, best.score
+        ));
+    } else if let Some(other) = nearly.first() {
+        let place = if other.lie == best.lie { "at another place" } else { "turned about the approach" };
+        doubts.push(format!(
+            "the parts dock as well {place} ({}): look whether the one that was taken is the one that is meant",
+            other.lie
+        ));
+    }
+    if settings.frames == Frames::Any
+        && matches!(best.lie, Lie::Assembled { .. })
+        && settings.approach.is_none()
+    {
+        doubts.push("the parts meet as drawn, and were taken as an assembly that is docked".to_owned());
+    }
+    if best.climb < 0.1 {
+        doubts.push(format!(
+            "the seat is shallow: 0.1 D to 0.3 D off, a half climbs {} D on average",
+            file::number(best.climb * 0.3, 1e-4)
+        ));
+    }
+    doubts
+}
+
+impl fmt::Display for Candidate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { lie, score, climb, shared, seat, .. } = self;
+        write!(
+            f,
+            "{score:.2}  {lie}: climbs {:.0} %, {:.0} % of the smaller part's broad side can touch, {seat}",
+            climb * 100.0,
+            shared * 100.0
+        )
+    }
+}

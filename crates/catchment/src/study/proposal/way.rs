@@ -1,0 +1,138 @@
+//! The six directions in which parts face and approach, and how two parts may lie to each other.
+
+use crate::connector::turn_between;
+use crate::pose::Mount;
+use glam::{DMat3, DVec3};
+use std::fmt;
+use std::str::FromStr;
+
+/// A direction along an axis of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Way(u8);
+
+impl Way {
+    /// All six.
+    pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
+    const NAMES: [&'static str; 6] = ["+x", "-x", "+y", "-y", "+z", "-z"];
+
+    /// As a design writes it.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self.0 as usize]
+    }
+
+    /// Unit vector.
+    pub fn vector(self) -> DVec3 {
+        DVec3::AXES[usize::from(self.0 / 2)] * if self.0.is_multiple_of(2) { 1.0 } else { -1.0 }
+    }
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Way {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let plain = |name: &str| name == text || name.trim_start_matches('+') == text;
+        Self::ALL.into_iter().find(|way| plain(way.name())).ok_or_else(|| {
+            format!(
+                "`{}` is no direction; say one of {}",
+                crate::design::shortened(text),
+                Self::NAMES.join(", ")
+            )
+        })
+    }
+}
+
+/// How the two parts may lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lie {
+    /// Docked as drawn, in one frame.
+    Assembled {
+        /// The direction in which the moving half comes.
+        approach: Way,
+    },
+    /// Each in its own frame.
+    Facing {
+        /// Where the fixed half faces.
+        fixed: Way,
+        /// Where the moving half faces.
+        moving: Way,
+        /// Quarter turns of the moving half about the direction in which it faces.
+        turned: u8,
+    },
+}
+
+impl Lie {
+    /// What turns both parts into the frame of the fixed half, the moving half face down above it.
+    pub(super) fn turns(self) -> [DMat3; 2] {
+        match self {
+            Self::Assembled { approach } => {
+                let down = turn_between(approach.vector(), DVec3::NEG_Z);
+                [down, down]
+            }
+            Self::Facing { fixed, moving, turned } => {
+                let mount =
+                    DMat3::from_cols_array_2d(&DVec3::AXES.map(|axis| Mount::X.apply(axis).to_array()));
+                let quarter = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+                let k = usize::from(turned % 4);
+                let turn = DMat3::from_cols(quarter[k], quarter[(k + 1) % 4], DVec3::Z);
+                [
+                    turn_between(fixed.vector(), DVec3::Z),
+                    mount * turn * turn_between(moving.vector(), DVec3::Z),
+                ]
+            }
+        }
+    }
+
+    /// Whether two are the same but for a turn about the approach.
+    pub(super) fn is_turned(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Facing { fixed, moving, .. }, Self::Facing { fixed: f, moving: m, .. }) => {
+                (fixed, moving) == (f, m)
+            }
+            (Self::Assembled { .. }, _) | (_, Self::Assembled { .. }) => false,
+        }
+    }
+}
+
+impl fmt::Display for Lie {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Assembled { approach } => write!(f, "docked as drawn, approach {approach}"),
+            Self::Facing { fixed, moving, turned } => {
+                write!(f, "fixed faces {fixed}, moving faces {moving}")?;
+                if *turned > 0 { write!(f, ", turned by {} deg", u32::from(*turned) * 90) } else { Ok(()) }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_are_read_as_they_are_written() {
+        for way in Way::ALL {
+            assert_eq!(way.name().parse(), Ok(way));
+            assert_eq!(way.vector().length(), 1.0);
+        }
+        assert_eq!("y".parse::<Way>().map(Way::name), Ok("+y"));
+        assert!("up".parse::<Way>().unwrap_err().contains("+x, -x"));
+    }
+
+    #[test]
+    fn all_lies_are_rotations_that_face_each_other() {
+        for (fixed, moving) in Way::ALL.iter().flat_map(|f| Way::ALL.iter().map(move |m| (*f, *m))) {
+            for turned in 0..4 {
+                let [f, m] = Lie::Facing { fixed, moving, turned }.turns();
+                assert_eq!((f * fixed.vector(), m * moving.vector()), (DVec3::Z, DVec3::NEG_Z));
+                assert_eq!((f.determinant(), m.determinant()), (1.0, 1.0));
+            }
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Parts thrown anywhere, and the design that is proposed for them: the same seat and the same heights as those of the design they come from.
+
+#![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
+
+use catchment::connector::{Half, stl};
+use catchment::design::LengthUnit;
+use catchment::pose::CorPose;
+use catchment::prelude::*;
+use catchment::study::proposal::{Frames, Lie, PartFile, Proposal, ProposalError, Settings, propose};
+use glam::{DAffine3, DMat3, DVec2};
+use std::f64::consts::FRAC_PI_2;
+use std::fs;
+use std::path::Path;
+
+/// D of the parts in their files, in mm.
+const WIDTH: f64 = 40.0;
+
+/// As two files, and as an assembly.
+const BOTH: [Frames; 2] = [Frames::Facing, Frames::Any];
+
+/// Numbers that look random.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A frame turned by right angles, somewhere, in mm.
+    fn frame(&mut self) -> DAffine3 {
+        let mut quarters = || f64::from((self.next() * 4.0) as u32) * FRAC_PI_2;
+        let turn = DMat3::from_rotation_z(quarters())
+            * DMat3::from_rotation_y(quarters())
+            * DMat3::from_rotation_x(quarters());
+        let turn = DMat3::from_cols_array(&turn.to_cols_array().map(f64::round));
+        let mut far = || (self.next() - 0.5) * 300.0;
+        DAffine3 { matrix3: turn, translation: DVec3::new(far(), far(), far()) }
+    }
+}
+
+fn write(folder: &Path, name: &str, half: &Half, frame: &DAffine3) -> PartFile {
+    let scaled = Half {
+        surfaces: half
+            .surfaces
+            .iter()
+            .map(|surface| {
+                let mut surface = surface.clone();
+                surface.vertices.iter_mut().for_each(|p| *p *= WIDTH);
+                surface
+            })
+            .collect(),
+    };
+    let mut bytes = Vec::new();
+    stl::write(&scaled.mapped(|p| frame.transform_point3(p)), stl::Format::Ascii, &mut bytes).unwrap();
+    fs::write(folder.join(name), bytes).unwrap();
+    PartFile { path: folder.join(name), written: name.to_owned() }
+}
+
+fn problem(text: &str) -> Problem {
+    let designs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/d.toml");
+    Draft::read(catchment::design::SourceText::new(designs, text)).unwrap().build().unwrap()
+}
+
+fn family(name: &str, more: &str) -> Problem {
+    problem(&format!("[connector]\nfamily = \"{name}\"\n{more}\n"))
+}
+
+/// How much the heights over lateral offsets differ at most, in D of `a`, seen from the best of four turns.
+fn difference(a: &Problem, b: &Problem) -> f64 {
+    let rotation = DMat3::IDENTITY;
+    let ratio = WIDTH / b.design().width;
+    let climb = |problem: &Problem, lateral: DVec2| {
+        let height = problem.pair().height(&CorPose { lateral, rotation });
+        height.map_or(f64::INFINITY, |height| height - problem.pair().mated_height())
+    };
+    let offsets: Vec<DVec2> =
+        (1..40).map(|k| DVec2::from_angle(2.4 * f64::from(k)) * 0.3 * (f64::from(k) / 40.0).sqrt()).collect();
+    let seen = |turn: DVec2| {
+        let off = |o: &DVec2| (climb(a, *o) - climb(b, turn.rotate(*o) * ratio) / ratio).abs();
+        offsets.iter().map(off).fold(0.0, f64::max)
+    };
+    [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y].into_iter().map(seen).fold(f64::INFINITY, f64::min)
+}
+
+fn settings(frames: Frames) -> Settings {
+    Settings { frames, unit: Some(LengthUnit::Mm), ..Settings::default() }
+}
+
+fn proposed(parts: &[PartFile; 2], folder: &Path, settings: &Settings) -> Proposal {
+    let found = propose(parts, settings, &folder.join("design.toml"), &Exec::new());
+    found.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Throws the halves of a design, lets them be placed in each of these frames, and compares the heights.
+fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, frames: &[Frames]) {
+    let wanted = frames;
+    let mut dice = Dice(seed);
+    let folder = tempfile::tempdir().unwrap();
+    let (connector, mount) = (truth.connector(), truth.alignment().mount);
+    let upright = connector.moving.mapped(|p| mount.apply(p));
+    for round in 0..2 {
+        let frames = [dice.frame(), dice.frame()];
+        let apart = [
+            write(folder.path(), "fixed.stl", &connector.fixed, &frames[0]),
+            write(folder.path(), "moving.stl", &upright, &frames[1]),
+        ];
+        let docked = [
+            write(folder.path(), "a.stl", &connector.fixed, &frames[0]),
+            write(folder.path(), "b.stl", &connector.moving, &frames[0]),
+        ];
+        for (parts, frames) in [(apart, Frames::Facing), (docked, Frames::Any)] {
+            if !wanted.contains(&frames) {
+                continue;
+            }
+            let found = proposed(&parts, folder.path(), &settings(frames));
+            let name = &truth.design().name;
+            assert_eq!(
+                matches!(found.candidates[0].lie, Lie::Assembled { .. }),
+                frames == Frames::Any,
+                "{name}: {}",
+                found.candidates[0]
+            );
+            let off = difference(truth, &found.problem);
+            assert!(off < tolerance, "{name}, round {round}: {off}\n{:?}\n{}", found.candidates, found.text);
+            if let Some(width) = width {
+                let found = found.problem.design().width;
+                assert!((found - width * WIDTH).abs() < 1e-4, "{name}: {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pyramid_comes_back() {
+    comes_back(&family("pyramid", ""), Some(1.0), 1e-6, 1, &BOTH);
+}
+
+#[test]
+fn a_spatial_x_face_comes_back() {
+    comes_back(&family("x-face-3d", ""), Some(1.0), 1e-6, 2, &BOTH);
+}
+
+#[test]
+fn pins_come_back() {
+    // The seat has play: it is put in its middle, as well as play is known.
+    comes_back(&family("pin-hole", "chord_error = 0.01\nclearance = 0.02"), None, 1e-3, 3, &BOTH);
+}
+
+#[test]
+fn a_cone_comes_back_and_its_yaw_does_not_matter() {
+    let truth = family("cone", "chord_error = 0.01");
+    comes_back(&truth, None, 1e-3, 4, &BOTH);
+    let folder = tempfile::tempdir().unwrap();
+    let mount = truth.alignment().mount;
+    let parts = [
+        write(folder.path(), "a.stl", &truth.connector().fixed, &DAffine3::IDENTITY),
+        write(
+            folder.path(),
+            "b.stl",
+            &truth.connector().moving.mapped(|p| mount.apply(p)),
+            &DAffine3::IDENTITY,
+        ),
+    ];
+    let found = proposed(&parts, folder.path(), &settings(Frames::Facing));
+    assert_eq!(found.problem.alignment().dont_care, DofSet::EMPTY.with(Dof::Yaw));
+}
+
+/// As an assembly: of the two files alone the balls may as well be meant to hang between the blocks, where they hold better.
+#[test]
+fn balls_in_grooves_come_back() {
+    let text =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml"));
+    let text =
+        text.unwrap().replace("sphere = { radius = 6 }", "sphere = { radius = 6 }\nchord_error = 0.05");
+    comes_back(&problem(&text), None, 1e-4, 5, &[Frames::Any]);
+}
+
+/// Ungendered: one file, twice.
+#[test]
+fn the_same_part_twice_is_a_pair() {
+    let truth = family("x-face-3d", "");
+    let folder = tempfile::tempdir().unwrap();
+    let part = write(folder.path(), "a.stl", &truth.connector().fixed, &Dice(7).frame());
+    let found = proposed(&[part.clone(), part], folder.path(), &settings(Frames::Facing));
+    let off = difference(&truth, &found.problem);
+    assert!(off < 1e-6, "{off}\n{}", found.text);
+    assert!(found.problem.connector().ungendered(Mount::X));
+}
+
+/// What is known is not looked for; what is not so is refused.
+#[test]
+fn a_pinned_choice_is_kept() {
+    let truth = family("pyramid", "");
+    let folder = tempfile::tempdir().unwrap();
+    let upright = truth.connector().moving.mapped(|p| Mount::X.apply(p));
+    let parts = [
+        write(folder.path(), "a.stl", &truth.connector().fixed, &DAffine3::IDENTITY),
+        write(folder.path(), "b.stl", &upright, &DAffine3::IDENTITY),
+    ];
+    let ways = |fixed: &str, moving: &str| Settings {
+        facing: [Some(fixed.parse().unwrap()), Some(moving.parse().unwrap())],
+        free: Some(DofSet::EMPTY.with(Dof::X).with(Dof::Y)),
+        name: Some("a \"pair\"".to_owned()),
+        ..settings(Frames::Any)
+    };
+    let found = proposed(&parts, folder.path(), &ways("+z", "+z"));
+    assert_eq!(found.problem.design().name, "a \"pair\"");
+    assert_eq!(found.problem.alignment().free.len(), 2);
+    assert!(found.text.contains("facing = \"+z\""), "{}", found.text);
+    let refused =
+        propose(&parts, &ways("-z", "-z"), &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
+    assert!(matches!(refused, ProposalError::NoSeat { .. }), "{refused}");
+}
+
+#[test]
+fn a_unit_that_nobody_says_is_asked_for() {
+    let truth = family("pyramid", "");
+    let folder = tempfile::tempdir().unwrap();
+    let part = write(folder.path(), "a.stl", &truth.connector().fixed, &DAffine3::IDENTITY);
+    let parts = [part.clone(), part];
+    let refused =
+        propose(&parts, &Settings::default(), &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
+    assert!(matches!(&refused, ProposalError::NoUnit { guess: LengthUnit::Mm, .. }), "{refused}");
+    assert!(refused.to_string().contains("the part is 40 × 40 × "), "{refused}");
+}
