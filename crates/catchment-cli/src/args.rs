@@ -19,6 +19,7 @@ use std::path::PathBuf;
     after_help = "Exit codes: 0 done, 1 requirement not met, 2 could not compute, 130 interrupted, 143 terminated.",
     after_long_help = "Examples:\n  \
         catchment new pyramid -o design.toml    a commented starting point\n  \
+        catchment place base.stl tool.stl --unit mm -o design.toml\n                                          or one for two parts of your own\n  \
         catchment check design.toml             everything that is wrong with it\n  \
         catchment run design.toml -o out        its area of acceptance, with pictures\n  \
         catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \

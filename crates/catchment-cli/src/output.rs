@@ -83,7 +83,7 @@ impl FileArgs {
 }
 
 /// Tries out whether a file can be written at `path`.
-fn check_place(path: &Path, replace: bool) -> Result<(), Failure> {
+pub(crate) fn check_place(path: &Path, replace: bool) -> Result<(), Failure> {
     write::check_file(path, replace).map_err(refused)
 }
 
@@ -147,7 +147,7 @@ pub(crate) fn to_stderr(lines: &[String]) {
 }
 
 /// Writes a file, which is there whole or not at all.
-fn write_file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), Failure> {
+pub(crate) fn write_file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), Failure> {
     write::file(path, bytes, replace).map_err(refused)?;
     written(path);
     Ok(())

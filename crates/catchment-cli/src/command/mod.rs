@@ -13,6 +13,7 @@ mod latch;
 mod man;
 mod new;
 mod outcome;
+mod place;
 mod reproduce;
 mod run;
 mod schema;
@@ -30,6 +31,7 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     New(new::NewArgs),
+    Place(place::PlaceArgs),
     Check(check::CheckArgs),
     Run(Box<run::RunArgs>),
     Compare(compare::CompareArgs),
@@ -57,6 +59,7 @@ impl Command {
     pub(crate) fn run(self) -> Result<ExitStatus, Failure> {
         match self {
             Self::New(args) => new::run(&args),
+            Self::Place(args) => place::run(&args),
             Self::Check(args) => check::run(&args),
             Self::Run(args) => run::run(&args),
             Self::Compare(args) => compare::run(&args),

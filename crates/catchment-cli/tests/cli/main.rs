@@ -18,6 +18,7 @@ mod latch;
 mod limits;
 mod meshes;
 mod new;
+mod place;
 mod planar;
 mod plumbing;
 mod poses;

@@ -1,0 +1,268 @@
+//! `catchment place`: two parts as they come from CAD, and the design that docks them.
+
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{check_place, to_stderr, to_stdout, write_file};
+use catchment::design::{LengthUnit, parse_dofs};
+use catchment::pose::DofSet;
+use catchment::report::figure;
+use catchment::study::proposal::{Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
+use clap::{Args, ValueEnum};
+use std::path::{Component, Path, PathBuf};
+
+/// Propose how two parts dock, and write the design file
+///
+/// Reads two meshes (STL, OBJ, PLY, 3MF) wherever and however they are drawn, each in a file of its own or both docked as an assembly has them.
+/// Tries all directions along their axes, and proposes the one in which a half that is off has to climb most: approach, seat, width D, what is
+/// free. Says on stderr what it chose and what came next. The design is checked as `catchment check` does.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment place socket.stl plug.stl --unit mm -o design.toml --figure pair.png\n  \
+    catchment place base.obj tool.obj --unit m --drawn assembled --approach=-z -o design.toml\n  \
+    catchment place plate.3mf plate.3mf --facing-fixed +y        the same part twice; the design on stdout\n  \
+    catchment check design.toml                                 what was understood\n  \
+    catchment run design.toml -o out                            and what it forgives")]
+pub(crate) struct PlaceArgs {
+    /// The fixed half: a mesh file
+    #[arg(value_name = "FIXED", value_hint = clap::ValueHint::FilePath)]
+    fixed: PathBuf,
+    /// The moving half: a mesh file
+    #[arg(value_name = "MOVING", value_hint = clap::ValueHint::FilePath)]
+    moving: PathBuf,
+    /// Unit of files that do not say it, and of the design: um, mm, cm, m or in
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    unit: Option<LengthUnit>,
+    /// In which frames the parts are drawn
+    #[arg(long, value_enum, default_value_t = Drawn::Auto, help_heading = "Instead of what is found")]
+    drawn: Drawn,
+    /// The direction in which the moving half comes, of parts drawn docked: +x, -x, +y, -y, +z or -z
+    #[arg(long, value_name = "WAY", allow_hyphen_values = true, help_heading = "Instead of what is found")]
+    approach: Option<Way>,
+    /// Where the fixed half faces in its file
+    #[arg(
+        long,
+        value_name = "WAY",
+        allow_hyphen_values = true,
+        conflicts_with = "approach",
+        help_heading = "Instead of what is found"
+    )]
+    facing_fixed: Option<Way>,
+    /// Where the moving half faces in its file
+    #[arg(
+        long,
+        value_name = "WAY",
+        allow_hyphen_values = true,
+        conflicts_with = "approach",
+        help_heading = "Instead of what is found"
+    )]
+    facing_moving: Option<Way>,
+    /// Degrees of freedom that are free, such as x,y,yaw; those that the seat holds without it
+    #[arg(long, value_name = "DOFS", value_parser = dofs, help_heading = "Instead of what is found")]
+    free: Option<DofSet>,
+    /// Name of the design
+    #[arg(long, help_heading = "Instead of what is found")]
+    name: Option<String>,
+    /// Write the design to this file instead of stdout; paths in it are relative to its folder
+    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    output: Option<PathBuf>,
+    /// Also draw the halves, apart and mated (.svg, .png)
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    figure: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// In which frames parts are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Drawn {
+    /// As an assembly where the parts meet as drawn and hold, each in its own frame otherwise
+    Auto,
+    /// Both in one frame, docked
+    Assembled,
+    /// Each in a frame of its own
+    Facing,
+}
+
+/// Candidates that are told.
+const TOLD: usize = 3;
+/// A score that is worth telling.
+const WORTH: f64 = 0.01;
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
+    let kind = files(args)?;
+    let settings = settings(args)?;
+    let running = args.exec.start()?;
+    if kind.is_some() {
+        figure::ensure_fits(0, &running.exec)?;
+    }
+    let place = args.output.as_deref().unwrap_or_else(|| Path::new("design.toml"));
+    let absent: Vec<String> = [&args.fixed, &args.moving]
+        .iter()
+        .filter(|path| !path.exists())
+        .map(|path| path.display().to_string())
+        .collect();
+    if !absent.is_empty() {
+        let help = "name two mesh files: STL, OBJ, PLY or 3MF".to_owned();
+        return Err(Failure::with_help(format!("there is no file {}", absent.join(", nor ")), Some(help)));
+    }
+    let parts = [part(&args.fixed, place)?, part(&args.moving, place)?];
+    let found = propose(&parts, &settings, place, &running.exec).map_err(refused)?;
+    drop(running);
+    // All of it is there before any of it is written.
+    let picture = match kind {
+        Some("png") => Some(figure::pair(&found.problem)?.png(PNG_SCALE)?),
+        Some(_) => Some(figure::pair(&found.problem)?.svg().as_bytes().to_vec()),
+        None => None,
+    };
+    if let Some((path, bytes)) = args.figure.as_deref().zip(picture) {
+        write_file(path, &bytes, args.force)?;
+    }
+    match &args.output {
+        Some(path) => write_file(path, found.text.as_bytes(), args.force)?,
+        None => to_stdout(&found.text)?,
+    }
+    to_stderr(&told(&found));
+    Ok(ExitStatus::Done)
+}
+
+/// Refuses what cannot be written in the end; what kind of picture is asked for.
+fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
+    const KINDS: [&str; 2] = ["svg", "png"];
+    for path in args.output.iter().chain(&args.figure) {
+        check_place(path, args.force)?;
+    }
+    let Some(path) = &args.figure else { return Ok(None) };
+    if args.output.as_ref() == Some(path) {
+        let help = "give two names".to_owned();
+        return Err(Failure::with_help(
+            format!("{} cannot be the design and its picture", path.display()),
+            Some(help),
+        ));
+    }
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+    let kind = KINDS.into_iter().find(|kind| kind.eq_ignore_ascii_case(ending));
+    kind.map(Some).ok_or_else(|| {
+        let help = format!("let its name end in .{}", KINDS.join(", ."));
+        Failure::with_help(format!("cannot tell what to write into {}", path.display()), Some(help))
+    })
+}
+
+fn settings(args: &PlaceArgs) -> Result<Settings, Failure> {
+    let frames = match args.drawn {
+        Drawn::Auto => Frames::Any,
+        Drawn::Assembled => Frames::Assembled,
+        Drawn::Facing => Frames::Facing,
+    };
+    let facing = [args.facing_fixed, args.facing_moving];
+    let help = |text: &str| Some(text.to_owned());
+    if frames == Frames::Facing && args.approach.is_some() {
+        return Err(Failure::with_help(
+            "--approach is of parts that are drawn docked".to_owned(),
+            help("--drawn assembled; parts in frames of their own have --facing-fixed and --facing-moving"),
+        ));
+    }
+    if frames == Frames::Assembled && facing.iter().any(Option::is_some) {
+        return Err(Failure::with_help(
+            "--facing-fixed and --facing-moving are of parts in frames of their own".to_owned(),
+            help("--drawn facing; parts that are drawn docked have --approach"),
+        ));
+    }
+    Ok(Settings {
+        frames,
+        approach: args.approach,
+        facing,
+        unit: args.unit,
+        free: args.free,
+        name: args.name.clone(),
+    })
+}
+
+/// What was chosen, what came next, and what to look at.
+fn told(found: &Proposal) -> Vec<String> {
+    let design = found.problem.design();
+    let unit = design.unit.map_or("", LengthUnit::symbol);
+    let head = format!("width D {} {unit}, taken from the facets that can touch", design.width);
+    let rows = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).enumerate();
+    let rows = rows.map(|(k, one)| format!("{} {one}", if k == 0 { "taken " } else { "      " }));
+    let doubts = found.doubts.iter().map(|doubt| format!("note: {doubt}"));
+    std::iter::once(head).chain(rows).chain(doubts).collect()
+}
+
+/// A refusal in the words of the command line.
+fn refused(error: ProposalError) -> Failure {
+    let help = match &error {
+        ProposalError::NoUnit { guess, .. } => format!("--unit {}?", guess.symbol()),
+        ProposalError::NoSeat { .. } => {
+            "say which way they lie: --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; lock what the seat does not hold: \
+             --free x,y; parts at an angle to their axes: write the design file by hand (docs/parts.md)"
+                .to_owned()
+        }
+        ProposalError::Problem(_) | ProposalError::Cancelled(_) => return error_of(error),
+    };
+    Failure::with_help(error.to_string(), Some(help))
+}
+
+fn error_of(error: ProposalError) -> Failure {
+    match error {
+        ProposalError::Problem(problem) => problem.into(),
+        other => other.into(),
+    }
+}
+
+/// A part, as a design at `place` names it.
+fn part(path: &Path, place: &Path) -> Result<PartFile, Failure> {
+    let real = std::fs::canonicalize::<&Path>;
+    let folder =
+        place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let written = relative(&real(path)?, &real(folder)?);
+    let Some(written) = written.to_str() else {
+        let help = "rename it: a design file is UTF-8".to_owned();
+        return Err(Failure::with_help(
+            format!("{} cannot be written into a design", path.display()),
+            Some(help),
+        ));
+    };
+    Ok(PartFile { path: path.to_owned(), written: written.replace(std::path::MAIN_SEPARATOR, "/") })
+}
+
+/// The way from a folder to a file.
+fn relative(file: &Path, folder: &Path) -> PathBuf {
+    let (file, folder): (Vec<_>, Vec<_>) = (file.components().collect(), folder.components().collect());
+    let same = file.iter().zip(&folder).take_while(|(a, b)| a == b).count();
+    if same == 0 {
+        // Another drive.
+        return file.iter().collect();
+    }
+    let up = std::iter::repeat_n(Component::ParentDir, folder.len() - same);
+    up.chain(file[same..].iter().copied()).collect()
+}
+
+fn unit(text: &str) -> Result<LengthUnit, String> {
+    LengthUnit::ALL
+        .into_iter()
+        .find(|unit| unit.symbol() == text)
+        .ok_or_else(|| format!("a unit is one of {}", LengthUnit::ALL.map(LengthUnit::symbol).join(", ")))
+}
+
+fn dofs(text: &str) -> Result<DofSet, String> {
+    parse_dofs(text).map_err(|complaint| complaint.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_named_from_the_folder_of_the_design() {
+        let from = |file: &str, folder: &str| relative(Path::new(file), Path::new(folder));
+        assert_eq!(from("/a/b/c.stl", "/a/b"), Path::new("c.stl"));
+        assert_eq!(from("/a/b/c.stl", "/a/d/e"), Path::new("../../b/c.stl"));
+        assert_eq!(from("/a/b/c.stl", "/a"), Path::new("b/c.stl"));
+    }
+}
