@@ -25,7 +25,7 @@ run *arguments:
 docs:
     cargo doc --locked --workspace --no-deps --all-features --open
 
-# fuzz a reader: arguments, design, stl, obj, ply, threemf, drawing, poses, lines, report, zarr, requirement or resolution: just fuzz stl 600
+# fuzz one of the readers in fuzz/fuzz_targets: just fuzz stl 600
 fuzz target='design' seconds='60':
     fuzz/run {{ seconds }} {{ target }}
 
@@ -43,7 +43,6 @@ memory *designs:
 reproducible:
     tests/reproducible
 
-# a list of what the program is made of (CycloneDX), beside it (needs cargo-cyclonedx)
 # the bill of materials of the program (CycloneDX), beside its Cargo.toml; needs `cargo install cargo-cyclonedx`
 sbom:
     cargo cyclonedx --manifest-path crates/catchment-cli/Cargo.toml --all-features --format json --describe binaries

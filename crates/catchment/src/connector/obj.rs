@@ -3,7 +3,7 @@
 //! Read by `tobj`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for STL.
 
 use super::mesh::{self, MeshProblem, Triangle};
-use super::source::{FileBytes, Held, most_bytes};
+use super::source::{FileBytes, Held};
 use crate::design::Treatment;
 use glam::DVec3;
 use std::io::{self, BufRead, Read};
@@ -11,10 +11,6 @@ use tobj::{LoadError, LoadOptions};
 
 /// As the table of formats wants it.
 pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
-    let most = most_bytes(treatment);
-    if file.size > most {
-        return Err(vec![MeshProblem::TooLong { bytes: file.size, most }]);
-    }
     parse(&file.bytes, treatment).map(Held::of_triangles)
 }
 

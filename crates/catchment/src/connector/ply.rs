@@ -4,7 +4,7 @@
 //! STL.
 
 use super::mesh::{self, MeshProblem, Triangle};
-use super::source::{FileBytes, Held, most_bytes};
+use super::source::{FileBytes, Held};
 use crate::design::Treatment;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -12,10 +12,6 @@ use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
 /// As the table of formats wants it.
 pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
-    let most = most_bytes(treatment);
-    if file.size > most {
-        return Err(vec![MeshProblem::TooLong { bytes: file.size, most }]);
-    }
     parse(&file.bytes, treatment).map(Held::of_triangles)
 }
 

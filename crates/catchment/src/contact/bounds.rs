@@ -48,16 +48,19 @@ pub(super) fn rounding(extent: f64) -> f32 {
 }
 
 impl<T: Copy> Bounds<T> {
-    fn map<U>(&self, mut to: impl FnMut(T) -> U) -> Bounds<U> {
+    #[inline]
+    fn map<U>(&self, to: impl Fn(&T) -> U) -> Bounds<U> {
+        let two = |[a, b]: &[T; 2]| [to(a), to(b)];
+        let three = |[a, b, c]: &[T; 3]| [to(a), to(b), to(c)];
         Bounds {
-            center: self.center.map(&mut to),
-            half: self.half.map(&mut to),
-            radius: to(self.radius),
-            normal: self.normal.map(&mut to),
-            ahead: to(self.ahead),
-            over: to(self.over),
-            slope: self.slope.map(&mut to),
-            cones: self.cones.map(|cone| cone.map(&mut to)),
+            center: three(&self.center),
+            half: three(&self.half),
+            radius: to(&self.radius),
+            normal: three(&self.normal),
+            ahead: to(&self.ahead),
+            over: to(&self.over),
+            slope: two(&self.slope),
+            cones: [two(&self.cones[0]), two(&self.cones[1])],
         }
     }
 }
@@ -96,27 +99,16 @@ impl One {
         slope: [0.0; 2],
         cones: [[0.0; 2]; 2],
     };
-
-    /// Four times itself.
-    pub(super) fn repeated(&self) -> Four {
-        self.map(f32x4::splat)
-    }
-
-    /// Half of the larger side of the box in plan view.
-    pub(super) fn size(&self) -> f32 {
-        self.half[0].max(self.half[1])
-    }
 }
 
 impl Four {
     /// These four.
-    pub(super) fn of(parts: [One; 4]) -> Self {
-        let [a, b, c, d] = parts;
+    pub(super) fn of([a, b, c, d]: &[One; 4]) -> Self {
         let three = |get: fn(&One) -> [f32; 3]| {
-            let [a, b, c, d] = [get(&a), get(&b), get(&c), get(&d)];
+            let [a, b, c, d] = [get(a), get(b), get(c), get(d)];
             [0, 1, 2].map(|k| f32x4::from([a[k], b[k], c[k], d[k]]))
         };
-        let one = |get: fn(&One) -> f32| f32x4::from([get(&a), get(&b), get(&c), get(&d)]);
+        let one = |get: fn(&One) -> f32| f32x4::from([get(a), get(b), get(c), get(d)]);
         let cone = |k: usize| [0, 1].map(|i| f32x4::from([a, b, c, d].map(|part| part.cones[k][i])));
         Self {
             center: three(|part| part.center),
@@ -130,12 +122,21 @@ impl Four {
         }
     }
 
-    /// One of them.
-    pub(super) fn lane(&self, k: usize) -> One {
-        self.map(|four| four.to_array()[k])
+    /// Four times one of them.
+    #[inline]
+    pub(super) fn repeated(&self, lane: usize) -> Self {
+        self.map(|four| f32x4::splat(four.as_array()[lane]))
+    }
+
+    /// Half of the larger side of the box of one of them in plan view.
+    #[inline]
+    pub(super) fn size(&self, lane: usize) -> f32 {
+        let [x, y, _] = self.half.each_ref().map(|half| half.as_array()[lane]);
+        x.max(y)
     }
 
     /// Their planes as heights, of parts that touch from `below` or from above.
+    #[inline]
     pub(super) fn with_planes(mut self, below: bool) -> Self {
         let [nx, ny, nz] = self.normal;
         let (gentle, far) = if below {
@@ -162,6 +163,9 @@ impl Four {
         };
         let ((low_x, high_x), (low_y, high_y)) = (across(0), across(1));
         let beside = low_x.simd_le(high_x) & low_y.simd_le(high_y);
+        if beside.to_bitmask() == 0 {
+            return (f32x4::ZERO, beside);
+        }
         let half = f32x4::splat(0.5);
         let (mid_x, mid_y) = ((low_x + high_x) * half, (low_y + high_y) * half);
         let (wide_x, wide_y) = ((high_x - low_x) * half, (high_y - low_y) * half);
@@ -179,6 +183,7 @@ impl Four {
     }
 
     /// The least that heights of the two may be.
+    #[inline]
     pub(super) fn least(&self, moving: &Self) -> f32x4 {
         self.center[2] - self.half[2] - (moving.center[2] + moving.half[2])
     }

@@ -8,7 +8,7 @@
 //! The answers are those of the list of all elements ([`super::turned`]): the same elements are tried where they may count, and among
 //! equals the first in the order of that list counts. Two nodes may tie within rounding: what is [`SURE`] to be lower is left out.
 
-use super::bounds::{Four, One, Placed, rounding};
+use super::bounds::{Four, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
 use super::element::Element;
 use super::shape::Shape;
@@ -111,8 +111,8 @@ impl<'a> Turned<'a> {
     }
 
     /// Which of two is divided first: the larger one, in plan view.
-    fn divides_fixed(fixed: &Side, moving: &Side) -> bool {
-        moving.child.is_leaf || !fixed.child.is_leaf && fixed.bounds.size() >= LARGER * moving.bounds.size()
+    fn divides_fixed(fixed: &Side<'_>, moving: &Side<'_>) -> bool {
+        moving.child.is_leaf || !fixed.child.is_leaf && fixed.size() >= LARGER * moving.size()
     }
 
     /// Divides one of two parts, at least one of which is a node: `test` sees four pairs of parts and says which are looked into, as bits, and in
@@ -120,10 +120,10 @@ impl<'a> Turned<'a> {
     #[inline]
     fn divide(
         &self,
-        fixed: &Side,
-        moving: &Side,
+        fixed: &Side<'_>,
+        moving: &Side<'_>,
         test: impl FnOnce(&Four, &Four) -> (u32, [f32; 4], [f32; 4]),
-        mut look: impl FnMut(&Side, &Side, [f32; 2]),
+        mut look: impl FnMut(&Side<'_>, &Side<'_>, [f32; 2]),
     ) {
         let (node, other, own);
         let divides_fixed = Self::divides_fixed(fixed, moving);
@@ -131,11 +131,11 @@ impl<'a> Turned<'a> {
         let repeated;
         if divides_fixed {
             (node, other) = (self.trees.fixed.node(fixed.child), moving.child);
-            repeated = moving.bounds.repeated();
+            repeated = moving.four.repeated(moving.lane);
             (f, m) = (&node.parts, &repeated);
         } else {
             (node, other) = (self.trees.moving.node(moving.child), fixed.child);
-            repeated = fixed.bounds.repeated();
+            repeated = fixed.four.repeated(fixed.lane);
             own = self.placed.four(&node.parts);
             (f, m) = (&repeated, &own);
         }
@@ -158,20 +158,19 @@ impl<'a> Turned<'a> {
             if child.meets(other) {
                 let heights = [least[lane], most[lane]];
                 if divides_fixed {
-                    look(&Side { child, bounds: f.lane(lane) }, moving, heights);
+                    look(&Side { child, four: f, lane }, moving, heights);
                 } else {
-                    look(fixed, &Side { child, bounds: m.lane(lane) }, heights);
+                    look(fixed, &Side { child, four: m, lane }, heights);
                 }
             }
         }
     }
 
-    /// Both halves, unless one has no features.
-    fn roots(&self) -> Option<[Side; 2]> {
+    /// Both halves, unless one has no features: what they are, and what bounds each, four times.
+    fn roots(&self) -> Option<([Child; 2], [Four; 2])> {
         let ((fixed, f), (moving, m)) = (self.trees.fixed.root()?, self.trees.moving.root()?);
-        let f = Four::of([f; 4]).with_planes(true).lane(0);
-        let m = self.placed.four(&Four::of([m; 4])).lane(0);
-        Some([Side { child: fixed, bounds: f }, Side { child: moving, bounds: m }])
+        let bounds = [Four::of(&[f; 4]).with_planes(true), self.placed.four(&Four::of(&[m; 4]))];
+        Some(([fixed, moving], bounds))
     }
 
     fn shapes(&self, [fixed, moving]: [u32; 2]) -> (&'a Shape, &'a Shape) {
@@ -272,7 +271,7 @@ impl Lowered<'_> {
     }
 
     /// Tries two parts.
-    fn descend(&mut self, fixed: &Side, moving: &Side) {
+    fn descend(&mut self, fixed: &Side<'_>, moving: &Side<'_>) {
         let trees = self.turned.trees;
         if fixed.child.is_leaf && moving.child.is_leaf {
             return self.try_leaves(trees.fixed.leaf(fixed.child), trees.moving.leaf(moving.child));
@@ -321,7 +320,7 @@ struct Close<'a> {
 
 impl Close<'_> {
     /// Tries two parts.
-    fn descend(&mut self, fixed: &Side, moving: &Side) {
+    fn descend(&mut self, fixed: &Side<'_>, moving: &Side<'_>) {
         let Self { turned, position, reach, out } = self;
         if fixed.child.is_leaf && moving.child.is_leaf {
             let (fixed, moving) =
@@ -342,11 +341,18 @@ impl Close<'_> {
 /// How much larger a part of the fixed half is that is divided first. Of a turned part the box is larger than it need be.
 const LARGER: f32 = 1.25;
 
-/// A part of a half, and what bounds it in the world.
+/// A part of a half, and what bounds it in the world: one of four.
 #[derive(Debug, Clone, Copy)]
-struct Side {
+struct Side<'a> {
     child: Child,
-    bounds: One,
+    four: &'a Four,
+    lane: usize,
+}
+
+impl Side<'_> {
+    fn size(&self) -> f32 {
+        self.four.size(self.lane)
+    }
 }
 
 impl Trees {
@@ -370,7 +376,9 @@ impl Trees {
         // What is lower than enough is not asked for.
         let floor = if asked.enough < f64::INFINITY { asked.enough } else { f64::NEG_INFINITY };
         let mut search = Lowered { turned: &turned, lateral, asked, found, floor };
-        if let Some([fixed, moving]) = turned.roots() {
+        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
+            let [fixed, moving] =
+                [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
             search.descend(&fixed, &moving);
         }
         search.found
@@ -388,7 +396,9 @@ impl Trees {
     ) {
         out.clear();
         let turned = Turned::new(pair, self, rotation, position, counts);
-        if let Some([fixed, moving]) = turned.roots() {
+        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
+            let [fixed, moving] =
+                [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
             Close { turned: &turned, position, reach, out }.descend(&fixed, &moving);
         }
         out.sort_unstable_by_key(|(number, _)| *number);

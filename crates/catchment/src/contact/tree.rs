@@ -97,7 +97,7 @@ impl Tree {
             return Child { number: self.leaves.len() as u32 - 1, kinds, is_leaf: true };
         }
         let number = self.nodes.len();
-        let mut node = Node { parts: Four::of([One::NONE; 4]), children: [Child::NONE; 4] };
+        let mut node = Node { parts: Four::of(&[One::NONE; 4]), children: [Child::NONE; 4] };
         self.nodes.push(node.clone());
         let (left, right) = halves(features);
         let mut parts = [One::NONE; 4];
@@ -110,7 +110,7 @@ impl Tree {
                 place += 1;
             }
         }
-        node.parts = Four::of(parts);
+        node.parts = Four::of(&parts);
         if is_fixed {
             node.parts = node.parts.with_planes(true);
         }

@@ -54,6 +54,17 @@ impl Indexed {
         Self { vertices, triangles, places, tolerance }
     }
 
+    /// The triangles around each corner, in the order of their numbers.
+    pub(super) fn around(&self) -> Vec<Vec<u32>> {
+        let mut around: Vec<Vec<u32>> = vec![Vec::new(); self.vertices.len()];
+        for (k, t) in self.triangles.iter().enumerate() {
+            for corner in t {
+                around[*corner as usize].push(k as u32);
+            }
+        }
+        around
+    }
+
     /// The corners of a triangle.
     pub(super) fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|k| self.vertices[k as usize])

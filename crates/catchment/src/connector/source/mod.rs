@@ -75,14 +75,20 @@ struct Format {
 /// The table of mesh formats. A file whose ending none of them has is read as the first.
 const FORMATS: [Format; 4] = [
     Format { endings: &["stl"], read: stl::read, refuse_early: stl::refuse_early },
-    Format { endings: &["obj"], read: obj::read, refuse_early: |_, _| Ok(()) },
-    Format { endings: &["ply"], read: ply::read, refuse_early: |_, _| Ok(()) },
+    Format { endings: &["obj"], read: obj::read, refuse_early: refuse_long },
+    Format { endings: &["ply"], read: ply::read, refuse_early: refuse_long },
     Format { endings: &["3mf"], read: |file, _| threemf::read(file), refuse_early: |_, _| Ok(()) },
 ];
 
 /// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
 pub(super) const fn most_bytes(treatment: Treatment) -> u64 {
     if treatment.simplify.is_some() { stl::MOST_BYTES } else { stl::MAX_BYTES }
+}
+
+/// Refuses a file that is longer than any acceptable mesh.
+fn refuse_long(file: &FileBytes, treatment: Treatment) -> Result<(), Vec<MeshProblem>> {
+    let most = most_bytes(treatment);
+    if file.size > most { Err(vec![MeshProblem::TooLong { bytes: file.size, most }]) } else { Ok(()) }
 }
 
 /// Bytes that are read before a format may refuse a file: a binary STL file of as many triangles as a half may have, which all but few files are below.

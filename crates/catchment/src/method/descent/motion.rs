@@ -304,7 +304,7 @@ impl<'a> Motion<'a> {
     fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
         let Pace { step, reach, share } = pace;
         let step = *step;
-        let Self { projection, rows: Rows { rows, gaps, .. }, .. } = self;
+        let Self { projection, rows: Rows { vectors: rows, gaps, .. }, .. } = self;
         let mut solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;

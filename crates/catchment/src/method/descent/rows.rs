@@ -32,7 +32,7 @@ const SUM_SAME: f64 = 8.0 * SAME;
 /// What holds for a displacement, each once.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Rows {
-    pub(super) rows: Vec<Vector>,
+    pub(super) vectors: Vec<Vector>,
     pub(super) gaps: Vec<f64>,
     /// Sums over the numbers of each row, in order, with its place: equal rows have equal ones. Of the first rows only where there are many.
     sums: BTreeSet<(u64, u32)>,
@@ -43,7 +43,7 @@ impl Rows {
     const FEW: usize = 32;
 
     fn clear(&mut self) {
-        self.rows.clear();
+        self.vectors.clear();
         self.gaps.clear();
         self.sums.clear();
     }
@@ -52,20 +52,20 @@ impl Rows {
     fn learn(&mut self, row: Vector, gap: f64) -> bool {
         let is = |k: usize| {
             (self.gaps[k] - gap).abs() < SAME
-                && self.rows[k].iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
+                && self.vectors[k].iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
         };
-        let known = if self.rows.len() < Self::FEW {
-            (0..self.rows.len()).any(is)
+        let known = if self.vectors.len() < Self::FEW {
+            (0..self.vectors.len()).any(is)
         } else {
-            for k in self.sums.len()..self.rows.len() {
-                self.sums.insert((in_order(sum(&self.rows[k], self.gaps[k])), k as u32));
+            for k in self.sums.len()..self.vectors.len() {
+                self.sums.insert((in_order(sum(&self.vectors[k], self.gaps[k])), k as u32));
             }
             let sum = sum(&row, gap);
             let near = [sum - SUM_SAME, sum + SUM_SAME].map(in_order);
             self.sums.range((near[0], 0)..=(near[1], u32::MAX)).any(|(_, k)| is(*k as usize))
         };
         if !known {
-            self.rows.push(row);
+            self.vectors.push(row);
             self.gaps.push(gap);
         }
         !known

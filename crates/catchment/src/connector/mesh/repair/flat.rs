@@ -34,12 +34,7 @@ pub(super) fn drop(mesh: &mut Indexed) -> usize {
         return 0;
     }
     let mut left = MOST_STEPS * heap.len();
-    let mut around: Vec<Vec<u32>> = vec![Vec::new(); mesh.vertices.len()];
-    for (k, t) in mesh.triangles.iter().enumerate() {
-        for corner in t {
-            around[*corner as usize].push(k as u32);
-        }
-    }
+    let mut around = mesh.around();
     let mut is_gone = vec![false; mesh.triangles.len()];
     let mut count = 0;
     while let Some(Waiting { length, triangle: std::cmp::Reverse(k) }) = heap.pop() {

@@ -20,12 +20,7 @@ pub(super) fn collapse(mesh: &mut Indexed) -> usize {
     if !any {
         return 0;
     }
-    let mut around: Vec<Vec<u32>> = vec![Vec::new(); mesh.vertices.len()];
-    for (k, t) in mesh.triangles.iter().enumerate() {
-        for corner in t {
-            around[*corner as usize].push(k as u32);
-        }
-    }
+    let mut around = mesh.around();
     let mut is_gone = vec![false; mesh.triangles.len()];
     let mut count = 0;
     for k in 0..mesh.triangles.len() {
