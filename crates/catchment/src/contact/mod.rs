@@ -57,10 +57,9 @@ use std::sync::OnceLock;
 use tree::Tree;
 use turned::Turned;
 
-/// From this product of their numbers of facets on, halves have trees, and a single height is found by them.
+/// From this product of their numbers of facets on, halves have trees, and heights and motions ask them.
 const MANY: usize = 300 * 300;
-/// From this one on motions and grids ask the trees, too: below it a list of what may touch near a pose, which serves the poses around it, is as
-/// fast where the halves lie close.
+/// From this one on grids ask the trees, too: below it a list of all that can carry, which serves all cells of a rotation, is as fast.
 const MOST_LISTED: usize = 3000 * 3000;
 
 /// Facets of a half.
@@ -81,7 +80,7 @@ pub struct Pair {
     moving_shapes: Vec<Shape>,
     /// Of halves of [`MANY`] facets.
     trees: Option<Trees>,
-    /// Whether what is near a pose is listed.
+    /// Whether all that can carry at a rotation is listed for a grid.
     lists: bool,
     mirrors: Vec<Mirror>,
     tight: bool,
@@ -136,12 +135,12 @@ impl Pair {
         pair
     }
 
-    /// Whether the halves have so many facets that what may touch near a pose is searched anew at every pose, not listed.
+    /// Whether the halves have so many facets that what may touch is searched anew for every cell of a grid, not listed.
     pub(crate) fn is_large(&self) -> bool {
         self.searched().is_some()
     }
 
-    /// The trees, where there is too much to list.
+    /// The trees, where there is too much to list for a grid.
     fn searched(&self) -> Option<&Trees> {
         self.trees.as_ref().filter(|_| !self.lists)
     }

@@ -70,7 +70,7 @@ impl<'a> Nearby<'a> {
     pub fn turn(&mut self, rotation: &DMat3, lateral: DVec2, slack: f64, reach: f64) {
         let slack = slack.max(ROUNDING);
         let counts = Counts { slack, lowest: -OVERHANG };
-        if let Some(trees) = self.turned.pair.searched() {
+        if let Some(trees) = &self.turned.pair.trees {
             return self.turned.turn_trees(rotation, trees, counts);
         }
         let holds = self.collected.is_some_and(|c| {
@@ -119,7 +119,7 @@ impl<'a> Nearby<'a> {
     /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`. Of halves of many facets, where a
     /// step's reach holds thousands, what is nearer than 10⁻⁴ D counts alone: the rest is met on the way.
     pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
-        let reach = if self.turned.pair.is_large() { reach.min(MET) } else { reach };
+        let reach = if self.turned.pair.trees.is_some() { reach.min(MET) } else { reach };
         out.clear();
         self.turned.contacts(position, reach, SEAM, |contact| out.push(contact));
     }
