@@ -42,9 +42,10 @@ pub(super) type Four = Bounds<f32x4>;
 /// One part.
 pub(super) type One = Bounds<f32>;
 
-/// By how much bounds of parts whose coordinates are up to `extent` may be wrong, in D.
+/// By how much coordinates may be wrong of parts that are up to `extent` away, in D: a dozen roundings of single precision, with room. On planes
+/// heights are wrong by so much for each of their slopes, too, which [`Four::most`] adds.
 pub(super) fn rounding(extent: f64) -> f32 {
-    (5e-6 * extent) as f32
+    (1e-6 * extent) as f32
 }
 
 impl<T: Copy> Bounds<T> {
@@ -150,11 +151,11 @@ impl Four {
         self
     }
 
-    /// How far above where it is the moving part may be carried by the fixed one, at most, where they are not farther than `reach` beside each
-    /// other.
+    /// How far above where it is the moving part may be carried by the fixed one, at most and but for the [`rounding`] of a height, where they are
+    /// not farther than `reach` and that beside each other.
     #[inline]
-    pub(super) fn most(&self, moving: &Self, reach: f32) -> (f32x4, f32x4) {
-        let reach = f32x4::splat(reach);
+    pub(super) fn most(&self, moving: &Self, reach: f32, rounding: f32) -> (f32x4, f32x4) {
+        let reach = f32x4::splat(reach + rounding);
         let across = |k: usize| {
             let (own, its) = (self.half[k] + reach, moving.half[k]);
             let low = (self.center[k] - own).fast_max(moving.center[k] - its);
@@ -175,7 +176,8 @@ impl Four {
             part.over + part.slope[0] * (mid_x - part.center[0]) + part.slope[1] * (mid_y - part.center[1])
         };
         let rise = |slope: [f32x4; 2]| slope[0].abs() * wide_x + slope[1].abs() * wide_y;
-        let (f, m) = (over(self), over(moving));
+        let steep = |slope: &[f32x4; 2]| (slope[0].abs() + slope[1].abs()) * f32x4::splat(rounding);
+        let (f, m) = (over(self) + steep(&self.slope), over(moving) - steep(&moving.slope));
         let both = f - m + rise([self.slope[0] - moving.slope[0], self.slope[1] - moving.slope[1]]);
         let fixed = f + rise(self.slope) - bottom;
         let other = top - m + rise(moving.slope);
@@ -190,9 +192,9 @@ impl Four {
 
     /// Whether anything of the two parts may be as close as `reach`.
     #[inline]
-    pub(super) fn is_near(&self, moving: &Self, reach: f32) -> f32x4 {
-        let (most, beside) = self.most(moving, reach);
-        let reach = f32x4::splat(reach);
+    pub(super) fn is_near(&self, moving: &Self, reach: f32, rounding: f32) -> f32x4 {
+        let (most, beside) = self.most(moving, reach, rounding);
+        let reach = f32x4::splat(reach + 2.0 * rounding);
         let apart = [0, 1, 2].map(|k| moving.center[k] - self.center[k]);
         let dot = |a: &[f32x4; 3], b: &[f32x4; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let size = |n: &[f32x4; 3], half: &[f32x4; 3]| {

@@ -279,7 +279,7 @@ impl Lowered<'_> {
         let turned = self.turned;
         let rounding = turned.rounding;
         let test = |f: &Four, m: &Four| {
-            let (most, beside) = f.most(m, MARGIN as f32 + rounding);
+            let (most, beside) = f.most(m, MARGIN as f32, rounding);
             (beside.to_bitmask(), f.least(m).to_array(), most.to_array())
         };
         turned.divide(fixed, moving, test, |fixed, moving, heights| {
@@ -332,8 +332,9 @@ impl Close<'_> {
             return;
         }
         let turned = *turned;
-        let reach = *reach as f32 + turned.rounding;
-        let test = |f: &Four, m: &Four| (f.is_near(m, reach).to_bitmask(), [0.0; 4], [0.0; 4]);
+        let reach = *reach as f32;
+        let test =
+            |f: &Four, m: &Four| (f.is_near(m, reach, turned.rounding).to_bitmask(), [0.0; 4], [0.0; 4]);
         turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
     }
 }

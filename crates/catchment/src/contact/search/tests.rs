@@ -111,6 +111,25 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn trees_of_what_is_wide_and_far_find_what_the_list_holds(
+        corners in proptest::collection::vec(proptest::array::uniform3(-0.5..0.5f64), 8..64), pose in poses(0.6, 3.0),
+        wide in proptest::array::uniform3(0.02..16.0f64), far in proptest::array::uniform3(-16.0..16.0f64),
+        slack in 0.0..0.1f64, reach in 0.0..0.1f64,
+    ) {
+        let stretched = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] * wide[k] + far[k]);
+        let corners: Vec<[f64; 3]> = corners.iter().map(stretched).collect();
+        let pair = soup(&corners);
+        // Over each other, wherever they are.
+        let far = DVec3::from_array(far);
+        let lateral = (far - pose.rotation * far).truncate() + pose.lateral * DVec2::new(wide[0], wide[1]);
+        agree(&pair, &CorPose { lateral, ..pose }, slack, reach, 0.1)?;
+    }
+}
+
 #[test]
 fn trees_of_a_funnel_find_what_the_list_holds() {
     let pair = funnel(1000);
