@@ -1,12 +1,13 @@
 //! Heights and contacts of halves of many facets, by their trees.
 //!
 //! ```text
-//!   height     the pair of nodes that may carry highest first; what cannot rise above the best so far is left out
-//!   contacts   pairs of nodes that are near each other
+//!   height     the pair of parts that may carry highest first; what cannot rise above the best so far is left out
+//!   contacts   pairs of parts that are near each other
 //! ```
 //!
 //! The answers are those of the list of all elements ([`super::turned`]): the same elements are tried where they may count, and among
-//! equals the first in the order of that list counts. Two nodes may tie within rounding: what is [`SURE`] to be lower is left out.
+//! equals the first in the order of that list counts. Parts are bounded in single precision and left out where they are lower, or apart, by more than
+//! that rounds ([`super::bounds`]); features are bounded in double precision and left out where they are [`SURE`] to be lower.
 
 use super::bounds::{Four, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
@@ -115,8 +116,8 @@ impl<'a> Turned<'a> {
         moving.child.is_leaf || !fixed.child.is_leaf && fixed.size() >= LARGER * moving.size()
     }
 
-    /// Divides one of two parts, at least one of which is a node: `test` sees four pairs of parts and says which are looked into, as bits, and in
-    /// which order, the greatest first; `look` is shown these, as long as it wants to see the next.
+    /// Divides one of two parts, at least one of which is a node: `test` sees four pairs of parts and says which may count, as bits, and between which
+    /// heights; `look` is shown those that may touch as they face, the one that may be highest first.
     #[inline]
     fn divide(
         &self,
