@@ -301,10 +301,22 @@ fn look(place: &Path, kind: &str) -> Result<There, WriteError> {
     Ok(There::Ours(manifest))
 }
 
-/// The same while nobody else of this program works on it.
-fn look_undisturbed(place: &Path, kind: &str) -> Result<There, WriteError> {
-    let _others_wait = claim(place);
-    look(place, kind)
+/// The same while nobody else of this program works on it, and what keeps others waiting until it is dropped.
+fn look_undisturbed(place: &Path, kind: &str) -> Result<(Option<File>, There), WriteError> {
+    /// Where the system knows no locks nobody can be kept away.
+    const TRIES: usize = 100;
+    for _ in 0..TRIES {
+        if let Some(others_wait) = claim(place) {
+            return Ok((Some(others_wait), look(place, kind)?));
+        }
+        match fs::symlink_metadata(place) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok((None, There::Nothing)),
+            // It came since: what others may take away meanwhile is not looked at.
+            Ok(meta) if meta.is_dir() => {}
+            _ => break,
+        }
+    }
+    Ok((None, look(place, kind)?))
 }
 
 /// Refuses a folder with something in it that is not in its manifest; `shown` is its name for people.
@@ -364,8 +376,7 @@ pub fn folder<E: From<WriteError>>(
 /// Lets a complete folder take its place; says `false` if somebody else was faster and it has to be tried again.
 fn put(new: &mut Temporary, place: &Path, kind: &str) -> Result<bool, WriteError> {
     let at = |error| WriteError::at(place, error);
-    let others_wait = claim(place);
-    let there = look(place, kind)?;
+    let (others_wait, there) = look_undisturbed(place, kind)?;
     if let (There::Empty | There::Ours(_), Ok(meta)) = (&there, fs::symlink_metadata(place)) {
         permit().set_permissions(&new.path, meta.permissions()).map_err(at)?;
     }
