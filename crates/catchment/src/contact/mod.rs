@@ -86,6 +86,8 @@ pub struct Pair {
     tight: bool,
     mated_height: f64,
     homing: OnceLock<bool>,
+    /// How far the seat reaches by yaw alone, either way, in radians.
+    spins: OnceLock<[f64; 2]>,
 }
 
 impl Pair {
@@ -117,6 +119,7 @@ impl Pair {
             tight,
             mated_height,
             homing,
+            spins: OnceLock::new(),
         };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
@@ -131,6 +134,7 @@ impl Pair {
         pair.tight = walls::are_close(&pair.fixed_shapes, &pair.moving_shapes, &pair.alignment);
         if free != self.alignment.free {
             pair.homing = OnceLock::new();
+            pair.spins = OnceLock::new();
         }
         pair
     }
@@ -148,6 +152,11 @@ impl Pair {
     /// Whether all motion near the mated pose leads to it, as `find` says, which is asked once.
     pub(crate) fn is_homing(&self, find: impl FnOnce() -> bool) -> bool {
         *self.homing.get_or_init(find)
+    }
+
+    /// How far the seat reaches by yaw alone, either way, in radians: as `find` says, which is asked once.
+    pub(crate) fn spins(&self, find: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
+        *self.spins.get_or_init(find)
     }
 
     /// h₀, the z of the COR at first contact without any error, in D; −∞ where the halves pass each other by.

@@ -8,15 +8,16 @@
 //!       └──────┴─┴───── q
 //! ```
 //!
-//! h₀ is the height of first contact without any error. Whether a pose is connected with the mated one is tried along three paths in
-//! the pose error: straight, its translation first, its rotation first; along each h must stay at or below h₀ + depth. Poses nearer
-//! than [`CORE`] count as connected.
+//! h₀ is the height of first contact without any error. Whether a pose is connected with the mated one is tried along four paths in
+//! the pose error: straight, and its yaw, its rotation or its translation first; along each h must stay at or below h₀ + depth. Poses nearer
+//! than [`CORE`] count as connected. How far the seat reaches by yaw alone, which what is round does all the way, is found once per pair.
 //!
 //! Not promised: walls between two places of rest that are thinner than [`PATH_STEP`] are stepped over, and a seat that bends more than
-//! its three paths do is not recognised to its end: what rests there counts as jammed. Lengths in D, angles in radians.
+//! its four paths do is not recognised to its end: what rests there counts as jammed. Lengths in D, angles in radians.
 
 use super::{Nearby, Pair};
 use crate::pose::{Dof, PoseError};
+use std::f64::consts::PI;
 
 /// Poses this near the mated one, in the ρ-metric, are connected with it: finer structure than that is not told apart.
 pub(super) const CORE: f64 = 5e-3;
@@ -59,9 +60,11 @@ impl<'a> Seat<'a> {
         })
     }
 
-    /// Whether some rests in the seat may not count, so that a motion must be followed to its end.
+    /// Whether some rests in the seat may not count, so that a motion must be followed to its end. Nothing is farther off by yaw than half a turn.
     pub fn is_limited(&self) -> bool {
-        self.pair.alignment.free.iter().any(|dof| self.pair.alignment.docked.limit(dof).is_some())
+        let alignment = &self.pair.alignment;
+        let binds = |dof: Dof| alignment.docked.limit(dof).is_some_and(|limit| dof != Dof::Yaw || limit < PI);
+        alignment.free.iter().any(binds)
     }
 
     /// The error against the nearest mated pose, which differs from the error itself where the pair is symmetric.
@@ -77,17 +80,43 @@ impl<'a> Seat<'a> {
             return true;
         }
         let mated = PoseError { yaw: error.yaw - off.yaw, ..PoseError::default() };
-        let slid = PoseError { x: 0.0, y: 0.0, ..*error };
-        let turned = PoseError { x: error.x, y: error.y, ..mated };
-        // From the mated pose outwards: a sharp seat ends there at once.
-        self.is_level(&[mated, *error])
-            || self.is_level(&[mated, slid, *error])
+        let spun = PoseError { yaw: error.yaw, ..mated };
+        let turned = PoseError { x: 0.0, y: 0.0, ..*error };
+        let slid = PoseError { x: error.x, y: error.y, ..mated };
+        self.is_deep(&spun) && self.is_level(&[spun, *error]) && self.spins(&mated, &off)
+            || self.is_level(&[mated, *error])
             || self.is_level(&[mated, turned, *error])
+            || self.is_level(&[mated, slid, *error])
     }
 
-    /// Whether the seat holds all along a path, straight in the pose error from point to point.
+    /// Whether the seat holds from a mated pose on by this yaw alone.
+    fn spins(&mut self, mated: &PoseError, off: &PoseError) -> bool {
+        // Poses equivalent to the mated one are as the design says, not as its solids are.
+        if mated.yaw != 0.0 {
+            return self.is_level(&[*mated, PoseError { yaw: mated.yaw + off.yaw, ..*mated }]);
+        }
+        let pair = self.pair;
+        let step = PATH_STEP / pair.alignment.rotation_length;
+        let most = (PI / step).min(MOST_LOOKS) as usize;
+        let mut reaches = |sign: f64| {
+            let holds = |k: &usize| self.is_deep(&PoseError { yaw: sign * step * *k as f64, ..*mated });
+            step * (1..=most).take_while(holds).count() as f64
+        };
+        let [minus, plus] = pair.spins(|| [reaches(-1.0), reaches(1.0)]);
+        // As along any path, not looked at in its end.
+        (-minus - step..=plus + step).contains(&off.yaw)
+    }
+
+    /// Whether a pose is as deep as the seat.
+    fn is_deep(&mut self, error: &PoseError) -> bool {
+        let level = self.level() + ROUNDING;
+        !self.nearby.is_above(error, level)
+    }
+
+    /// Whether the seat holds all along a path, straight in the pose error from point to point. Its first point is known to be in the seat.
     fn is_level(&mut self, path: &[PoseError]) -> bool {
-        path.windows(2).zip([1, 0]).all(|(ends, first)| {
+        // From its end, where walls are more likely than about the mated pose.
+        path.windows(2).enumerate().rev().all(|(number, ends)| {
             let (from, to) = (ends[0].to_array(), ends[1].to_array());
             let mut way = [0.0; Dof::ALL.len()];
             for dof in Dof::ALL {
@@ -95,20 +124,42 @@ impl<'a> Seat<'a> {
                 way[dof.index()] = unit * (to[dof.index()] - from[dof.index()]);
             }
             let length = way.iter().map(|part| part * part).sum::<f64>().sqrt();
-            let looks = (length / PATH_STEP).ceil().clamp(1.0, MOST_LOOKS);
-            // Not at the beginning, which is the mated pose. Nor at the end: a half there touches walls, and rounding may put it on
-            // their rim.
-            (first..looks as usize).all(|k| {
-                let share = k as f64 / looks;
+            let looks = (length / PATH_STEP).ceil().clamp(1.0, MOST_LOOKS) as usize;
+            // Nor is its end looked at: a half there touches walls, and rounding may put it on their rim.
+            let first = usize::from(number == 0);
+            coarse_first(looks).filter(|k| *k >= first).all(|k| {
+                let share = k as f64 / looks as f64;
                 let at = std::array::from_fn(|i| from[i] + share * (to[i] - from[i]));
-                let level = self.level() + ROUNDING;
-                !self.nearby.is_above(&PoseError::from_array(at), level)
+                self.is_deep(&PoseError::from_array(at))
             })
         })
     }
 }
 
+/// The numbers below `count`, those farthest from all before them first: a wall is met in as few looks as it is wide.
+fn coarse_first(count: usize) -> impl Iterator<Item = usize> {
+    let bits = usize::BITS - count.saturating_sub(1).leading_zeros();
+    (0..1usize << bits)
+        .map(move |k| if bits == 0 { 0 } else { k.reverse_bits() >> (usize::BITS - bits) })
+        .filter(move |k| *k < count)
+}
+
 /// Angle of the rotation of an error, for small ones: in radians.
 fn turn(error: &PoseError) -> f64 {
     error.roll.hypot(error.pitch).hypot(error.yaw)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_comes_once_and_the_middle_early() {
+        for count in [1, 2, 3, 7, 8, 100] {
+            let mut seen: Vec<usize> = coarse_first(count).collect();
+            assert!(count < 3 || seen[1] == count.next_power_of_two() / 2, "{seen:?}");
+            seen.sort_unstable();
+            assert_eq!(seen, (0..count).collect::<Vec<_>>());
+        }
+    }
 }
