@@ -22,6 +22,9 @@ use std::path::PathBuf;
         catchment place base.stl tool.stl --unit mm -o design.toml\n                                          or one for two parts of your own\n  \
         catchment check design.toml             everything that is wrong with it\n  \
         catchment run design.toml -o out        its area of acceptance, with pictures\n  \
+        catchment window design.toml --fix 'x=2 mm,y=2 mm'
+                                          the largest box of errors that all dock
+  \
         catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
         catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
         catchment sweep design.toml --over aspect_ratio=0.5,1,2 --over cor=-1..1/5\n                                          many designs at once\n  \

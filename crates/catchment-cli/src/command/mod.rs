@@ -21,6 +21,7 @@ mod slices;
 mod solids;
 mod sweep;
 mod trace;
+mod window;
 mod zraa;
 
 use crate::exit::ExitStatus;
@@ -39,6 +40,7 @@ pub(crate) enum Command {
     Sweep(Box<sweep::SweepArgs>),
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
+    Window(Box<window::WindowArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -67,6 +69,7 @@ impl Command {
             Self::Sweep(args) => sweep::run(&args),
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
+            Self::Window(args) => window::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

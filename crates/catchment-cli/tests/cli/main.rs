@@ -27,6 +27,7 @@ mod solids;
 mod studies;
 mod sweep;
 mod tables;
+mod window;
 mod wire;
 
 use std::fs;

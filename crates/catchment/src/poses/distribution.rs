@@ -58,20 +58,28 @@ impl Distribution {
     }
 }
 
-/// A size of each error, in D and radians.
+/// A size of each error, in D and radians; 0 where none is named.
 fn sizes(text: &str, design: &Design) -> Result<PoseError, Findings> {
+    Ok(PoseError::from_array(parse_sizes(text, design)?.map(Option::unwrap_or_default)))
+}
+
+/// Reads sizes of errors such as `x=1 mm,yaw=2 deg`: in the order of [`Dof::ALL`], in D and radians, none of errors that are not named.
+///
+/// # Errors
+/// Everything that is wrong with the text: sizes are not negative, and of errors that the design leaves free.
+pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Findings> {
     let mut found = Found::default();
     let (written, spans) = terms(text, &mut found);
-    let mut values = [0.0; 5];
+    let mut values = [None; 5];
     for dof in Dof::ALL {
         let Some(quantity) = written[dof.index()] else { continue };
         match size(dof, quantity, design) {
-            Ok(value) => values[dof.index()] = value,
+            Ok(value) => values[dof.index()] = Some(value),
             Err(fault) => found.push(fault, || Some(spans[dof.index()].clone())),
         }
     }
     found.refuse()?;
-    Ok(PoseError::from_array(values))
+    Ok(values)
 }
 
 fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {

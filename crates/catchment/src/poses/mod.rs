@@ -25,7 +25,7 @@ mod terms;
 mod text;
 mod written;
 
-pub use distribution::Distribution;
+pub use distribution::{Distribution, parse_sizes};
 pub use offsets::OffsetsAt;
 pub use table::{MOST_POSES, PoseTable};
 pub use terms::parse_pose;

@@ -1,6 +1,7 @@
 //! An answer, told: its report, whether it meets what was required, and its files.
 
 use super::Report;
+use super::envelope::{Body, Envelope};
 use super::schema::{PartitionReport, SuccessReport, Timing, WarningReport, WatershedsReport};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::Exec;
@@ -10,6 +11,7 @@ use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
 use crate::problem::Problem;
 use crate::run::{Answer, Corrected, Requirement, RequirementError, Run, RunError, Seating, Verdict};
+use serde::Serialize;
 use serde_json::Value;
 
 impl Answer {
@@ -42,14 +44,19 @@ impl Answer {
     /// # Errors
     /// The report has no such number; [`Run::check_requirements`] says so before anything is computed.
     pub fn verdicts(&self) -> Result<Vec<Verdict>, RequirementError> {
-        judged(&self.run.requirements, &self.report())
+        self.report().verdicts(&self.run.requirements)
     }
 }
 
-/// Every requirement, judged by a report.
-fn judged(requirements: &[Requirement], report: &Report) -> Result<Vec<Verdict>, RequirementError> {
-    let value = serde_json::to_value(report).unwrap_or(Value::Null);
-    requirements.iter().map(|requirement| requirement.judge(&value)).collect()
+impl<T: Body + Serialize> Envelope<T> {
+    /// Every requirement, judged by this report.
+    ///
+    /// # Errors
+    /// The report has no such place, or no number there.
+    pub fn verdicts(&self, requirements: &[Requirement]) -> Result<Vec<Verdict>, RequirementError> {
+        let value = serde_json::to_value(self).unwrap_or(Value::Null);
+        requirements.iter().map(|requirement| requirement.judge(&value)).collect()
+    }
 }
 
 /// Why a requirement of a run cannot be judged.

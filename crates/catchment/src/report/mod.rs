@@ -42,6 +42,7 @@ mod table;
 pub mod text;
 mod trajectory;
 mod trials;
+mod window;
 pub mod write;
 #[cfg(feature = "zarr")]
 pub mod zarr;
@@ -72,4 +73,5 @@ pub use table::{table, table_with};
 pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
+pub use window::{CertificateReport, SideReport, WindowBody, WindowReport, WorstReport};
 pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};

@@ -69,7 +69,8 @@ pub(super) fn resolution(text: &str) -> Result<Resolution, String> {
     text.parse::<Resolution>().map_err(|error| error.to_string())
 }
 
-fn requirement(text: &str) -> Result<Requirement, String> {
+/// Reads a requirement.
+pub(super) fn requirement(text: &str) -> Result<Requirement, String> {
     text.parse::<Requirement>().map_err(|error| error.to_string())
 }
 

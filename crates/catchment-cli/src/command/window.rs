@@ -1,0 +1,133 @@
+//! `catchment window`: the largest box of pose errors that all dock.
+
+use super::run::requirement;
+use crate::args::DesignArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, to_stderr, to_stdout};
+use catchment::pose::PoseError;
+use catchment::poses::parse_sizes;
+use catchment::problem::Problem;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{WindowReport, csv};
+use catchment::run::Requirement;
+use catchment::study::window::{Settings, Window, WindowError, run as find};
+use clap::Args;
+use std::time::Instant;
+
+/// The window one may ship: the largest box of errors that all dock
+///
+/// Exact motions, no grid: every direction of the box, then moves about the worst pose found, each failing pose making the box
+/// smaller; then random poses all over it, none of which may fail. Prints half-widths around zero, how far every error may go
+/// alone and with all others in the window, the worst pose, and how sure all this is.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment window design.toml                    in the proportions of the error box\n  \
+    catchment window design.toml --fix 'x=2 mm,y=2 mm'\n                                                  these are given: how much of the others?\n  \
+    catchment window design.toml --proportions 'x=1 mm,y=1 mm,yaw=2 deg'\n                                                  the others do not occur\n  \
+    catchment window design.toml --require 'window.yaw.half_width>=0.087'\n  \
+    catchment window design.toml --json | jq '.window[] | {axis, half_width}'\n\n\
+    Lengths are in D and angles in radians unless they have a unit; in JSON and for --require always. The window ends at the \
+    error box of the design.")]
+pub(crate) struct WindowArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Half-widths that are given, such as "x=2 mm,y=2 mm": the window holds them, and the others grow
+    #[arg(long, value_name = "AXIS=SIZE,…")]
+    fix: Option<String>,
+    /// Proportions of the half-widths that are not given, such as "x=1 mm,yaw=2 deg"; what is not named does not occur [default: the error
+    /// box]
+    #[arg(long, value_name = "AXIS=SIZE,…")]
+    proportions: Option<String>,
+    /// Random poses of the certificate; 0 for none [default: 300000, fewer for round halves]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000))]
+    motions: Option<u32>,
+    /// Seed of the search and of the random poses
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Print JSON, in D and radians
+    #[arg(long)]
+    json: bool,
+    /// End with exit code 1 unless this holds of the JSON report, such as "window.yaw.half_width>=0.087"; may be repeated
+    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
+    require: Vec<Requirement>,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["csv", "json"])?;
+    let problem = args.design.problem()?;
+    let settings = args.settings(&problem)?;
+    let form = WindowReport::new(problem.design(), &Window::form(&problem), Vec::new(), None);
+    for requirement in &args.require {
+        let tried = form.verdicts(std::slice::from_ref(requirement));
+        tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
+    }
+    let running = args.exec.start()?;
+    let found = find(&problem, &settings, &running.exec).map_err(refused)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let objections = problem.objections();
+    let doubts = objections.iter().map(WarningReport::note).collect();
+    let report = WindowReport::new(problem.design(), &found, doubts, Some(timing));
+    match kind {
+        Some("csv") => args.file.write(&csv(&report.records())?)?,
+        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
+        None => {}
+    }
+    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
+    let verdicts = report.verdicts(&args.require)?;
+    let unmet: Vec<String> =
+        verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
+    to_stderr(&unmet);
+    Ok(if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+}
+
+impl WindowArgs {
+    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
+        let sizes = |option: &str, text: &Option<String>| {
+            let Some(text) = text else { return Ok(None) };
+            let read = parse_sizes(text, problem.design()).map(Some);
+            read.map_err(|refusal| Failure::of_option(option, text, refusal))
+        };
+        let fixed = sizes("--fix", &self.fix)?;
+        let proportions = sizes("--proportions", &self.proportions)?;
+        if let (Some(fixed), Some(proportions)) = (&fixed, &proportions) {
+            let both = problem.alignment().free.iter().find(|axis| {
+                let k = axis.index();
+                fixed[k].is_some() && proportions[k].is_some()
+            });
+            if let Some(axis) = both {
+                let message = format!("{} is both given by --fix and among the --proportions", axis.name());
+                return Err(Failure::with_help(message, Some("name it in one of them".to_owned())));
+            }
+        }
+        Ok(Settings {
+            fixed: fixed.unwrap_or_default(),
+            proportions: proportions.map(|sizes| PoseError::from_array(sizes.map(Option::unwrap_or_default))),
+            motions: self.motions.map(|motions| motions as usize),
+            seed: self.seed,
+        })
+    }
+}
+
+/// Why there is no window, with what helps.
+fn refused(error: WindowError) -> Failure {
+    let help = match &error {
+        WindowError::NotDocked { .. } => Some("catchment check says where it settles instead"),
+        WindowError::GivenFails { .. } => {
+            Some("catchment trace --pose shows the way of that pose; lower what --fix gives, or leave it out")
+        }
+        WindowError::Scattered { .. } => Some(
+            "catchment trace --pose shows what becomes of that pose; narrow the window by --fix or --proportions",
+        ),
+        WindowError::Nothing => Some("leave an error out of --fix, or give it a proportion"),
+        _ => None,
+    };
+    Failure::with_help(error.to_string(), help.map(str::to_owned))
+}

@@ -1,0 +1,62 @@
+//! The window, through the real binary.
+
+use super::{catchment, json, run};
+use serde_json::Value;
+use std::fs;
+
+/// A V-Face of 50 mm: D/2 = 25 mm to either side where pitch is locked.
+fn home() -> tempfile::TempDir {
+    let home = tempfile::tempdir().unwrap();
+    let text = "[connector]\nfamily = \"v-face\"\nwidth = 50.0\nunit = \"mm\"\n";
+    fs::write(home.path().join("v.toml"), text).unwrap();
+    home
+}
+
+fn half_width(report: &Value, axis: &str) -> f64 {
+    let sides = report["window"].as_array().unwrap();
+    sides.iter().find(|side| side["axis"] == axis).unwrap()["half_width"].as_f64().unwrap()
+}
+
+#[test]
+fn it_tells_the_closed_form_in_millimetres_and_draws_nothing() {
+    let home = home();
+    let told = run(home.path(), &["window", "v.toml", "--free", "x", "--motions", "2000"]);
+    assert!(told.contains("±24.97"), "{told}");
+    assert!(told.contains("no failure in 2 000 random poses"), "{told}");
+    assert!(told.contains("1 in 667 poses of this window fails, 95 %"), "{told}");
+    assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn what_is_given_stays_and_threads_change_nothing() {
+    let home = home();
+    let given = |threads: &str, x: &str| {
+        let fix = format!("x={x}");
+        let args = ["window", "v.toml", "--fix", &fix, "--motions", "3000", "--json", "--threads", threads];
+        let mut report = json(home.path(), &args);
+        report["timing"] = Value::Null;
+        report
+    };
+    let two = given("2", "2 mm");
+    assert_eq!(two, given("1", "2 mm"));
+    assert!((half_width(&two, "x") - 0.04).abs() < 1e-12);
+    assert!(half_width(&two, "pitch") > half_width(&given("2", "12 mm"), "pitch"));
+    assert!(two["worst"]["outcome"] != "aligned" && two["certificate"]["failing_at_most"].as_f64().unwrap() < 0.002);
+}
+
+#[test]
+fn a_requirement_decides_the_exit_code_and_files_are_whole() {
+    let home = home();
+    let with = |require: &str, more: &[&str]| {
+        let args = [&["window", "v.toml", "--free", "x", "--motions", "0", "--require", require][..], more].concat();
+        catchment(home.path()).args(args).output().unwrap()
+    };
+    assert_eq!(with("window.x.half_width>=0.49", &["-o", "w.csv"]).status.code(), Some(0));
+    let unmet = with("window.x.half_width>=0.51", &["-o", "w.json"]);
+    assert_eq!(unmet.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&unmet.stderr).contains("not met: window.x.half_width >= 0.51"));
+    let csv = fs::read_to_string(home.path().join("w.csv")).unwrap();
+    assert!(csv.starts_with("axis,half_width,given,") && csv.lines().count() == 2);
+    let kept: Value = serde_json::from_str(&fs::read_to_string(home.path().join("w.json")).unwrap()).unwrap();
+    assert_eq!(kept["kind"], "window");
+}

@@ -1,0 +1,314 @@
+//! The window: the largest box of pose errors around zero, all of which dock. What a datasheet may say.
+//!
+//! ```text
+//!        ░░░░░░░░░          1  search    exact motions on the surface of the box: all directions of {−1, 0, 1}ⁿ, then
+//!      ░░┌──────●░              moves about the worst pose ● found so far; every pose that does not dock makes the box
+//!      ░░│  0   │░░             smaller, by bisection towards zero
+//!       ░└──────┘░          2  certify   N random poses all over the box; one that does not dock goes back to 1
+//!          ░░░░░
+//! ```
+//!
+//! Half-widths are s·pᵢ, with the proportions pᵢ of the error box or of one's own; some may be given (x, y ±2 mm: how much yaw?), and
+//! then only the others grow. No grid is involved: every answer is that of exact motions. Beside the window stands, per error, how far it
+//! may go alone (all others 0) and with all others anywhere within their half-widths: where that is hardly more than the window, it is the
+//! tight one.
+//!
+//! The certificate is that of the rule of three: if none of N independent poses fails, at most ln(k/0.05)/N of the window does, with 95 %
+//! confidence, k being how often it was drawn anew (Bonferroni).
+//!
+//! Not promised: that no pose of the window fails, only how few. The window ends at the error box. Undecided poses count as failures.
+//! Lengths in D, angles in radians.
+
+mod search;
+#[cfg(test)]
+mod tests;
+
+use crate::acceptance::Outcome;
+use crate::exec::{Cancelled, Exec};
+use crate::method::Decide;
+use crate::method::descent::{self, Touch};
+use crate::pose::{Dof, PoseError};
+use crate::problem::Problem;
+use search::{Search, Space};
+use serde::{Deserialize, Serialize};
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Half-widths that are given, in the order of [`Dof::ALL`], in D and radians: these errors occur so far, and the others are asked about.
+    pub fixed: [Option<f64>; 5],
+    /// Proportions of the others; the ranges of the error box where nothing is said. 0 for errors that do not occur.
+    pub proportions: Option<PoseError>,
+    /// Random poses of the certificate; 300 000 where nothing is said, fewer of halves with many facets.
+    pub motions: Option<usize>,
+    /// Their seed, and that of the search.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { fixed: [None; 5], proportions: None, motions: None, seed: 1 }
+    }
+}
+
+/// The largest box of errors around zero that all dock, as far as exact motions show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    /// How it was asked for, everything filled in.
+    pub settings: Settings,
+    /// Per free error.
+    pub axes: Vec<Side>,
+    /// s: the half-widths that were not given are so many times their proportions.
+    pub scale: f64,
+    /// The pose that ends it; none where it reaches the error box.
+    pub worst: Option<Worst>,
+    /// The error that is nearest to its limit while all others are anywhere within the window; none where all reach the error box.
+    pub tightest: Option<Dof>,
+    /// What random poses all over it show.
+    pub certificate: Certificate,
+    /// Motions that were followed in all.
+    pub motions: usize,
+}
+
+/// One error of a window. Lengths in D, angles in radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Side {
+    /// Which.
+    pub axis: Dof,
+    /// ± so much is in the window.
+    pub half_width: f64,
+    /// Whether that was given.
+    pub given: bool,
+    /// How far it may go with all others 0.
+    pub alone: Reach,
+    /// How far it may go with all others anywhere within their half-widths.
+    pub beside: Reach,
+}
+
+/// How far one error may go, either way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// ± so far, in D or radians.
+    pub to: f64,
+    /// The error box ends there: perhaps further.
+    pub is_border: bool,
+}
+
+/// The pose nearest to zero, in proportions, that does not dock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Worst {
+    /// The pose error.
+    pub error: PoseError,
+    /// What becomes of it.
+    pub outcome: Outcome,
+    /// Where it ends.
+    pub end: PoseError,
+    /// What touches there; empty where the halves never meet.
+    pub touches: Vec<Touch>,
+}
+
+/// What random poses of the window show: none of them failed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Certificate {
+    /// How many poses.
+    pub motions: usize,
+    /// At most this share of the window fails, with 95 % confidence; 1 if nothing was tried.
+    pub failing_at_most: f64,
+    /// How often a window was drawn before this one, and some pose failed.
+    pub redrawn: usize,
+}
+
+/// Why there is no window.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WindowError {
+    /// Not even zero docks.
+    #[error("the mated pose itself is {}: there is no window around it", outcome.name())]
+    NotDocked {
+        /// What becomes of it.
+        outcome: Outcome,
+    },
+    /// A given half-width beyond the error box.
+    #[error("{}: ±{half_width:.4} {} is given, and the error box ends at ±{most:.4}; make the box larger, or the half-width smaller", axis.name(), unit(*axis))]
+    BeyondBox {
+        /// Which error.
+        axis: Dof,
+        /// What was given.
+        half_width: f64,
+        /// The half range of the box.
+        most: f64,
+    },
+    /// A size that is none.
+    #[error("{}: {value} is no half-width and no proportion: finite, 0 or more", axis.name())]
+    NoSize {
+        /// Which error.
+        axis: Dof,
+        /// What was given.
+        value: f64,
+    },
+    /// An error that does not vary.
+    #[error("{}: the design locks it, so it has no place in the window", axis.name())]
+    Locked {
+        /// Which.
+        axis: Dof,
+    },
+    /// Nothing grows.
+    #[error("nothing is asked: every error is given, or has the proportion 0; leave one to be found")]
+    Nothing,
+    /// Within what was given some pose fails already.
+    #[error("what is given is too much by itself: with {} it is {}", place(error), outcome.name())]
+    GivenFails {
+        /// The pose error.
+        error: PoseError,
+        /// What becomes of it.
+        outcome: Outcome,
+    },
+    /// Random poses failed again and again.
+    #[error(
+        "after {windows} windows, each smaller, some random pose failed in every one, at last {}: poses that fail lie all over",
+        place(error)
+    )]
+    Scattered {
+        /// How many windows.
+        windows: usize,
+        /// The last pose that failed.
+        error: PoseError,
+    },
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Window {
+    /// With every place that the window of a problem has, and numbers that mean nothing: what requirements are tried on.
+    pub fn form(problem: &Problem) -> Self {
+        let none = Reach { to: 0.0, is_border: false };
+        let side = |axis| Side { axis, half_width: 0.0, given: false, alone: none, beside: none };
+        Self {
+            settings: Settings::default(),
+            axes: problem.alignment().free.iter().map(side).collect(),
+            scale: 0.0,
+            worst: None,
+            tightest: None,
+            certificate: Certificate { motions: 0, failing_at_most: 1.0, redrawn: 0 },
+            motions: 0,
+        }
+    }
+}
+
+const fn unit(axis: Dof) -> &'static str {
+    if axis.is_rotation() { "rad" } else { "D" }
+}
+
+fn place(error: &PoseError) -> String {
+    let named = Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, value)| *value != 0.0);
+    let said: Vec<String> =
+        named.map(|(dof, value)| format!("{} = {value:.4} {}", dof.name(), unit(dof))).collect();
+    said.join(", ")
+}
+
+/// The window is so much smaller than the nearest pose that was seen to fail.
+const MARGIN: f64 = 1e-3;
+/// Windows that are tried before it is given up.
+const WINDOWS: usize = 50;
+/// Below this scale, as a share of the largest, there is no window.
+const NONE: f64 = 1e-4;
+/// Allowed chance that a certificate is wrong.
+const CHANCE: f64 = 0.05;
+
+/// Finds the window of a problem and certifies it.
+///
+/// # Errors
+/// See [`WindowError`].
+///
+/// # Examples
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use catchment::design::read;
+/// use catchment::exec::Exec;
+/// use catchment::problem::Problem;
+/// use catchment::study::window::{self, Settings};
+///
+/// let text = "[connector]\nfamily = \"pyramid\"\n[alignment]\nfree = [\"x\", \"y\"]\n";
+/// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
+/// let found = window::run(&problem, &Settings { motions: Some(1000), ..Settings::default() }, &Exec::new())?;
+/// // Without rotations a pyramid corrects offsets up to D/2 along both axes at once.
+/// assert!((found.axes[0].half_width - 0.5).abs() < 0.002);
+/// # Ok(())
+/// # }
+/// ```
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window, WindowError> {
+    let space = Space::of(problem, settings)?;
+    let motions = settings.motions.unwrap_or_else(|| default_motions(problem));
+    let settings = &Settings { motions: Some(motions), ..settings.clone() };
+    let home = problem.follow(&PoseError::default()).outcome;
+    if home != Outcome::Aligned {
+        return Err(WindowError::NotDocked { outcome: home });
+    }
+    let mut search = Search::new(problem, space, settings.seed);
+    search.directions(exec)?;
+    search.moves(exec)?;
+    let mut redrawn = 0;
+    let (scale, certificate) = loop {
+        let scale = search.window(MARGIN);
+        if scale <= NONE * search.space().border() {
+            let error = search.worst().unwrap_or_default();
+            return Err(WindowError::GivenFails { outcome: problem.follow(&error).outcome, error });
+        }
+        if !search.certify(scale, motions, redrawn, exec)? {
+            let chances = (redrawn + 1) as f64;
+            let at_most =
+                if motions == 0 { 1.0 } else { ((chances / CHANCE).ln() / motions as f64).min(1.0) };
+            break (scale, Certificate { motions, failing_at_most: at_most, redrawn });
+        }
+        redrawn += 1;
+        if redrawn == WINDOWS {
+            let error = search.worst().unwrap_or_default();
+            return Err(WindowError::Scattered { windows: redrawn, error });
+        }
+        search.moves(exec)?;
+    };
+    let half_widths = search.space().half_widths(scale);
+    let mut followed = search.followed();
+    let mut axes = Vec::new();
+    for axis in problem.alignment().free.iter() {
+        let half_width = half_widths[axis.index()];
+        let mut reach = |others: [f64; 5], from: f64| {
+            let mut search = Search::new(problem, Space::along(problem, axis, others), settings.seed);
+            let reach = search.reach(from, exec)?;
+            followed += search.followed();
+            Ok::<_, Cancelled>(reach)
+        };
+        let alone = reach([0.0; 5], 0.0)?;
+        let beside = reach(half_widths, half_width)?;
+        // Alone it goes no less far than in company.
+        let alone = if beside.to > alone.to { beside } else { alone };
+        let given = settings.fixed[axis.index()].is_some();
+        axes.push(Side { axis, half_width, given, alone, beside });
+    }
+    let spare = |side: &&Side| side.beside.to / side.half_width;
+    let tightest = axes.iter().filter(|side| side.half_width > 0.0 && !side.beside.is_border);
+    let tightest = tightest.min_by(|a, b| spare(a).total_cmp(&spare(b))).map(|side| side.axis);
+    let worst = search.worst().map(|error| Worst::of(problem, error));
+    Ok(Window { settings: settings.clone(), axes, scale, worst, tightest, certificate, motions: followed })
+}
+
+/// As many as seconds allow.
+fn default_motions(problem: &Problem) -> usize {
+    /// As a multiple of the random poses of a run: 300 000 of simple halves.
+    const PER_SAMPLE: usize = 75;
+    PER_SAMPLE * descent::Settings::default().default_samples(problem.pair())
+}
+
+impl Worst {
+    fn of(problem: &Problem, error: PoseError) -> Self {
+        let path = problem.trace(&error);
+        let last = path.waypoints.last();
+        Self {
+            error,
+            outcome: path.outcome,
+            end: last.map_or(error, |waypoint| waypoint.error),
+            touches: last.map_or_else(Vec::new, |waypoint| waypoint.touches.clone()),
+        }
+    }
+}

@@ -1,0 +1,363 @@
+//! The search for the pose nearest to zero that does not dock.
+//!
+//! A probe is a direction u in [−1, 1]ⁿ; at scale s it is the pose whose given errors are uᵢ·wᵢ and whose others are s·uᵢ·pᵢ. The largest
+//! of the latter is 1 or −1, so that at scale s it lies on the surface of the box, given errors anywhere.
+//!
+//! All motions of a batch are followed at the scale that was known before it, whatever the threads.
+
+use super::{Reach, Settings, WindowError};
+use crate::acceptance::{Outcome, Stream};
+use crate::exec::{Cancelled, Exec};
+use crate::method::descent::{self, Follower};
+use crate::pose::{Dof, PoseError};
+use crate::problem::Problem;
+use rayon::prelude::*;
+
+/// Relative width to which the scale of a failing pose is bisected.
+const SHARP: f64 = 2e-4;
+/// Moves are tried this much inside the nearest failing pose: what they find makes the box smaller by at least as much.
+const INSIDE: f64 = 0.998;
+/// Scales at which every direction is looked at, between zero and the error box.
+const LOOKS: usize = 8;
+/// The same along one error alone, where looking costs little.
+const LOOKS_ALONE: usize = 64;
+/// Moves per batch, and how many in a row that find nothing end the search.
+const BATCH: usize = 64;
+const QUIET: usize = 512;
+/// Random poses between two looks at whether one failed.
+const CERTIFIED_AT_ONCE: usize = 4096;
+/// Beyond so many batches of moves what is found is good enough; the certificate has the last word.
+const MOST_BATCHES: u64 = 200;
+
+type Direction = [f64; 5];
+
+/// The boxes among which the window is sought.
+#[derive(Debug, Clone)]
+pub(super) struct Space {
+    /// Half-widths of errors that are given.
+    fixed: [f64; 5],
+    /// Half-widths of the others at scale 1.
+    growing: [f64; 5],
+    /// The scale at which the first of them meets the error box.
+    border: f64,
+}
+
+impl Space {
+    pub(super) fn of(problem: &Problem, settings: &Settings) -> Result<Self, WindowError> {
+        let alignment = problem.alignment();
+        let proportions = settings.proportions.map(|p| p.to_array());
+        let (mut fixed, mut growing) = ([0.0; 5], [0.0; 5]);
+        for axis in Dof::ALL {
+            let (k, most) = (axis.index(), alignment.half_range(axis));
+            let said = settings.fixed[k].or(proportions.map(|p| p[k]));
+            if let Some(value) = said.filter(|value| !(value.is_finite() && *value >= 0.0)) {
+                return Err(WindowError::NoSize { axis, value });
+            }
+            if !alignment.free.contains(axis) {
+                match said {
+                    Some(value) if value != 0.0 => return Err(WindowError::Locked { axis }),
+                    _ => continue,
+                }
+            }
+            match settings.fixed[k] {
+                Some(half_width) if half_width > most * (1.0 + 1e-12) => {
+                    return Err(WindowError::BeyondBox { axis, half_width, most });
+                }
+                Some(half_width) => fixed[k] = half_width,
+                None => growing[k] = proportions.map_or(most, |p| p[k]),
+            }
+        }
+        let grows = |axis: &Dof| growing[axis.index()] > 0.0;
+        let ends = |axis: Dof| alignment.half_range(axis) / growing[axis.index()];
+        let border = Dof::ALL.into_iter().filter(grows).map(ends).fold(f64::INFINITY, f64::min);
+        if border.is_finite() { Ok(Self { fixed, growing, border }) } else { Err(WindowError::Nothing) }
+    }
+
+    /// One error grows, the others are within these half-widths.
+    pub(super) fn along(problem: &Problem, axis: Dof, others: [f64; 5]) -> Self {
+        let mut growing = [0.0; 5];
+        growing[axis.index()] = 1.0;
+        let mut fixed = others;
+        fixed[axis.index()] = 0.0;
+        Self { fixed, growing, border: problem.alignment().half_range(axis) }
+    }
+
+    pub(super) const fn border(&self) -> f64 {
+        self.border
+    }
+
+    pub(super) fn half_widths(&self, scale: f64) -> [f64; 5] {
+        std::array::from_fn(|k| self.fixed[k] + scale * self.growing[k])
+    }
+
+    fn pose(&self, u: &Direction, scale: f64) -> PoseError {
+        let widths = self.half_widths(scale);
+        PoseError::from_array(std::array::from_fn(|k| u[k] * widths[k]))
+    }
+
+    fn grows(&self, k: usize) -> bool {
+        self.growing[k] > 0.0
+    }
+
+    fn occurs(&self, k: usize) -> bool {
+        self.growing[k] > 0.0 || self.fixed[k] > 0.0
+    }
+
+    /// The largest growing part.
+    fn largest(&self, u: &Direction) -> f64 {
+        (0..5).filter(|k| self.grows(*k)).map(|k| u[k].abs()).fold(0.0, f64::max)
+    }
+
+    /// The direction whose largest growing part is 1 or −1; none where nothing grows.
+    fn onto_surface(&self, mut u: Direction) -> Option<Direction> {
+        let largest = self.largest(&u);
+        for (k, part) in u.iter_mut().enumerate() {
+            let scaled = if self.grows(k) { *part / largest } else { part.clamp(-1.0, 1.0) };
+            *part = if self.occurs(k) { scaled } else { 0.0 };
+        }
+        (largest > 0.0).then_some(u)
+    }
+
+    /// All of {−1, 0, 1}ⁿ that grow.
+    fn all(&self) -> Vec<Direction> {
+        let mut all = vec![[0.0; 5]];
+        for k in (0..5).filter(|k| self.occurs(*k)) {
+            let parts = |u: Direction| {
+                [-1.0, 0.0, 1.0].map(|part| {
+                    let mut u = u;
+                    u[k] = part;
+                    u
+                })
+            };
+            all = all.into_iter().flat_map(parts).collect();
+        }
+        all.into_iter().filter_map(|u| self.onto_surface(u)).collect()
+    }
+}
+
+/// A direction, and the least scale at which its pose was seen to fail.
+#[derive(Debug, Clone, Copy)]
+struct Failing {
+    scale: f64,
+    along: Direction,
+}
+
+/// The search, and what it knows.
+pub(super) struct Search<'a> {
+    problem: &'a Problem,
+    settings: descent::Settings,
+    space: Space,
+    nearest: Option<Failing>,
+    random: Stream,
+    batches: u64,
+    followed: usize,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(problem: &'a Problem, space: Space, seed: u64) -> Self {
+        Self {
+            problem,
+            settings: descent::Settings::default(),
+            space,
+            nearest: None,
+            random: Stream::new(seed),
+            batches: 0,
+            followed: 0,
+        }
+    }
+
+    pub(super) const fn space(&self) -> &Space {
+        &self.space
+    }
+
+    pub(super) const fn followed(&self) -> usize {
+        self.followed
+    }
+
+    /// The scale up to which nothing was seen to fail.
+    fn scale(&self) -> f64 {
+        self.nearest.map_or(self.space.border, |failing| failing.scale)
+    }
+
+    /// The same, by a margin less where something did.
+    pub(super) fn window(&self, margin: f64) -> f64 {
+        self.nearest.map_or(self.space.border, |failing| failing.scale * (1.0 - margin))
+    }
+
+    /// The nearest pose that fails.
+    pub(super) fn worst(&self) -> Option<PoseError> {
+        self.nearest.map(|failing| self.space.pose(&failing.along, failing.scale))
+    }
+
+    /// Looks along every direction of {−1, 0, 1}ⁿ.
+    pub(super) fn directions(&mut self, exec: &Exec) -> Result<(), Cancelled> {
+        let all = self.space.all();
+        self.try_all(&all, [0.0, self.space.border], LOOKS, exec)
+    }
+
+    /// How far the only error that grows may go, which it is known to do up to `from`.
+    pub(super) fn reach(&mut self, from: f64, exec: &Exec) -> Result<Reach, Cancelled> {
+        let all = self.space.all();
+        let looks = if all.len() == 2 { LOOKS_ALONE } else { LOOKS };
+        self.try_all(&all, [from, self.space.border], looks, exec)?;
+        if all.len() > 2 && self.scale() > from {
+            self.moves(exec)?;
+        }
+        let to = self.window(SHARP).max(from);
+        Ok(Reach { to, is_border: self.nearest.is_none() })
+    }
+
+    /// Moves about the nearest pose that fails, and elsewhere, until many in a row find none nearer.
+    pub(super) fn moves(&mut self, exec: &Exec) -> Result<(), Cancelled> {
+        let mut quiet = 0;
+        let last = self.batches + MOST_BATCHES;
+        while quiet < QUIET && self.batches < last {
+            let random = self.random.branch(self.batches);
+            self.batches += 1;
+            let all: Vec<Direction> =
+                (0..BATCH as u64).filter_map(|k| self.moved(random.branch(k))).collect();
+            let before = self.scale();
+            self.try_all(&all, [0.0, INSIDE * before], 1, exec)?;
+            quiet = if self.scale() < before { 0 } else { quiet + BATCH };
+        }
+        Ok(())
+    }
+
+    /// A direction to try: four of five near the worst one, by one or two of its parts or by all, the others anywhere.
+    fn moved(&self, random: Stream) -> Option<Direction> {
+        const NEAR: f64 = 0.8;
+        const SPREAD: f64 = 0.15;
+        let number = |k: u64| random.uniform(k);
+        let anywhere = |k: usize| 2.0 * number(20 + k as u64) - 1.0;
+        let parts: Vec<usize> = (0..5).filter(|k| self.space.occurs(*k)).collect();
+        let u = match self.nearest {
+            Some(Failing { along: mut u, .. }) if number(0) < NEAR => {
+                if number(1) < 0.5 {
+                    for turn in 0..=u64::from(number(2) < 0.5) {
+                        let k =
+                            parts[((number(3 + turn) * parts.len() as f64) as usize).min(parts.len() - 1)];
+                        let choice = number(5 + turn);
+                        u[k] = if choice < 0.35 {
+                            1.0
+                        } else if choice < 0.7 {
+                            -1.0
+                        } else {
+                            anywhere(k)
+                        };
+                    }
+                } else {
+                    // The sum of three uniform numbers is normal enough.
+                    for k in &parts {
+                        let sum: f64 = (0..3).map(|j| number(30 + 3 * *k as u64 + j)).sum();
+                        u[*k] = (u[*k] + 2.0 * SPREAD * (sum - 1.5)).clamp(-1.0, 1.0);
+                    }
+                }
+                u
+            }
+            _ => {
+                let mut u: Direction = std::array::from_fn(anywhere);
+                let grows: Vec<usize> = (0..5).filter(|k| self.space.grows(*k)).collect();
+                let face = grows[((number(7) * grows.len() as f64) as usize).min(grows.len() - 1)];
+                u[face] = u[face].signum();
+                u
+            }
+        };
+        self.space.onto_surface(u)
+    }
+
+    /// Looks along directions between two scales, and keeps the nearest failing pose.
+    fn try_all(
+        &mut self,
+        all: &[Direction],
+        [from, to]: [f64; 2],
+        looks: usize,
+        exec: &Exec,
+    ) -> Result<(), Cancelled> {
+        let (pair, settings, space) = (self.problem.pair(), &self.settings, &self.space);
+        let look = |follower: &mut Follower<'_>, along: &Direction| {
+            let mut followed = 0;
+            let mut fails = |scale: f64| {
+                followed += 1;
+                follower.follow(&space.pose(along, scale)).outcome != Outcome::Aligned
+            };
+            let mut safe = from;
+            for k in 1..=looks {
+                exec.check()?;
+                let scale = from + (to - from) * k as f64 / looks as f64;
+                if fails(scale) {
+                    let mut failing = scale;
+                    while failing - safe > SHARP * failing {
+                        exec.check()?;
+                        let middle = 0.5 * (safe + failing);
+                        if middle <= 1e-6 * space.border {
+                            break;
+                        }
+                        if fails(middle) { failing = middle } else { safe = middle }
+                    }
+                    return Ok((followed, Some(Failing { scale: failing, along: *along })));
+                }
+                safe = scale;
+            }
+            Ok((followed, None))
+        };
+        let found: Vec<(usize, Option<Failing>)> = exec.install(|| {
+            all.par_iter().map_init(|| Follower::new(pair, settings), look).collect::<Result<_, Cancelled>>()
+        })?;
+        for (followed, failing) in found {
+            self.followed += followed;
+            self.keep(failing);
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self, failing: Option<Failing>) {
+        if let Some(failing) = failing.filter(|failing| failing.scale < self.scale()) {
+            self.nearest = Some(failing);
+        }
+    }
+
+    /// Follows random poses all over the window of this scale, a stream of their own for every round; where one fails, the nearest failing pose is
+    /// sought from it on, and true is returned.
+    pub(super) fn certify(
+        &mut self,
+        scale: f64,
+        motions: usize,
+        round: usize,
+        exec: &Exec,
+    ) -> Result<bool, Cancelled> {
+        const BRANCH: u64 = 0xce27;
+        let random = self.random.branch(BRANCH).branch(round as u64);
+        let mut done = 0;
+        while done < motions {
+            let until = motions.min(done + CERTIFIED_AT_ONCE);
+            let (pair, settings, space) = (self.problem.pair(), &self.settings, &self.space);
+            let widths = space.half_widths(scale);
+            let fails = |follower: &mut Follower<'_>, k: usize| -> Result<Option<Direction>, Cancelled> {
+                exec.check()?;
+                let u: Direction =
+                    std::array::from_fn(|j| 2.0 * random.uniform(5 * k as u64 + j as u64) - 1.0);
+                let error = PoseError::from_array(std::array::from_fn(|j| u[j] * widths[j]));
+                Ok((follower.follow(&error).outcome != Outcome::Aligned).then_some(u))
+            };
+            let failed: Vec<Option<Direction>> = exec.install(|| {
+                let poses = (done..until).into_par_iter();
+                poses.map_init(|| Follower::new(pair, settings), fails).collect::<Result<_, Cancelled>>()
+            })?;
+            self.followed += until - done;
+            done = until;
+            exec.report(done as f64 / motions as f64, "certificate");
+            let failed: Vec<Direction> = failed.into_iter().flatten().collect();
+            if !failed.is_empty() {
+                for u in failed {
+                    let there = scale * self.space.largest(&u);
+                    if let Some(along) = self.space.onto_surface(u) {
+                        self.keep(Some(Failing { scale: there, along }));
+                        self.try_all(&[along], [0.0, there], 1, exec)?;
+                    }
+                }
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
