@@ -41,7 +41,7 @@ pub use crate::suggest::nearest;
 pub use alignment::Alignment;
 pub use complaint::{Complaint, Dimension};
 pub(crate) use content::hex;
-pub use content::{Contents, MeshContent};
+pub use content::{Contents, MeshContent, Meshed};
 pub use docked::Docked;
 pub use edit::{key_path, with_key};
 pub use family::{Family, FamilySpec};

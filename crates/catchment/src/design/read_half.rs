@@ -25,8 +25,6 @@ const SHAPES: [Key; 7] = [
     keys::PART_BOX,
     keys::PART_PROFILE,
 ];
-/// Endings of files that can say their unit themselves.
-const SAY_THEIR_UNIT: [&str; 3] = ["3mf", "svg", "dxf"];
 /// Endings of files with outlines.
 const DRAWINGS: [&str; 2] = ["svg", "dxf"];
 
@@ -76,8 +74,10 @@ impl<'t> Walk<'t> {
             let treatment = Treatment {
                 repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(Treatment::DEFAULT.repair),
                 simplify: self.reader.number(section, &keys::SIMPLIFY, scale),
+                deflection: self.reader.number(section, &keys::DEFLECTION, scale),
             };
             let file = self.file(section, &way, &keys::MESH_UNIT, scale);
+            self.deflection_of(section, &keys::DEFLECTION, file.as_ref());
             return file.map(|file| HalfSpec::Mesh(FileSpec { treatment, ..file }));
         }
         let exact = if way == keys::PIECES {
@@ -94,10 +94,18 @@ impl<'t> Walk<'t> {
             "a half of parts; each of its files has a unit of its own"
         };
         self.not_its_own(section, &keys::MESH_UNIT, owner, "a mesh");
+        self.not_its_own(section, &keys::DEFLECTION, exact, "a STEP file");
         if way == keys::PIECES {
             self.pieces(section, &way, scale).map(HalfSpec::Pieces)
         } else {
             self.parts(section, scale).map(HalfSpec::Parts)
+        }
+    }
+
+    /// Complains about a deflection of a file that holds triangles already.
+    fn deflection_of(&mut self, section: &Section<'t>, key: &Key, file: Option<&FileSpec>) {
+        if file.is_some_and(|file| !file.is_step()) {
+            self.not_its_own(section, key, "a mesh file, which holds triangles already", "a STEP file");
         }
     }
 
@@ -174,6 +182,9 @@ impl<'t> Walk<'t> {
         if way != keys::PART_PROFILE {
             self.not_its_own(section, &keys::PART_HEIGHT, "this part", "a profile");
         }
+        if way != keys::PART_MESH {
+            self.not_its_own(section, &keys::PART_DEFLECTION, "this part", "a STEP file");
+        }
         let is_round = [keys::PART_SPHERE, keys::PART_CYLINDER, keys::PART_CONE].contains(&way) || is_drawing;
         if !is_round {
             self.not_its_own(section, &keys::PART_CHORD_ERROR, "a part without curves", "what is round");
@@ -181,7 +192,13 @@ impl<'t> Walk<'t> {
         let chord_error =
             self.reader.number(section, &keys::PART_CHORD_ERROR, scale).unwrap_or(PartSpec::CHORD_ERROR);
         match way {
-            keys::PART_MESH => self.file(section, &way, &keys::PART_UNIT, scale).map(ShapeSpec::Mesh),
+            keys::PART_MESH => {
+                let deflection = self.reader.number(section, &keys::PART_DEFLECTION, scale);
+                let file = self.file(section, &way, &keys::PART_UNIT, scale);
+                self.deflection_of(section, &keys::PART_DEFLECTION, file.as_ref());
+                let treatment = Treatment { deflection, ..Treatment::DEFAULT };
+                file.map(|file| ShapeSpec::Mesh(FileSpec { treatment, ..file }))
+            }
             keys::PART_PIECES => self.pieces(section, &way, scale).map(ShapeSpec::Pieces),
             keys::PART_BOX => self.reader.triple(section, &way, scale).map(|size| ShapeSpec::Box { size }),
             keys::PART_PROFILE => {
@@ -288,7 +305,7 @@ impl<'t> Walk<'t> {
             }
         });
         let file = path.map(|path| FileSpec::new(path, 1.0));
-        let says_it = file.as_ref().is_some_and(|file| SAY_THEIR_UNIT.contains(&file.ending().as_str()));
+        let says_it = file.as_ref().is_some_and(FileSpec::may_say_its_unit);
         let scale = scale?;
         let written = unit;
         let (scale, unit) = match (unit, scale.unit) {

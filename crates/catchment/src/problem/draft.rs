@@ -5,6 +5,7 @@ use crate::connector::Connector;
 use crate::contact::mated::{self, MatedProblem};
 use crate::contact::{Pair, face, settle};
 use crate::design::{Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, load, read};
+use crate::exec::Exec;
 use std::path::Path;
 
 /// A design, its text, and the places of its keys.
@@ -100,7 +101,15 @@ impl Draft {
     /// Everything that is wrong with the geometry; halves that do not meet in the aligned pose. That the aligned pose
     /// meets but does not hold is a doubt ([`Problem::doubts`]).
     pub fn build(self) -> Result<Problem, ProblemError> {
-        match Connector::build(&self.design) {
+        self.build_on(&Exec::new())
+    }
+
+    /// The same, given up where a stop is asked for.
+    ///
+    /// # Errors
+    /// As [`Draft::build`].
+    pub fn build_on(self, exec: &Exec) -> Result<Problem, ProblemError> {
+        match Connector::build_on(&self.design, exec) {
             Ok(connector) => {
                 let connector = match &self.design.connector {
                     ConnectorSpec::Own(own) => {

@@ -195,6 +195,9 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
         ConnectorSpec::Own(own) => {
             for (name, spec) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
                 row(name, &half(spec));
+                if let Some(told) = spec.meshing_told(design) {
+                    row("", &told);
+                }
                 if let Some(done) = spec.repairs_told(design) {
                     row("", &done);
                 }
