@@ -23,7 +23,7 @@ pub struct MeshContent {
     pub repairs: Repairs,
     /// How its curved faces became triangles, where it has some (STEP).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub meshed: Option<Meshed>,
+    pub meshed: Option<Box<Meshed>>,
 }
 
 /// How curved faces became triangles.

@@ -161,7 +161,7 @@ impl HalfSpec {
 /// How a STEP file became triangles.
 fn meshing(file: &FileSpec, design: &Design) -> Option<String> {
     let content = file.content.as_ref()?;
-    let Meshed { deflection, reached, by, .. } = content.meshed.as_ref()?;
+    let Meshed { deflection, reached, by, .. } = content.meshed.as_deref()?;
     let stated = if file.treatment.deflection.is_some() { "as written" } else { "0.0002 of its size" };
     let count = content.triangles;
     // The larger one holds, should it not have been kept to.
@@ -231,8 +231,13 @@ mod tests {
 
     #[test]
     fn lengths_are_rounded_up_to_three_digits() {
-        for (value, said) in [(0.01, "0.01"), (0.009_889_1, "0.00989"), (0.0048, "0.0048"), (12.341, "12.4"), (12341.0, "12400")]
-        {
+        for (value, said) in [
+            (0.01, "0.01"),
+            (0.009_889_1, "0.00989"),
+            (0.0048, "0.0048"),
+            (12.341, "12.4"),
+            (12341.0, "12400"),
+        ] {
             assert_eq!(rounded_up(value).to_string(), said);
         }
     }

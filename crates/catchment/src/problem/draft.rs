@@ -104,11 +104,12 @@ impl Draft {
         self.build_on(&Exec::new())
     }
 
-    /// The same, given up where a stop is asked for.
+    /// The same with its progress; where a stop is asked for while a STEP file is meshed, it is given up.
     ///
     /// # Errors
     /// As [`Draft::build`].
     pub fn build_on(self, exec: &Exec) -> Result<Problem, ProblemError> {
+        exec.report(0.0, "halves");
         match Connector::build_on(&self.design, exec) {
             Ok(connector) => {
                 let connector = match &self.design.connector {
@@ -122,7 +123,7 @@ impl Draft {
                     }
                     ConnectorSpec::Family(_) => connector,
                 };
-                self.with_halves(connector)
+                self.with_halves(connector, exec)
             }
             Err(problems) => {
                 let list = places::of_geometry(&problems)
@@ -140,11 +141,12 @@ impl Draft {
     }
 
     /// The problem of halves that were built, unless their mated pose is none.
-    pub(super) fn with_halves(mut self, connector: Connector) -> Result<Problem, ProblemError> {
+    pub(super) fn with_halves(mut self, connector: Connector, exec: &Exec) -> Result<Problem, ProblemError> {
+        exec.report(0.0, "contact");
         self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
         let misdrawn = face::misdrawn(&connector, &self.design.connector);
-        let problems = misdrawn.map_or_else(|| mated::problems(&pair), |problem| vec![problem]);
+        let problems = misdrawn.map_or_else(|| mated::problems_on(&pair, exec), |problem| vec![problem]);
         let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         if !apart.is_empty() {
             return Err(self.unmated(&apart).into());

@@ -179,7 +179,8 @@ fn a_simplified_surface_keeps_to_its_tolerance() {
             ready.surface.volume()
         );
     }
-    let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { simplify: Some(1e-3), ..Treatment::DEFAULT }).unwrap();
+    let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { simplify: Some(1e-3), ..Treatment::DEFAULT })
+        .unwrap();
     assert!(none.repairs.simplified == Some([12, 12]) && none.repairs.deviation < 1e-15);
 }
 

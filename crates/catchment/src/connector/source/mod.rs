@@ -159,22 +159,14 @@ pub(super) fn read_mesh(
         read().map_err(|problems| problems.into_iter().map(in_unit).collect::<Vec<_>>())?;
     let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum();
     let bodies = half.surfaces.len();
-    let meshed = curves.map(|step::FromCurves { deflection, reached, by, sha256 }| Meshed {
-        deflection: deflection * scale,
-        reached: reached * scale,
-        by,
-        sha256,
+    let meshed = curves.map(|step::FromCurves { deflection, reached, by, sha256 }| {
+        Box::new(Meshed { deflection: deflection * scale, reached: reached * scale, by, sha256 })
     });
     Ok((half, MeshContent { bodies, repairs, meshed, ..MeshContent::of(&file.bytes, facets) }, scale))
 }
 
 /// The half that a mesh file holds, however large it is in D.
-pub(super) fn alone(
-    spec: &FileSpec,
-    side: Side,
-    read: Read<'_>,
-    exec: &Exec,
-) -> Result<Half, Vec<Problem>> {
+pub(super) fn alone(spec: &FileSpec, side: Side, read: Read<'_>, exec: &Exec) -> Result<Half, Vec<Problem>> {
     let refused = |error| Problem::Mesh { side, path: spec.path.clone(), error };
     let file = fetch_mesh(spec, read).map_err(|error| vec![refused(error)])?;
     let (half, ..) = read_mesh(spec, &file, mesh::part, exec)

@@ -54,7 +54,8 @@ pub(super) fn run(
 ) -> Result<Vec<u8>, StepProblem> {
     let Job { program, arguments, most_reply, most_time } = job;
     let name = program.to_string_lossy().into_owned();
-    let failed = |error: io::Error| StepProblem::NoPython { program: name.clone(), message: error.to_string() };
+    let failed =
+        |error: io::Error| StepProblem::NoPython { program: name.clone(), message: error.to_string() };
     let mut command = Command::new(&program);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = Started(command.spawn().map_err(failed)?);

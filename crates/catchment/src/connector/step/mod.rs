@@ -1,4 +1,4 @@
-//! STEP files: curved faces, which OpenCASCADE turns into triangles in a Python of the person's own.
+//! STEP files: curved faces, which `OpenCASCADE` turns into triangles in a Python of the person's own.
 //!
 //! ```text
 //!   bytes of part.step ──stdin──▶ python3 -c mesh.py ──stdout──▶ corners and triangles of every solid, in mm
@@ -7,7 +7,7 @@
 //!
 //! Nothing heavy is linked in, nothing is fetched and no file is written. Every solid is a body of its own; where there is none, every closed
 //! shell. Corners are joined as the topology has them, so that a closed shell is a closed mesh. Facets are off from the faces by at most the
-//! `deflection` that the design says, or 0.0002 of the part's largest side, as OpenCASCADE measures it: a corner lies on the part, a facet
+//! `deflection` that the design says, or 0.0002 of the part's largest side, as `OpenCASCADE` measures it: a corner lies on the part, a facet
 //! inside of what bulges and outside of what is hollow. Neighbouring facets of one face turn by at most 0.5 rad.
 //!
 //! Whatever unit a file is written in, its coordinates are read in mm. A file that was meshed is not meshed again by the same process.
@@ -68,7 +68,7 @@ pub enum StepProblem {
         /// What it says.
         message: String,
     },
-    /// OpenCASCADE does not understand it.
+    /// `OpenCASCADE` does not understand it.
     #[error("cannot be read as STEP: {message}")]
     Unreadable {
         /// What it says.
@@ -87,13 +87,17 @@ pub enum StepProblem {
         message: String,
     },
     /// It takes too long.
-    #[error("meshing it took longer than {seconds} s: let `deflection` be larger, or export the mating faces alone")]
+    #[error(
+        "meshing it took longer than {seconds} s: let `deflection` be larger, or export the mating faces alone"
+    )]
     TooLong {
         /// The time that it had.
         seconds: u64,
     },
     /// Out of memory.
-    #[error("meshing it takes more memory than there is: let `deflection` be larger, or export the mating faces alone")]
+    #[error(
+        "meshing it takes more memory than there is: let `deflection` be larger, or export the mating faces alone"
+    )]
     Memory,
     /// The interpreter ended without an answer.
     #[error("`{program}` did not mesh it: {message}")]
@@ -108,7 +112,7 @@ pub enum StepProblem {
     Cancelled,
 }
 
-/// What OpenCASCADE made of a file.
+/// What `OpenCASCADE` made of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::connector) struct FromCurves {
     /// How far facets may be off, in mm.
@@ -177,7 +181,8 @@ fn meshed(bytes: &[u8], asked: &Asked, spec: &FileSpec, exec: &Exec) -> Result<H
         MOST_TIME.as_secs().to_string(),
     ];
     let most_reply = reply::most_bytes(asked.most_triangles);
-    let job = child::Job { program: child::interpreter(), arguments: &arguments, most_reply, most_time: MOST_TIME };
+    let job =
+        child::Job { program: child::interpreter(), arguments: &arguments, most_reply, most_time: MOST_TIME };
     let program = job.program.to_string_lossy().into_owned();
     let watch = Stopwatch::start();
     let answer = child::run(job, bytes.to_vec(), &watch, exec).map_err(|problem| vec![problem.into()])?;

@@ -48,7 +48,7 @@ pub(super) fn read(answer: &[u8], program: &str, treatment: Treatment) -> Result
     let head: Head = serde_json::from_slice(&answer[..end]).map_err(|_| broken())?;
     let Head { error, message, bodies: sizes, deflection, reached, by } = head;
     if let Some(kind) = error {
-        return Err(vec![refusal(&kind, message, program, treatment)]);
+        return Err(vec![refusal(&kind, &message, program, treatment)]);
     }
     let rest = &answer[end + 1..];
     let mut bodies = Vec::with_capacity(sizes.len());
@@ -89,7 +89,7 @@ fn corner(bytes: &[u8]) -> DVec3 {
     DVec3::new(number(0), number(1), number(2))
 }
 
-fn refusal(kind: &str, message: String, program: &str, treatment: Treatment) -> MeshProblem {
+fn refusal(kind: &str, message: &str, program: &str, treatment: Treatment) -> MeshProblem {
     let message: String = message.chars().filter(|c| !c.is_control()).collect();
     let program = program.to_owned();
     match kind {

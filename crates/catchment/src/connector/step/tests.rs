@@ -42,11 +42,12 @@ fn what_it_refuses_is_said_with_advice() {
         let head = serde_json::json!({ "error": kind, "message": message }).to_string();
         read_answer(&answer(&head, &[], &[])).unwrap_err()[0].to_string()
     };
-    assert!(
-        said("package", "No module named 'OCP'").contains("`python3 -m pip install cadquery-ocp-novtk`")
-    );
+    assert!(said("package", "No module named 'OCP'").contains("`python3 -m pip install cadquery-ocp-novtk`"));
     assert_eq!(said("unreadable", "a\u{1b}[2Jb"), "cannot be read as STEP: a[2Jb");
-    assert!(said("empty", "of 3 faces, none of which bounds a solid").starts_with("the file holds no solid (of 3"));
+    assert!(
+        said("empty", "of 3 faces, none of which bounds a solid")
+            .starts_with("the file holds no solid (of 3")
+    );
     assert!(said("many", "250000").starts_with("250000 triangles, more than the 200000"));
     assert!(said("memory", "").contains("more memory than there is"));
     assert!(said("unmeshed", "one of its faces").contains("repair the part"));

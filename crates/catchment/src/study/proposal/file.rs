@@ -96,7 +96,9 @@ pub(super) fn text(
         line(&format!("\n[connector.{name}]"));
         line(&format!("mesh = {}", quoted(&parts[k].written)));
         if FileSpec::new(&parts[k].path, 1.0).is_step() {
-            line("# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".");
+            line(
+                "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".",
+            );
         }
         if !says_its_unit(&parts[k].path) {
             line(&format!("unit = \"{}\" # of the file, which does not say it", unit.symbol()));
