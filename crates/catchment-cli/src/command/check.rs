@@ -40,8 +40,11 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
         figure::ensure_fits(0, &running.exec)?;
     }
     running.may_be_left();
-    let checked =
-        args.design.draft().and_then(|draft| draft.build_on(&running.exec)).and_then(Problem::checked);
+    let checked = args
+        .design
+        .draft_on(&running.exec)
+        .and_then(|draft| draft.build_on(&running.exec))
+        .and_then(Problem::checked);
     let picture = match (kind, &checked) {
         (Some("png"), Ok(problem)) => Some(figure::pair(problem)?.png(PNG_SCALE)?),
         (Some(_), Ok(problem)) => Some(figure::pair(problem)?.svg().as_bytes().to_vec()),

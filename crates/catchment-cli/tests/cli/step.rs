@@ -49,21 +49,24 @@ fn without_python_it_is_said_what_to_install() {
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
 }
 
-/// The answer to a STEP file that holds what a binary STL file does.
+/// The answer to a STEP file that holds what an STL file does.
 #[cfg(unix)]
 fn answer(stl: &Path) -> Vec<u8> {
     const HEADER: usize = 84;
     const TRIANGLE: usize = 50;
     let bytes = fs::read(stl).unwrap();
-    let (mut corners, mut triangles, mut count) = (Vec::new(), Vec::new(), 0_u32);
-    for triangle in bytes[HEADER..].chunks_exact(TRIANGLE) {
-        for number in triangle[12..48].chunks_exact(4) {
-            let number = f32::from_le_bytes(number.try_into().unwrap());
-            corners.extend(f64::from(number).to_le_bytes());
-        }
-        triangles.extend((3 * count..3 * count + 3).flat_map(u32::to_le_bytes));
-        count += 1;
-    }
+    let numbers: Vec<f64> = if bytes.starts_with(b"solid") {
+        let text = String::from_utf8(bytes).unwrap();
+        let corners = text.lines().filter_map(|line| line.trim().strip_prefix("vertex"));
+        corners.flat_map(str::split_whitespace).map(|number| number.parse().unwrap()).collect()
+    } else {
+        let triangles =
+            bytes[HEADER..].chunks_exact(TRIANGLE).flat_map(|triangle| triangle[12..48].chunks_exact(4));
+        triangles.map(|number| f64::from(f32::from_le_bytes(number.try_into().unwrap()))).collect()
+    };
+    let count = u32::try_from(numbers.len() / 9).unwrap();
+    let corners: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let triangles: Vec<u8> = (0..3 * count).flat_map(u32::to_le_bytes).collect();
     let head = format!(
         "{{\"bodies\": [[{}, {count}]], \"deflection\": 0.02, \"reached\": 0.0125, \"by\": \"OCP of a test\"}}\n",
         3 * count

@@ -62,6 +62,15 @@ pub(crate) fn of_file(file: &FileSpec, side: Side, exec: &Exec) -> Result<Half, 
     source::alone(file, side, &source::disk::read, exec)
 }
 
+/// How large a half may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Size {
+    /// About D.
+    Plausible,
+    /// Whatever it is: D is not known yet.
+    Any,
+}
+
 /// A half and what its files held, or everything that is wrong with it.
 type Sourced = Result<source::Built, Vec<Problem>>;
 
@@ -136,13 +145,30 @@ impl Connector {
             ConnectorSpec::Own(own) => {
                 // Parts are drawn in the unit of the design.
                 let half = |spec: &HalfSpec, side| -> Sourced {
-                    let built = Source::of(spec, side, read)?.build(side, exec)?;
+                    let built = Source::of(spec, side, read)?.build(side, Size::Plausible, exec)?;
                     let scale = matches!(spec, HalfSpec::Parts(_)).then_some(1.0 / design.width);
                     Ok(source::Built { scale: built.scale.or(scale), ..built })
                 };
                 Self::of_own([half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)], own, mount)
             }
         }
+    }
+
+    /// Own halves of any size beside D, and the larger lateral extent of either as drawn.
+    pub(crate) fn unsized_on(own: &OwnSpec, mount: Mount, exec: &Exec) -> Result<(Self, f64), Vec<Problem>> {
+        let half = |spec: &HalfSpec, side| -> Sourced {
+            Source::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)
+        };
+        let halves = [half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)];
+        let wide = |built: &source::Built| {
+            let bounds = built.half.surfaces.iter().map(Surface::bounds);
+            let (low, high) = bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| {
+                (low.min(a), high.max(b))
+            });
+            (high - low).truncate().max_element()
+        };
+        let widest = halves.iter().flatten().map(wide).fold(0.0, f64::max);
+        Ok((Self::of_own(halves, own, mount)?, widest))
     }
 
     /// The halves of a family.
@@ -166,7 +192,8 @@ impl Connector {
         let exec = Exec::new();
         let nothing = || HalfSpec::Pieces(Vec::new());
         let own = OwnSpec::new(face_height, nothing(), nothing());
-        Self::of_own([fixed.build(Side::Fixed, &exec), moving.build(Side::Moving, &exec)], &own, mount)
+        let build = |source: &Source, side| source.build(side, Size::Plausible, &exec);
+        Self::of_own([build(fixed, Side::Fixed), build(moving, Side::Moving)], &own, mount)
     }
 
     /// Places halves that were built; where the face centre is to be found, at the origin of the drawing.

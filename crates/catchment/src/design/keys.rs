@@ -227,17 +227,31 @@ impl Key {
         Self { kind, ..self }
     }
 
+    /// Whether what a quantity means for this key depends on D.
+    pub(super) const fn depends_on_width(&self, quantity: Quantity) -> bool {
+        match self.kind {
+            Kind::Length(_) => !matches!(quantity.unit, Unit::Bare | Unit::D),
+            Kind::DrawnLength(_) => !matches!(quantity.unit, Unit::D),
+            _ => false,
+        }
+    }
+
+    /// The length in D, whatever the range; `None` of what is none.
+    pub(super) fn unchecked(&self, quantity: Quantity, scale: Option<&Scale>) -> Option<f64> {
+        match self.kind {
+            Kind::Length(_) => quantity.length_d(scale?).ok(),
+            Kind::DrawnLength(_) => quantity.drawn_length_d(scale?).ok(),
+            _ => None,
+        }
+    }
+
     /// The quantity in the unit of this key's range (D, radians or none), if it lies in the range. `None` when
     /// that takes a `scale` and there is none.
     ///
     /// # Errors
     /// Out of range, a unit of the wrong dimension, or a unit in a dimensionless design.
     pub fn checked(&self, quantity: Quantity, scale: Option<&Scale>) -> Result<Option<f64>, Complaint> {
-        let needs_scale = match self.kind {
-            Kind::Length(_) => !matches!(quantity.unit, Unit::Bare | Unit::D),
-            Kind::DrawnLength(_) => quantity.unit != Unit::D,
-            _ => false,
-        };
+        let needs_scale = self.depends_on_width(quantity);
         let scale = match scale {
             Some(scale) => *scale,
             None if needs_scale => return Ok(None),
@@ -311,7 +325,8 @@ keys! {
     FAMILY = key(Table::Connector, "family", Kind::Family, family::NAMES);
     /// `connector.width`
     WIDTH = key(Table::Connector, "width", Kind::Width(Range::new(1e-6, 1e6, "")),
-        "D, the width of the connector, in `unit`. Results are in D.");
+        "D, the width of the connector, in `unit`. Results are in D. Own halves in a unit may leave it out: the larger lateral extent of \
+         the facets that can touch.");
     /// `connector.unit`
     UNIT = key(Table::Connector, "unit", Kind::Unit,
         "Unit of `width` and of drawn coordinates: um, mm, cm, m or in. Without it the design is dimensionless.");

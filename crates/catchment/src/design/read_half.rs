@@ -25,6 +25,8 @@ const SHAPES: [Key; 7] = [
     keys::PART_BOX,
     keys::PART_PROFILE,
 ];
+/// Chord error of what is round, as a share of its size, while D is not known.
+const ROUGH: f64 = 0.02;
 /// Endings of files with outlines.
 const DRAWINGS: [&str; 2] = ["svg", "dxf"];
 
@@ -189,8 +191,10 @@ impl<'t> Walk<'t> {
         if !is_round {
             self.not_its_own(section, &keys::PART_CHORD_ERROR, "a part without curves", "what is round");
         }
-        let chord_error =
-            self.reader.number(section, &keys::PART_CHORD_ERROR, scale).unwrap_or(PartSpec::CHORD_ERROR);
+        let written = self.reader.number(section, &keys::PART_CHORD_ERROR, scale);
+        let is_rough = written.is_none() && self.is_rough();
+        let chord_error = written.unwrap_or(PartSpec::CHORD_ERROR);
+        let chord_error = |size: f64| if is_rough { ROUGH * size } else { chord_error };
         match way {
             keys::PART_MESH => {
                 let deflection = self.reader.number(section, &keys::PART_DEFLECTION, scale);
@@ -204,7 +208,8 @@ impl<'t> Walk<'t> {
             keys::PART_PROFILE => {
                 let height = self.needed(section, &keys::PART_HEIGHT, scale);
                 let outline = self.outline(section, &way, scale);
-                Some(ShapeSpec::Profile { outline: outline?, height: height?, chord_error })
+                let (outline, height) = (outline?, height?);
+                Some(ShapeSpec::Profile { outline, height, chord_error: chord_error(height) })
             }
             _ => self.round(section, &way, chord_error, scale),
         }
@@ -215,7 +220,7 @@ impl<'t> Walk<'t> {
         &mut self,
         section: &Section<'t>,
         way: &Key,
-        chord_error: f64,
+        chord_error: impl Fn(f64) -> f64,
         scale: Option<&Scale>,
     ) -> Option<ShapeSpec> {
         let keys::Kind::Table(table) = way.kind else { return None };
@@ -223,7 +228,7 @@ impl<'t> Walk<'t> {
         self.reader.refuse_unknown_keys(section, table);
         if table == Table::Sphere {
             let radius = self.needed(section, &keys::SPHERE_RADIUS, scale)?;
-            return Some(ShapeSpec::Sphere { radius, chord_error });
+            return Some(ShapeSpec::Sphere { radius, chord_error: chord_error(radius) });
         }
         let is_cone = table == Table::Cone;
         let (radius, height) = if is_cone {
@@ -235,7 +240,8 @@ impl<'t> Walk<'t> {
         let height = self.needed(section, &height, scale);
         let top = is_cone.then(|| self.reader.number(section, &keys::CONE_TOP_RADIUS, scale).unwrap_or(0.0));
         let (radius, height) = (radius?, height?);
-        Some(ShapeSpec::Cone { radius, top_radius: top.unwrap_or(radius), height, chord_error })
+        let (top_radius, chord_error) = (top.unwrap_or(radius), chord_error(radius));
+        Some(ShapeSpec::Cone { radius, top_radius, height, chord_error })
     }
 
     /// A number that must be there.

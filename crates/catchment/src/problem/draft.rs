@@ -1,10 +1,12 @@
 //! A design that was read and not built yet: it can still be changed, and knows where its file says what.
 
-use super::{Problem, ProblemError, places};
+use super::{Problem, ProblemError, measure, places};
 use crate::connector::Connector;
 use crate::contact::mated::{self, MatedProblem};
 use crate::contact::{Pair, face, settle};
-use crate::design::{Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, load, read};
+use crate::design::{
+    Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, Width, load, read_as,
+};
 use crate::exec::Exec;
 use std::path::Path;
 
@@ -29,17 +31,42 @@ impl Draft {
     /// # Errors
     /// The file cannot be read, or everything that is wrong with what it says.
     pub fn open(path: &Path) -> Result<Self, ProblemError> {
-        Self::read(SourceText::new(path, load(path)?))
+        Self::open_on(path, &Exec::new())
     }
 
-    /// Reads the text of a design file; meshes are looked for beside `source.path`. Touches no file.
+    /// The same, given up where a stop is asked for while a STEP file is meshed.
     ///
     /// # Errors
-    /// Everything that is wrong with what the text says.
+    /// As [`Draft::open`].
+    pub fn open_on(path: &Path, exec: &Exec) -> Result<Self, ProblemError> {
+        Self::read_on(SourceText::new(path, load(path)?), exec)
+    }
+
+    /// Reads the text of a design file; meshes are looked for beside `source.path`. Touches no file, unless the text leaves D out, which is
+    /// then measured from the halves.
+    ///
+    /// # Errors
+    /// Everything that is wrong with what the text says; where D is left out, with the geometry.
     pub fn read(source: SourceText) -> Result<Self, ProblemError> {
+        Self::read_on(source, &Exec::new())
+    }
+
+    /// The same, given up where a stop is asked for while a STEP file is meshed.
+    ///
+    /// # Errors
+    /// As [`Draft::read`].
+    pub fn read_on(source: SourceText, exec: &Exec) -> Result<Self, ProblemError> {
+        let (draft, is_measured) = Self::read_as(source, Width::Provisional(None))?;
+        if is_measured { measure::measured(draft, exec) } else { Ok(draft) }
+    }
+
+    /// The same with what is known of D; and whether that was needed.
+    pub(super) fn read_as(source: SourceText, width: Width) -> Result<(Self, bool), ProblemError> {
         let folder = source.path.parent().unwrap_or_else(|| Path::new(""));
-        match read(&source.text, folder) {
-            Ok(file) => Ok(Self { design: file.design, places: file.sources, source: Some(source) }),
+        match read_as(&source.text, folder, width) {
+            Ok((file, is_used)) => {
+                Ok((Self { design: file.design, places: file.sources, source: Some(source) }, is_used))
+            }
             Err(problems) => {
                 let place = |problem: crate::design::Problem| Finding {
                     message: problem.complaint.to_string(),
@@ -125,14 +152,17 @@ impl Draft {
                 };
                 self.with_halves(connector, exec)
             }
-            Err(problems) => {
-                let list = places::of_geometry(&problems)
-                    .into_iter()
-                    .map(|(place, message, help)| self.finding(&place, message, help))
-                    .collect();
-                Err(Findings { source: self.source, list, omitted: 0 }.into())
-            }
+            Err(problems) => Err(self.unbuilt(&problems).into()),
         }
+    }
+
+    /// What is wrong with the geometry, in its places.
+    pub(super) fn unbuilt(self, problems: &[crate::connector::Problem]) -> Findings {
+        let list = places::of_geometry(problems)
+            .into_iter()
+            .map(|(place, message, help)| self.finding(&place, message, help))
+            .collect();
+        Findings { source: self.source, list, omitted: 0 }
     }
 
     /// Whether there is no mated pose to decide about: the halves do not meet in it, or the seat leaves an error free.
@@ -154,7 +184,7 @@ impl Draft {
         Ok(Problem::assembled(self, connector, pair, doubts))
     }
 
-    fn unmated(self, problems: &[MatedProblem]) -> Findings {
+    pub(super) fn unmated(self, problems: &[MatedProblem]) -> Findings {
         let finding = |problem: &MatedProblem| {
             self.finding(places::of_mated(problem), problem.to_string(), problem.help())
         };

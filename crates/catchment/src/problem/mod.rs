@@ -17,6 +17,7 @@
 //! angles in radians.
 
 mod draft;
+mod measure;
 mod memory;
 mod places;
 #[cfg(test)]

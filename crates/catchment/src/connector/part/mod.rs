@@ -15,7 +15,7 @@ mod round;
 use super::mesh::{self, MAX_TRIANGLES, MeshProblem};
 use super::outline::{self, OutlineProblem};
 use super::source::{self, FileBytes};
-use super::{Half, HullError, Problem, Side, Surface, SurfaceError, convex_hull, place};
+use super::{Half, HullError, Problem, Side, Size, Surface, SurfaceError, convex_hull, place};
 use crate::design::{FileSpec, MeshContent, OutlineSpec, PartSpec, ShapeSpec};
 use crate::exec::Exec;
 use glam::DVec2;
@@ -71,6 +71,7 @@ pub enum PartError {
 pub(super) fn half(
     parts: &[(PartSpec, Option<FileBytes>)],
     side: Side,
+    size: Size,
     exec: &Exec,
 ) -> Result<(Half, Vec<MeshContent>), Vec<Problem>> {
     let (mut half, mut contents, mut problems) = (Half::default(), Vec::new(), Vec::new());
@@ -90,7 +91,8 @@ pub(super) fn half(
         let count = half.surfaces.iter().map(|surface| surface.facets.len()).sum::<usize>() as u64;
         let too_many = (count > MAX_TRIANGLES as u64).then_some(MeshProblem::TooMany { count });
         let corners = half.surfaces.iter().flat_map(|surface| &surface.vertices).copied();
-        let error = too_many.or_else(|| mesh::implausible_width(corners));
+        let implausible = || (size == Size::Plausible).then(|| mesh::implausible_width(corners)).flatten();
+        let error = too_many.or_else(implausible);
         problems.extend(error.map(|error| Problem::Triangles { side, error }));
     }
     if problems.is_empty() { Ok((half, contents)) } else { Err(problems) }

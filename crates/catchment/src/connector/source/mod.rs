@@ -19,7 +19,7 @@ pub use unit::UnitProblem;
 pub(super) use unit::scale;
 
 use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Ready, Triangle};
-use super::{Half, Problem, Side, Surface, convex_hull, family, obj, part, ply, step, stl, threemf};
+use super::{Half, Problem, Side, Size, Surface, convex_hull, family, obj, part, ply, step, stl, threemf};
 use crate::design::{FamilySpec, FileSpec, HalfSpec, MeshContent, Meshed, PartSpec, ShapeSpec, Treatment};
 use crate::exec::Exec;
 use glam::DVec3;
@@ -254,7 +254,7 @@ impl Source {
     }
 
     /// The solid, and what its files held.
-    pub(super) fn build(&self, side: Side, exec: &Exec) -> Result<Built, Vec<Problem>> {
+    pub(super) fn build(&self, side: Side, size: Size, exec: &Exec) -> Result<Built, Vec<Problem>> {
         match self {
             Self::Family(spec) => {
                 let drawn = family::draw(spec)?;
@@ -264,12 +264,13 @@ impl Source {
             Self::Pieces(pieces) => Ok(Built::of(from_pieces(pieces, side)?, Vec::new())),
             Self::Mesh { spec, file } => {
                 let refused = |error| Problem::Mesh { side, path: spec.path.clone(), error };
-                let (half, content, scale) = read_mesh(spec, file, mesh::half, exec)
-                    .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
+                let (half, content, scale) =
+                    read_mesh(spec, file, if size == Size::Any { mesh::part } else { mesh::half }, exec)
+                        .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
                 Ok(Built { half, contents: vec![content], scale: Some(scale) })
             }
             Self::Parts(parts) => {
-                let (half, contents) = part::half(parts, side, exec)?;
+                let (half, contents) = part::half(parts, side, size, exec)?;
                 Ok(Built::of(half, contents))
             }
             Self::Triangles(triangles) => {
