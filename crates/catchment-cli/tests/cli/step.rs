@@ -142,7 +142,10 @@ fn whatever_the_program_does_it_is_a_message() {
             "has none (No module named OCP)",
         ),
         (r#"echo '{"error": "empty", "message": "nothing in it has faces"}'"#, "the file holds no solid"),
-        (r#"echo '{"error": "many", "message": "300000"}'"#, "300000 triangles, more than the 200000"),
+        (
+            r#"echo '{"error": "many", "message": "300000"}'"#,
+            "make 300000 triangles or more, and a half may have 200000: let `deflection` be larger",
+        ),
         ("echo lost >&2; exit 7", "exit status: 7; lost"),
         ("kill -9 $$", "signal: 9"),
         ("echo hello", "its answer is broken"),

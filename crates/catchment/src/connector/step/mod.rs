@@ -80,6 +80,17 @@ pub enum StepProblem {
         /// What it holds.
         message: String,
     },
+    /// More triangles than are read.
+    #[error(
+        "its curved faces make {count} triangles or more, and a half may have {most}: let `deflection` be larger, as in \"0.05 mm\", or export the \
+         mating faces alone"
+    )]
+    TooMany {
+        /// How many there are, as far as is known.
+        count: u64,
+        /// How many may be read.
+        most: usize,
+    },
     /// Something is no face that can be meshed.
     #[error("{message}: repair the part in the CAD program, or export it as STL, OBJ, PLY or 3MF")]
     NotMeshed {

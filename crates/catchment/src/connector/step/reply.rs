@@ -1,7 +1,7 @@
 //! The answer of the child: a line of JSON, then of every body its corners and triangles, little-endian.
 
 use super::{FromCurves, StepProblem};
-use crate::connector::mesh::{MeshProblem, Place, Start, Triangle, too_many};
+use crate::connector::mesh::{MeshProblem, Place, Start, Triangle, most_read};
 use crate::connector::source::Held;
 use crate::design::{LengthUnit, Treatment, hex};
 use glam::DVec3;
@@ -98,7 +98,9 @@ fn refusal(kind: &str, message: &str, program: &str, treatment: Treatment) -> Me
         "empty" => StepProblem::NoSolid { message },
         "unmeshed" => StepProblem::NotMeshed { message },
         "memory" => StepProblem::Memory,
-        "many" => return too_many(treatment, message.parse().unwrap_or(u64::MAX)),
+        "many" => {
+            StepProblem::TooMany { count: message.parse().unwrap_or(u64::MAX), most: most_read(treatment) }
+        }
         _ => StepProblem::Died { program, message },
     }
     .into()
