@@ -2,6 +2,7 @@
 
 use crate::command::Command;
 use catchment::design::{Complaint, Quantity, parse_dofs};
+use catchment::exec::Exec;
 use catchment::pose::DofSet;
 use catchment::problem::{Draft, Problem, ProblemError};
 use clap::{Args, Parser};
@@ -74,6 +75,11 @@ impl DesignArgs {
     /// Reads the file and applies the changes.
     pub(crate) fn draft(&self) -> Result<Draft, ProblemError> {
         self.change(Draft::open(&self.path)?)
+    }
+
+    /// The same, given up where a stop is asked for.
+    pub(crate) fn draft_on(&self, exec: &Exec) -> Result<Draft, ProblemError> {
+        self.change(Draft::open_on(&self.path, exec)?)
     }
 
     /// Options that change the design, and the keys that they change.

@@ -30,8 +30,18 @@ pub(crate) struct Running {
     bar: ProgressBar,
 }
 
+impl Running {
+    /// From now on, and until this goes away, the process may be left in the middle of a step: nothing is kept before the end, and
+    /// nothing is written.
+    pub(crate) fn may_be_left(&self) {
+        let bar = self.bar.clone();
+        signals::may_leave(move || bar.finish_and_clear());
+    }
+}
+
 impl Drop for Running {
     fn drop(&mut self) {
+        signals::must_stay();
         self.bar.finish_and_clear();
     }
 }

@@ -26,6 +26,29 @@ impl OutputArgs {
         self.output.as_deref().map_or(Ok(()), |path| check_place(path, self.force))
     }
 
+    /// Refuses what cannot be written where the command is interrupted.
+    pub(crate) fn check_partial(&self) -> Result<(), Failure> {
+        self.partial().map_or(Ok(()), |path| check_place(&path, self.force))
+    }
+
+    /// Writes what was finished of a text: not where it should go, which would look like the whole, but beside that. Where it went, if
+    /// into a file.
+    pub(crate) fn write_partial(&self, text: &str) -> Result<Option<PathBuf>, Failure> {
+        let path = self.partial();
+        match &path {
+            Some(path) => write_file(path, text.as_bytes(), self.force)?,
+            None => to_stdout(text)?,
+        }
+        Ok(path)
+    }
+
+    /// The file beside the one to write.
+    fn partial(&self) -> Option<PathBuf> {
+        let mut path = self.output.clone()?.into_os_string();
+        path.push(".partial");
+        Some(path.into())
+    }
+
     /// Writes `text` where it should go.
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
         match &self.output {

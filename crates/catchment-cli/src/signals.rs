@@ -5,17 +5,21 @@
 //!   SIGTERM, SIGHUP   143 ──┴─▶ first: cancel, whole or nothing · again: remove what is unfinished, end at once
 //! ```
 //!
+//! A computation whose steps take long, and of which nothing is kept before its end, is left after half a second ([`may_leave`]).
+//!
 //! A signal that whoever started the program had it ignore (`nohup`, a script's background) stays ignored.
 
 use crate::exit::ExitStatus;
+use crate::output::what_was_written;
 use catchment::report::write;
-use std::io;
-use std::sync::Arc;
+use std::io::{self, Write};
 #[cfg(unix)]
 use std::sync::LazyLock;
 #[cfg(unix)]
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 /// Nothing was received.
 const NONE: u8 = 0;
@@ -36,10 +40,40 @@ pub(crate) fn received() -> Option<ExitStatus> {
         .find(|status| usize::from(status.code()) == received)
 }
 
+/// How long a computation that may be left has to stop by itself, and to end what it started.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Tidies the terminal before the process ends in the middle of a computation.
+type Tidy = Box<dyn Fn() + Send>;
+
+/// There while a computation may be left.
+static MAY_LEAVE: Mutex<Option<Tidy>> = Mutex::new(None);
+
+/// From now on the process may end in the middle of what it computes: nothing of it is kept before its end, and nothing is written.
+pub(crate) fn may_leave(tidy: impl Fn() + Send + 'static) {
+    *MAY_LEAVE.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(tidy));
+}
+
+/// From now on it may not: results are written. Where it is just ending, this does not return.
+pub(crate) fn must_stay() {
+    *MAY_LEAVE.lock().unwrap_or_else(PoisonError::into_inner) = None;
+}
+
 /// A signal came. Whoever sends two does not want to wait for the end of a step.
 fn receive(status: ExitStatus, cancel: &AtomicBool) {
     cancel.store(true, Ordering::Relaxed);
     if RECEIVED.swap(status.code(), Ordering::Relaxed) != NONE {
+        leave(status);
+    }
+    let may_leave = || MAY_LEAVE.lock().unwrap_or_else(PoisonError::into_inner);
+    if may_leave().is_none() {
+        return;
+    }
+    std::thread::sleep(PATIENCE);
+    if let Some(tidy) = &*may_leave() {
+        tidy();
+        // Nobody is left to tell when stderr itself is gone.
+        let _ = writeln!(io::stderr(), "interrupted; {}", what_was_written());
         leave(status);
     }
 }

@@ -17,7 +17,8 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let simplify = env::var("SIMPLIFY").ok().map(|text| text.parse()).transpose()?;
-    let treatment = Treatment { repair: env::var("REPAIR").as_deref() != Ok("0"), simplify };
+    let treatment =
+        Treatment { repair: env::var("REPAIR").as_deref() != Ok("0"), simplify, ..Treatment::DEFAULT };
     let other = Source::Family(catchment::design::FamilySpec::new(catchment::design::Family::Pyramid));
     let mut out = io::stdout().lock();
     for path in env::args().skip(1) {

@@ -42,12 +42,15 @@ const ASKS: [(&str, &str); 12] = [
 ];
 
 /// Where the core may ask, for what, and why.
-const ALLOWED: [(&str, &str, &str); 5] = [
+const ALLOWED: [(&str, &str, &str); 8] = [
     ("exec/clock.rs", "the time", "deadlines and stopwatches; stands still where there is no clock"),
     ("exec/threads.rs", "a thread", "the pools of a run; the caller's own thread where there are none"),
     ("exec/memory/system.rs", "a file", "how much memory is free, on Linux"),
     ("design/load.rs", "a file", "reading a design file"),
     ("connector/source/disk.rs", "a file", "reading a mesh"),
+    ("connector/step/child.rs", "a process", "a STEP file becomes triangles in a Python of the person's own"),
+    ("connector/step/child.rs", "a thread", "what the process reads and writes"),
+    ("connector/step/child.rs", "the environment", "which Python"),
 ];
 
 /// Lines of code that ask for something they may not, as `place:line: what`. What follows the unit tests of a file is not

@@ -1,11 +1,11 @@
 //! `catchment check`: everything that is wrong with a design, with its place in the file.
 
 use crate::args::DesignArgs;
+use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, to_stdout};
-use catchment::exec::Exec;
-use catchment::problem::{Draft, Problem, ProblemError};
+use catchment::problem::{Problem, ProblemError};
 use catchment::report::{CheckReport, figure};
 use clap::Args;
 
@@ -26,6 +26,8 @@ pub(crate) struct CheckArgs {
     json: bool,
     #[command(flatten)]
     file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
 }
 
 /// Pixels per unit of a picture.
@@ -33,16 +35,25 @@ const PNG_SCALE: f32 = 2.0;
 
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["svg", "png"])?;
+    let running = args.exec.start()?;
     if kind.is_some() {
-        figure::ensure_fits(0, &Exec::new())?;
+        figure::ensure_fits(0, &running.exec)?;
     }
-    let checked = args.design.draft().and_then(Draft::build).and_then(Problem::checked);
-    if let (Some(kind), Ok(problem)) = (kind, &checked) {
-        let picture = figure::pair(problem)?;
-        match kind {
-            "png" => args.file.write(&picture.png(PNG_SCALE)?)?,
-            _ => args.file.write(picture.svg().as_bytes())?,
-        }
+    running.may_be_left();
+    let checked = args
+        .design
+        .draft_on(&running.exec)
+        .and_then(|draft| draft.build_on(&running.exec))
+        .and_then(Problem::checked);
+    let picture = match (kind, &checked) {
+        (Some("png"), Ok(problem)) => Some(figure::pair(problem)?.png(PNG_SCALE)?),
+        (Some(_), Ok(problem)) => Some(figure::pair(problem)?.svg().as_bytes().to_vec()),
+        _ => None,
+    };
+    running.exec.check()?;
+    drop(running);
+    if let Some(bytes) = picture {
+        args.file.write(&bytes)?;
     }
     if !args.json {
         to_stdout(&CheckReport::good(&checked?).table())?;

@@ -6,6 +6,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
 use crate::output::{OutputArgs, to_stderr};
+use crate::signals;
 use crate::source::read_table;
 use catchment::advice::Advice;
 use catchment::design::Findings;
@@ -17,7 +18,8 @@ use std::path::PathBuf;
 /// Decide what becomes of listed pose errors
 ///
 /// Reads a CSV table with a header and prints it again with the outcome (aligned, jammed, missed, undecided)
-/// and the last pose error of every row. How many met which outcome goes to stderr.
+/// and the last pose error of every row. How many met which outcome goes to stderr. Where it is interrupted (Ctrl-C) the rows that are
+/// finished are printed; instead of the file of -o they go into FILE.partial. Exit code 130 then.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment outcome design.toml --poses poses.csv -o outcomes.csv\n  \
@@ -68,6 +70,7 @@ impl From<Point> for OffsetsAt {
 
 pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     args.output.check()?;
+    args.output.check_partial()?;
     let method = args.method.of()?;
     let problem = args.design.problem()?;
     let source = read_table(&args.poses)?;
@@ -78,10 +81,19 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     running
         .exec
         .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
-    let (acceptance, ends) = problem.follow_by(&method, table.errors(), &running.exec)?;
+    let followed = problem.follow_keeping(&method, table.errors(), &running.exec)?;
     drop(running);
-    let report = OutcomesReport::new(&problem, &table, &method, &acceptance, &ends);
-    args.output.write(&if args.json { report.to_json()? } else { report.to_csv()? })?;
+    let report = OutcomesReport::new(&problem, &table, &method, &followed);
+    let text = if args.json { report.to_json()? } else { report.to_csv()? };
+    if report.partial().is_some() {
+        let place = args.output.write_partial(&text)?;
+        let beside = place.map(|path| format!("they are in {}", path.display()));
+        let said = report.warnings.iter().map(|warning| format!("warning: {}", warning.message));
+        let lines = said.chain(report.summary()).chain(beside);
+        to_stderr(&std::iter::once("interrupted".to_owned()).chain(lines).collect::<Vec<_>>());
+        return Ok(signals::received().unwrap_or(ExitStatus::Failed));
+    }
+    args.output.write(&text)?;
     let mut said: Vec<String> =
         report.warnings.iter().map(|warning| format!("warning: {}", warning.message)).collect();
     said.extend(report.summary());

@@ -13,7 +13,7 @@ use std::path::{Component, Path, PathBuf};
 
 /// Propose how two parts dock, and write the design file
 ///
-/// Reads two meshes (STL, OBJ, PLY, 3MF) wherever and however they are drawn, each in a file of its own or both docked as an assembly has them.
+/// Reads two parts (STL, OBJ, PLY, 3MF, STEP) wherever and however they are drawn, each in a file of its own or both docked as an assembly has them.
 /// Tries all directions along their axes, and proposes the one in which a half that is off has to climb most: approach, seat, width D, what is
 /// free. Says on stderr what it chose and what came next. The design is checked as `catchment check` does.
 #[derive(Debug, Args)]
@@ -24,7 +24,7 @@ use std::path::{Component, Path, PathBuf};
     catchment check design.toml                                 what was understood\n  \
     catchment run design.toml -o out                            and what it forgives")]
 pub(crate) struct PlaceArgs {
-    /// The fixed half: a mesh file
+    /// The fixed half: a file of meshes, or a STEP file, which Python meshes (docs/parts.md)
     #[arg(value_name = "FIXED", value_hint = clap::ValueHint::FilePath)]
     fixed: PathBuf,
     /// The moving half: a mesh file
@@ -108,18 +108,20 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         .map(|path| path.display().to_string())
         .collect();
     if !absent.is_empty() {
-        let help = "name two mesh files: STL, OBJ, PLY or 3MF".to_owned();
+        let help = "name two files: STL, OBJ, PLY, 3MF or STEP".to_owned();
         return Err(Failure::with_help(format!("there is no file {}", absent.join(", nor ")), Some(help)));
     }
     let parts = [part(&args.fixed, place)?, part(&args.moving, place)?];
+    running.may_be_left();
     let found = propose(&parts, &settings, place, &running.exec).map_err(refused)?;
-    drop(running);
     // All of it is there before any of it is written.
     let picture = match kind {
         Some("png") => Some(figure::pair(&found.problem)?.png(PNG_SCALE)?),
         Some(_) => Some(figure::pair(&found.problem)?.svg().as_bytes().to_vec()),
         None => None,
     };
+    running.exec.check()?;
+    drop(running);
     if let Some((path, bytes)) = args.figure.as_deref().zip(picture) {
         write_file(path, &bytes, args.force)?;
     }

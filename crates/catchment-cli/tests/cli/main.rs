@@ -24,6 +24,7 @@ mod plumbing;
 mod poses;
 mod seat;
 mod solids;
+mod step;
 mod studies;
 mod sweep;
 mod tables;
@@ -43,7 +44,9 @@ fn catchment(folder: &Path) -> Command {
         .env_clear()
         .env("NO_COLOR", "1")
         .env("LC_ALL", "C.UTF-8")
-        .env("TERM", "xterm");
+        .env("TERM", "xterm")
+        // STEP files are meshed by nobody, whatever is installed here.
+        .env("CATCHMENT_PYTHON", "no/python3");
     command
 }
 

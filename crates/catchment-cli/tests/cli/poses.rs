@@ -249,3 +249,75 @@ fn offsets_are_measured_where_it_is_said() {
     assert_eq!([code(y, "face"), code(y + 1e-4, "face")], [Some(0), Some(2)]);
     assert_eq!([code(0.0, "cor"), code(y, "cor")], [Some(0), Some(2)]);
 }
+
+/// What `outcome` leaves that is interrupted soon after it began, on more poses than it decides until then.
+#[cfg(target_os = "linux")]
+fn interrupted(folder: &std::path::Path, args: &[&str], signal: &str) -> std::process::Output {
+    let child = catchment(folder)
+        .args(["outcome", "v.toml", "--poses", "poses.csv", "--threads", "1"])
+        .args(args)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Until the handler stands the signal ends the process without a code: a thread beside the main one and the worker.
+    let tasks = format!("/proc/{}/task", child.id());
+    while fs::read_dir(&tasks).unwrap().count() < 3 {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let pid = child.id().to_string();
+    assert!(std::process::Command::new("kill").args([signal, &pid]).status().unwrap().success());
+    child.wait_with_output().unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
+    use std::fmt::Write;
+    const POSES: usize = 300_000;
+    let home = super::home();
+    let mut table = "name,x,pitch\n".to_owned();
+    for k in 0..POSES {
+        let x = 0.9 * (k as f64 / POSES as f64) - 0.45;
+        writeln!(table, "p{k},{x},{}", 0.3 - x).unwrap();
+    }
+    fs::write(home.path().join("poses.csv"), &table).unwrap();
+    let said = |output: &std::process::Output| String::from_utf8(output.stderr.clone()).unwrap();
+
+    // Into a file: not at its place, but beside it.
+    let output = interrupted(home.path(), &["-o", "out.csv"], "-INT");
+    let stderr = said(&output);
+    assert_eq!(output.status.code(), Some(130), "{stderr}");
+    assert!(stderr.starts_with("interrupted\nwarning: partial: "), "{stderr}");
+    assert!(stderr.ends_with("they are in out.csv.partial\n"), "{stderr}");
+    assert!(output.stdout.is_empty() && !home.path().join("out.csv").exists());
+    let rows = cells(&fs::read(home.path().join("out.csv.partial")).unwrap());
+    let finished = rows.len() - 1;
+    assert!((1..POSES).contains(&finished), "{finished}");
+    let counted =
+        format!("partial: {finished} of {POSES} poses are decided, {} are missing", POSES - finished);
+    assert!(stderr.contains(&counted), "{stderr}");
+
+    // The rows are those that the whole has: some of them, alone.
+    let few: Vec<&Vec<String>> = rows[1..].iter().step_by(finished.div_ceil(20)).collect();
+    let again: Vec<String> = few.iter().map(|row| row[..3].join(",")).collect();
+    fs::write(home.path().join("few.csv"), format!("name,x,pitch\n{}\n", again.join("\n"))).unwrap();
+    let whole = catchment(home.path()).args(["outcome", "v.toml", "--poses", "few.csv"]).output().unwrap();
+    assert_eq!(cells(&whole.stdout)[1..].iter().collect::<Vec<_>>(), few);
+
+    // What an interrupt left is not written over unasked.
+    let refused = run(home.path(), &["outcome", "v.toml", "--poses", "few.csv", "-o", "out.csv"]);
+    assert!(refused.starts_with("exit 2\n") && refused.contains("out.csv.partial"), "{refused}");
+
+    // Printed, as JSON: it says so itself.
+    let output = interrupted(home.path(), &["--json"], "-TERM");
+    assert_eq!(output.status.code(), Some(143), "{}", said(&output));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let poses = report["poses"].as_array().unwrap();
+    assert_eq!(report["missing"], POSES - poses.len());
+    assert!(report["warnings"][0]["message"].as_str().unwrap().starts_with("partial: "));
+    let last = poses.last().unwrap();
+    let row = last["number"].as_u64().unwrap();
+    assert_eq!(last["carried"]["name"], format!("p{row}"));
+}

@@ -41,14 +41,18 @@ fn what_is_given_stays_and_threads_change_nothing() {
     assert_eq!(two, given("1", "2 mm"));
     assert!((half_width(&two, "x") - 0.04).abs() < 1e-12);
     assert!(half_width(&two, "pitch") > half_width(&given("2", "12 mm"), "pitch"));
-    assert!(two["worst"]["outcome"] != "aligned" && two["certificate"]["failing_at_most"].as_f64().unwrap() < 0.002);
+    assert!(
+        two["worst"]["outcome"] != "aligned"
+            && two["certificate"]["failing_at_most"].as_f64().unwrap() < 0.002
+    );
 }
 
 #[test]
 fn a_requirement_decides_the_exit_code_and_files_are_whole() {
     let home = home();
     let with = |require: &str, more: &[&str]| {
-        let args = [&["window", "v.toml", "--free", "x", "--motions", "0", "--require", require][..], more].concat();
+        let args =
+            [&["window", "v.toml", "--free", "x", "--motions", "0", "--require", require][..], more].concat();
         catchment(home.path()).args(args).output().unwrap()
     };
     assert_eq!(with("window.x.half_width>=0.49", &["-o", "w.csv"]).status.code(), Some(0));

@@ -21,6 +21,7 @@ mod ply;
 mod problem;
 mod round;
 mod source;
+mod step;
 pub mod stl;
 mod surface;
 mod threemf;
@@ -33,9 +34,11 @@ pub use part::PartError;
 pub(crate) use place::turn_between;
 pub use problem::{Problem, Side};
 pub use source::{FileBytes, Read, Source, UnitProblem};
+pub use step::StepProblem;
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
 use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, FileSpec, HalfSpec, OwnSpec};
+use crate::exec::Exec;
 use crate::pose::{Mount, PoseError};
 use glam::{DAffine3, DVec3};
 
@@ -55,8 +58,17 @@ impl Half {
 }
 
 /// The half that one mesh file holds, read from disk, as its scale makes it: of any size.
-pub(crate) fn of_file(file: &FileSpec, side: Side) -> Result<Half, Vec<Problem>> {
-    source::alone(file, side, &source::disk::read)
+pub(crate) fn of_file(file: &FileSpec, side: Side, exec: &Exec) -> Result<Half, Vec<Problem>> {
+    source::alone(file, side, &source::disk::read, exec)
+}
+
+/// How large a half may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Size {
+    /// About D.
+    Plausible,
+    /// Whatever it is: D is not known yet.
+    Any,
 }
 
 /// A half and what its files held, or everything that is wrong with it.
@@ -109,24 +121,54 @@ impl Connector {
         Self::build_with(design, &source::disk::read)
     }
 
+    /// The same, given up where a stop is asked for.
+    pub(crate) fn build_on(design: &Design, exec: &Exec) -> Result<Self, Vec<Problem>> {
+        Self::build_within(design, &source::disk::read, exec)
+    }
+
     /// Builds the halves of a design; `read` gives the mesh files.
     ///
     /// # Errors
     /// Everything that is wrong with the geometry, each with its place.
     pub fn build_with(design: &Design, read: Read<'_>) -> Result<Self, Vec<Problem>> {
+        Self::build_within(design, read, &Exec::new())
+    }
+
+    /// The same, given up where a stop is asked for while a STEP file is meshed.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the geometry, each with its place.
+    pub fn build_within(design: &Design, read: Read<'_>, exec: &Exec) -> Result<Self, Vec<Problem>> {
         let mount = design.alignment.mount;
         match &design.connector {
             ConnectorSpec::Family(spec) => Self::of_family(spec, mount),
             ConnectorSpec::Own(own) => {
                 // Parts are drawn in the unit of the design.
                 let half = |spec: &HalfSpec, side| -> Sourced {
-                    let built = Source::of(spec, side, read)?.build(side)?;
+                    let built = Source::of(spec, side, read)?.build(side, Size::Plausible, exec)?;
                     let scale = matches!(spec, HalfSpec::Parts(_)).then_some(1.0 / design.width);
                     Ok(source::Built { scale: built.scale.or(scale), ..built })
                 };
                 Self::of_own([half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)], own, mount)
             }
         }
+    }
+
+    /// Own halves of any size beside D, and the larger lateral extent of either as drawn.
+    pub(crate) fn unsized_on(own: &OwnSpec, mount: Mount, exec: &Exec) -> Result<(Self, f64), Vec<Problem>> {
+        let half = |spec: &HalfSpec, side| -> Sourced {
+            Source::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)
+        };
+        let halves = [half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)];
+        let wide = |built: &source::Built| {
+            let bounds = built.half.surfaces.iter().map(Surface::bounds);
+            let (low, high) = bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| {
+                (low.min(a), high.max(b))
+            });
+            (high - low).truncate().max_element()
+        };
+        let widest = halves.iter().flatten().map(wide).fold(0.0, f64::max);
+        Ok((Self::of_own(halves, own, mount)?, widest))
     }
 
     /// The halves of a family.
@@ -147,9 +189,11 @@ impl Connector {
         face_height: f64,
         mount: Mount,
     ) -> Result<Self, Vec<Problem>> {
+        let exec = Exec::new();
         let nothing = || HalfSpec::Pieces(Vec::new());
         let own = OwnSpec::new(face_height, nothing(), nothing());
-        Self::of_own([fixed.build(Side::Fixed), moving.build(Side::Moving)], &own, mount)
+        let build = |source: &Source, side| source.build(side, Size::Plausible, &exec);
+        Self::of_own([build(fixed, Side::Fixed), build(moving, Side::Moving)], &own, mount)
     }
 
     /// Places halves that were built; where the face centre is to be found, at the origin of the drawing.

@@ -13,8 +13,9 @@
 //! one mated pose to align with, and the design has to say what counts.
 
 use super::Pair;
-use super::play::{Play, directions, play, unit};
+use super::play::{Play, directions, play_on, unit};
 use crate::design::Alignment;
+use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
 
 /// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
@@ -23,6 +24,9 @@ pub const CONTACT_TOLERANCE: f64 = 1e-4;
 /// Length of a probe in the ρ-metric, in D: small beside any facet, so that only the facets that meet at the
 /// mated pose are seen.
 const PROBE: f64 = 1e-3;
+/// What progress is told of, and the share of it that the search for something deeper takes.
+const STAGE: &str = "mated pose";
+const DEEPEST: f64 = 0.2;
 /// Descent per length that counts: above the curvature of a rotation over one probe (some 1e-3).
 const SLOPE: f64 = 1e-2;
 
@@ -156,6 +160,11 @@ fn described(error: &PoseError) -> String {
 
 /// Everything that keeps the aligned pose of a pair from being a mated pose; empty when it is one.
 pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
+    problems_on(pair, &Exec::new())
+}
+
+/// The same, with its progress.
+pub(crate) fn problems_on(pair: &Pair, exec: &Exec) -> Vec<MatedProblem> {
     let height = pair.mated_height();
     if height == f64::NEG_INFINITY {
         return vec![MatedProblem::Apart];
@@ -167,12 +176,14 @@ pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
     } else if above < -CONTACT_TOLERANCE {
         problems.push(MatedProblem::Gap { gap: -above });
     }
-    problems.extend(deepest(pair, height, DofSet::ALL));
+    problems.extend(deepest(pair, height, DofSet::ALL, &exec.part([0.0, DEEPEST], STAGE)));
     // What a seat leaves free shows only where there is one.
     if problems.is_empty() {
-        match round_half(pair) {
-            Some(half) => problems.push(MatedProblem::Round { half }),
-            None => problems.extend(play(pair).iter().filter_map(|play| loose(pair, play))),
+        if let Some(half) = round_half(pair) {
+            problems.push(MatedProblem::Round { half });
+        } else {
+            let found = play_on(pair, &exec.part([DEEPEST, 1.0], STAGE));
+            problems.extend(found.iter().filter_map(|play| loose(pair, play)));
         }
     }
     problems
@@ -207,16 +218,18 @@ pub(crate) fn round_half(pair: &Pair) -> Option<&'static str> {
 
 /// Whether an error in some of the free degrees of freedom lets the aligned half sink deeper.
 pub(crate) fn sinking(pair: &Pair, among: DofSet) -> Option<MatedProblem> {
-    deepest(pair, pair.mated_height(), among)
+    deepest(pair, pair.mated_height(), among, &Exec::new())
 }
 
 /// The probe that sinks deepest, if one sinks more than rounding and curvature explain.
-fn deepest(pair: &Pair, aligned: f64, among: DofSet) -> Option<MatedProblem> {
+fn deepest(pair: &Pair, aligned: f64, among: DofSet, exec: &Exec) -> Option<MatedProblem> {
     let matters = |dof: &Dof| among.contains(*dof) && !pair.alignment.dont_care.contains(*dof);
     let free: Vec<Dof> = pair.alignment.free.iter().filter(matters).collect();
     let mut nearby = pair.about(PROBE);
     let mut worst: Option<(f64, PoseError)> = None;
-    for signs in directions(free.len()) {
+    let all = 3usize.pow(free.len() as u32);
+    for (tried, signs) in directions(free.len()).enumerate() {
+        exec.report(tried as f64 / all as f64, STAGE);
         let count = signs.iter().filter(|s| **s != 0.0).count();
         let mut error = [0.0; 5];
         for (dof, sign) in free.iter().zip(&signs) {

@@ -144,6 +144,11 @@ impl Pair {
         self.searched().is_some()
     }
 
+    /// Whether motions ask trees for what may touch.
+    pub(crate) const fn asks_trees(&self) -> bool {
+        self.trees.is_some()
+    }
+
     /// The trees, where there is too much to list for a grid.
     fn searched(&self) -> Option<&Trees> {
         self.trees.as_ref().filter(|_| !self.lists)

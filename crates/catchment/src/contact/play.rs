@@ -11,6 +11,7 @@
 
 use super::seat::PATH_STEP;
 use super::{Nearby, Pair};
+use crate::exec::Exec;
 use crate::pose::{Dof, PoseError};
 use serde::{Deserialize, Serialize};
 
@@ -44,11 +45,18 @@ const BEYOND: f64 = 2.0;
 
 /// The play of every free error that matters, in their order.
 pub fn play(pair: &Pair) -> Vec<Play> {
+    play_on(pair, &Exec::new())
+}
+
+/// The same, with its progress.
+pub(super) fn play_on(pair: &Pair, exec: &Exec) -> Vec<Play> {
     let alignment = &pair.alignment;
     let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
     let mut play: Vec<Play> = free.iter().map(|dof| Play { axis: *dof, minus: 0.0, plus: 0.0 }).collect();
     let mut nearby = pair.about(4.0 * PATH_STEP);
-    for signs in directions(free.len()) {
+    let all = 3usize.pow(free.len() as u32);
+    for (tried, signs) in directions(free.len()).enumerate() {
+        exec.report(tried as f64 / all as f64, "play");
         let count = signs.iter().filter(|sign| **sign != 0.0).count() as f64;
         let mut way = [0.0; Dof::ALL.len()];
         for (dof, sign) in free.iter().zip(&signs) {

@@ -12,10 +12,14 @@
 //! Not promised: that D is what a person would name as the width. It is only a measure, in which answers are told.
 
 use crate::connector::Half;
+use crate::connector::mesh::PLAUSIBLE_WIDTH;
+use crate::design::WidthFrom;
 use glam::{DVec2, DVec3};
 
 /// A facet looks up or down where its normal's z is beyond this: above what upright walls are rounded by.
 const LOOKS: f64 = 1e-6;
+/// How much wider than D a half may be as drawn: a little less than designs allow.
+pub(crate) const MOST_WIDE: f64 = 0.99 * *PLAUSIBLE_WIDTH.end();
 /// Flat on flat they share a plane: how far beyond it what touches is looked for, as a share of the halves' width.
 const THIN: f64 = 1e-4;
 
@@ -42,6 +46,13 @@ pub(crate) fn touching(fixed: &Half, moving: &Half, lift: f64) -> Option<[DVec2;
 pub(crate) fn width(fixed: &Half, moving: &Half, lift: f64) -> Option<f64> {
     let [low, high] = touching(fixed, moving, lift)?;
     Some((high - low).max_element()).filter(|width| *width > 0.0)
+}
+
+/// Where D comes from, and D, of halves as mated, `widest` of which is the larger lateral extent as drawn: designs allow no half that is much
+/// wider than D.
+pub(crate) fn default(fixed: &Half, moving: &Half, lift: f64, widest: f64) -> Option<(f64, WidthFrom)> {
+    let (touching, least) = (width(fixed, moving, lift)?, widest / MOST_WIDE);
+    Some(if touching < least { (least, WidthFrom::Size) } else { (touching, WidthFrom::Touching) })
 }
 
 /// The box around what looks along `up`·z and lies at or above `level` along it.

@@ -142,6 +142,12 @@ pub enum Complaint {
     /// A width in widths.
     #[error("the width is D itself, so it cannot be given in D")]
     WidthInD,
+    /// A length in D that D itself depends on.
+    #[error("{text} depends on D, and D on it: without `width` D is measured from the halves")]
+    ShapesWidth {
+        /// The length.
+        text: String,
+    },
     /// A piece that encloses no volume.
     #[error("`{key}` has {found} points; a solid has at least 4")]
     TooFewPoints {
@@ -338,6 +344,9 @@ impl Complaint {
             )),
             Self::UnknownUnit { meant, .. } => did_you_mean(*meant)
                 .or_else(|| Some("lengths: um, mm, cm, m, in, D; angles: deg, rad".to_owned())),
+            Self::ShapesWidth { .. } => {
+                Some("write it in the unit of the design, as in \"0.5 mm\", or write `width`".to_owned())
+            }
             Self::WidthInD => Some(
                 "write a bare number, in `unit`; a dimensionless design has width = 1.0 or no width at all".to_owned(),
             ),

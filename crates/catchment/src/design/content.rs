@@ -21,6 +21,22 @@ pub struct MeshContent {
     /// What was done to them.
     #[serde(default, skip_serializing_if = "Repairs::is_none")]
     pub repairs: Repairs,
+    /// How its curved faces became triangles, where it has some (STEP).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub meshed: Option<Box<Meshed>>,
+}
+
+/// How curved faces became triangles.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Meshed {
+    /// How far the facets may be off, in D.
+    pub deflection: f64,
+    /// How far they are, as what meshed it measures it, in D.
+    pub reached: f64,
+    /// What meshed it, and its version.
+    pub by: String,
+    /// SHA-256 of its answer: for every body the corners, little-endian doubles, and the triangles, little-endian 32-bit numbers of corners.
+    pub sha256: String,
 }
 
 const fn one() -> usize {
@@ -36,7 +52,7 @@ impl MeshContent {
     /// Of these bytes, which make so many triangles.
     pub fn of(bytes: &[u8], triangles: usize) -> Self {
         let (sha256, repairs) = (hex(&Sha256::digest(bytes)), Repairs::default());
-        Self { sha256, bytes: bytes.len() as u64, triangles, bodies: 1, repairs }
+        Self { sha256, bytes: bytes.len() as u64, triangles, bodies: 1, repairs, meshed: None }
     }
 }
 

@@ -138,6 +138,11 @@ impl Hash {
         if !content.repairs.is_none() {
             self.text("repaired");
         }
+        // The deflection shows in the triangles, and so does who meshed it.
+        if let Some(meshed) = &content.meshed {
+            self.text("meshed");
+            self.text(&meshed.sha256);
+        }
         if let Some(tolerance) = file.treatment.simplify {
             self.text("simplified");
             self.number(tolerance);

@@ -227,17 +227,31 @@ impl Key {
         Self { kind, ..self }
     }
 
+    /// Whether what a quantity means for this key depends on D.
+    pub(super) const fn depends_on_width(&self, quantity: Quantity) -> bool {
+        match self.kind {
+            Kind::Length(_) => !matches!(quantity.unit, Unit::Bare | Unit::D),
+            Kind::DrawnLength(_) => !matches!(quantity.unit, Unit::D),
+            _ => false,
+        }
+    }
+
+    /// The length in D, whatever the range; `None` of what is none.
+    pub(super) fn unchecked(&self, quantity: Quantity, scale: Option<&Scale>) -> Option<f64> {
+        match self.kind {
+            Kind::Length(_) => quantity.length_d(scale?).ok(),
+            Kind::DrawnLength(_) => quantity.drawn_length_d(scale?).ok(),
+            _ => None,
+        }
+    }
+
     /// The quantity in the unit of this key's range (D, radians or none), if it lies in the range. `None` when
     /// that takes a `scale` and there is none.
     ///
     /// # Errors
     /// Out of range, a unit of the wrong dimension, or a unit in a dimensionless design.
     pub fn checked(&self, quantity: Quantity, scale: Option<&Scale>) -> Result<Option<f64>, Complaint> {
-        let needs_scale = match self.kind {
-            Kind::Length(_) => !matches!(quantity.unit, Unit::Bare | Unit::D),
-            Kind::DrawnLength(_) => quantity.unit != Unit::D,
-            _ => false,
-        };
+        let needs_scale = self.depends_on_width(quantity);
         let scale = match scale {
             Some(scale) => *scale,
             None if needs_scale => return Ok(None),
@@ -311,7 +325,8 @@ keys! {
     FAMILY = key(Table::Connector, "family", Kind::Family, family::NAMES);
     /// `connector.width`
     WIDTH = key(Table::Connector, "width", Kind::Width(Range::new(1e-6, 1e6, "")),
-        "D, the width of the connector, in `unit`. Results are in D.");
+        "D, the width of the connector, in `unit`. Results are in D. Own halves in a unit may leave it out: the larger lateral extent of \
+         the facets that can touch.");
     /// `connector.unit`
     UNIT = key(Table::Connector, "unit", Kind::Unit,
         "Unit of `width` and of drawn coordinates: um, mm, cm, m or in. Without it the design is dimensionless.");
@@ -384,7 +399,7 @@ keys! {
         "Convex pieces whose union is the half: each a list of points [x, y, z] in the unit of the design.");
     /// `mesh` of a half
     MESH = key(Table::Half, "mesh", Kind::Path,
-        "A closed triangle mesh: an STL, OBJ, PLY or 3MF file, its path relative to the folder of the design file.");
+        "A closed triangle mesh: an STL, OBJ, PLY, 3MF or STEP file, its path relative to the folder of the design file.");
     /// `unit` of a half
     MESH_UNIT = key(Table::Half, "unit", Kind::Unit,
         "Unit of the mesh file, which cannot say it itself unless it is a 3MF: um, mm, cm, m or in.");
@@ -399,6 +414,10 @@ keys! {
     SIMPLIFY = key(Table::Half, "simplify", Kind::DrawnLength(Range::new(1e-6, 0.05, "D")),
         "Describes the mesh with fewer triangles: how far its surface may move, as in \"0.01 mm\"; bare in the unit of the design. \
          With it a file may have 5 million triangles.");
+    /// `deflection` of a half
+    DEFLECTION = key(Table::Half, "deflection", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
+        "How far the facets may be off that stand for the curved faces of a STEP file, as in \"0.01 mm\"; bare in the unit of the design. \
+         Without it: 0.0002 of the part's largest side. Less than the play of the fit.");
     /// `facing` of a half
     FACING = key(Table::Half, "facing", Kind::Direction,
         "The direction in which the part faces in its file: +x, -x, +y, -y, +z, -z or [x, y, z]. It is turned to +z.");
@@ -417,7 +436,7 @@ keys! {
 
     /// `mesh` of a part
     PART_MESH = key(Table::Part, "mesh", Kind::Path,
-        "A closed triangle mesh: an STL, OBJ, PLY or 3MF file, its path relative to the folder of the design file.");
+        "A closed triangle mesh: an STL, OBJ, PLY, 3MF or STEP file, its path relative to the folder of the design file.");
     /// `pieces` of a part
     PART_PIECES = key(Table::Part, "pieces", Kind::Pieces,
         "Convex pieces: each a list of points [x, y, z] in the unit of the design.");
@@ -445,6 +464,9 @@ keys! {
     /// `chord_error` of a part
     PART_CHORD_ERROR = key(Table::Part, "chord_error", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
         "Largest distance between something round and the facets that stand for it, in the unit of the design. Without it: 0.001 D.");
+    /// `deflection` of a part
+    PART_DEFLECTION = key(Table::Part, "deflection", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
+        "How far the facets may be off that stand for the curved faces of a STEP file. Without it: 0.0002 of the part's largest side.");
     /// `axis` of a part
     PART_AXIS = key(Table::Part, "axis", Kind::Direction,
         "The direction to which the part's z axis is turned: +x, -x, +y, -y, +z, -z or [x, y, z].");

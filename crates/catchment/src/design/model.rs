@@ -81,6 +81,9 @@ pub struct OwnSpec {
     /// In which frames they are drawn.
     #[serde(default, skip_serializing_if = "Drawn::is_facing")]
     pub drawn: Drawn,
+    /// Where D comes from.
+    #[serde(default, skip_serializing_if = "WidthFrom::is_written")]
+    pub width_from: WidthFrom,
     /// Whether the mated pose is where the halves come to rest that are let go as drawn.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub settle: bool,
@@ -96,6 +99,26 @@ pub struct OwnSpec {
     pub moving_placement: Placement,
 }
 
+/// Where D comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WidthFrom {
+    /// The design says it, or is dimensionless.
+    #[default]
+    Written,
+    /// The larger lateral extent of the facets that can touch.
+    Touching,
+    /// As little as the size of the parts allows; what can touch is smaller.
+    Size,
+}
+
+impl WidthFrom {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+    fn is_written(&self) -> bool {
+        *self == Self::Written
+    }
+}
+
 impl OwnSpec {
     /// Two halves drawn facing +z, their face centres on the z axis at `face_height`.
     pub const fn new(face_height: f64, fixed: HalfSpec, moving: HalfSpec) -> Self {
@@ -104,6 +127,7 @@ impl OwnSpec {
         Self {
             face_height,
             drawn,
+            width_from: WidthFrom::Written,
             settle: false,
             fixed,
             moving,

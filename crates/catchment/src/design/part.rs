@@ -50,6 +50,17 @@ impl FileSpec {
         }
     }
 
+    /// Whether files of this name may say their unit themselves.
+    pub fn may_say_its_unit(&self) -> bool {
+        const SAY: [&str; 5] = ["3mf", "step", "stp", "svg", "dxf"];
+        SAY.contains(&self.ending().as_str())
+    }
+
+    /// Whether it is called a STEP file.
+    pub fn is_step(&self) -> bool {
+        ["step", "stp"].contains(&self.ending().as_str())
+    }
+
     /// How its name ends, in lower case.
     pub fn ending(&self) -> String {
         self.path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()

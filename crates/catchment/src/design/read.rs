@@ -6,7 +6,7 @@ use super::keys::{self, Applies, Key, Kind, Table};
 use super::problem::{Problems, Sources};
 use super::quantity::Scale;
 use super::reader::{Reader, Section};
-use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, OwnSpec};
+use super::{Alignment, ConnectorSpec, Design, Drawn, Family, FamilySpec, OwnSpec, WidthFrom};
 use crate::pose::{Dof, DofSet};
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
@@ -30,13 +30,31 @@ pub struct DesignFile {
 /// # Errors
 /// All problems of the text, in order.
 pub fn read(text: &str, base_dir: &Path) -> Result<DesignFile, Problems> {
+    read_as(text, base_dir, Width::Written).map(|(file, _)| file)
+}
+
+/// What is known of D where the file does not say it of own halves in a unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Width {
+    /// The file has to say it.
+    Written,
+    /// It is measured later: until then lengths are in this, and may be out of range. Without it in the unit itself, and what is round
+    /// is drawn roughly.
+    Provisional(Option<f64>),
+    /// It was measured.
+    Measured(f64, WidthFrom),
+}
+
+/// The same; and whether `width` was used.
+pub(crate) fn read_as(text: &str, base_dir: &Path, width: Width) -> Result<(DesignFile, bool), Problems> {
     if text.len() > LARGEST_FILE {
         let complaint = Complaint::TooLarge { limit: LARGEST_FILE };
         return Err(Problems::new(vec![(complaint, 0..0)], 0, text));
     }
     let (document, syntax) = DeTable::parse_recoverable(text);
-    let mut walk = Walk { reader: Reader::new(text, syntax), base_dir };
+    let mut walk = Walk { reader: Reader::new(text, syntax), base_dir, width };
     let design = walk.design(&Section::root(&document));
+    let is_measured = walk.reader.measures_width;
     let mut sources = walk.reader.finish()?;
     // Whatever is missing was complained about, so this is the one way out without a design.
     let Some(design) = design else {
@@ -44,7 +62,7 @@ pub fn read(text: &str, base_dir: &Path) -> Result<DesignFile, Problems> {
         return Err(Problems::new(vec![(complaint, 0..0)], 0, text));
     };
     sources.insert(String::new(), 0..0);
-    Ok(DesignFile { design, sources })
+    Ok((DesignFile { design, sources }, is_measured))
 }
 
 const NO_CONNECTOR: &str = "name a built-in family: [connector] family = \"pyramid\"; or give own halves: \
@@ -71,6 +89,7 @@ impl Owner {
 pub(super) struct Walk<'t> {
     pub(super) reader: Reader<'t>,
     pub(super) base_dir: &'t Path,
+    width: Width,
 }
 
 impl<'t> Walk<'t> {
@@ -87,7 +106,7 @@ impl<'t> Walk<'t> {
             self.reader.missing(root, &keys::CONNECTOR, NO_CONNECTOR);
         }
         let owner = connector.as_ref().map_or(Owner::Unknown, |section| self.owner(section));
-        let scale = connector.as_ref().and_then(|section| self.scale(section));
+        let scale = connector.as_ref().and_then(|section| self.scale(section, owner));
         let spec = connector.as_ref().and_then(|section| self.connector(section, owner, scale.as_ref()));
         let alignment = self.alignment(root, owner, spec.as_ref(), scale.as_ref());
         let (Scale { width, unit }, connector) = (scale?, spec?);
@@ -137,12 +156,22 @@ impl<'t> Walk<'t> {
     }
 
     /// Width and unit; `None` when one of them is wrong.
-    fn scale(&mut self, section: &Section<'t>) -> Option<Scale> {
+    fn scale(&mut self, section: &Section<'t>, owner: Owner) -> Option<Scale> {
         let unit = self.reader.unit(section, &keys::UNIT);
         if section.has(&keys::UNIT) && unit.is_none() {
             return None;
         }
         if !section.has(&keys::WIDTH) {
+            let width = match self.width {
+                Width::Provisional(width) => Some(width.unwrap_or(1.0)),
+                Width::Measured(width, _) => Some(width),
+                Width::Written => None,
+            };
+            if let (Owner::OwnHalves, Some(width), Some(_)) = (owner, width, unit) {
+                self.reader.measures_width = true;
+                self.reader.is_provisional = matches!(self.width, Width::Provisional(_));
+                return Some(Scale { width, unit });
+            }
             if unit.is_some() {
                 self.reader.missing(section, &keys::WIDTH, "a design with a unit needs its D: width = 50.0");
                 return None;
@@ -152,6 +181,11 @@ impl<'t> Walk<'t> {
         // In "widths of 1 unit", the number is the width in the unit of the design.
         let width = self.reader.number(section, &keys::WIDTH, Some(&Scale { width: 1.0, unit }))?;
         Some(Scale { width, unit })
+    }
+
+    /// Whether what is round is drawn roughly, because nobody knows yet how large D is.
+    pub(super) fn is_rough(&self) -> bool {
+        self.reader.measures_width && self.width == Width::Provisional(None)
     }
 
     fn connector(
@@ -204,7 +238,20 @@ impl<'t> Walk<'t> {
         let fixed = self.half(section, &keys::FIXED, is_assembled, scale);
         let moving = self.half(section, &keys::MOVING, is_assembled, scale);
         let ((fixed, fixed_placement), (moving, moving_placement)) = (fixed?, moving?);
-        Some(OwnSpec { face_height, drawn, settle, fixed, moving, fixed_placement, moving_placement })
+        let width_from = match self.width {
+            Width::Measured(_, from) if self.reader.measures_width => from,
+            _ => WidthFrom::Written,
+        };
+        Some(OwnSpec {
+            face_height,
+            drawn,
+            width_from,
+            settle,
+            fixed,
+            moving,
+            fixed_placement,
+            moving_placement,
+        })
     }
 
     fn alignment(

@@ -25,8 +25,8 @@ const SHAPES: [Key; 7] = [
     keys::PART_BOX,
     keys::PART_PROFILE,
 ];
-/// Endings of files that can say their unit themselves.
-const SAY_THEIR_UNIT: [&str; 3] = ["3mf", "svg", "dxf"];
+/// Chord error of what is round, as a share of its size, while D is not known.
+const ROUGH: f64 = 0.02;
 /// Endings of files with outlines.
 const DRAWINGS: [&str; 2] = ["svg", "dxf"];
 
@@ -76,8 +76,10 @@ impl<'t> Walk<'t> {
             let treatment = Treatment {
                 repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(Treatment::DEFAULT.repair),
                 simplify: self.reader.number(section, &keys::SIMPLIFY, scale),
+                deflection: self.reader.number(section, &keys::DEFLECTION, scale),
             };
             let file = self.file(section, &way, &keys::MESH_UNIT, scale);
+            self.deflection_of(section, &keys::DEFLECTION, file.as_ref());
             return file.map(|file| HalfSpec::Mesh(FileSpec { treatment, ..file }));
         }
         let exact = if way == keys::PIECES {
@@ -94,10 +96,18 @@ impl<'t> Walk<'t> {
             "a half of parts; each of its files has a unit of its own"
         };
         self.not_its_own(section, &keys::MESH_UNIT, owner, "a mesh");
+        self.not_its_own(section, &keys::DEFLECTION, exact, "a STEP file");
         if way == keys::PIECES {
             self.pieces(section, &way, scale).map(HalfSpec::Pieces)
         } else {
             self.parts(section, scale).map(HalfSpec::Parts)
+        }
+    }
+
+    /// Complains about a deflection of a file that holds triangles already.
+    fn deflection_of(&mut self, section: &Section<'t>, key: &Key, file: Option<&FileSpec>) {
+        if file.is_some_and(|file| !file.is_step()) {
+            self.not_its_own(section, key, "a mesh file, which holds triangles already", "a STEP file");
         }
     }
 
@@ -174,20 +184,32 @@ impl<'t> Walk<'t> {
         if way != keys::PART_PROFILE {
             self.not_its_own(section, &keys::PART_HEIGHT, "this part", "a profile");
         }
+        if way != keys::PART_MESH {
+            self.not_its_own(section, &keys::PART_DEFLECTION, "this part", "a STEP file");
+        }
         let is_round = [keys::PART_SPHERE, keys::PART_CYLINDER, keys::PART_CONE].contains(&way) || is_drawing;
         if !is_round {
             self.not_its_own(section, &keys::PART_CHORD_ERROR, "a part without curves", "what is round");
         }
-        let chord_error =
-            self.reader.number(section, &keys::PART_CHORD_ERROR, scale).unwrap_or(PartSpec::CHORD_ERROR);
+        let written = self.reader.number(section, &keys::PART_CHORD_ERROR, scale);
+        let is_rough = written.is_none() && self.is_rough();
+        let chord_error = written.unwrap_or(PartSpec::CHORD_ERROR);
+        let chord_error = |size: f64| if is_rough { ROUGH * size } else { chord_error };
         match way {
-            keys::PART_MESH => self.file(section, &way, &keys::PART_UNIT, scale).map(ShapeSpec::Mesh),
+            keys::PART_MESH => {
+                let deflection = self.reader.number(section, &keys::PART_DEFLECTION, scale);
+                let file = self.file(section, &way, &keys::PART_UNIT, scale);
+                self.deflection_of(section, &keys::PART_DEFLECTION, file.as_ref());
+                let treatment = Treatment { deflection, ..Treatment::DEFAULT };
+                file.map(|file| ShapeSpec::Mesh(FileSpec { treatment, ..file }))
+            }
             keys::PART_PIECES => self.pieces(section, &way, scale).map(ShapeSpec::Pieces),
             keys::PART_BOX => self.reader.triple(section, &way, scale).map(|size| ShapeSpec::Box { size }),
             keys::PART_PROFILE => {
                 let height = self.needed(section, &keys::PART_HEIGHT, scale);
                 let outline = self.outline(section, &way, scale);
-                Some(ShapeSpec::Profile { outline: outline?, height: height?, chord_error })
+                let (outline, height) = (outline?, height?);
+                Some(ShapeSpec::Profile { outline, height, chord_error: chord_error(height) })
             }
             _ => self.round(section, &way, chord_error, scale),
         }
@@ -198,7 +220,7 @@ impl<'t> Walk<'t> {
         &mut self,
         section: &Section<'t>,
         way: &Key,
-        chord_error: f64,
+        chord_error: impl Fn(f64) -> f64,
         scale: Option<&Scale>,
     ) -> Option<ShapeSpec> {
         let keys::Kind::Table(table) = way.kind else { return None };
@@ -206,7 +228,7 @@ impl<'t> Walk<'t> {
         self.reader.refuse_unknown_keys(section, table);
         if table == Table::Sphere {
             let radius = self.needed(section, &keys::SPHERE_RADIUS, scale)?;
-            return Some(ShapeSpec::Sphere { radius, chord_error });
+            return Some(ShapeSpec::Sphere { radius, chord_error: chord_error(radius) });
         }
         let is_cone = table == Table::Cone;
         let (radius, height) = if is_cone {
@@ -218,7 +240,8 @@ impl<'t> Walk<'t> {
         let height = self.needed(section, &height, scale);
         let top = is_cone.then(|| self.reader.number(section, &keys::CONE_TOP_RADIUS, scale).unwrap_or(0.0));
         let (radius, height) = (radius?, height?);
-        Some(ShapeSpec::Cone { radius, top_radius: top.unwrap_or(radius), height, chord_error })
+        let (top_radius, chord_error) = (top.unwrap_or(radius), chord_error(radius));
+        Some(ShapeSpec::Cone { radius, top_radius, height, chord_error })
     }
 
     /// A number that must be there.
@@ -288,7 +311,7 @@ impl<'t> Walk<'t> {
             }
         });
         let file = path.map(|path| FileSpec::new(path, 1.0));
-        let says_it = file.as_ref().is_some_and(|file| SAY_THEIR_UNIT.contains(&file.ending().as_str()));
+        let says_it = file.as_ref().is_some_and(FileSpec::may_say_its_unit);
         let scale = scale?;
         let written = unit;
         let (scale, unit) = match (unit, scale.unit) {

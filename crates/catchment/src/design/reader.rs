@@ -74,6 +74,10 @@ pub(super) struct Reader<'t> {
     omitted: usize,
     broken: Vec<Range<usize>>,
     pub sources: Sources,
+    /// Whether D is measured from the halves, so that what they are drawn with cannot be in D.
+    pub measures_width: bool,
+    /// Whether D is not known yet: what is in range shows when it is.
+    pub is_provisional: bool,
 }
 
 /// Problems kept before they are sorted: enough that the first [`Problems::MOST`] are among them unless the
@@ -82,8 +86,15 @@ const MOST_KEPT: usize = 1000;
 
 impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str, syntax: Vec<toml::de::Error>) -> Self {
-        let mut reader =
-            Self { text, found: Vec::new(), omitted: 0, broken: Vec::new(), sources: Sources::default() };
+        let mut reader = Self {
+            text,
+            found: Vec::new(),
+            omitted: 0,
+            broken: Vec::new(),
+            sources: Sources::default(),
+            measures_width: false,
+            is_provisional: false,
+        };
         for error in syntax {
             let span = error.span().unwrap_or(0..0);
             reader.note(Complaint::Syntax { message: error.message().to_owned() }, span.clone());
@@ -296,8 +307,15 @@ impl<'t> Reader<'t> {
         scale: Option<&Scale>,
     ) -> Option<f64> {
         let quantity = self.quantity(place, value)?;
+        if self.measures_width && quantity.unit == Unit::D && matches!(key.kind, Kind::DrawnLength(_)) {
+            self.complain(Complaint::ShapesWidth { text: quantity.to_string() }, value.span());
+            return None;
+        }
         match key.checked(quantity, scale) {
             Ok(number) => number,
+            Err(Complaint::OutOfRange { .. }) if self.is_provisional && key.depends_on_width(quantity) => {
+                key.unchecked(quantity, scale)
+            }
             Err(complaint) => {
                 self.complain(complaint, value.span());
                 None

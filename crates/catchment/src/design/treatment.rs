@@ -2,7 +2,7 @@
 //!
 //! Repairs change a mesh and not the solid that it bounds, but for the deviation that is told; holes are not closed.
 
-use super::{Design, FileSpec, HalfSpec};
+use super::{Design, FileSpec, HalfSpec, Meshed};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -15,6 +15,9 @@ pub struct Treatment {
     /// How far its surface may move where it is described with fewer triangles, in D; `None`: it stays as it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simplify: Option<f64>,
+    /// How far the facets may be off that stand for the curved faces of a STEP file, in D; `None`: 0.0002 of the part's largest side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deflection: Option<f64>,
 }
 
 const fn yes() -> bool {
@@ -23,9 +26,9 @@ const fn yes() -> bool {
 
 impl Treatment {
     /// Repaired where needed, not simplified.
-    pub const DEFAULT: Self = Self { repair: true, simplify: None };
+    pub const DEFAULT: Self = Self { repair: true, simplify: None, deflection: None };
     /// Taken as it is, or refused.
-    pub const AS_IT_IS: Self = Self { repair: false, simplify: None };
+    pub const AS_IT_IS: Self = Self { repair: false, simplify: None, deflection: None };
 
     /// Whether it is the default.
     pub fn is_default(&self) -> bool {
@@ -135,6 +138,57 @@ impl HalfSpec {
     }
 }
 
+impl HalfSpec {
+    /// How its STEP files became triangles, as a line in the unit of the design; `None` where there are none.
+    pub fn meshing_told(&self, design: &Design) -> Option<String> {
+        match self {
+            Self::Mesh(file) => meshing(file, design),
+            Self::Parts(parts) => {
+                let told: Vec<String> = parts
+                    .iter()
+                    .filter_map(|part| {
+                        let file = part.shape.file()?;
+                        Some(format!("{}: {}", file.path.display(), meshing(file, design)?))
+                    })
+                    .collect();
+                (!told.is_empty()).then(|| told.join("; "))
+            }
+            Self::Pieces(_) | Self::Memory { .. } => None,
+        }
+    }
+}
+
+/// How a STEP file became triangles.
+fn meshing(file: &FileSpec, design: &Design) -> Option<String> {
+    let content = file.content.as_ref()?;
+    let Meshed { deflection, reached, by, .. } = content.meshed.as_deref()?;
+    let stated = if file.treatment.deflection.is_some() { "as written" } else { "0.0002 of its size" };
+    let count = content.triangles;
+    // The larger one holds, should it not have been kept to.
+    let most = deflection.max(*reached);
+    let most = match design.unit {
+        Some(unit) => format!("{} {}", rounded_up(most * design.width), unit.symbol()),
+        None => format!("{} D", rounded_up(most)),
+    };
+    Some(format!(
+        "its curved faces as {count} triangles, off by at most {most} (deflection, {stated}), by {by}"
+    ))
+}
+
+/// To three digits, not below the value but for rounding.
+fn rounded_up(value: f64) -> f64 {
+    const DIGITS: i32 = 3;
+    const ROUNDING: f64 = 1e-9;
+    if !(value.is_finite() && value > 0.0) {
+        return value;
+    }
+    let places = DIGITS - 1 - value.log10().floor() as i32;
+    let shift = 10f64.powi(places.abs());
+    let up = |scaled: f64| (scaled * (1.0 - ROUNDING)).ceil();
+    // A power of ten that is whole keeps the last digit what it is.
+    if places >= 0 { up(value * shift) / shift } else { up(value / shift) * shift }
+}
+
 /// What was done to a mesh file.
 fn told(file: &FileSpec, design: &Design) -> Option<String> {
     let repairs = &file.content.as_ref()?.repairs;
@@ -173,6 +227,19 @@ mod tests {
         repairs = Repairs { simplified: Some([9, 4]), ..Repairs::default() };
         assert_eq!(repairs.to_string(), "9 triangles simplified to 4; the surface did not move");
         assert!(!repairs.is_none() && Repairs::default().is_none());
+    }
+
+    #[test]
+    fn lengths_are_rounded_up_to_three_digits() {
+        for (value, said) in [
+            (0.01, "0.01"),
+            (0.009_889_1, "0.00989"),
+            (0.0048, "0.0048"),
+            (12.341, "12.4"),
+            (12341.0, "12400"),
+        ] {
+            assert_eq!(rounded_up(value).to_string(), said);
+        }
     }
 
     #[test]

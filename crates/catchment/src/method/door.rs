@@ -114,6 +114,9 @@ pub trait Decide: fmt::Debug + Send + Sync {
     }
 }
 
+/// Told the number of a pose and where it ends, from any thread and in any order, once for each.
+pub type Finished<'a> = &'a (dyn Fn(usize, End) + Sync);
+
 /// A method that decides each pose by itself.
 pub trait Follow: Decide {
     /// Where every pose of a domain ends, in its order, and their outcomes.
@@ -138,6 +141,22 @@ pub trait Follow: Decide {
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         self.follow(problem, domain, exec)
+    }
+
+    /// The same; `finished` is told of every pose as soon as it is decided.
+    ///
+    /// # Errors
+    /// As for [`Follow::follow`].
+    fn rest_told(
+        &self,
+        problem: &Problem,
+        domain: Domain,
+        exec: &Exec,
+        finished: Finished<'_>,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        let found = self.rest(problem, domain, exec)?;
+        found.1.iter().enumerate().for_each(|(number, end)| finished(number, *end));
+        Ok(found)
     }
 
     /// What the method itself doubts about its motions on this problem, tried on random poses.
@@ -434,13 +453,23 @@ pub(super) const DESCENT_SECONDS: f64 = 1e-4;
 /// parts of the threads are put together.
 pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<crate::acceptance::Outcome>()) as u64;
 
-/// How many descents can be afforded, as a share of what simple halves allow: round ones have many facets, and the
-/// time of a descent grows with about the cube of their number.
+/// How many descents can be afforded, as a share of what simple halves allow: the time of a descent grows with about the cube of the
+/// number of facets, and where the trees are asked as measured of funnels of 600 to 6000 facets.
 pub fn affordable(pair: &Pair) -> f64 {
     const SIMPLE: f64 = 64.0;
     let facets = |half: &crate::connector::Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
     let facets = (facets(&pair.fixed) + facets(&pair.moving)) as f64;
-    (SIMPLE / facets.max(SIMPLE)).powi(3)
+    let listed = (SIMPLE / facets.max(SIMPLE)).powi(3);
+    if pair.asks_trees() { listed.max(by_trees(facets)) } else { listed }
+}
+
+/// The same of halves that are searched by trees, by the number of their facets.
+fn by_trees(facets: f64) -> f64 {
+    /// Seconds of a descent of so many facets, and with which power of their number they grow.
+    const SECONDS: f64 = 4e-3;
+    const MEASURED: f64 = 600.0;
+    const POWER: f64 = 0.71;
+    (DESCENT_SECONDS / SECONDS * (MEASURED / facets).powf(POWER)).min(1.0)
 }
 
 /// Refuses what would not fit into memory, with the resolution that would.
@@ -455,4 +484,36 @@ pub fn ensure_fits(
         let fits = Resolution::largest_that_fits(budget, per_cell, axes);
         vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::design::family::Cone;
+    use crate::design::{Alignment, FamilySpec};
+    use crate::pose::{DofSet, Mount};
+
+    #[test]
+    fn halves_of_many_facets_are_searched_and_not_listed() {
+        let share = |chord_error: f64| {
+            let spec = FamilySpec::Cone(Cone { chord_error, ..Cone::default() });
+            let connector = Connector::of_family(&spec, Mount::X).unwrap();
+            affordable(&Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X)))
+        };
+        // Hundreds of facets take milliseconds: by the cube of their number it would be a tenth of a second and more.
+        let (coarse, fine) = (share(1e-2), share(1e-5));
+        assert!(coarse > fine, "{coarse} {fine}");
+        let milliseconds = |share: f64| 1e3 * DESCENT_SECONDS / share;
+        assert!((2.0..10.0).contains(&milliseconds(fine)), "{}", milliseconds(fine));
+    }
+
+    #[test]
+    fn the_time_of_a_descent_is_the_measured_one() {
+        let milliseconds = |facets: f64| 1e3 * DESCENT_SECONDS / by_trees(facets);
+        assert!((milliseconds(600.0) - 4.0).abs() < 1e-9);
+        // Ten times as many facets take 10^0.71 times as long.
+        assert!((milliseconds(6000.0) / milliseconds(600.0) - 5.13).abs() < 0.01);
+        assert_eq!(by_trees(1.0), 1.0);
+    }
 }

@@ -25,8 +25,8 @@ pub mod transport;
 pub mod zraa;
 
 pub use door::{
-    ByProducts, Cost, Decide, DecideError, Decided, Doubts, Entry, Follow, Info, Method, MethodError,
-    NotApplicable, affordable, ensure_fits,
+    ByProducts, Cost, Decide, DecideError, Decided, Doubts, Entry, Finished, Follow, Info, Method,
+    MethodError, NotApplicable, affordable, ensure_fits,
 };
 
 /// Every method, the default first.

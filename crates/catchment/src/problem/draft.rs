@@ -1,10 +1,13 @@
 //! A design that was read and not built yet: it can still be changed, and knows where its file says what.
 
-use super::{Problem, ProblemError, places};
+use super::{Problem, ProblemError, measure, places};
 use crate::connector::Connector;
 use crate::contact::mated::{self, MatedProblem};
 use crate::contact::{Pair, face, settle};
-use crate::design::{Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, load, read};
+use crate::design::{
+    Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, Width, load, read_as,
+};
+use crate::exec::Exec;
 use std::path::Path;
 
 /// A design, its text, and the places of its keys.
@@ -28,17 +31,42 @@ impl Draft {
     /// # Errors
     /// The file cannot be read, or everything that is wrong with what it says.
     pub fn open(path: &Path) -> Result<Self, ProblemError> {
-        Self::read(SourceText::new(path, load(path)?))
+        Self::open_on(path, &Exec::new())
     }
 
-    /// Reads the text of a design file; meshes are looked for beside `source.path`. Touches no file.
+    /// The same, given up where a stop is asked for while a STEP file is meshed.
     ///
     /// # Errors
-    /// Everything that is wrong with what the text says.
+    /// As [`Draft::open`].
+    pub fn open_on(path: &Path, exec: &Exec) -> Result<Self, ProblemError> {
+        Self::read_on(SourceText::new(path, load(path)?), exec)
+    }
+
+    /// Reads the text of a design file; meshes are looked for beside `source.path`. Touches no file, unless the text leaves D out, which is
+    /// then measured from the halves.
+    ///
+    /// # Errors
+    /// Everything that is wrong with what the text says; where D is left out, with the geometry.
     pub fn read(source: SourceText) -> Result<Self, ProblemError> {
+        Self::read_on(source, &Exec::new())
+    }
+
+    /// The same, given up where a stop is asked for while a STEP file is meshed.
+    ///
+    /// # Errors
+    /// As [`Draft::read`].
+    pub fn read_on(source: SourceText, exec: &Exec) -> Result<Self, ProblemError> {
+        let (draft, is_measured) = Self::read_as(source, Width::Provisional(None))?;
+        if is_measured { measure::measured(draft, exec) } else { Ok(draft) }
+    }
+
+    /// The same with what is known of D; and whether that was needed.
+    pub(super) fn read_as(source: SourceText, width: Width) -> Result<(Self, bool), ProblemError> {
         let folder = source.path.parent().unwrap_or_else(|| Path::new(""));
-        match read(&source.text, folder) {
-            Ok(file) => Ok(Self { design: file.design, places: file.sources, source: Some(source) }),
+        match read_as(&source.text, folder, width) {
+            Ok((file, is_used)) => {
+                Ok((Self { design: file.design, places: file.sources, source: Some(source) }, is_used))
+            }
             Err(problems) => {
                 let place = |problem: crate::design::Problem| Finding {
                     message: problem.complaint.to_string(),
@@ -100,7 +128,16 @@ impl Draft {
     /// Everything that is wrong with the geometry; halves that do not meet in the aligned pose. That the aligned pose
     /// meets but does not hold is a doubt ([`Problem::doubts`]).
     pub fn build(self) -> Result<Problem, ProblemError> {
-        match Connector::build(&self.design) {
+        self.build_on(&Exec::new())
+    }
+
+    /// The same with its progress; where a stop is asked for while a STEP file is meshed, it is given up.
+    ///
+    /// # Errors
+    /// As [`Draft::build`].
+    pub fn build_on(self, exec: &Exec) -> Result<Problem, ProblemError> {
+        exec.report(0.0, "halves");
+        match Connector::build_on(&self.design, exec) {
             Ok(connector) => {
                 let connector = match &self.design.connector {
                     ConnectorSpec::Own(own) => {
@@ -113,16 +150,19 @@ impl Draft {
                     }
                     ConnectorSpec::Family(_) => connector,
                 };
-                self.with_halves(connector)
+                self.with_halves(connector, exec)
             }
-            Err(problems) => {
-                let list = places::of_geometry(&problems)
-                    .into_iter()
-                    .map(|(place, message, help)| self.finding(&place, message, help))
-                    .collect();
-                Err(Findings { source: self.source, list, omitted: 0 }.into())
-            }
+            Err(problems) => Err(self.unbuilt(&problems).into()),
         }
+    }
+
+    /// What is wrong with the geometry, in its places.
+    pub(super) fn unbuilt(self, problems: &[crate::connector::Problem]) -> Findings {
+        let list = places::of_geometry(problems)
+            .into_iter()
+            .map(|(place, message, help)| self.finding(&place, message, help))
+            .collect();
+        Findings { source: self.source, list, omitted: 0 }
     }
 
     /// Whether there is no mated pose to decide about: the halves do not meet in it, or the seat leaves an error free.
@@ -131,11 +171,12 @@ impl Draft {
     }
 
     /// The problem of halves that were built, unless their mated pose is none.
-    pub(super) fn with_halves(mut self, connector: Connector) -> Result<Problem, ProblemError> {
+    pub(super) fn with_halves(mut self, connector: Connector, exec: &Exec) -> Result<Problem, ProblemError> {
+        exec.report(0.0, "contact");
         self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
         let misdrawn = face::misdrawn(&connector, &self.design.connector);
-        let problems = misdrawn.map_or_else(|| mated::problems(&pair), |problem| vec![problem]);
+        let problems = misdrawn.map_or_else(|| mated::problems_on(&pair, exec), |problem| vec![problem]);
         let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         if !apart.is_empty() {
             return Err(self.unmated(&apart).into());
@@ -143,7 +184,7 @@ impl Draft {
         Ok(Problem::assembled(self, connector, pair, doubts))
     }
 
-    fn unmated(self, problems: &[MatedProblem]) -> Findings {
+    pub(super) fn unmated(self, problems: &[MatedProblem]) -> Findings {
         let finding = |problem: &MatedProblem| {
             self.finding(places::of_mated(problem), problem.to_string(), problem.help())
         };

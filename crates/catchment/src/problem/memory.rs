@@ -22,7 +22,7 @@ impl Problem {
         );
         let name = "in memory".to_owned();
         let design = Design { name, connector: ConnectorSpec::Own(own), width: 1.0, unit: None, alignment };
-        Draft::from(design).with_halves(connector)
+        Draft::from(design).with_halves(connector, &crate::exec::Exec::new())
     }
 }
 

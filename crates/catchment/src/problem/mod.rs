@@ -17,6 +17,7 @@
 //! angles in radians.
 
 mod draft;
+mod measure;
 mod memory;
 mod places;
 #[cfg(test)]
@@ -29,6 +30,7 @@ use crate::connector::Connector;
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
 use crate::design::{Alignment, ConnectorSpec, Design, FamilySpec, Findings, LoadError, SourceText, hex};
+use crate::exec::Exec;
 use crate::pose::Dof;
 use std::fmt;
 use std::path::Path;
@@ -84,7 +86,7 @@ impl Problem {
         // Where halves settle depends on the alignment.
         let settles = matches!(&design.connector, ConnectorSpec::Own(own) if own.settle);
         if !settles && design.connector == own.connector && design.alignment.mount == own.alignment.mount {
-            return Draft::from(design).with_halves(self.connector().clone());
+            return Draft::from(design).with_halves(self.connector().clone(), &Exec::new());
         }
         Self::of(design)
     }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::connector::Source;
-use crate::design::{ConnectorSpec, Family, FamilySpec, FileSpec, HalfSpec};
+use crate::design::{ConnectorSpec, Family, FamilySpec, FileSpec, HalfSpec, WidthFrom};
 use crate::pose::{Dof, DofSet, Mount};
 use glam::DVec3;
 use std::fmt::Write;
@@ -160,4 +160,79 @@ fn what_is_wrong_in_memory_is_said_without_a_file() {
     let found = findings(Problem::new(fixed, Source::Triangles(open), alignment).unwrap_err());
     assert!(found.source.is_none() && !found.list.is_empty());
     assert!(found.to_string().contains("moving half"), "{found}");
+}
+
+/// A plate of the given size, a cylinder of radius 6 that stands on it, in mm.
+fn pin_on(width: &str, plate: f64) -> String {
+    format!(
+        "[connector]\n{width}unit = \"mm\"\n[[connector.fixed.parts]]\nbox = [{plate}, {plate}, 5]\n\
+         [[connector.moving.parts]]\ncylinder = {{ radius = 6, height = 10 }}\n\
+         [alignment]\ncenter_of_rotation = \"3 mm\"\n[errors]\nx = \"6 mm\"\ny = 0.25\n"
+    )
+}
+
+#[test]
+fn a_width_that_is_left_out_is_measured() {
+    let draft = |text: &str| Draft::read(SourceText::new("d.toml", text)).unwrap();
+    let from = |draft: &Draft| match &draft.design().connector {
+        ConnectorSpec::Own(own) => own.width_from,
+        ConnectorSpec::Family(_) => panic!("own halves"),
+    };
+    let found = draft(&pin_on("", 40.0));
+    let design = found.design();
+    // The cylinder is a polygon inside of the circle, by at most 0.001 D to either side.
+    assert!((12.0 - 0.002 * 12.0..=12.0).contains(&design.width), "{}", design.width);
+    assert_eq!(from(&found), WidthFrom::Touching);
+    // Lengths with a unit count in that D, bare ones are in D.
+    assert!((design.alignment.center_of_rotation * design.width - 3.0).abs() < 1e-12);
+    assert!((design.alignment.half_ranges[0] * design.width - 6.0).abs() < 1e-12);
+    assert_eq!(design.alignment.half_ranges[1], 0.25);
+    // Written out it is the same problem.
+    let written = draft(&pin_on(&format!("width = {}\n", design.width), 40.0));
+    assert_eq!(from(&written), WidthFrom::Written);
+    assert_eq!(written.design().alignment, design.alignment);
+    // On a plate 40 times as wide D is what its size demands.
+    let wide = draft(&pin_on("", 480.0));
+    assert_eq!(from(&wide), WidthFrom::Size);
+    assert!((wide.design().width - 480.0 / (16.0 * 0.99)).abs() < 1e-6, "{}", wide.design().width);
+}
+
+#[test]
+fn a_measured_width_gives_the_digest_of_a_written_one() {
+    let meshes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/meshes");
+    let open = |width: &str, unit: &str| {
+        let text = format!(
+            "[connector]\n{width}unit = \"{unit}\"\nfixed = {{ mesh = \"socket.stl\", unit = \"mm\" }}\n\
+             moving = {{ mesh = \"plug.stl\", unit = \"mm\" }}\n[errors]\nx = \"10 mm\"\n"
+        );
+        Draft::read(SourceText::new(meshes.join("d.toml"), text)).unwrap().build().unwrap()
+    };
+    let (measured, written) = (open("", "mm"), open("width = 50\n", "mm"));
+    assert_eq!(measured.design().width, 50.0);
+    assert_eq!(measured.digest(), written.digest());
+    let in_inches = open("", "in").design().width;
+    assert!((in_inches - 50.0 / 25.4).abs() < 1e-8, "{in_inches}");
+}
+
+#[test]
+fn what_is_wrong_beside_a_width_that_is_left_out_is_said() {
+    let said = |text: &str| {
+        let findings = findings(Draft::read(SourceText::new("d.toml", text)).unwrap_err());
+        findings.list.iter().map(|finding| finding.message.clone()).collect::<Vec<_>>().join("; ")
+    };
+    let pin = pin_on("", 40.0);
+    // D depends on it.
+    let message = said(&pin.replace("radius = 6", "radius = \"0.5 D\""));
+    assert!(message.contains("0.5 D depends on D"), "{message}");
+    // Out of range once D is known, and not before.
+    let message = said(&pin.replace("\"6 mm\"", "\"6 m\""));
+    assert!(message.contains("outside of"), "{message}");
+    // Nothing to measure, nothing that touches, nothing there.
+    let message = said("[connector]\nunit = \"mm\"\nfamily = \"pyramid\"\n");
+    assert!(message.contains("width"), "{message}");
+    let message = said(&pin.replace("height = 10 }", "height = 10 }\nat = [400, 0, 0]"));
+    assert!(message.contains("pass each other by"), "{message}");
+    let half = "{ mesh = \"no.stl\", unit = \"mm\" }";
+    let message = said(&format!("[connector]\nunit = \"mm\"\nfixed = {half}\nmoving = {half}\n"));
+    assert!(message.contains("there is no such file"), "{message}");
 }

@@ -6,7 +6,7 @@ use crate::connector::Origin;
 use crate::design::{
     ConnectorSpec, Design, Drawn, FileSpec, Finding, Findings, HalfSpec, OutlineSpec, OwnSpec,
 };
-use crate::design::{PartSpec, ShapeSpec, SourceText};
+use crate::design::{PartSpec, ShapeSpec, SourceText, WidthFrom};
 use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::Problem;
 use glam::{DAffine3, DVec3};
@@ -195,6 +195,9 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
         ConnectorSpec::Own(own) => {
             for (name, spec) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
                 row(name, &half(spec));
+                if let Some(told) = spec.meshing_told(design) {
+                    row("", &told);
+                }
                 if let Some(done) = spec.repairs_told(design) {
                     row("", &done);
                 }
@@ -241,7 +244,16 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
     }
     row("halves", if ungendered { "alike (ungendered)" } else { "different" });
     let unit = design.unit.map_or("(dimensionless)", |unit| unit.symbol());
-    row("width D", &format!("{} {unit}", design.width));
+    let from = match &design.connector {
+        ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Touching, .. }) => {
+            ", taken from the facets that can touch"
+        }
+        ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Size, .. }) => {
+            ", as little as the size of the parts allows: what can touch is smaller"
+        }
+        _ => "",
+    };
+    row("width D", &format!("{} {unit}{from}", design.width));
     row("free", &names(alignment.free));
     if !alignment.dont_care.is_empty() {
         row("does not matter", &names(alignment.dont_care));

@@ -10,6 +10,7 @@ use crate::method::descent::End;
 use crate::pose::PoseError;
 use crate::poses::{OffsetsAt, PoseTable};
 use crate::problem::Problem;
+use crate::run::Followed;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -30,6 +31,8 @@ pub struct OutcomesReport<'a> {
     pub reasons: Option<Vec<Option<Reason>>>,
     /// Doubts about the answer.
     pub warnings: Vec<WarningReport>,
+    /// The numbers of the rows that were finished, where it was stopped before all of them were.
+    pub finished: Option<&'a [usize]>,
 }
 
 /// The answer for programs; lengths in D, angles in radians.
@@ -42,6 +45,9 @@ struct Answer<'a> {
     offsets_at: Option<OffsetsAt>,
     settings: &'a serde_json::Value,
     counts: BTreeMap<&'static str, usize>,
+    /// How many poses were not finished, where it was stopped before all of them were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    missing: Option<usize>,
     poses: Vec<Row>,
 }
 
@@ -52,6 +58,9 @@ impl Body for Answer<'_> {
 /// One pose.
 #[derive(Serialize)]
 struct Row {
+    /// Its number in the table, from 0, where others are missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    number: Option<usize>,
     error: PoseError,
     outcome: Outcome,
     /// Why it did not dock.
@@ -70,16 +79,40 @@ impl<'a> OutcomesReport<'a> {
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
         method: &Method,
-        acceptance: &'a Acceptance,
-        ends: &'a [End],
+        followed: &'a Followed,
     ) -> Self {
+        let Followed { acceptance, ends, finished } = followed;
         let objections = problem.objections();
         let doubts = objections.iter().map(WarningReport::note);
         let warnings = doubts.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
         let reason = |end: &End| Reason::of(problem, end.outcome, &end.error);
         let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());
         let (design, settings) = (problem.design(), method.settings());
-        Self { design, table, settings, acceptance, ends, reasons, warnings }
+        let finished = finished.as_deref();
+        let mut report = Self { design, table, settings, acceptance, ends, reasons, warnings, finished };
+        let partial = report.partial().map(|partial| WarningReport::note(&partial));
+        report.warnings.extend(partial);
+        report
+    }
+
+    /// How many rows have no outcome, because it was stopped; `None` where all have one.
+    pub fn missing(&self) -> Option<usize> {
+        self.finished.map(|finished| self.table.errors().len() - finished.len())
+    }
+
+    /// That an answer is not whole, as a sentence; `None` where it is.
+    pub fn partial(&self) -> Option<String> {
+        let (missing, all) = (self.missing()?, self.table.errors().len());
+        let finished = all - missing;
+        Some(format!(
+            "partial: {finished} of {all} poses are decided, {missing} are missing, because it was stopped"
+        ))
+    }
+
+    /// The numbers of the rows that are told.
+    fn told(&self) -> impl Iterator<Item = usize> {
+        let all = if self.finished.is_some() { 0 } else { self.table.errors().len() };
+        self.finished.unwrap_or_default().iter().copied().chain(0..all)
     }
 
     /// Bytes of memory that telling a table takes, as JSON or as CSV, at most. Every row of the JSON repeats the names of the
@@ -119,7 +152,9 @@ impl<'a> OutcomesReport<'a> {
             header.push("reason".to_owned());
         }
         writer.write_record(&header)?;
-        for (k, (mut row, end)) in self.table.rows().zip(self.ends).enumerate() {
+        let mut told = self.told().peekable();
+        let rows = self.table.rows().enumerate().filter(|(number, _)| told.next_if_eq(number).is_some());
+        for (k, ((_, mut row), end)) in rows.zip(self.ends).enumerate() {
             row.push(end.outcome.name().to_owned());
             row.extend(self.table.in_units(&end.error).map(number));
             if self.reasons.is_some() {
@@ -140,8 +175,11 @@ impl<'a> OutcomesReport<'a> {
         let carried = self.table.carried();
         let at = self.table.offsets_at();
         let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
-        let poses = self.table.rows().zip(self.table.errors()).zip(self.ends);
-        let poses = poses.enumerate().map(|(k, ((row, error), end))| Row {
+        let mut told = self.told().peekable();
+        let poses = self.table.rows().zip(self.table.errors()).enumerate();
+        let poses = poses.filter(|(number, _)| told.next_if_eq(number).is_some()).zip(self.ends);
+        let poses = poses.enumerate().map(|(k, ((number, (row, error)), end))| Row {
+            number: self.finished.map(|_| number),
             error: measured(error),
             outcome: end.outcome,
             reason: self.reason(k),
@@ -155,6 +193,7 @@ impl<'a> OutcomesReport<'a> {
             offsets_at: (at != OffsetsAt::Face).then_some(at),
             settings: &self.settings,
             counts: counts.collect(),
+            missing: self.missing(),
             poses: poses.collect(),
         };
         Envelope::of(answer, self.warnings.clone(), None).to_json()

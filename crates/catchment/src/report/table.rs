@@ -21,6 +21,9 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     row(&mut text, "method", &method);
     if let ConnectorSpec::Own(own) = &report.design.connector {
         for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
+            if let Some(told) = half.meshing_told(&report.design) {
+                wrapped(&mut text, &format!("{name}: "), &told);
+            }
             if let Some(done) = half.repairs_told(&report.design) {
                 wrapped(&mut text, &format!("{name}: "), &done);
             }

@@ -1,11 +1,23 @@
 //! Single poses, followed exactly: what becomes of one, of many, and along which way.
 
-use crate::acceptance::{Acceptance, Domain};
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower, Trajectory};
 use crate::method::{DecideError, Method};
 use crate::pose::PoseError;
 use crate::problem::Problem;
+use std::sync::{Mutex, PoisonError};
+
+/// What became of listed poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Followed {
+    /// The outcomes of those that were finished.
+    pub acceptance: Acceptance,
+    /// Where each of them ended.
+    pub ends: Vec<End>,
+    /// Their numbers in the list, ascending, where it was stopped before all of them were; `None`: all.
+    pub finished: Option<Vec<usize>>,
+}
 
 impl Problem {
     /// Where one pose comes to rest, by exact quasi-static motion.
@@ -36,8 +48,94 @@ impl Problem {
         follow.rest(self, Domain::Poses(poses.to_vec()), exec)
     }
 
+    /// The same; where it is asked to stop, what is finished until then is kept.
+    ///
+    /// # Errors
+    /// The method decides cells from one another, gave up, or was asked to stop before any pose was finished.
+    pub fn follow_keeping(
+        &self,
+        method: &Method,
+        poses: &[PoseError],
+        exec: &Exec,
+    ) -> Result<Followed, DecideError> {
+        let follow = method.follows().ok_or(DecideError::NeedsGrid { method: method.name() })?;
+        let kept = Mutex::new(Vec::new());
+        let keep = |number, end| kept.lock().unwrap_or_else(PoisonError::into_inner).push((number, end));
+        match follow.rest_told(self, Domain::Poses(poses.to_vec()), exec, &keep) {
+            Ok((acceptance, ends)) => Ok(Followed { acceptance, ends, finished: None }),
+            Err(DecideError::Cancelled(cancelled)) => {
+                let mut kept: Vec<(usize, End)> = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
+                if kept.is_empty() {
+                    return Err(cancelled.into());
+                }
+                kept.sort_unstable_by_key(|(number, _)| *number);
+                let finished: Vec<usize> = kept.iter().map(|(number, _)| *number).collect();
+                let ends: Vec<End> = kept.into_iter().map(|(_, end)| end).collect();
+                let outcomes: Vec<Outcome> = ends.iter().map(|end| end.outcome).collect();
+                let cells = outcomes.iter().filter(|outcome| **outcome == Outcome::Undecided).count();
+                let warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
+                let domain = Domain::Poses(finished.iter().map(|number| poses[*number]).collect());
+                let acceptance = Acceptance { method: method.name(), domain, outcomes, warnings };
+                Ok(Followed { acceptance, ends, finished: Some(finished) })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
     /// The way of one pose, from first contact to where it rests.
     pub fn trace(&self, pose: &PoseError) -> Trajectory {
         descent::trace(self.pair(), pose, &descent::Settings::default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::SourceText;
+    use crate::problem::Draft;
+    use std::sync::Arc;
+    use std::sync::atomic::Ordering;
+
+    fn v_face() -> Problem {
+        let text =
+            "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+        Draft::read(SourceText::new("v.toml", text)).and_then(Draft::build).unwrap()
+    }
+
+    /// What is finished when it is stopped is what the whole has there, for any number of threads.
+    #[test]
+    fn what_was_finished_is_kept() {
+        let problem = v_face();
+        let poses: Vec<PoseError> = (0..4000)
+            .map(|k| PoseError { x: f64::from(k) / 4000.0 - 0.5, pitch: 0.1, ..PoseError::default() })
+            .collect();
+        for (method, count) in [("descent", 4000), ("drop", 200)] {
+            let (method, poses) = (method.parse().unwrap(), &poses[..count]);
+            let whole = problem.follow_keeping(&method, poses, &Exec::new()).unwrap();
+            assert_eq!((whole.ends.len(), &whole.finished), (count, &None));
+            for threads in [1, 2, 4] {
+                let exec = Exec::new().with_threads(threads).unwrap();
+                let stop = exec.cancel_flag();
+                // Stopped as soon as progress is told.
+                let exec = exec.with_progress(Arc::new(move |_, _| stop.store(true, Ordering::Relaxed)));
+                let partial = problem.follow_keeping(&method, poses, &exec).unwrap();
+                let finished = partial.finished.unwrap();
+                assert!(!finished.is_empty() && finished.len() < count, "{} of {count}", finished.len());
+                assert!(finished.is_sorted() && finished.len() == partial.ends.len());
+                assert_eq!(partial.acceptance.outcomes.len(), finished.len());
+                for (number, end) in finished.iter().zip(&partial.ends) {
+                    assert_eq!(end, &whole.ends[*number], "pose {number}, {threads} threads");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_finished_is_nothing_to_keep() {
+        let exec = Exec::new();
+        exec.cancel_flag().store(true, Ordering::Relaxed);
+        let method = "descent".parse().unwrap();
+        let found = v_face().follow_keeping(&method, &[PoseError::default()], &exec);
+        assert!(matches!(found, Err(DecideError::Cancelled(_))));
     }
 }

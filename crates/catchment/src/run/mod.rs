@@ -29,6 +29,7 @@ mod stages;
 pub(crate) use stages::correct;
 
 pub use answer::{Answer, Corrected};
+pub use follow::Followed;
 pub use part::{Part, PartAnswer, PartError};
 pub use plan::Plan;
 pub use requirement::{Requirement, RequirementError, Verdict};

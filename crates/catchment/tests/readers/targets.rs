@@ -96,7 +96,8 @@ pub(crate) fn drawing(bytes: &[u8]) {
 
 fn mesh_file(name: &str, bytes: &[u8]) {
     // As it is, repaired, and simplified: what is accepted of any is a closed solid.
-    let treated = |repair, simplify| mesh_treated(name, bytes, Treatment { repair, simplify });
+    let treated =
+        |repair, simplify| mesh_treated(name, bytes, Treatment { repair, simplify, ..Treatment::DEFAULT });
     let as_it_is = treated(false, None);
     let repaired = treated(true, None);
     assert!(!as_it_is || repaired, "repair refuses what needs none");

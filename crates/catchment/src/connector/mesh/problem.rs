@@ -2,6 +2,7 @@
 
 use super::{MAX_TRIANGLES, MOST_READ, Point};
 use crate::connector::source::UnitProblem;
+use crate::connector::step::StepProblem;
 use crate::design::LengthUnit;
 use crate::exec::Bytes;
 use std::fmt;
@@ -154,6 +155,9 @@ pub enum MeshProblem {
     /// The unit of its coordinates is not known.
     #[error(transparent)]
     UnitOf(#[from] UnitProblem),
+    /// A STEP file that gives no triangles.
+    #[error(transparent)]
+    Step(#[from] StepProblem),
     /// Something else, which the first bytes tell.
     #[error("this is {what}")]
     Foreign {

@@ -165,7 +165,7 @@ fn dome(rings: usize) -> Soup {
 fn a_simplified_surface_keeps_to_its_tolerance() {
     let dome = dome(40);
     for tolerance in [1e-4, 1e-3, 1e-2] {
-        let ready = treated(&dome, Treatment { repair: true, simplify: Some(tolerance) })
+        let ready = treated(&dome, Treatment { simplify: Some(tolerance), ..Treatment::DEFAULT })
             .unwrap_or_else(|p| panic!("{p:?}"));
         let [before, after] = ready.repairs.simplified.unwrap();
         assert!(before == dome.len() && after == ready.surface.facets.len() && after < before, "{after}");
@@ -179,7 +179,8 @@ fn a_simplified_surface_keeps_to_its_tolerance() {
             ready.surface.volume()
         );
     }
-    let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { repair: true, simplify: Some(1e-3) }).unwrap();
+    let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { simplify: Some(1e-3), ..Treatment::DEFAULT })
+        .unwrap();
     assert!(none.repairs.simplified == Some([12, 12]) && none.repairs.deviation < 1e-15);
 }
 

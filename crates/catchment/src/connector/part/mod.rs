@@ -15,8 +15,9 @@ mod round;
 use super::mesh::{self, MAX_TRIANGLES, MeshProblem};
 use super::outline::{self, OutlineProblem};
 use super::source::{self, FileBytes};
-use super::{Half, HullError, Problem, Side, Surface, SurfaceError, convex_hull, place};
+use super::{Half, HullError, Problem, Side, Size, Surface, SurfaceError, convex_hull, place};
 use crate::design::{FileSpec, MeshContent, OutlineSpec, PartSpec, ShapeSpec};
+use crate::exec::Exec;
 use glam::DVec2;
 use std::path::PathBuf;
 
@@ -70,11 +71,13 @@ pub enum PartError {
 pub(super) fn half(
     parts: &[(PartSpec, Option<FileBytes>)],
     side: Side,
+    size: Size,
+    exec: &Exec,
 ) -> Result<(Half, Vec<MeshContent>), Vec<Problem>> {
     let (mut half, mut contents, mut problems) = (Half::default(), Vec::new(), Vec::new());
     for (number, (spec, file)) in parts.iter().enumerate() {
         let frame = place::part(spec);
-        match shape(&spec.shape, file.as_ref()) {
+        match shape(&spec.shape, file.as_ref(), exec) {
             Ok((built, content)) => {
                 half.surfaces.extend(built.mapped(|p| frame.transform_point3(p)).surfaces);
                 contents.extend(content);
@@ -88,14 +91,19 @@ pub(super) fn half(
         let count = half.surfaces.iter().map(|surface| surface.facets.len()).sum::<usize>() as u64;
         let too_many = (count > MAX_TRIANGLES as u64).then_some(MeshProblem::TooMany { count });
         let corners = half.surfaces.iter().flat_map(|surface| &surface.vertices).copied();
-        let error = too_many.or_else(|| mesh::implausible_width(corners));
+        let implausible = || (size == Size::Plausible).then(|| mesh::implausible_width(corners)).flatten();
+        let error = too_many.or_else(implausible);
         problems.extend(error.map(|error| Problem::Triangles { side, error }));
     }
     if problems.is_empty() { Ok((half, contents)) } else { Err(problems) }
 }
 
 /// A part in its own coordinates, and what its file held.
-fn shape(shape: &ShapeSpec, file: Option<&FileBytes>) -> Result<(Half, Option<MeshContent>), Vec<PartError>> {
+fn shape(
+    shape: &ShapeSpec,
+    file: Option<&FileBytes>,
+    exec: &Exec,
+) -> Result<(Half, Option<MeshContent>), Vec<PartError>> {
     let alone = |surface: Result<Surface, PartError>| {
         surface.map(|surface| (Half { surfaces: vec![surface] }, None)).map_err(|error| vec![error])
     };
@@ -104,7 +112,7 @@ fn shape(shape: &ShapeSpec, file: Option<&FileBytes>) -> Result<(Half, Option<Me
             let refused = |error| PartError::Mesh { path: spec.path.clone(), error };
             let refuse = |errors: Vec<MeshProblem>| errors.into_iter().map(refused).collect::<Vec<_>>();
             let file = file.ok_or_else(|| refuse(vec![MeshProblem::NoFile]))?;
-            let (half, content, _) = source::read_mesh(spec, file, mesh::part).map_err(refuse)?;
+            let (half, content, _) = source::read_mesh(spec, file, mesh::part, exec).map_err(refuse)?;
             Ok((half, Some(content)))
         }
         ShapeSpec::Pieces(pieces) => {

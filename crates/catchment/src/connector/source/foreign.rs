@@ -6,17 +6,17 @@ use crate::connector::mesh::MeshProblem;
 /// What a ZIP archive is that is no 3MF.
 pub(in crate::connector) const ZIP: &str = "a ZIP archive, such as a FreeCAD or Fusion file (a 3MF ends in .3mf): export the part as STL, OBJ, PLY or 3MF, or unpack it";
 
+/// What a STEP file is that is called something else.
+const STEP: &str =
+    "a STEP file, which holds curved faces and no triangles: let its name end in .step or .stp";
+
 /// How files of other kinds begin, and what they are.
 const KINDS: [(&[u8], &str); 12] = [
     (
         b"version https://git-lfs",
         "a Git LFS pointer, not the file it stands for: fetch that with `git lfs pull`, or download it from the repository's page",
     ),
-    (
-        b"ISO-10303-21",
-        "a STEP file, which holds curved faces and no triangles: export the part as STL, OBJ or PLY from the CAD program, with a chord tolerance \
-         of 0.01 mm",
-    ),
+    (b"ISO-10303-21", STEP),
     (b"PK\x03\x04", ZIP),
     (b"\x1f\x8b", "a file packed by gzip: unpack it"),
     (b"7z\xbc\xaf\x27\x1c", "a 7z archive: unpack it"),
@@ -35,7 +35,8 @@ const KINDS: [(&[u8], &str); 12] = [
 /// Refuses what begins like no mesh; of the formats that end so one may be an archive.
 pub(super) fn refuse(bytes: &[u8], endings: &[&str]) -> Result<(), Vec<MeshProblem>> {
     let bytes = bytes.trim_ascii_start();
-    let may_be = |what: &str| what == ZIP && endings.contains(&"3mf");
+    let may_be =
+        |what: &str| what == ZIP && endings.contains(&"3mf") || what == STEP && endings.contains(&"step");
     match KINDS.iter().find(|(start, what)| bytes.starts_with(start) && !may_be(what)) {
         Some((_, what)) => Err(vec![MeshProblem::Foreign { what }]),
         None => Ok(()),

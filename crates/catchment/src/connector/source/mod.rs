@@ -16,10 +16,12 @@ pub(super) mod unit;
 
 pub(super) use foreign::ZIP;
 pub use unit::UnitProblem;
+pub(super) use unit::scale;
 
 use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Ready, Triangle};
-use super::{Half, Problem, Side, Surface, convex_hull, family, obj, part, ply, stl, threemf};
-use crate::design::{FamilySpec, FileSpec, HalfSpec, MeshContent, PartSpec, ShapeSpec, Treatment};
+use super::{Half, Problem, Side, Size, Surface, convex_hull, family, obj, part, ply, step, stl, threemf};
+use crate::design::{FamilySpec, FileSpec, HalfSpec, MeshContent, Meshed, PartSpec, ShapeSpec, Treatment};
+use crate::exec::Exec;
 use glam::DVec3;
 use std::io;
 use std::path::Path;
@@ -48,17 +50,20 @@ impl FileBytes {
 pub type Read<'a> = &'a dyn Fn(&Path, u64) -> io::Result<FileBytes>;
 
 /// What a mesh file holds.
+#[derive(Debug, Clone)]
 pub(super) struct Held {
     /// The triangles of every body that the file tells apart.
     pub(super) bodies: Vec<Vec<Triangle>>,
     /// Metres in one of its coordinates, where it says so.
     pub(super) metres: Option<f64>,
+    /// How its triangles were made, where it holds none itself.
+    pub(super) curves: Option<step::FromCurves>,
 }
 
 impl Held {
     /// Of a file that tells no bodies apart and says no unit.
     pub(super) fn of_triangles(triangles: Vec<Triangle>) -> Self {
-        Self { bodies: vec![triangles], metres: None }
+        Self { bodies: vec![triangles], metres: None, curves: None }
     }
 }
 
@@ -67,17 +72,30 @@ struct Format {
     /// How its files end, in lower case.
     endings: &'static [&'static str],
     /// What the bytes of a file hold.
-    read: fn(&FileBytes, Treatment) -> Result<Held, Vec<MeshProblem>>,
+    read: fn(&FileBytes, &FileSpec, &Exec) -> Result<Held, Vec<MeshProblem>>,
     /// What the first bytes of a file say of it as a whole.
     refuse_early: fn(&FileBytes, Treatment) -> Result<(), Vec<MeshProblem>>,
 }
 
 /// The table of mesh formats. A file whose ending none of them has is read as the first.
-const FORMATS: [Format; 4] = [
-    Format { endings: &["stl"], read: stl::read, refuse_early: stl::refuse_early },
-    Format { endings: &["obj"], read: obj::read, refuse_early: refuse_long },
-    Format { endings: &["ply"], read: ply::read, refuse_early: refuse_long },
-    Format { endings: &["3mf"], read: |file, _| threemf::read(file), refuse_early: |_, _| Ok(()) },
+const FORMATS: [Format; 5] = [
+    Format {
+        endings: &["stl"],
+        read: |file, spec, _| stl::read(file, spec.treatment),
+        refuse_early: stl::refuse_early,
+    },
+    Format {
+        endings: &["obj"],
+        read: |file, spec, _| obj::read(file, spec.treatment),
+        refuse_early: refuse_long,
+    },
+    Format {
+        endings: &["ply"],
+        read: |file, spec, _| ply::read(file, spec.treatment),
+        refuse_early: refuse_long,
+    },
+    Format { endings: &["3mf"], read: |file, _, _| threemf::read(file), refuse_early: |_, _| Ok(()) },
+    Format { endings: &["step", "stp"], read: step::read, refuse_early: refuse_long },
 ];
 
 /// Bytes beyond which a file cannot be an acceptable mesh: no more are read.
@@ -127,27 +145,31 @@ pub(super) fn read_mesh(
     spec: &FileSpec,
     file: &FileBytes,
     build: BuildMesh,
+    exec: &Exec,
 ) -> Result<(Half, MeshContent, f64), Vec<MeshProblem>> {
     let format = Format::of(&spec.path);
     let read = || {
         foreign::refuse(&file.bytes, format.endings)?;
-        let held = (format.read)(file, spec.treatment)?;
-        let scale = unit::scale(spec, held.metres).map_err(|problem| vec![problem.into()])?;
-        build(held.bodies, scale, spec.treatment).map(|ready| (ready, scale))
+        let held = (format.read)(file, spec, exec)?;
+        let scale = scale(spec, held.metres).map_err(|problem| vec![problem.into()])?;
+        build(held.bodies, scale, spec.treatment).map(|ready| (ready, scale, held.curves))
     };
     let in_unit = |problem: MeshProblem| problem.in_unit(spec.written);
-    let (Ready { half, repairs }, scale) =
+    let (Ready { half, repairs }, scale, curves) =
         read().map_err(|problems| problems.into_iter().map(in_unit).collect::<Vec<_>>())?;
     let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum();
     let bodies = half.surfaces.len();
-    Ok((half, MeshContent { bodies, repairs, ..MeshContent::of(&file.bytes, facets) }, scale))
+    let meshed = curves.map(|step::FromCurves { deflection, reached, by, sha256 }| {
+        Box::new(Meshed { deflection: deflection * scale, reached: reached * scale, by, sha256 })
+    });
+    Ok((half, MeshContent { bodies, repairs, meshed, ..MeshContent::of(&file.bytes, facets) }, scale))
 }
 
 /// The half that a mesh file holds, however large it is in D.
-pub(super) fn alone(spec: &FileSpec, side: Side, read: Read<'_>) -> Result<Half, Vec<Problem>> {
+pub(super) fn alone(spec: &FileSpec, side: Side, read: Read<'_>, exec: &Exec) -> Result<Half, Vec<Problem>> {
     let refused = |error| Problem::Mesh { side, path: spec.path.clone(), error };
     let file = fetch_mesh(spec, read).map_err(|error| vec![refused(error)])?;
-    let (half, ..) = read_mesh(spec, &file, mesh::part)
+    let (half, ..) = read_mesh(spec, &file, mesh::part, exec)
         .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
     Ok(half)
 }
@@ -232,7 +254,7 @@ impl Source {
     }
 
     /// The solid, and what its files held.
-    pub(super) fn build(&self, side: Side) -> Result<Built, Vec<Problem>> {
+    pub(super) fn build(&self, side: Side, size: Size, exec: &Exec) -> Result<Built, Vec<Problem>> {
         match self {
             Self::Family(spec) => {
                 let drawn = family::draw(spec)?;
@@ -242,12 +264,13 @@ impl Source {
             Self::Pieces(pieces) => Ok(Built::of(from_pieces(pieces, side)?, Vec::new())),
             Self::Mesh { spec, file } => {
                 let refused = |error| Problem::Mesh { side, path: spec.path.clone(), error };
-                let (half, content, scale) = read_mesh(spec, file, mesh::half)
-                    .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
+                let (half, content, scale) =
+                    read_mesh(spec, file, if size == Size::Any { mesh::part } else { mesh::half }, exec)
+                        .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
                 Ok(Built { half, contents: vec![content], scale: Some(scale) })
             }
             Self::Parts(parts) => {
-                let (half, contents) = part::half(parts, side)?;
+                let (half, contents) = part::half(parts, side, size, exec)?;
                 Ok(Built::of(half, contents))
             }
             Self::Triangles(triangles) => {

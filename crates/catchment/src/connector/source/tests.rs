@@ -17,7 +17,9 @@ fn cube() -> Vec<Vec<DVec3>> {
 }
 
 fn build(source: &Source) -> Result<Half, Vec<Problem>> {
-    source.build(Side::Fixed).map(|built| built.half)
+    source
+        .build(Side::Fixed, crate::connector::Size::Plausible, &crate::exec::Exec::new())
+        .map(|built| built.half)
 }
 
 #[test]

@@ -19,6 +19,15 @@ pub enum UnitProblem {
         /// What the design says.
         stated: LengthUnit,
     },
+    /// A STEP file, which is read in millimetres whatever it was written in.
+    #[error(
+        "a STEP file says its unit itself, and its coordinates are read in mm; the design says {}: remove `unit` beside it",
+        stated.symbol()
+    )]
+    NotMm {
+        /// What the design says.
+        stated: LengthUnit,
+    },
     /// Neither the file nor the design says it.
     #[error("the file does not say its unit: write it beside the file, unit = \"mm\"")]
     Unsaid,

@@ -61,7 +61,7 @@ pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
         let path = item.path.map_or_else(|| root.clone(), |path| part_name(&path));
         build.add(&path, item.object, item.transform, 0)?;
     }
-    Ok(Held { bodies: build.bodies, metres: Some(metres) })
+    Ok(Held { bodies: build.bodies, metres: Some(metres), curves: None })
 }
 
 /// The name of a part as archives have it.

@@ -1,12 +1,13 @@
 //! Exact descent as a method: every pose by itself.
 
-use super::{End, Settings, rests, run, step_dependence};
+use super::{End, Settings, rests, rests_told, run, step_dependence};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::door::{
-    Cost, DESCENT_SECONDS, Decide, DecideError, Decided, Entry, Follow, Info, POSE_BYTES, affordable,
+    Cost, DESCENT_SECONDS, Decide, DecideError, Decided, Entry, Finished, Follow, Info, POSE_BYTES,
+    affordable,
 };
 use crate::problem::Problem;
 use serde_json::{Value, json};
@@ -82,6 +83,16 @@ impl Follow for Settings {
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         Ok(rests(problem.pair(), domain, self, exec)?)
+    }
+
+    fn rest_told(
+        &self,
+        problem: &Problem,
+        domain: Domain,
+        exec: &Exec,
+        finished: Finished<'_>,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        Ok(rests_told(problem.pair(), domain, self, exec, finished)?)
     }
 
     fn doubt(&self, problem: &Problem, seed: u64, exec: &Exec) -> Result<Option<Warning>, DecideError> {

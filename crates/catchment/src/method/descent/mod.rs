@@ -30,6 +30,7 @@ pub use trajectory::{Touch, Trajectory, Waypoint};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
+use crate::method::door::Finished;
 use crate::pose::PoseError;
 use motion::{Motion, Until};
 use rayon::prelude::*;
@@ -113,7 +114,7 @@ pub fn run(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
-    each(pair, domain, Until::Known, settings, exec)
+    each(pair, domain, Until::Known, settings, exec, &|_, _| {})
 }
 
 /// The same until every pose has come to rest: the outcomes of [`run`], and where halves end that dock.
@@ -126,7 +127,18 @@ pub fn rests(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
-    each(pair, domain, Until::AtRest, settings, exec)
+    rests_told(pair, domain, settings, exec, &|_, _| {})
+}
+
+/// The same; `finished` is told of every pose as soon as it has come to rest.
+pub(super) fn rests_told(
+    pair: &Pair,
+    domain: Domain,
+    settings: &Settings,
+    exec: &Exec,
+    finished: Finished<'_>,
+) -> Result<(Acceptance, Vec<End>), Cancelled> {
+    each(pair, domain, Until::AtRest, settings, exec, finished)
 }
 
 fn each(
@@ -135,6 +147,7 @@ fn each(
     until: Until,
     settings: &Settings,
     exec: &Exec,
+    finished: Finished<'_>,
 ) -> Result<(Acceptance, Vec<End>), Cancelled> {
     let count = domain.len();
     let done = AtomicUsize::new(0);
@@ -148,6 +161,7 @@ fn each(
                 |motion, k| {
                     exec.check()?;
                     let (outcome, error) = motion.follow(&domain.pose(k), until, None);
+                    finished(k, End { outcome, error });
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(between) {
                         exec.report(done as f64 / count as f64, "descents");

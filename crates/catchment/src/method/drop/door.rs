@@ -1,12 +1,12 @@
 //! Drop tests as a method: every pose by itself.
 
-use super::{DropError, Settings, run};
+use super::{DropError, Settings, run, run_told};
 use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::descent::End;
-use crate::method::door::{Cost, Decide, DecideError, Decided, Entry, Follow, Info, POSE_BYTES};
+use crate::method::door::{Cost, Decide, DecideError, Decided, Entry, Finished, Follow, Info, POSE_BYTES};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -63,6 +63,16 @@ impl Follow for Settings {
         exec: &Exec,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         Ok(run(problem.pair(), domain, self, exec)?)
+    }
+
+    fn rest_told(
+        &self,
+        problem: &Problem,
+        domain: Domain,
+        exec: &Exec,
+        finished: Finished<'_>,
+    ) -> Result<(Acceptance, Vec<End>), DecideError> {
+        Ok(run_told(problem.pair(), domain, self, exec, finished)?)
     }
 }
 

@@ -42,6 +42,7 @@ use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::Resolution;
 use crate::method::descent::End;
+use crate::method::door::Finished;
 use crate::pose::{Dof, PoseError};
 use engine::Engine;
 use glam::DVec3;
@@ -92,6 +93,17 @@ pub fn run(
     settings: &Settings,
     exec: &Exec,
 ) -> Result<(Acceptance, Vec<End>), DropError> {
+    run_told(pair, domain, settings, exec, &|_, _| {})
+}
+
+/// The same; `finished` is told of every pose as soon as it is decided.
+fn run_told(
+    pair: &Pair,
+    domain: Domain,
+    settings: &Settings,
+    exec: &Exec,
+    finished: Finished<'_>,
+) -> Result<(Acceptance, Vec<End>), DropError> {
     let engine = Engine::new(pair, settings)?;
     let count = domain.checked_len();
     let axes = if let Domain::Grid(grid) = &domain { grid.axes.len() } else { 0 };
@@ -110,6 +122,7 @@ pub fn run(
             .into_par_iter()
             .map(|k| {
                 let end = decide(&engine, pair, settings, &domain.pose(k), exec)?;
+                finished(k, end);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done.is_multiple_of(16) {
                     exec.report(done as f64 / count as f64, "drop tests");

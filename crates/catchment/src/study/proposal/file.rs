@@ -3,7 +3,7 @@
 use super::judge::{Judged, Seat};
 use super::way::Lie;
 use super::{PartFile, Settings, design_unit, says_its_unit};
-use crate::design::LengthUnit;
+use crate::design::{FileSpec, LengthUnit};
 use crate::pose::{Dof, DofSet, Mount};
 use glam::DVec2;
 use std::fmt::Write;
@@ -95,6 +95,11 @@ pub(super) fn text(
     for (k, name) in ["fixed", "moving"].into_iter().enumerate() {
         line(&format!("\n[connector.{name}]"));
         line(&format!("mesh = {}", quoted(&parts[k].written)));
+        if FileSpec::new(&parts[k].path, 1.0).is_step() {
+            line(
+                "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".",
+            );
+        }
         if !says_its_unit(&parts[k].path) {
             line(&format!("unit = \"{}\" # of the file, which does not say it", unit.symbol()));
         }

@@ -9,7 +9,6 @@
 
 use super::relief::{broadest, plan_box};
 use super::way::Lie;
-use crate::connector::mesh::PLAUSIBLE_WIDTH;
 use crate::connector::{Connector, Half};
 use crate::contact::mated::{MatedProblem, problems, round_half};
 use crate::contact::{Pair, face, play, settle, width};
@@ -20,8 +19,6 @@ use std::f64::consts::TAU;
 
 /// How far apart what is drawn docked may be, in D.
 const MOST_APART: f64 = 0.05;
-/// How much wider than D a half may be as drawn: a little less than designs allow.
-const MOST_WIDE: f64 = 0.99 * *PLAUSIBLE_WIDTH.end();
 /// How far off the climb is asked, in D, and what of it counts at most.
 const OFF: [f64; 2] = [0.1, 0.3];
 const MOST_CLIMB: f64 = 0.3;
@@ -133,7 +130,7 @@ pub(super) fn judge(halves: [&Half; 2], lie: Lie, offset: DVec2, others: &[DVec2
     }
     let widest = halves.map(|half| {
         let (low, high) = plan_box(half, &DMat3::IDENTITY);
-        (high - low).max_element() / MOST_WIDE
+        (high - low).max_element() / width::MOST_WIDE
     });
     let least = widest.into_iter().fold(0.0, f64::max);
     let (width, is_widened) = (width.max(least), width < least);

@@ -181,7 +181,7 @@ pub fn propose(
     place: &Path,
     exec: &Exec,
 ) -> Result<Proposal, ProposalError> {
-    let halves = read(parts, settings)?;
+    let halves = read(parts, settings, exec)?;
     exec.check()?;
     let unit = halves.each_ref().map(middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
@@ -234,7 +234,7 @@ pub fn propose(
     };
     let doubts = doubts(&candidates, settings);
     let text = file::text(parts, settings, best, *seat, unit);
-    let problem = Draft::read(SourceText::new(place, text.clone()))?.build()?.checked()?;
+    let problem = Draft::read(SourceText::new(place, text.clone()))?.build_on(exec)?.checked()?;
     Ok(Proposal { text, problem, candidates, doubts })
 }
 
@@ -283,14 +283,14 @@ fn sort(found: Vec<Result<Judged, String>>, judged: &mut Vec<Judged>, refused: &
 }
 
 /// The halves, in the unit of the design.
-fn read(parts: &[PartFile; 2], settings: &Settings) -> Result<[Half; 2], ProposalError> {
+fn read(parts: &[PartFile; 2], settings: &Settings, exec: &Exec) -> Result<[Half; 2], ProposalError> {
     let unit = design_unit(settings);
     let one = |part: &PartFile, side: Side| {
         let mut spec = FileSpec::new(&part.path, 1.0);
         if says_its_unit(&part.path) {
             (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit.metres());
         }
-        of_file(&spec, side)
+        of_file(&spec, side, exec)
     };
     let (fixed, moving) = match (one(&parts[0], Side::Fixed), one(&parts[1], Side::Moving)) {
         (Ok(fixed), Ok(moving)) => (fixed, moving),
@@ -319,7 +319,7 @@ fn design_unit(settings: &Settings) -> LengthUnit {
 
 /// Whether a file says its unit itself.
 fn says_its_unit(path: &Path) -> bool {
-    FileSpec::new(path, 1.0).ending() == "3mf"
+    FileSpec::new(path, 1.0).may_say_its_unit()
 }
 
 /// The unit in which a part of this size is between a pea and a door, if it is one of the usual ones.

@@ -1,0 +1,211 @@
+//! STEP files: refused with what to install where no Python meshes them, and taken from whatever does.
+//!
+//! The conversion itself is held by `tests/step_meshes.py`, where the package is there.
+
+use super::{catchment, designs, run};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A real part, which `tests/step/make.py` drew.
+fn peg() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/step/peg.step")
+}
+
+const DESIGN: &str = "[connector]\nwidth = 50\nunit = \"mm\"\n\
+                      fixed = { mesh = \"socket.stp\", deflection = \"0.02 mm\" }\nmoving = { mesh = \"plug.step\" }\n";
+
+/// A design of two real STEP files.
+fn folder() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("design.toml"), DESIGN).unwrap();
+    for part in ["socket.stp", "plug.step"] {
+        fs::copy(peg(), dir.path().join(part)).unwrap();
+    }
+    dir
+}
+
+/// What is said, line breaks and frames as spaces.
+fn words(report: &str) -> String {
+    report.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn without_python_it_is_said_what_to_install() {
+    let dir = folder();
+    let commands: [&[&str]; 4] = [
+        &["check", "design.toml", "-o", "pair.svg"],
+        &["run", "design.toml", "-o", "out"],
+        &["place", "plug.step", "socket.stp", "-o", "placed.toml"],
+        &["zraa", "design.toml", "-o", "out.svg"],
+    ];
+    for command in commands {
+        let report = run(dir.path(), command);
+        assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{report}");
+        let said = words(&report);
+        assert!(said.contains("`no/python3` cannot be started"), "{said}");
+        assert!(said.contains("python3 -m pip install cadquery-ocp-novtk"), "{said}");
+        assert!(said.contains("CATCHMENT_PYTHON"), "{said}");
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
+}
+
+/// The answer to a STEP file that holds what an STL file does.
+#[cfg(unix)]
+fn answer(stl: &Path) -> Vec<u8> {
+    const HEADER: usize = 84;
+    const TRIANGLE: usize = 50;
+    let bytes = fs::read(stl).unwrap();
+    let numbers: Vec<f64> = if bytes.starts_with(b"solid") {
+        let text = String::from_utf8(bytes).unwrap();
+        let corners = text.lines().filter_map(|line| line.trim().strip_prefix("vertex"));
+        corners.flat_map(str::split_whitespace).map(|number| number.parse().unwrap()).collect()
+    } else {
+        let triangles =
+            bytes[HEADER..].chunks_exact(TRIANGLE).flat_map(|triangle| triangle[12..48].chunks_exact(4));
+        triangles.map(|number| f64::from(f32::from_le_bytes(number.try_into().unwrap()))).collect()
+    };
+    let count = u32::try_from(numbers.len() / 9).unwrap();
+    let corners: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let triangles: Vec<u8> = (0..3 * count).flat_map(u32::to_le_bytes).collect();
+    let head = format!(
+        "{{\"bodies\": [[{}, {count}]], \"deflection\": 0.02, \"reached\": 0.0125, \"by\": \"OCP of a test\"}}\n",
+        3 * count
+    );
+    [head.into_bytes(), corners, triangles].concat()
+}
+
+/// A program in place of Python, which answers with a file beside the design, whatever it reads.
+#[cfg(unix)]
+fn python(folder: &Path, script: &str) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    let path = folder.join("python");
+    fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+#[cfg(unix)]
+#[test]
+fn what_another_program_meshes_is_a_half_like_any_other() {
+    let dir = folder();
+    let meshes = designs().join("meshes");
+    for (name, stl) in [("socket", "socket.stl"), ("plug", "plug.stl")] {
+        fs::write(dir.path().join(name), answer(&meshes.join(stl))).unwrap();
+    }
+    // The one that a deflection is written for is the socket: 0 is the size of the part.
+    let script = "cat > /dev/null\nif [ \"$3\" = 0 ]; then cat plug; else cat socket; fi";
+    let path = python(dir.path(), script);
+    let output =
+        catchment(dir.path()).env("CATCHMENT_PYTHON", &path).args(["check", "design.toml"]).output().unwrap();
+    let (stdout, stderr) =
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    assert!(
+        stdout.contains("triangles, off by at most 0.02 mm (deflection, as written), by OCP of a test"),
+        "{stdout}"
+    );
+    assert!(
+        stdout.contains("off by at most 0.02 mm (deflection, 0.0002 of its size), by OCP of a test"),
+        "{stdout}"
+    );
+    // The same numbers as of the meshes themselves.
+    let run = |design: &str, python: &Path| {
+        let output = catchment(dir.path())
+            .env("CATCHMENT_PYTHON", python)
+            .args(["zraa", design, "--json"])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    for stl in ["socket.stl", "plug.stl"] {
+        fs::copy(meshes.join(stl), dir.path().join(stl)).unwrap();
+    }
+    let of_meshes = "[connector]\nwidth = 50\nunit = \"mm\"\n\
+                     fixed = { mesh = \"socket.stl\", unit = \"mm\" }\nmoving = { mesh = \"plug.stl\", unit = \"mm\" }\n";
+    fs::write(dir.path().join("meshes.toml"), of_meshes).unwrap();
+    let (step, mesh) = (run("design.toml", &path), run("meshes.toml", Path::new("no/python3")));
+    assert_eq!(step["area_d2"], mesh["area_d2"]);
+    assert!(mesh["area_d2"].as_f64().unwrap() > 0.0);
+    // What meshed it is told with the design.
+    let told = &step["design"]["connector"]["own"]["moving"]["mesh"]["content"]["meshed"];
+    assert_eq!((&told["by"], &told["reached"]), (&"OCP of a test".into(), &(0.0125 / 50.0).into()));
+}
+
+#[cfg(unix)]
+#[test]
+fn whatever_the_program_does_it_is_a_message() {
+    let dir = folder();
+    let cases = [
+        (
+            r#"echo '{"error": "package", "message": "No module named OCP"}'"#,
+            "has none (No module named OCP)",
+        ),
+        (r#"echo '{"error": "empty", "message": "nothing in it has faces"}'"#, "the file holds no solid"),
+        (
+            r#"echo '{"error": "many", "message": "300000"}'"#,
+            "make 300000 triangles or more, and a half may have 200000: let `deflection` be larger",
+        ),
+        ("echo lost >&2; exit 7", "exit status: 7; lost"),
+        ("kill -9 $$", "signal: 9"),
+        ("echo hello", "its answer is broken"),
+        (
+            r#"echo '{"bodies": [[4, 4]], "deflection": 1, "reached": 1, "by": "x"}'; head -c 100 /dev/zero"#,
+            "its answer is broken",
+        ),
+        (r#"echo '{"bodies": [], "deflection": 1, "reached": 1, "by": "x"}'"#, "the file holds no triangles"),
+        ("exec sleep 0.1 < /dev/null", "it said nothing"),
+    ];
+    for (script, said) in cases {
+        let path = python(dir.path(), script);
+        let output = catchment(dir.path())
+            .env("CATCHMENT_PYTHON", &path)
+            .args(["check", "design.toml"])
+            .output()
+            .unwrap();
+        let stderr = words(&String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.code(), Some(2), "{script}: {stderr}");
+        assert!(stderr.contains(said), "{script}: {stderr}");
+        assert!(output.stdout.is_empty(), "{script}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_the_one_who_waits_and_the_one_who_meshes() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let dir = folder();
+    let path = python(dir.path(), "echo $$ > started\nexec sleep 60");
+    let commands: [(&[&str], &str, i32); 3] = [
+        (&["check", "design.toml", "-o", "pair.svg"], "-INT", 130),
+        (&["check", "design.toml"], "-TERM", 143),
+        (&["place", "socket.stp", "plug.step", "-o", "placed.toml"], "-INT", 130),
+    ];
+    for (arguments, signal, code) in commands {
+        let child = catchment(dir.path())
+            .env("CATCHMENT_PYTHON", &path)
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let started = dir.path().join("started");
+        let waiting = Instant::now();
+        while !fs::read_to_string(&started).is_ok_and(|pid| pid.ends_with('\n')) {
+            assert!(waiting.elapsed() < Duration::from_secs(30), "{arguments:?}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let asked = Instant::now();
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        assert!(asked.elapsed() < Duration::from_secs(5), "{arguments:?}: {:?}", asked.elapsed());
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "interrupted; nothing was written\n");
+        let meshing = fs::read_to_string(&started).unwrap();
+        let lives = Command::new("kill").args(["-0", meshing.trim()]).stderr(Stdio::null()).status().unwrap();
+        assert!(!lives.success(), "{arguments:?}: it goes on");
+        fs::remove_file(started).unwrap();
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 4);
+}

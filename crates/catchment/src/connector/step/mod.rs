@@ -1,0 +1,204 @@
+//! STEP files: curved faces, which `OpenCASCADE` turns into triangles in a Python of the person's own.
+//!
+//! ```text
+//!   bytes of part.step ──stdin──▶ python3 -c mesh.py ──stdout──▶ corners and triangles of every solid, in mm
+//!                                 (OCP: cadquery-ocp-novtk)
+//! ```
+//!
+//! Nothing heavy is linked in, nothing is fetched and no file is written. Every solid is a body of its own; where there is none, every closed
+//! shell. Corners are joined as the topology has them, so that a closed shell is a closed mesh. Facets are off from the faces by at most the
+//! `deflection` that the design says, or 0.0002 of the part's largest side, as `OpenCASCADE` measures it: a corner lies on the part, a facet
+//! inside of what bulges and outside of what is hollow. Neighbouring facets of one face turn by at most 0.5 rad.
+//!
+//! Whatever unit a file is written in, its coordinates are read in mm. A file that was meshed is not meshed again by the same process.
+//!
+//! Not promised: the same triangles from another version of OCP; what came out is in the digest of the design. Surfaces without thickness beside
+//! solids, and colours, are left out.
+
+mod child;
+mod reply;
+
+use super::mesh::{MeshProblem, most_read};
+use super::source::{FileBytes, Held, UnitProblem, scale};
+use crate::design::{FileSpec, FileUnit, LengthUnit, hex};
+use crate::exec::{Exec, Stopwatch};
+use sha2::{Digest, Sha256};
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// What the child runs.
+const SCRIPT: &str = include_str!("mesh.py");
+/// How a STEP file begins.
+const BEGINNING: &[u8] = b"ISO-10303-21";
+/// Longer than any part took that was tried, by far: what hangs is ended.
+const MOST_TIME: Duration = Duration::from_mins(10);
+/// Files whose triangles are kept.
+const MOST_KEPT: usize = 4;
+
+/// Why a STEP file gives no triangles.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StepProblem {
+    /// It begins like none.
+    #[error("this is no STEP file, which begins with ISO-10303-21: export it again")]
+    NotStep,
+    /// No interpreter.
+    #[error(
+        "a STEP file holds curved faces, which a Python with OpenCASCADE turns into triangles, and `{program}` cannot be started ({message}): install \
+         Python, then `python3 -m pip install cadquery-ocp-novtk`; or name an interpreter that has it in the variable {}; or export the part as STL, \
+         OBJ, PLY or 3MF from the CAD program, with a chord tolerance of 0.01 mm",
+        child::VARIABLE
+    )]
+    NoPython {
+        /// The interpreter.
+        program: String,
+        /// What the system says.
+        message: String,
+    },
+    /// An interpreter without the package.
+    #[error(
+        "a STEP file holds curved faces, which a Python with OpenCASCADE turns into triangles, and `{program}` has none ({message}): \
+         `{program} -m pip install cadquery-ocp-novtk`; or name an interpreter that has it in the variable {}; or export the part as STL, OBJ, PLY or \
+         3MF from the CAD program, with a chord tolerance of 0.01 mm",
+        child::VARIABLE
+    )]
+    NoPackage {
+        /// The interpreter.
+        program: String,
+        /// What it says.
+        message: String,
+    },
+    /// `OpenCASCADE` does not understand it.
+    #[error("cannot be read as STEP: {message}")]
+    Unreadable {
+        /// What it says.
+        message: String,
+    },
+    /// No solid in it.
+    #[error("the file holds no solid ({message}): export the part as a closed solid")]
+    NoSolid {
+        /// What it holds.
+        message: String,
+    },
+    /// More triangles than are read.
+    #[error(
+        "its curved faces make {count} triangles or more, and a half may have {most}: let `deflection` be larger, as in \"0.05 mm\", or export the \
+         mating faces alone"
+    )]
+    TooMany {
+        /// How many there are, as far as is known.
+        count: u64,
+        /// How many may be read.
+        most: usize,
+    },
+    /// Something is no face that can be meshed.
+    #[error("{message}: repair the part in the CAD program, or export it as STL, OBJ, PLY or 3MF")]
+    NotMeshed {
+        /// What.
+        message: String,
+    },
+    /// It takes too long.
+    #[error(
+        "meshing it took longer than {seconds} s: let `deflection` be larger, or export the mating faces alone"
+    )]
+    TooLong {
+        /// The time that it had.
+        seconds: u64,
+    },
+    /// Out of memory.
+    #[error(
+        "meshing it takes more memory than there is: let `deflection` be larger, or export the mating faces alone"
+    )]
+    Memory,
+    /// The interpreter ended without an answer.
+    #[error("`{program}` did not mesh it: {message}")]
+    Died {
+        /// The interpreter.
+        program: String,
+        /// How it ended, and its last words.
+        message: String,
+    },
+    /// A stop was asked for.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// What `OpenCASCADE` made of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::connector) struct FromCurves {
+    /// How far facets may be off, in mm.
+    pub(in crate::connector) deflection: f64,
+    /// How far they are, as far as it knows, in mm.
+    pub(in crate::connector) reached: f64,
+    /// What meshed it.
+    pub(in crate::connector) by: String,
+    /// SHA-256 of the triangles.
+    pub(in crate::connector) sha256: String,
+}
+
+/// What leads to the same triangles: the file, the deflection in mm, and how many there may be.
+#[derive(Clone, PartialEq)]
+struct Asked {
+    sha256: String,
+    deflection: f64,
+    most_triangles: usize,
+}
+
+/// Files that were meshed, the latest last.
+static MESHED: Mutex<VecDeque<(Asked, Held)>> = Mutex::new(VecDeque::new());
+
+/// As the table of formats wants it.
+pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<Held, Vec<MeshProblem>> {
+    let beginning = file.bytes.trim_ascii_start();
+    if !beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning).starts_with(BEGINNING) {
+        return Err(vec![StepProblem::NotStep.into()]);
+    }
+    if let FileUnit::Stated(stated) = spec.unit
+        && stated != LengthUnit::Mm
+    {
+        return Err(vec![UnitProblem::NotMm { stated }.into()]);
+    }
+    let scale = scale(spec, Some(LengthUnit::Mm.metres())).map_err(|problem| vec![problem.into()])?;
+    let asked = Asked {
+        sha256: hex(&Sha256::digest(&file.bytes)),
+        // 0 leaves it to the size of the part.
+        deflection: spec.treatment.deflection.map_or(0.0, |d| d / scale),
+        most_triangles: most_read(spec.treatment),
+    };
+    let kept = || MESHED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, held)) = kept().iter().find(|(known, _)| *known == asked) {
+        return Ok(held.clone());
+    }
+    let held = meshed(&file.bytes, &asked, spec, exec)?;
+    let count: usize = held.bodies.iter().map(Vec::len).sum();
+    if count <= super::mesh::MAX_TRIANGLES {
+        let mut kept = kept();
+        kept.push_back((asked, held.clone()));
+        if kept.len() > MOST_KEPT {
+            kept.pop_front();
+        }
+    }
+    Ok(held)
+}
+
+fn meshed(bytes: &[u8], asked: &Asked, spec: &FileSpec, exec: &Exec) -> Result<Held, Vec<MeshProblem>> {
+    let most_bytes = exec.memory_budget();
+    let arguments = [
+        "-c".to_owned(),
+        SCRIPT.to_owned(),
+        asked.deflection.to_string(),
+        asked.most_triangles.to_string(),
+        most_bytes.to_string(),
+        MOST_TIME.as_secs().to_string(),
+    ];
+    let most_reply = reply::most_bytes(asked.most_triangles);
+    let job =
+        child::Job { program: child::interpreter(), arguments: &arguments, most_reply, most_time: MOST_TIME };
+    let program = job.program.to_string_lossy().into_owned();
+    let watch = Stopwatch::start();
+    let answer = child::run(job, bytes.to_vec(), &watch, exec).map_err(|problem| vec![problem.into()])?;
+    reply::read(&answer, &program, spec.treatment)
+}
+
+#[cfg(test)]
+mod tests;
