@@ -19,8 +19,9 @@ const SHARP: f64 = 2e-4;
 const INSIDE: f64 = 0.998;
 /// Scales at which every direction is looked at, between zero and the error box.
 const LOOKS: usize = 8;
-/// The same along one error alone, where looking costs little.
+/// The same along one error alone, where looking costs little, and from a window on, in which all is known to dock.
 const LOOKS_ALONE: usize = 64;
+const LOOKS_BESIDE: usize = 4;
 /// Moves per batch, and how many in a row that find nothing end the search.
 const BATCH: usize = 64;
 const QUIET: usize = 512;
@@ -198,7 +199,7 @@ impl<'a> Search<'a> {
     /// How far the only error that grows may go, which it is known to do up to `from`.
     pub(super) fn reach(&mut self, from: f64, exec: &Exec) -> Result<Reach, Cancelled> {
         let all = self.space.all();
-        let looks = if all.len() == 2 { LOOKS_ALONE } else { LOOKS };
+        let looks = if all.len() == 2 { LOOKS_ALONE } else { LOOKS_BESIDE };
         self.try_all(&all, [from, self.space.border], looks, exec)?;
         if all.len() > 2 && self.scale() > from {
             self.moves(exec)?;
