@@ -2,6 +2,7 @@
 //! and the exit code is that of every other failure.
 
 use crate::exit::ExitStatus;
+use catchment::exec::is_panic_expected;
 use catchment::report::printable;
 use std::io::{self, Write};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
@@ -9,8 +10,10 @@ use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 /// Does the work; a panic on any of its threads ends it as a failure.
 pub(crate) fn caught(work: impl FnOnce() -> ExitStatus) -> ExitStatus {
     panic::set_hook(Box::new(|bug| {
-        // Nobody is left to tell when stderr itself is gone.
-        let _ = io::stderr().lock().write_all(told(bug).as_bytes());
+        if !is_panic_expected() {
+            // Nobody is left to tell when stderr itself is gone.
+            let _ = io::stderr().lock().write_all(told(bug).as_bytes());
+        }
     }));
     // Nothing of the work is used after a panic.
     panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(ExitStatus::Failed)

@@ -49,7 +49,7 @@ pub(crate) struct WindowArgs {
     /// Print JSON, in D and radians
     #[arg(long)]
     json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "window.yaw.half_width>=0.087"; may be repeated
+    /// End with exit code 1 unless this holds of the JSON report, such as "scale>=0.1"; may be repeated
     #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
     require: Vec<Requirement>,
     #[command(flatten)]
@@ -129,5 +129,8 @@ fn refused(error: WindowError) -> Failure {
         WindowError::Nothing => Some("leave an error out of --fix, or give it a proportion"),
         _ => None,
     };
-    Failure::with_help(error.to_string(), help.map(str::to_owned))
+    match help {
+        Some(help) => Failure::with_help(error.to_string(), Some(help.to_owned())),
+        None => error.into(),
+    }
 }

@@ -6,11 +6,14 @@
 //! 4 GiB count as free.
 
 mod clock;
+mod guard;
 mod memory;
 mod progress;
 mod threads;
 
 pub use clock::Stopwatch;
+pub(crate) use guard::attempt;
+pub use guard::is_expected as is_panic_expected;
 pub use memory::{Bytes, OutOfBudget};
 pub use progress::Progress;
 pub use threads::ThreadsError;

@@ -273,3 +273,17 @@ proptest! {
         }
     }
 }
+
+/// Found by the property above: the library that unites shells finds no ray that runs along nothing, and panics.
+#[test]
+fn what_the_union_panics_on_is_refused() {
+    let corners =
+        [[[0, 1, 0], [2, 0, 0], [1, 2, 0], [0, 0, 1]], [[1, 2, 1], [0, 0, 1], [0, 1, 1], [1, 1, 0]]];
+    let mut soup = Soup::new();
+    for four in corners {
+        let [a, b, c, d] = four.map(|p: [u8; 3]| DVec3::from_array(p.map(f64::from)) / 3.0);
+        let (b, c) = if (b - a).cross(c - a).dot(d - a) > 0.0 { (c, b) } else { (b, c) };
+        soup.extend([[a, b, c], [a, c, d], [c, b, d], [b, a, d]]);
+    }
+    assert!(treated(&soup, Treatment::DEFAULT).is_err());
+}

@@ -46,7 +46,7 @@ pub(super) struct Space {
 impl Space {
     pub(super) fn of(problem: &Problem, settings: &Settings) -> Result<Self, WindowError> {
         let alignment = problem.alignment();
-        let proportions = settings.proportions.map(|p| p.to_array());
+        let proportions = settings.proportions.map(PoseError::to_array);
         let (mut fixed, mut growing) = ([0.0; 5], [0.0; 5]);
         for axis in Dof::ALL {
             let (k, most) = (axis.index(), alignment.half_range(axis));

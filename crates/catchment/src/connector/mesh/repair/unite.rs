@@ -15,6 +15,7 @@
 use crate::connector::mesh::indexed::Indexed;
 use crate::connector::mesh::shells::winding as winding_around;
 use crate::connector::mesh::sides::Sides;
+use crate::exec::attempt;
 use glam::DVec3;
 use manifold_rust::linalg::Vec3;
 use manifold_rust::robust::cells::{build_cells, extract, windings};
@@ -45,10 +46,14 @@ fn solid(mesh: &Indexed) -> Option<Indexed> {
     let soup: Vec<[Vec3; 3]> = (0..mesh.triangles.len())
         .map(|k| mesh.corners(k).map(|corner| Vec3::new(corner.x, corner.y, corner.z)))
         .collect();
-    let graph = build_graph(&soup, &[]);
-    let cells = build_cells(&graph);
-    let winding = windings(&graph, &cells, [&soup, &[]]);
-    let walls = extract(&graph, &cells, &winding, OpType::Add, WindingRule::Positive);
+    // Of corners on a lattice, every ray that it tries may run along something: it panics then.
+    let (graph, walls) = attempt(|| {
+        let graph = build_graph(&soup, &[]);
+        let cells = build_cells(&graph);
+        let winding = windings(&graph, &cells, [&soup, &[]]);
+        let walls = extract(&graph, &cells, &winding, OpType::Add, WindingRule::Positive);
+        (graph, walls)
+    })?;
     let mut united = Indexed {
         vertices: graph.verts_f64.iter().map(|p| DVec3::new(p.x, p.y, p.z)).collect(),
         triangles: walls.iter().map(|wall| wall.vi).collect(),

@@ -1,0 +1,42 @@
+//! Libraries that panic on what people give them.
+//!
+//! A panic of this program is a bug and is told as one. One of a library whose answers are not believed anyway is no more than a
+//! refusal; whoever tells panics asks [`is_expected`] and is silent.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+thread_local! {
+    static EXPECTED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// What `work` gives, which changes nothing outside and stays on this thread; none where it panics.
+pub(crate) fn attempt<T>(work: impl FnOnce() -> T) -> Option<T> {
+    let before = EXPECTED.replace(true);
+    // Nothing of the work is used after a panic.
+    let result = catch_unwind(AssertUnwindSafe(work)).ok();
+    EXPECTED.set(before);
+    result
+}
+
+/// Whether a panic of this thread would be a refusal and no bug: for panic hooks.
+pub fn is_expected() -> bool {
+    EXPECTED.get()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_no_answer_and_what_comes_after_is_a_bug_again() {
+        let refused: Option<u8> = attempt(|| {
+            assert!(is_expected());
+            assert_eq!(attempt(|| 1), Some(1));
+            assert!(is_expected());
+            panic!("a library gave up")
+        });
+        assert_eq!(refused, None);
+        assert!(!is_expected());
+    }
+}
