@@ -26,9 +26,9 @@ use std::time::Instant;
     catchment window design.toml                    in the proportions of the error box\n  \
     catchment window design.toml --fix 'x=2 mm,y=2 mm'\n                                                  these are given: how much of the others?\n  \
     catchment window design.toml --proportions 'x=1 mm,y=1 mm,yaw=2 deg'\n                                                  the others do not occur\n  \
-    catchment window design.toml --require 'window.yaw.half_width>=0.087'\n  \
-    catchment window design.toml --json | jq '.window[] | {axis, half_width}'\n\n\
-    Lengths are in D and angles in radians unless they have a unit; in JSON and for --require always. The window ends at the \
+    catchment window design.toml --require 'window.yaw>=5 deg'\n  \
+    catchment window design.toml --json | jq .window\n\n\
+    Lengths are in D and angles in radians unless they have a unit; in JSON always. The window ends at the \
     error box of the design.")]
 pub(crate) struct WindowArgs {
     #[command(flatten)]
@@ -49,7 +49,7 @@ pub(crate) struct WindowArgs {
     /// Print JSON, in D and radians
     #[arg(long)]
     json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "scale>=0.1"; may be repeated
+    /// End with exit code 1 unless this holds of the JSON report, such as "window.yaw>=5 deg"; may be repeated
     #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
     require: Vec<Requirement>,
     #[command(flatten)]

@@ -87,7 +87,7 @@ impl Run {
         }
         let report = serde_json::to_value(self.form_of_report(problem)?).unwrap_or(Value::Null);
         for requirement in &self.requirements {
-            requirement.value(&report).map_err(|error| UnanswerableError::Requirement {
+            requirement.judge(&report).map_err(|error| UnanswerableError::Requirement {
                 requirement: requirement.to_string(),
                 error,
             })?;

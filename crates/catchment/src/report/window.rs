@@ -9,7 +9,7 @@ use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
 use crate::study::window::{Settings, Window};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// What a window has to say, with its head.
 pub type WindowReport = Envelope<WindowBody>;
@@ -21,8 +21,11 @@ pub struct WindowBody {
     pub design: Design,
     /// How it was asked for.
     pub settings: Settings,
-    /// Per free error.
-    pub window: Vec<SideReport>,
+    /// ± so much of every free error, by its name, in D and radians.
+    #[serde(serialize_with = "by_name")]
+    pub window: Vec<(Dof, f64)>,
+    /// What is known of every one of them.
+    pub sides: Vec<SideReport>,
     /// Half-widths that were not given are so many times their proportions.
     pub scale: f64,
     /// The error that is nearest to its limit while all others are anywhere within the window; null where all reach the error box.
@@ -85,7 +88,8 @@ impl Body for WindowBody {
 impl WindowReport {
     /// Of a design.
     pub fn new(design: &Design, found: &Window, doubts: Vec<WarningReport>, timing: Option<Timing>) -> Self {
-        let window = found.axes.iter().map(|side| SideReport {
+        let window = found.axes.iter().map(|side| (side.axis, side.half_width)).collect();
+        let sides = found.axes.iter().map(|side| SideReport {
             axis: side.axis,
             half_width: side.half_width,
             given: side.given,
@@ -114,7 +118,8 @@ impl WindowReport {
         let body = WindowBody {
             design: design.clone(),
             settings: found.settings.clone(),
-            window: window.collect(),
+            window,
+            sides: sides.collect(),
             scale: found.scale,
             tightest: found.tightest,
             worst,
@@ -131,7 +136,7 @@ impl WindowReport {
         row(&mut text, "method", &format!("descent, {} motions, no grid", grouped(self.motions)));
         text.push('\n');
         line(&mut text, "  window         all at once, all dock      one alone      one, the others in it");
-        for side in &self.window {
+        for side in &self.sides {
             let tight = if Some(side.axis) == self.tightest { "  tightest" } else { "" };
             let given = if side.given { " given" } else { "" };
             let reach = |to: f64, is_border: bool| {
@@ -149,7 +154,7 @@ impl WindowReport {
                 ),
             );
         }
-        if self.window.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
+        if self.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
             line(&mut text, "  * up to the border of the error box, perhaps further");
         }
         text.push('\n');
@@ -207,7 +212,7 @@ impl WindowReport {
             "beside_reaches_border",
         ];
         let mut records = vec![head.map(str::to_owned).to_vec()];
-        records.extend(self.window.iter().map(|side| {
+        records.extend(self.sides.iter().map(|side| {
             vec![
                 side.axis.name().to_owned(),
                 number(side.half_width),
@@ -245,7 +250,7 @@ impl WindowReport {
     }
 
     fn place(&self, error: &PoseError) -> String {
-        let free = self.window.iter().map(|side| side.axis);
+        let free = self.sides.iter().map(|side| side.axis);
         let said: Vec<String> = free
             .map(|axis| {
                 let value = error.to_array()[axis.index()];
@@ -258,6 +263,10 @@ impl WindowReport {
             .collect();
         said.join(", ")
     }
+}
+
+fn by_name<S: Serializer>(window: &[(Dof, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(window.iter().map(|(axis, half_width)| (axis.name(), half_width)))
 }
 
 /// Contacts that are told.

@@ -4,9 +4,11 @@
 //!   PATH OP NUMBER     PATH  keys of the JSON report, joined by dots; lists by number from 0, or by the name of
 //!                            the axis where they have one: tolerances.x.plus, acceptance.sum_ci95.0
 //!                      OP    >=  <=  >  <  ==
+//!                      NUMBER  in D and radians as the report has it; at an error also with a unit: window.yaw >= 5 deg
 //! ```
 
-use crate::design::nearest;
+use crate::design::{LengthUnit, Quantity, Scale, Unit, nearest};
+use crate::pose::Dof;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
@@ -36,7 +38,7 @@ const RELATIONS: [(Relation, &str); 5] = [
 pub struct Requirement {
     path: String,
     relation: Relation,
-    number: f64,
+    bound: Quantity,
 }
 
 /// Why a requirement cannot be judged.
@@ -68,6 +70,16 @@ pub enum RequirementError {
         /// What it is.
         what: &'static str,
     },
+    /// A unit that says nothing there.
+    #[error("`{path}` and {bound}: {reason}")]
+    Unit {
+        /// The path.
+        path: String,
+        /// The bound, as it was written.
+        bound: String,
+        /// Why not.
+        reason: String,
+    },
 }
 
 fn described(known: &[String], meant: Option<&str>) -> String {
@@ -86,19 +98,19 @@ impl FromStr for Requirement {
         let start = text.find(['<', '>', '=']).ok_or_else(syntax)?;
         let (path, rest) = text.split_at(start);
         let (relation, sign) = RELATIONS.into_iter().find(|(_, s)| rest.starts_with(s)).ok_or_else(syntax)?;
-        let number: f64 = rest[sign.len()..].trim().parse().map_err(|_| syntax())?;
+        let bound: Quantity = rest[sign.len()..].parse().map_err(|_| syntax())?;
         let path = path.trim();
-        if path.is_empty() || !number.is_finite() {
+        if path.is_empty() {
             return Err(syntax());
         }
-        Ok(Self { path: path.to_owned(), relation, number })
+        Ok(Self { path: path.to_owned(), relation, bound })
     }
 }
 
 impl fmt::Display for Requirement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let sign = RELATIONS.iter().find(|(r, _)| *r == self.relation).map_or("", |(_, sign)| sign);
-        write!(f, "{} {sign} {}", self.path, self.number)
+        write!(f, "{} {sign} {}", self.path, self.bound)
     }
 }
 
@@ -139,7 +151,50 @@ impl Requirement {
     /// If the report has no such place, or no number there.
     pub fn judge(&self, report: &Value) -> Result<Verdict, RequirementError> {
         let value = self.value(report)?;
-        Ok(Verdict { requirement: self.clone(), value, met: self.is_met_by(value) })
+        let bound = self.bound(report)?;
+        let met = self.holds(value, bound);
+        Ok(Verdict { requirement: self.clone(), value, met })
+    }
+
+    /// Whether a number that has no unit meets the bound as it is written.
+    pub fn is_met_by(&self, value: f64) -> bool {
+        self.holds(value, self.bound.value)
+    }
+
+    fn holds(&self, value: f64, bound: f64) -> bool {
+        match self.relation {
+            Relation::AtLeast => value >= bound,
+            Relation::AtMost => value <= bound,
+            Relation::Equal => value == bound,
+            Relation::Above => value > bound,
+            Relation::Below => value < bound,
+        }
+    }
+
+    /// The bound as the report counts: in D and radians.
+    fn bound(&self, report: &Value) -> Result<f64, RequirementError> {
+        if self.bound.unit == Unit::Bare {
+            return Ok(self.bound.value);
+        }
+        let refused = |reason: String| RequirementError::Unit {
+            path: self.path.clone(),
+            bound: self.bound.to_string(),
+            reason,
+        };
+        let of = |step: &str| Dof::ALL.into_iter().find(|dof| dof.name() == step);
+        let Some(axis) = self.path.rsplit('.').find_map(of) else {
+            return Err(refused(
+                "a unit is for errors alone: write a bare number, in D and radians".to_owned(),
+            ));
+        };
+        let read = if axis.is_rotation() {
+            self.bound.angle_rad()
+        } else {
+            let design = &report["design"];
+            let unit = serde_json::from_value::<Option<LengthUnit>>(design["unit"].clone()).unwrap_or(None);
+            self.bound.length_d(&Scale { width: design["width"].as_f64().unwrap_or(1.0), unit })
+        };
+        read.map_err(|complaint| refused(complaint.to_string()))
     }
 
     /// The number that the requirement is about.
@@ -156,17 +211,6 @@ impl Requirement {
             Value::Object(_) => "an object",
         };
         Err(RequirementError::NotANumber { path: self.path.clone(), what })
-    }
-
-    /// Whether a number meets it.
-    pub fn is_met_by(&self, value: f64) -> bool {
-        match self.relation {
-            Relation::AtLeast => value >= self.number,
-            Relation::AtMost => value <= self.number,
-            Relation::Equal => value == self.number,
-            Relation::Above => value > self.number,
-            Relation::Below => value < self.number,
-        }
     }
 
     fn place<'a>(&self, report: &'a Value) -> Result<&'a Value, RequirementError> {
@@ -216,12 +260,13 @@ mod tests {
             "acceptance": { "sum": 2.5, "sum_ci95": [2.4, 2.6], "sample": null },
             "tolerances": [{ "axis": "x", "plus": 0.5 }, { "axis": "yaw", "plus": 1.0 }],
             "method": "descent",
+            "design": { "width": 50.0, "unit": "mm" },
         })
     }
 
     fn judge(text: &str) -> Result<bool, RequirementError> {
         let requirement: Requirement = text.parse()?;
-        Ok(requirement.is_met_by(requirement.value(&report())?))
+        Ok(requirement.judge(&report())?.met)
     }
 
     #[test]
@@ -238,6 +283,11 @@ mod tests {
             ("acceptance.sum_ci95.1 > 2.5", true),
             ("tolerances.yaw.plus >= 1", true),
             ("tolerances.0.plus >= 1", false),
+            ("tolerances.x.plus >= 25 mm", true),
+            ("tolerances.x.plus>25.001mm", false),
+            ("tolerances.x.plus <= 0.5 D", true),
+            ("tolerances.yaw.plus >= 57.2 deg", true),
+            ("tolerances.yaw.plus >= 57.3 deg", false),
         ] {
             assert_eq!(judge(text), Ok(met), "{text}");
         }
@@ -245,7 +295,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_judged_is_said() {
-        for text in ["", "sum", ">= 3", "sum = 3", "sum >= much", "sum >= nan", "sum >= 3 mm"] {
+        for text in ["", "sum", ">= 3", "sum = 3", "sum >= much", "sum >= nan", "sum >= 3 parsec"] {
             assert!(matches!(judge(text), Err(RequirementError::Syntax { .. })), "{text}");
         }
         let message = |text: &str| judge(text).unwrap_err().to_string();
@@ -263,12 +313,17 @@ mod tests {
             message("acceptance.sample > 1"),
             "`acceptance.sample` is null in this report, not a number"
         );
+        assert_eq!(
+            message("acceptance.sum >= 3 mm"),
+            "`acceptance.sum` and 3 mm: a unit is for errors alone: write a bare number, in D and radians"
+        );
+        assert!(message("tolerances.yaw.plus >= 3 mm").contains("3 mm"));
         assert_eq!(message("method == 1"), "`method` is a text in this report, not a number");
     }
 
     #[test]
     fn it_is_written_as_it_is_read() {
-        for text in ["onaa.edge >= 0.3", "a.0 == -1", "b < 2"] {
+        for text in ["onaa.edge >= 0.3", "a.0 == -1", "b < 2", "window.yaw >= 5 deg"] {
             assert_eq!(text.parse::<Requirement>().unwrap().to_string(), text);
         }
     }

@@ -57,7 +57,8 @@ pub(crate) struct RunArgs {
     /// Print the report as JSON instead of the table
     #[arg(long)]
     json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "onaa.edge>=0.3"; may be repeated
+    /// End with exit code 1 unless this holds of the JSON report, such as "onaa.edge>=0.3" or "tolerances.x.plus>=2 mm"; may
+    /// be repeated
     #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
     require: Vec<Requirement>,
     #[command(flatten)]
