@@ -13,8 +13,9 @@
 //! may go alone (all others 0) and with all others anywhere within their half-widths: where that is hardly more than the window, it is the
 //! tight one.
 //!
-//! The certificate is that of the rule of three: if none of N independent poses fails, at most ln(k/0.05)/N of the window does, with 95 %
-//! confidence, k being how often it was drawn anew (Bonferroni).
+//! The certificate is that of the rule of three: if none of N independent poses fails, at most ln(1/α)/N of the window does, but for a chance of α. The
+//! first window has α₁ = 0.0498, which is 3/N; the k-th, drawn because those before it failed, 0.0002/(k(k − 1)): all of them together 0.05, however many there
+//! are. (The same 0.05/k each would add up to more.)
 //!
 //! Not promised: that no pose of the window fails, only how few. The window ends at the error box. Undecided poses count as failures.
 //! Lengths in D, angles in radians.
@@ -163,6 +164,14 @@ pub enum WindowError {
         /// What becomes of it.
         outcome: Outcome,
     },
+    /// Right beside the mated pose some pose fails.
+    #[error("poses right beside the mated one fail, however near: {} is {}", place(error), outcome.name())]
+    AtHome {
+        /// The pose error.
+        error: PoseError,
+        /// What becomes of it.
+        outcome: Outcome,
+    },
     /// Random poses failed again and again.
     #[error(
         "after {windows} windows, each smaller, some random pose failed in every one, at last {}: poses that fail lie all over",
@@ -213,8 +222,9 @@ const MARGIN: f64 = 1e-3;
 const WINDOWS: usize = 50;
 /// Below this scale, as a share of the largest, there is no window.
 const NONE: f64 = 1e-4;
-/// Allowed chance that a certificate is wrong.
-const CHANCE: f64 = 0.05;
+/// Allowed chance that the certificate of the first window is wrong, and of all later ones together: 5 %.
+const FIRST_CHANCE: f64 = 0.0498;
+const LATER_CHANCE: f64 = 0.0002;
 
 /// Finds the window of a problem and certifies it.
 ///
@@ -253,12 +263,17 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
         let scale = search.window(MARGIN);
         if scale <= NONE * search.space().border() {
             let error = search.worst().unwrap_or_default();
-            return Err(WindowError::GivenFails { outcome: problem.follow(&error).outcome, error });
+            let outcome = problem.follow(&error).outcome;
+            let given = settings.fixed.iter().flatten().any(|half_width| *half_width > 0.0);
+            return Err(if given {
+                WindowError::GivenFails { error, outcome }
+            } else {
+                WindowError::AtHome { error, outcome }
+            });
         }
         if !search.certify(scale, motions, redrawn, exec)? {
-            let chances = (redrawn + 1) as f64;
             let at_most =
-                if motions == 0 { 1.0 } else { ((chances / CHANCE).ln() / motions as f64).min(1.0) };
+                if motions == 0 { 1.0 } else { ((1.0 / chance(redrawn)).ln() / motions as f64).min(1.0) };
             break (scale, Certificate { motions, failing_at_most: at_most, redrawn });
         }
         redrawn += 1;
@@ -291,6 +306,12 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
     let tightest = tightest.min_by(|a, b| spare(a).total_cmp(&spare(b))).map(|side| side.axis);
     let worst = search.worst().map(|error| Worst::of(problem, error));
     Ok(Window { settings: settings.clone(), axes, scale, worst, tightest, certificate, motions: followed })
+}
+
+/// Chance that is allowed of a wrong certificate after so many windows that failed.
+fn chance(redrawn: usize) -> f64 {
+    let later = redrawn as f64;
+    if redrawn == 0 { FIRST_CHANCE } else { LATER_CHANCE / (later * (later + 1.0)) }
 }
 
 /// As many as seconds allow.

@@ -114,3 +114,10 @@ fn it_is_the_same_on_any_number_of_threads() {
     assert_eq!(one, on(2));
     assert_eq!(one, on(4));
 }
+
+#[test]
+fn all_certificates_together_are_wrong_in_five_of_a_hundred_at_most() {
+    let all: f64 = (0..100_000).map(chance).sum();
+    assert!((0.0499..=0.05).contains(&all), "{all}");
+    assert!((1.0 / chance(0)).ln() <= 3.0);
+}
