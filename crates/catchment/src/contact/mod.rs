@@ -45,6 +45,7 @@ pub use mirror::Mirror;
 pub use nearby::Nearby;
 pub use play::{Play, play};
 pub(crate) use raster::fill_convex;
+pub(crate) use seat::CORE as SEAT_CORE;
 pub use seat::Seat;
 
 use crate::connector::{Connector, Half};

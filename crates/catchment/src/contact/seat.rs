@@ -20,7 +20,7 @@ use crate::pose::{Dof, PoseError};
 use std::f64::consts::PI;
 
 /// Poses this near the mated one, in the ρ-metric, are connected with it: finer structure than that is not told apart.
-pub(super) const CORE: f64 = 5e-3;
+pub(crate) const CORE: f64 = 5e-3;
 /// How densely a path is looked at, in the ρ-metric.
 pub(super) const PATH_STEP: f64 = 5e-3;
 /// Looks along one path at most.

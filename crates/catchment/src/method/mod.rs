@@ -7,12 +7,14 @@
 //!   flood       basins of the heights, to the lowest neighbour  steepest: to the steepest; meyer: by a queue, with dams
 //!   partition   the contact space as polytopes, without a grid
 //!   kinematic   planar bounds and stepping
+//!   certified   boxes of poses that certainly dock, or do not
 //!   drop        trials in a rigid-body engine                   feature `drop`
 //! ```
 //!
 //! [`correction`] gives the Sum of any of them its interval by exact descents. [`zraa`] decides translation alone and is
 //! entered by itself. A method is added by its folder, which implements [`Decide`], and by one line in [`REGISTRY`].
 
+pub mod certified;
 pub mod correction;
 pub mod descent;
 mod door;
@@ -38,6 +40,7 @@ pub static REGISTRY: &[Entry] = &[
     flood::meyer::door::ENTRY,
     partition::door::ENTRY,
     kinematic::door::ENTRY,
+    certified::door::ENTRY,
     #[cfg(feature = "drop")]
     drop::door::ENTRY,
 ];

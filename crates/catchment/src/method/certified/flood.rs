@@ -1,0 +1,173 @@
+//! What follows from heights alone: a motion cannot climb.
+//!
+//! ```text
+//!   h │      pass ╲ exit        from the seat, boxes are taken in the order of the lowest way to them by floors:
+//!     │ ╲     ╱‾‾‾╲╱            level   the first box that may let a motion out or let it rest ends it
+//!     │  ╲╱╲ ╱                  yes     taken before, roof below the level
+//!     │   seat                  no      roof below the lowest way to the seat, or to what is not known
+//! ```
+//!
+//! *Yes*: on its way down such a motion stays among boxes taken before, none of which lets it rest outside the terminal boxes, whose every rest
+//! is in the seat, so it docks. *No*: the part of the poses below the motion's height that it is in holds neither the seat nor a border.
+//! Both hold in any dimension, and whatever the motion's metric.
+//!
+//! The same two walks bound the **retention** of the seat: by floors from below, by roofs, to what certainly does not come back, from above.
+
+use super::placed::PoseBox;
+use super::tree::{Cell, Label, Tree};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// A box that can be come to at a height; the lowest is the greatest, then the smaller number.
+#[derive(PartialEq)]
+struct Reached {
+    height: f64,
+    number: usize,
+}
+
+impl Eq for Reached {}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.height.total_cmp(&self.height).then(other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Takes boxes in the order of the lowest way to them from `sources`: told each with the height of its way, `visit` says whether to go on
+/// from it, or to end.
+fn walk(
+    tree: &Tree,
+    sources: impl Iterator<Item = usize>,
+    height: impl Fn(&Cell) -> Option<f64>,
+    mut visit: impl FnMut(usize, f64) -> Onward,
+) {
+    let mut open = BinaryHeap::new();
+    let mut seen = vec![false; tree.cells.len()];
+    let mut push = |open: &mut BinaryHeap<Reached>, number: usize, from: f64| {
+        if !seen[number]
+            && let Some(own) = height(&tree.cells[number])
+        {
+            seen[number] = true;
+            open.push(Reached { height: own.max(from), number });
+        }
+    };
+    sources.for_each(|number| push(&mut open, number, f64::NEG_INFINITY));
+    while let Some(Reached { height, number }) = open.pop() {
+        match visit(number, height) {
+            Onward::Go => tree.neighbours(&tree.cells[number], |next| push(&mut open, next, height)),
+            Onward::Stay => {}
+            Onward::End => return,
+        }
+    }
+}
+
+/// Whether to go on from a box.
+enum Onward {
+    Go,
+    Stay,
+    End,
+}
+
+/// Where all that rests is docked, and what belongs to the seat.
+#[derive(Clone, Copy)]
+pub(super) struct Seat<'a> {
+    /// Deepest that anything rests that is docked, and the level of the seat, in D.
+    pub(super) mated: f64,
+    pub(super) level: f64,
+    /// Whether a box is one in which every rest at the seat's level or below is docked.
+    pub(super) holds: &'a dyn Fn(&PoseBox) -> bool,
+    /// Whether a box may be part of what counts as connected with a mated pose.
+    pub(super) meets: &'a dyn Fn(&PoseBox) -> bool,
+}
+
+impl Seat<'_> {
+    /// The boxes that may be connected with a mated pose.
+    fn boxes(&self, tree: &Tree) -> Vec<usize> {
+        tree.leaves().filter(|(_, cell)| (self.meets)(&tree.poses(cell))).map(|(number, _)| number).collect()
+    }
+
+    /// Whether some motion may rest in a box without having docked.
+    fn lets_rest(&self, tree: &Tree, cell: &Cell) -> bool {
+        let roof = cell.height.map_or(f64::INFINITY, |height| height.up);
+        !(cell.restless || roof <= self.level && (self.holds)(&tree.poses(cell)))
+    }
+}
+
+/// Whether a motion may get out of a box by more than a slope: over an end of h, under a wall, or out of all that was looked at.
+fn leaks(tree: &Tree, cell: &Cell) -> bool {
+    cell.sudden || cell.walled || tree.is_at_border(cell)
+}
+
+/// What heights say.
+#[derive(Debug, Clone)]
+pub(super) struct Flood {
+    /// Below it the seat's part docks, in D.
+    pub(super) level: f64,
+    /// Boxes that may let rest or out below the lowest certain exit: smaller ones may not.
+    pub(super) blocking: Vec<usize>,
+}
+
+/// Most boxes in the way that are told at once.
+const MOST_BLOCKING: usize = 2048;
+
+/// Labels what heights decide, and says what is in the way.
+pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>) -> Flood {
+    let floor = |cell: &Cell| cell.height.map(|height| height.lo);
+    let near = seat.boxes(tree);
+    let (mut level, mut inside, mut blocking) = (None, Vec::new(), Vec::new());
+    walk(tree, near.iter().copied(), floor, |number, height| {
+        let cell = &tree.cells[number];
+        let (rests, leaks) = (seat.lets_rest(tree, cell), leaks(tree, cell));
+        if rests || leaks {
+            level = level.or(Some(height));
+            blocking.push(number);
+        } else if level.is_none() {
+            inside.push(number);
+        }
+        let certain = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
+        if certain || blocking.len() >= MOST_BLOCKING { Onward::End } else { Onward::Go }
+    });
+    let level = level.unwrap_or(f64::INFINITY);
+    for number in inside {
+        let cell = &mut tree.cells[number];
+        if cell.height.is_some_and(|height| height.up < level) {
+            cell.label = Some(Label::Yes);
+        }
+    }
+    // The other way round: from the seat and from all that is not known, which may lead to it.
+    let unknown = tree.leaves().filter(|(_, cell)| cell.walled || tree.is_at_border(cell)).map(|(k, _)| k);
+    let sources: Vec<usize> = near.iter().copied().chain(unknown).collect();
+    let mut way = vec![f64::INFINITY; tree.cells.len()];
+    walk(tree, sources.into_iter(), floor, |number, height| {
+        way[number] = height;
+        Onward::Go
+    });
+    let lone = |cell: &Cell, way: f64| cell.height.is_none_or(|height| height.up < way && way > seat.level);
+    for (cell, way) in tree.cells.iter_mut().zip(way) {
+        if cell.label.is_none() && !cell.is_split() && lone(cell, way) {
+            cell.label = Some(if cell.height.is_none() || cell.sudden { Label::Leaves } else { Label::Jams });
+        }
+    }
+    Flood { level, blocking }
+}
+
+/// How high a half that is in the seat must be lifted before it can leave, above the mated height: at least and at most, in D.
+pub(super) fn retention(tree: &Tree, seat: &Seat<'_>, level: f64) -> [f64; 2] {
+    let mut out = f64::INFINITY;
+    walk(tree, seat.boxes(tree).into_iter(), |cell| Some(cell.height.map_or(f64::NEG_INFINITY, |height| height.up)), |number, height| {
+        match tree.cells[number].label {
+            Some(Label::Jams | Label::Leaves) => {
+                out = height;
+                Onward::End
+            }
+            _ => Onward::Go,
+        }
+    });
+    [(level - seat.mated).max(0.0), out - seat.mated]
+}

@@ -1,0 +1,312 @@
+//! What is certain: poses that dock and poses that do not, by bounds that hold for whole boxes of poses.
+//!
+//! ```text
+//!   bodies ──▶ survey of a box ──▶ tree of boxes ──▶ flood   a motion cannot climb          ──▶ yes · no · undecided
+//!   (features)  floor ≤ h ≤ roof    halved where      tube    where motions of a box can go      volumes, retention
+//!               all contacts, jumps  undecided
+//! ```
+//!
+//! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`, `touch`, `survey`). Two
+//! arguments make labels of them: energy (`flood`: the part of the poses below a height that a motion is in cannot be left), in any
+//! dimension, and direction (`tube`: a bundle that holds all motions of a box until it lies in labelled boxes), where at most one rotation is
+//! free. Capture basins by intervals: Lhommeau, Jaulin, Hardouin 2007; the neighbourhood of the seat in which nothing else rests: after Delanoue 2015;
+//! how high a caged body must be lifted: energy-bounded caging.
+//!
+//! Certain means: of exact frictionless motion of the halves as drawn, up to what exact heights are rounded by (10⁻⁹ D). A certificate
+//! speaks of almost every motion that a box holds: which way a half goes that starts exactly on a ridge is nobody's promise.
+//!
+//! Not promised: that the undecided share is small. It shrinks with the boxes; seats with play, tight fits, halves that meet walls and more
+//! than one free rotation leave more of it. Lengths in D, angles in radians.
+
+mod body;
+pub(super) mod door;
+mod flood;
+mod interval;
+mod placed;
+mod survey;
+#[cfg(test)]
+mod tests;
+mod touch;
+mod tree;
+
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::contact::{Nearby, Pair, SEAT_CORE};
+use crate::exec::{Cancelled, Exec};
+use crate::landscape::Grid;
+use crate::pose::Dof;
+use flood::{Seat, flood, retention};
+use interval::Interval;
+use placed::{Bodies, PoseBox};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use tree::{Cell, Label, Tree};
+
+/// What changes the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Undecided share of the error box at which it is enough, in [0, 1].
+    pub gap: f64,
+    /// Boxes that are looked at at most; then what is undecided stays so.
+    pub boxes: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { gap: 0.02, boxes: 200_000 }
+    }
+}
+
+/// Why nothing can be certified.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CertifiedError {
+    /// No share of a box.
+    #[error("an undecided share of {gap} is none: give a number from 0 to 1")]
+    Gap {
+        /// What was given.
+        gap: f64,
+    },
+    /// Too few boxes to begin with.
+    #[error("{boxes} boxes are too few to begin with: give at least {LEAST_BOXES}")]
+    Boxes {
+        /// What was given.
+        boxes: usize,
+    },
+    /// So many features that all their meetings cannot be listed.
+    #[error("the halves have {meetings} pairs of features that may meet, more than the {MOST_MEETINGS} that are looked at for every box")]
+    Large {
+        /// How many.
+        meetings: usize,
+    },
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Boxes at least.
+pub const LEAST_BOXES: usize = 64;
+/// Pairs of features at most: each is looked at over the largest boxes.
+pub const MOST_MEETINGS: usize = 200_000;
+
+/// What is certain of an error box.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Certificate {
+    /// Share of the error box whose every pose docks.
+    pub yes: f64,
+    /// Share whose no pose docks.
+    pub no: f64,
+    /// Share that is left open.
+    pub undecided: f64,
+    /// Measures of the three, Dᵃ·radᵇ.
+    pub measures: [f64; 3],
+    /// How high a seated half must be lifted before it can leave, above the mated height, in D: at least. Also the energy that it takes per
+    /// unit of the force that holds it.
+    pub retention_at_least: f64,
+    /// At most; nothing where no way out was found.
+    pub retention_at_most: Option<f64>,
+    /// Boxes that were looked at.
+    pub boxes: usize,
+}
+
+/// All boxes with their labels.
+#[derive(Debug, Clone)]
+pub(crate) struct Certified {
+    tree: Tree,
+    pub(crate) certificate: Certificate,
+}
+
+/// Levels of boxes that are looked at anyway, for one to five free errors.
+const FIRST_LEVEL: [u8; 5] = [8, 6, 4, 3, 2];
+/// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
+const FINEST: f64 = 1e-4;
+/// Boxes that are halved at once, at least, and as a part of all.
+const AT_ONCE: usize = 1024;
+const PART: usize = 8;
+
+/// Certifies the error box of a pair.
+///
+/// # Errors
+/// See [`CertifiedError`].
+pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<Certified, CertifiedError> {
+    let bodies = Bodies::of(pair);
+    if bodies.meetings.len() > MOST_MEETINGS {
+        return Err(CertifiedError::Large { meetings: bodies.meetings.len() });
+    }
+    let alignment = &pair.alignment;
+    let mut tree = Tree::over(alignment, alignment.free.rotations() <= 1, &bodies);
+    for _ in 0..FIRST_LEVEL[tree.axes.len().clamp(1, 5) - 1] {
+        let all: Vec<usize> = tree.leaves().map(|(number, _)| number).collect();
+        halve(&mut tree, &all, pair, &bodies, exec)?;
+    }
+    let sits = SeatBoxes { pair, rho: alignment.rotation_length };
+    let (holds, meets) = (|poses: &PoseBox| sits.holds(poses), |poses: &PoseBox| sits.meets(poses));
+    let mated = pair.mated_height();
+    let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, meets: &meets };
+    loop {
+        let flooded = flood(&mut tree, &seat);
+        let gap = tree.undecided();
+        exec.report(tree.cells.len() as f64 / settings.boxes as f64, "boxes");
+        let found = (gap <= settings.gap, tree.cells.len() >= settings.boxes);
+        let chosen = chosen(&tree, &flooded.blocking, &bodies, settings);
+        if found.0 || found.1 || chosen.is_empty() {
+            let [at_least, at_most] = retention(&tree, &seat, flooded.level);
+            let certificate = tree.certificate(at_least, at_most);
+            return Ok(Certified { tree, certificate });
+        }
+        halve(&mut tree, &chosen, pair, &bodies, exec)?;
+    }
+}
+
+/// Which boxes to halve: those in the way of the seat's own part, and the largest undecided ones.
+fn chosen(tree: &Tree, blocking: &[usize], bodies: &Bodies, settings: &Settings) -> Vec<usize> {
+    let most = (tree.cells.len() / PART).max(AT_ONCE);
+    let is_fine = |cell: &Cell| {
+        let poses = tree.poses(cell);
+        tree.axes.iter().all(|dof| {
+            let unit = if dof.is_rotation() { bodies.rho } else { 1.0 };
+            unit * poses[dof.index()].width() <= FINEST
+        })
+    };
+    let room = settings.boxes.saturating_sub(tree.cells.len()) >> tree.axes.len();
+    let blocking = blocking.iter().copied().filter(|number| !is_fine(&tree.cells[*number]));
+    let mut open: Vec<(u8, usize)> = tree
+        .leaves()
+        .filter(|(_, cell)| cell.label.is_none() && tree.is_asked(cell) && cell.level < tree::DEEPEST)
+        .map(|(number, cell)| (cell.level, number))
+        .collect();
+    open.sort_unstable();
+    let mut chosen: Vec<usize> = blocking.chain(open.into_iter().map(|(_, number)| number).take(most)).collect();
+    chosen.truncate(room.max(1));
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
+}
+
+/// Halves leaves, in parallel; their parts are in the order of the leaves.
+fn halve(tree: &mut Tree, numbers: &[usize], pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
+    /// Poses of one box are about so near each other: lists of what may touch are kept so long.
+    const REACH: f64 = 0.02;
+    let parts: Vec<Vec<Cell>> = exec.install(|| {
+        let look = |nearby: &mut Nearby<'_>, number: &usize| {
+            exec.check()?;
+            Ok(tree.parts(*number, bodies, nearby))
+        };
+        numbers.par_iter().map_init(|| pair.about(REACH), look).collect::<Result<_, Cancelled>>()
+    })?;
+    for (number, parts) in numbers.iter().zip(parts) {
+        tree.split(*number, parts);
+    }
+    Ok(())
+}
+
+/// Which boxes belong to the seat.
+struct SeatBoxes<'a> {
+    pair: &'a Pair,
+    rho: f64,
+}
+
+impl SeatBoxes<'_> {
+    /// Errors against the mated pose that is nearest to the middle of a box.
+    fn off(&self, poses: &PoseBox) -> PoseBox {
+        let mut off = *poses;
+        let yaw = off[Dof::Yaw.index()];
+        let nearest = self.pair.alignment.nearest_yaw(yaw.middle());
+        off[Dof::Yaw.index()] = (yaw - Interval::thin(nearest)).widened(4.0 * f64::EPSILON * nearest.abs());
+        off.each_mut().iter_mut().skip(2).for_each(|angle| **angle = **angle * self.rho);
+        off
+    }
+
+    /// Whether all poses of a box are so near a mated one that they count as connected with it.
+    fn holds(&self, poses: &PoseBox) -> bool {
+        let square = |part: Interval| part.lo.abs().max(part.up.abs()).powi(2);
+        self.off(poses).into_iter().map(square).sum::<f64>() <= (SEAT_CORE * (1.0 - 1e-9)).powi(2)
+    }
+
+    /// Whether some may be.
+    fn meets(&self, poses: &PoseBox) -> bool {
+        self.off(poses).into_iter().all(|part| part.meets(Interval::new(-SEAT_CORE, SEAT_CORE)))
+    }
+}
+
+impl Certified {
+    /// The certain outcome of every cell of a grid: of all of its poses.
+    pub(crate) fn acceptance(&self, grid: &Grid, exec: &Exec) -> Result<Acceptance, Cancelled> {
+        let outcome = |index: usize| {
+            exec.check()?;
+            Ok(self.outcome(grid, index))
+        };
+        let outcomes: Vec<Outcome> =
+            exec.install(|| (0..grid.len()).into_par_iter().map(outcome).collect::<Result<_, Cancelled>>())?;
+        let undecided = outcomes.iter().filter(|o| **o == Outcome::Undecided).count();
+        let note = format!(
+            "{undecided} of {} cells hold poses that are not certain; docking is certain in the others that count as aligned",
+            outcomes.len()
+        );
+        let warnings = if undecided > 0 { vec![Warning::Note { text: note }] } else { Vec::new() };
+        Ok(Acceptance { method: door::INFO.name, domain: Domain::Grid(grid.clone()), outcomes, warnings })
+    }
+
+    fn outcome(&self, grid: &Grid, index: usize) -> Outcome {
+        let mut poses = [Interval::ZERO; 5];
+        for (axis, k) in grid.axes.iter().zip(grid.cell(index)) {
+            let at = |k: usize| axis.lo + axis.step() * k as f64;
+            poses[axis.dof.index()] = Interval::new(at(k), at(k + 1));
+        }
+        match self.tree.label_over(&poses) {
+            Some(Label::Yes) => Outcome::Aligned,
+            Some(Label::Jams) => Outcome::Jammed,
+            Some(Label::Leaves) => Outcome::Missed,
+            None => Outcome::Undecided,
+        }
+    }
+}
+
+impl Tree {
+    /// Share of the error box without a label.
+    fn undecided(&self) -> f64 {
+        let open = self.leaves().filter(|(_, cell)| cell.label.is_none() && self.is_asked(cell));
+        open.map(|(_, cell)| self.share(cell)).sum()
+    }
+
+    /// The label that holds all over a box of poses; of two ways not to dock that of any.
+    fn label_over(&self, poses: &PoseBox) -> Option<Label> {
+        let mut label = None;
+        let span = self.inner_places(poses)?;
+        let one = self.visit(&span, |_, cell| {
+            let docks = |label: Label| label == Label::Yes;
+            let agrees = cell.label.is_some() && label.is_none_or(|l| Some(docks(l)) == cell.label.map(docks));
+            label = label.or(cell.label);
+            agrees
+        });
+        label.filter(|_| one)
+    }
+
+    fn certificate(&self, at_least: f64, at_most: f64) -> Certificate {
+        let [mut yes, mut no] = [0.0; 2];
+        for (_, cell) in self.leaves().filter(|(_, cell)| self.is_asked(cell)) {
+            match cell.label {
+                Some(Label::Yes) => yes += self.share(cell),
+                Some(Label::Jams | Label::Leaves) => no += self.share(cell),
+                None => {}
+            }
+        }
+        let undecided = (1.0 - yes - no).max(0.0);
+        let measure: f64 = self
+            .axes
+            .iter()
+            .map(|dof| {
+                let ([a, b], root) = (self.errors[dof.index()], self.root[dof.index()]);
+                root.width() * f64::from(b - a) / f64::from(tree::WHOLE)
+            })
+            .product();
+        Certificate {
+            yes,
+            no,
+            undecided,
+            measures: [yes, no, undecided].map(|share| share * measure),
+            retention_at_least: at_least,
+            retention_at_most: at_most.is_finite().then_some(at_most),
+            boxes: self.cells.len(),
+        }
+    }
+}

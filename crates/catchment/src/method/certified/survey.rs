@@ -1,0 +1,277 @@
+//! What is certain of the height over a box of poses.
+//!
+//! ```text
+//!     h │    ╱‾‾ roof          touches    all that may carry somewhere in the box
+//!       │  ╱╲│╱                floor      no pose of it that touches at all is lower: h(m) and the slopes of all touches,
+//!       │ ╱  m                            mean value, or the lowest touch
+//!       │╱‾‾ floor             sudden     h may jump: the rims of both halves may meet from outside, at the floor or above
+//!       └──[────]──── q        restless   one direction opens all touches at once: nothing rests in the box
+//! ```
+//!
+//! h jumps only where in plan view a corner of the rim of one half comes to the rim of the other from outside. Where that is ruled out a
+//! motion stays on h: it neither falls nor slides under anything. Touches below the floor carry nothing and are left out, which may raise the
+//! floor. What the exact heights are rounded by is [`ROUNDING`].
+//!
+//! Not promised: that a box is called continuous or restless where it is; smaller ones are.
+
+use super::body::{Body, Corner, Ridge};
+use super::interval::{Interval, Vector, dot, perp, thin};
+use super::placed::{Bodies, Placed, PoseBox, middle};
+use super::touch::{Touch, Touching, plan};
+use crate::contact::Nearby;
+use crate::pose::{Dof, ROTATIONS};
+
+/// What an exact height may be wrong by, in D: rounding, and features that support within 4·10⁻⁶.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// What is certain over a box.
+#[derive(Debug, Clone)]
+pub(super) struct Survey {
+    /// All that may carry.
+    pub(super) touches: Vec<Touch>,
+    /// No pose of the box at which the halves touch is lower than `lo` or higher than `up`, in D. Nothing touches where this is `None`.
+    pub(super) height: Option<Interval>,
+    /// Whether h may jump in the box, or end.
+    pub(super) sudden: bool,
+    /// Whether a rim may be come to from outside by a motion in the box: it may meet a wall, or slide under something.
+    pub(super) walled: bool,
+    /// A direction, in errors, that opens all touches; `None` where the half may rest.
+    pub(super) downhill: Option<[f64; 5]>,
+}
+
+impl Survey {
+    /// Looks at a box; only the meetings `among` may carry in it.
+    pub(super) fn of(bodies: &Bodies, poses: &PoseBox, among: &[u32], nearby: &mut Nearby<'_>) -> Self {
+        let touching = Touching::new(bodies, poses);
+        let mut touches: Vec<Touch> = among.iter().filter_map(|number| touching.touch(*number)).collect();
+        let Some(mut height) = span(&touches) else {
+            return Self { touches, height: None, sudden: false, walled: false, downhill: None };
+        };
+        let mut rims = None;
+        let mut sudden = true;
+        if let Some(mid) = nearby.height(&middle(poses)) {
+            let mid = Interval::thin(mid).widened(ROUNDING);
+            // Each time what cannot carry is left out, and the bounds hold for the rest.
+            for _ in 0..2 {
+                let Some(mean) = mean_value(bodies, poses, mid, &touches) else { break };
+                let rims = rims.get_or_insert_with(|| Rims::meeting(bodies, &touching.over));
+                // Before h could jump it would have to be as high as what it jumps from or to.
+                if rims.iter().any(|rim| rim.lift.up >= mean.lo) {
+                    break;
+                }
+                sudden = false;
+                let Some(both) = height.and(mean) else { break };
+                height = both;
+                touches.retain(|touch| touch.height.up >= height.lo);
+            }
+        }
+        let rims = if sudden { rims.unwrap_or_else(|| Rims::meeting(bodies, &touching.over)) } else { Vec::new() };
+        let pushes: Vec<PoseBox> = touches.iter().map(|t| t.push(bodies, &touching.over)).collect();
+        let inwards = |rim: &Meet| {
+            rim.lift.up >= height.lo && (bodies.free.rotations() > 1 || pushes.iter().any(|push| rim.closes(push)))
+        };
+        let walled = rims.iter().any(inwards);
+        let downhill = downhill(bodies, &touches);
+        Self { touches, height: Some(height), sudden, walled, downhill }
+    }
+
+    /// The numbers of all that may carry.
+    pub(super) fn numbers(&self) -> Box<[u32]> {
+        self.touches.iter().map(|touch| touch.number).collect()
+    }
+}
+
+/// All heights at which something may carry.
+fn span(touches: &[Touch]) -> Option<Interval> {
+    touches.iter().map(|touch| touch.height).reduce(Interval::hull)
+}
+
+/// Heights of a continuous h from that in the middle: along the way to any pose its slope is one of the touches', or between some.
+fn mean_value(bodies: &Bodies, poses: &PoseBox, mid: Interval, touches: &[Touch]) -> Option<Interval> {
+    let mut change: Option<Interval> = None;
+    for touch in touches {
+        let mut own = Interval::ZERO;
+        for dof in bodies.free.iter() {
+            let errors = poses[dof.index()];
+            own = own + touch.slope(dof)? * (errors - Interval::thin(errors.middle()));
+        }
+        change = Some(change.map_or(own, |all| all.hull(own)));
+    }
+    change.map(|change| mid + change)
+}
+
+/// A corner of one half's rim that may be at the rim of the other.
+struct Meet {
+    /// At this height of the centre of rotation.
+    lift: Interval,
+    /// What the distance between them in plan view, outwards, changes by per unit of each error.
+    apart: PoseBox,
+}
+
+impl Meet {
+    /// Whether the rims may come closer by a push.
+    fn closes(&self, push: &PoseBox) -> bool {
+        let rate = (0..5).map(|k| self.apart[k] * push[k]).fold(Interval::ZERO, |sum, part| sum + part);
+        rate.lo < 0.0
+    }
+}
+
+/// Rims: the edges at which what faces the other half ends in plan view.
+struct Rims;
+
+/// A rim in plan view.
+struct Rim<'a> {
+    ridge: &'a Ridge,
+    ends: [[Interval; 2]; 2],
+    /// From its first end to its second, unit in space.
+    along: [Interval; 2],
+    /// Whether outside may be to its right, and whether to its left.
+    sides: [bool; 2],
+}
+
+/// What counts as facing neither up nor down, and as nearer in plan view than rounding.
+const LEVEL: f64 = 1e-9;
+
+impl Rims {
+    /// All corners that may come to a rim from outside.
+    fn meeting(bodies: &Bodies, at: &Placed) -> Vec<Meet> {
+        let Bodies { fixed, moving, .. } = bodies;
+        let own = |ridge: &Ridge| ridge.normals.map(|n| Interval::thin(n.z).widened(LEVEL));
+        let its = |ridge: &Ridge| ridge.normals.map(|n| -dot(&at.rows[2], &thin(n)).widened(LEVEL));
+        let rims = |body: &'_ Body, rises: &dyn Fn(&Ridge) -> [Interval; 2]| -> Vec<Option<[bool; 2]>> {
+            body.ridges.iter().map(|ridge| sides(rises(ridge))).collect()
+        };
+        let (own_sides, its_sides) = (rims(fixed, &own), rims(moving, &its));
+        let mut found = Vec::new();
+        let turned = |v| at.turn(v);
+        // Corners of the moving half at rims of the fixed one.
+        for (ridge, sides) in fixed.ridges.iter().zip(&own_sides).filter_map(|(r, s)| Some((r, (*s)?))) {
+            let [a, b] = ridge.ends.map(|k| fixed.at(k));
+            let along = [Interval::thin(ridge.along.x), Interval::thin(ridge.along.y)];
+            let rim = Rim { ridge, ends: [plan(a), plan(b)], along, sides };
+            let level = Interval::new(a.z.min(b.z), a.z.max(b.z));
+            for corner in moving.corners.iter().filter(|c| is_on_rim(c, &its_sides)) {
+                let k = corner.vertex as usize;
+                let spokes = rim_spokes(moving, corner, &its_sides).map(&turned);
+                let lift = level - at.turned[k][2];
+                rim.meet(at.lateral[k], spokes, |outward| {
+                    found.push(Meet { lift, apart: moved(bodies, at, k, outward) });
+                });
+            }
+        }
+        // Corners of the fixed half at rims of the moving one. Seen from below its sides are the other way round.
+        for (ridge, sides) in moving.ridges.iter().zip(&its_sides).filter_map(|(r, s)| Some((r, (*s)?))) {
+            let [p, q] = ridge.ends.map(|k| k as usize);
+            let along = at.turn(ridge.along);
+            let [right, left] = sides;
+            let rim = Rim {
+                ridge,
+                ends: [at.lateral[p], at.lateral[q]],
+                along: [along[0], along[1]],
+                sides: [left, right],
+            };
+            let level = at.turned[p][2].hull(at.turned[q][2]);
+            for corner in fixed.corners.iter().filter(|c| is_on_rim(c, &own_sides)) {
+                let point = fixed.at(corner.vertex);
+                let spokes = rim_spokes(fixed, corner, &own_sides).map(thin);
+                let lift = Interval::thin(point.z) - level;
+                rim.meet(plan(point), spokes, |outward| {
+                    // As the rim moves inwards, the corner comes out: either end tells, and all between.
+                    let ends = rim.ridge.ends.map(|k| moved(bodies, at, k as usize, outward));
+                    let apart = [0, 1, 2, 3, 4].map(|k| -ends[0][k].hull(ends[1][k]));
+                    found.push(Meet { lift, apart });
+                });
+            }
+        }
+        found
+    }
+}
+
+impl Rim<'_> {
+    /// Tells the outward normals by which a corner with these spokes of its own rim may come to this one from outside.
+    fn meet(&self, corner: [Interval; 2], spokes: impl Iterator<Item = Vector> + Clone, mut tell: impl FnMut([Interval; 2])) {
+        let [a, b] = self.ends;
+        let near = |axis: usize| corner[axis].meets(a[axis].hull(b[axis]).widened(LEVEL));
+        if !near(0) || !near(1) {
+            return;
+        }
+        let beside = perp(self.along, [corner[0] - a[0], corner[1] - a[1]]);
+        if beside.lo > LEVEL || beside.up < -LEVEL {
+            return;
+        }
+        let right = [self.along[1], -self.along[0]];
+        for (outward, side) in [right, right.map(|x| -x)].into_iter().zip(self.sides) {
+            // One that leads inwards for certain: the halves overlap in plan view, and go on doing so.
+            let inside = |s: Vector| (s[0] * outward[0] + s[1] * outward[1]).up < -LEVEL;
+            if side && !spokes.clone().any(inside) {
+                tell(outward);
+            }
+        }
+    }
+}
+
+/// On which sides, right and left, the outside of a ridge may be whose facets, left and right, face the other half by so much; nothing
+/// where it is no rim.
+fn sides([left, right]: [Interval; 2]) -> Option<[bool; 2]> {
+    let ends = |facing: Interval, other: Interval| facing.up > 0.0 && other.lo <= LEVEL;
+    let sides = [ends(left, right), ends(right, left)];
+    (sides[0] || sides[1]).then_some(sides)
+}
+
+fn is_on_rim(corner: &Corner, sides: &[Option<[bool; 2]>]) -> bool {
+    corner.ridges.iter().any(|ridge| sides[*ridge as usize].is_some())
+}
+
+/// Where rims lead to from one of their corners.
+fn rim_spokes<'a>(
+    body: &'a Body,
+    corner: &'a Corner,
+    sides: &'a [Option<[bool; 2]>],
+) -> impl Iterator<Item = glam::DVec3> + Clone + 'a {
+    let rims = corner.ridges.iter().filter(|ridge| sides[**ridge as usize].is_some());
+    rims.map(move |ridge| {
+        let ridge = &body.ridges[*ridge as usize];
+        if ridge.ends[0] == corner.vertex { ridge.along } else { -ridge.along }
+    })
+}
+
+/// What a moving vertex goes outward by, per unit of each error.
+fn moved(bodies: &Bodies, at: &Placed, vertex: usize, outward: [Interval; 2]) -> PoseBox {
+    let normal = [outward[0], outward[1], Interval::ZERO];
+    let torque = super::interval::cross(&at.turned[vertex], &normal);
+    at.gap_rates(bodies, &normal, &torque)
+}
+
+/// A direction that opens every touch for certain: the shortest vector of the hull of their mean rates, tried on all of their bounds.
+fn downhill(bodies: &Bodies, touches: &[Touch]) -> Option<[f64; 5]> {
+    /// Steps of the search for it: it need not be exact.
+    const STEPS: usize = 60;
+    let metric: [f64; 5] = Dof::ALL.map(|dof| if ROTATIONS.contains(&dof) { bodies.rho.powi(-2) } else { 1.0 });
+    let mean = |touch: &Touch| touch.rates.map(Interval::middle);
+    let inner = |a: &[f64; 5], b: &[f64; 5]| (0..5).map(|k| a[k] * b[k] * metric[k]).sum::<f64>();
+    let rates: Vec<[f64; 5]> = touches
+        .iter()
+        .map(|touch| {
+            let mean = mean(touch);
+            let size = inner(&mean, &mean).sqrt().max(f64::MIN_POSITIVE);
+            mean.map(|x| x / size)
+        })
+        .collect();
+    let mut at = *rates.first()?;
+    for _ in 0..STEPS {
+        let least = rates.iter().min_by(|a, b| inner(&at, a).total_cmp(&inner(&at, b)))?;
+        let way: [f64; 5] = std::array::from_fn(|k| at[k] - least[k]);
+        let length = inner(&way, &way);
+        if length <= 0.0 {
+            break;
+        }
+        let share = (inner(&at, &way) / length).clamp(0.0, 1.0);
+        at = std::array::from_fn(|k| at[k] - share * way[k]);
+    }
+    let direction: [f64; 5] = std::array::from_fn(|k| at[k] * metric[k]);
+    let opens = |touch: &Touch| {
+        let parts = (0..5).map(|k| touch.rates[k] * direction[k]);
+        parts.fold(Interval::ZERO, |sum, part| sum + part).lo > 0.0
+    };
+    touches.iter().all(opens).then_some(direction)
+}

@@ -1,0 +1,285 @@
+//! Boxes of pose errors, each halved along all free errors where more is to be known.
+//!
+//! ```text
+//!   ┌───────────────┐   root: the error box, or twice that per error, so that motion can be followed beyond it;
+//!   │   ┌───┬─┬─┐   │         the error box is then the middle quarter, and its border one of boxes
+//!   │   │   ├─┼─┤   │   leaf: a box without parts, with what is certain over it
+//!   │   ├───┼─┴─┤   │   places are whole numbers in units of the smallest box, half open: [corner, corner + size)
+//!   │   └───┴───┘   │
+//!   └───────────────┘
+//! ```
+//!
+//! A root that goes once around a rotation closes on itself.
+
+use super::interval::Interval;
+use super::placed::{Bodies, PoseBox};
+use super::survey::Survey;
+use crate::contact::Nearby;
+use crate::design::Alignment;
+use crate::pose::Dof;
+use std::f64::consts::PI;
+
+/// How often the root may be halved.
+pub(super) const DEEPEST: u8 = 20;
+/// The root's size in smallest boxes.
+pub(super) const WHOLE: u32 = 1 << DEEPEST;
+
+/// What is certain of all motions that begin in a box, on the height of first contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Label {
+    /// They dock.
+    Yes,
+    /// None docks: each comes to rest elsewhere, in a pit that the seat is no part of.
+    Jams,
+    /// None docks: each passes by or slides off, or comes to rest elsewhere on its way.
+    Leaves,
+}
+
+/// By what borders of a grid's cells may be rounded.
+const ROUNDING: f64 = 1e-12;
+
+/// Numbers of a box per axis, lowest and beyond the highest.
+pub(super) type Span = [[u32; 2]; 5];
+
+/// A box.
+#[derive(Debug, Clone)]
+pub(super) struct Cell {
+    pub(super) corner: [u32; 5],
+    pub(super) level: u8,
+    /// Number of its first part, if it has parts.
+    parts: Option<u32>,
+    /// All that may carry in it.
+    pub(super) among: Box<[u32]>,
+    /// Heights, in D; none where nothing touches.
+    pub(super) height: Option<Interval>,
+    /// See [`Survey`].
+    pub(super) sudden: bool,
+    pub(super) walled: bool,
+    pub(super) restless: bool,
+    pub(super) label: Option<Label>,
+}
+
+impl Cell {
+    /// Whether it has parts.
+    pub(super) const fn is_split(&self) -> bool {
+        self.parts.is_some()
+    }
+}
+
+/// All boxes.
+#[derive(Debug, Clone)]
+pub(super) struct Tree {
+    /// The free errors: halved ones.
+    pub(super) axes: Vec<Dof>,
+    /// The root.
+    pub(super) root: PoseBox,
+    /// Whether an axis closes on itself.
+    pub(super) closed: [bool; 5],
+    /// The error box in the root.
+    pub(super) errors: Span,
+    pub(super) cells: Vec<Cell>,
+}
+
+impl Tree {
+    /// The root of an alignment problem; beyond the error box where `wide`.
+    pub(super) fn over(alignment: &Alignment, wide: bool, bodies: &Bodies) -> Self {
+        let axes: Vec<Dof> = alignment.free.iter().collect();
+        let mut root = [Interval::ZERO; 5];
+        let mut closed = [false; 5];
+        let mut errors = [[0, WHOLE]; 5];
+        for dof in &axes {
+            let k = dof.index();
+            let half = alignment.half_range(*dof);
+            let reach = if wide { 2.0 * half } else { half };
+            root[k] = Interval::new(-reach, reach);
+            closed[k] = dof.is_rotation() && (reach - PI).abs() <= 4.0 * f64::EPSILON * PI;
+            if wide {
+                errors[k] = [WHOLE / 4, WHOLE / 4 * 3];
+            }
+        }
+        let among = (0..bodies.meetings.len() as u32).collect();
+        let whole = Cell {
+            corner: [0; 5],
+            level: 0,
+            parts: None,
+            among,
+            height: Some(Interval::EVERYTHING),
+            sudden: true,
+            walled: true,
+            restless: false,
+            label: None,
+        };
+        Self { axes, root, closed, errors, cells: vec![whole] }
+    }
+
+    /// Size of a box of this level, in smallest boxes.
+    pub(super) const fn size(level: u8) -> u32 {
+        WHOLE >> level
+    }
+
+    /// Where a box is.
+    pub(super) fn span(&self, cell: &Cell) -> Span {
+        let size = Self::size(cell.level);
+        let mut span = [[0, WHOLE]; 5];
+        for dof in &self.axes {
+            let corner = cell.corner[dof.index()];
+            span[dof.index()] = [corner, corner + size];
+        }
+        span
+    }
+
+    /// The error at a place of an axis.
+    fn error(&self, axis: usize, place: u32) -> f64 {
+        let Interval { lo, up } = self.root[axis];
+        // Exact at quarters of a root that is symmetric about 0, and one number for both boxes that meet there.
+        lo + (up - lo) * (f64::from(place) / f64::from(WHOLE))
+    }
+
+    /// The pose errors of a box.
+    pub(super) fn poses(&self, cell: &Cell) -> PoseBox {
+        let mut poses = [Interval::ZERO; 5];
+        let span = self.span(cell);
+        for dof in &self.axes {
+            let k = dof.index();
+            poses[k] = Interval::new(self.error(k, span[k][0]), self.error(k, span[k][1]));
+        }
+        poses
+    }
+
+    /// The places that hold all of these pose errors, each within the root; nothing where one is beyond it.
+    pub(super) fn places(&self, poses: &PoseBox) -> Option<Span> {
+        let mut span = [[0, WHOLE]; 5];
+        for dof in &self.axes {
+            let k = dof.index();
+            let Interval { lo, up } = self.root[k];
+            if poses[k].lo < lo || poses[k].up > up {
+                return None;
+            }
+            let place = |error: f64| (error - lo) / (up - lo) * f64::from(WHOLE);
+            // One more either way than where rounding says they are.
+            let first = (place(poses[k].lo).floor() - 1.0).max(0.0) as u32;
+            let last = ((place(poses[k].up).ceil() + 1.0) as u32).min(WHOLE);
+            span[k] = [first, last];
+        }
+        Some(span)
+    }
+
+    /// The places strictly within these pose errors, but for rounding: what boxes that only touch them hold does not count.
+    pub(super) fn inner_places(&self, poses: &PoseBox) -> Option<Span> {
+        let within = self.axes.iter().all(|dof| {
+            let (own, root) = (poses[dof.index()], self.root[dof.index()]);
+            root.lo - ROUNDING <= own.lo && own.up <= root.up + ROUNDING
+        });
+        within.then(|| {
+            let mut span = [[0, WHOLE]; 5];
+            for dof in &self.axes {
+                let k = dof.index();
+                let Interval { lo, up } = self.root[k];
+                let place = |error: f64| (error - lo) / (up - lo) * f64::from(WHOLE);
+                let first = (place(poses[k].lo) + 1e-3).floor().max(0.0) as u32;
+                let last = (place(poses[k].up) - 1e-3).ceil() as u32;
+                span[k] = [first.min(WHOLE - 1), last.min(WHOLE)];
+            }
+            span
+        })
+    }
+
+    /// Whether a box lies in the error box.
+    pub(super) fn is_asked(&self, cell: &Cell) -> bool {
+        let span = self.span(cell);
+        self.axes.iter().all(|dof| {
+            let ([a, b], [c, d]) = (span[dof.index()], self.errors[dof.index()]);
+            c <= a && b <= d
+        })
+    }
+
+    /// Share of the error box that a box in it takes.
+    pub(super) fn share(&self, cell: &Cell) -> f64 {
+        let size = f64::from(Self::size(cell.level));
+        let errors = self.axes.iter().map(|dof| self.errors[dof.index()]);
+        errors.map(|[a, b]| size / f64::from(b - a)).product()
+    }
+
+    /// Whether a motion may leave the root from a box.
+    pub(super) fn is_at_border(&self, cell: &Cell) -> bool {
+        let span = self.span(cell);
+        self.axes.iter().any(|dof| {
+            let [a, b] = span[dof.index()];
+            !self.closed[dof.index()] && (a == 0 || b == WHOLE)
+        })
+    }
+
+    /// Every leaf, in order.
+    pub(super) fn leaves(&self) -> impl Iterator<Item = (usize, &Cell)> {
+        self.cells.iter().enumerate().filter(|(_, cell)| cell.parts.is_none())
+    }
+
+    /// Visits every leaf that shares more than a border with a span, until one says stop; whether none did.
+    pub(super) fn visit(&self, span: &Span, mut go_on: impl FnMut(usize, &Cell) -> bool) -> bool {
+        let mut stack = vec![0];
+        while let Some(number) = stack.pop() {
+            let cell = &self.cells[number];
+            let own = self.span(cell);
+            if self.axes.iter().any(|dof| {
+                let ([a, b], [c, d]) = (own[dof.index()], span[dof.index()]);
+                b <= c || d <= a
+            }) {
+                continue;
+            }
+            match cell.parts {
+                Some(first) => stack.extend((0..1usize << self.axes.len()).map(|part| first as usize + part)),
+                None if !go_on(number, cell) => return false,
+                None => {}
+            }
+        }
+        true
+    }
+
+    /// Visits every leaf that shares a face with a leaf.
+    pub(super) fn neighbours(&self, cell: &Cell, mut visit: impl FnMut(usize)) {
+        let own = self.span(cell);
+        for dof in &self.axes {
+            let k = dof.index();
+            let [a, b] = own[k];
+            let below = if a > 0 { Some(a - 1) } else { self.closed[k].then_some(WHOLE - 1) };
+            let above = if b < WHOLE { Some(b) } else { self.closed[k].then_some(0) };
+            for place in below.into_iter().chain(above) {
+                let mut face = own;
+                face[k] = [place, place + 1];
+                self.visit(&face, |number, _| {
+                    visit(number);
+                    true
+                });
+            }
+        }
+    }
+
+    /// The parts that a leaf would have, each looked at: nothing is changed.
+    pub(super) fn parts(&self, number: usize, bodies: &Bodies, nearby: &mut Nearby<'_>) -> Vec<Cell> {
+        let whole = &self.cells[number];
+        let (level, size) = (whole.level + 1, Self::size(whole.level + 1));
+        let part = |which: usize| {
+            let mut corner = whole.corner;
+            for (bit, dof) in self.axes.iter().enumerate() {
+                corner[dof.index()] += size * (which >> bit & 1) as u32;
+            }
+            let mut part = Cell { corner, level, ..whole.clone() };
+            let survey = Survey::of(bodies, &self.poses(&part), &whole.among, nearby);
+            part.among = survey.numbers();
+            part.height = survey.height;
+            part.sudden = survey.sudden;
+            part.walled = survey.walled;
+            part.restless = survey.downhill.is_some();
+            part.parts = None;
+            part
+        };
+        (0..1usize << self.axes.len()).map(part).collect()
+    }
+
+    /// Gives a leaf its parts.
+    pub(super) fn split(&mut self, number: usize, parts: Vec<Cell>) {
+        self.cells[number].parts = Some(self.cells.len() as u32);
+        self.cells[number].among = Box::default();
+        self.cells.extend(parts);
+    }
+}
