@@ -7,6 +7,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::merit::Merits;
+use crate::method::certified::Certificate;
 use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
 use crate::problem::Problem;
@@ -31,6 +32,7 @@ impl Answer {
         if let Some(partition) = &self.by_products.partition {
             report.partition = Some(PartitionReport::new(partition));
         }
+        report.certificate = self.by_products.certificate;
         if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
@@ -134,6 +136,10 @@ impl Run {
         }
         if by_products.contains(&"partition") {
             report.partition = Some(PartitionReport::default());
+        }
+        if by_products.contains(&"certificate") {
+            // Of every place a number, so that all can be asked for.
+            report.certificate = Some(Certificate { retention_at_most: Some(0.0), ..Certificate::default() });
         }
         if let Some(distribution) = &self.errors {
             report = report.with_success(&acceptance, distribution.clone(), &exec)?;

@@ -47,6 +47,9 @@ pub struct RunBody {
     pub watersheds: Option<WatershedsReport>,
     /// The polytopes behind the outcomes; null for all methods but `partition`.
     pub partition: Option<PartitionReport>,
+    /// What is certain of the error box and of the seat; null for all methods but `certified`, and in reports of versions without it.
+    #[serde(default)]
+    pub certificate: Option<Certificate>,
     /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
     #[serde(default)]
     pub seat: Option<Seating>,
@@ -263,6 +266,7 @@ impl Report {
             basins: None,
             watersheds: None,
             partition: None,
+            certificate: None,
             seat: None,
         };
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)

@@ -1,6 +1,7 @@
 //! The report as aligned text, 80 columns wide, without colour.
 
 mod basins;
+mod certificate;
 mod seat;
 
 use super::schema::{AcceptanceReport, OnaaReport, Report, ToleranceReport};
@@ -78,6 +79,10 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
             "",
             &format!("{polytopes} polytopes, {cells} cells, {parts} parts, {rests} places of rest"),
         );
+    }
+    if let Some(found) = &report.certificate {
+        text.push('\n');
+        certificate::lines(&mut text, found, report);
     }
     if !report.warnings.is_empty() {
         text.push('\n');

@@ -25,6 +25,8 @@ pub(super) struct Corner {
     pub(super) vertex: u32,
     /// Unit vectors to all of its neighbours.
     pub(super) spokes: Vec<DVec3>,
+    /// The two sides of every facet around it: where they lead, unit, and the outward normal of the facet.
+    pub(super) sides: Vec<[DVec3; 2]>,
     /// Which ridges end here.
     pub(super) ridges: Vec<u32>,
 }
@@ -56,11 +58,15 @@ impl Body {
             let first = body.vertices.len() as u32;
             let at = |k: u32| surface.vertices[k as usize];
             let mut spokes = vec![Vec::new(); surface.vertices.len()];
+            let mut sides = vec![Vec::new(); surface.vertices.len()];
             for facet in &surface.facets {
                 let n = facet.corners.len();
                 for k in 0..n {
                     let (a, b) = (facet.corners[k], facet.corners[(k + 1) % n]);
-                    spokes[a as usize].push((at(b) - at(a)).normalize_or_zero());
+                    let along = (at(b) - at(a)).normalize_or_zero();
+                    spokes[a as usize].push(along);
+                    sides[a as usize].push([along, facet.normal]);
+                    sides[b as usize].push([-along, facet.normal]);
                 }
                 let corners = facet.corners.iter().map(|k| first + k).collect();
                 body.facets.push(Facet { corners, normal: facet.normal });
@@ -75,9 +81,9 @@ impl Body {
                     normals: edge.facets.map(|f| surface.facets[f as usize].normal),
                 });
             }
-            for (vertex, (spokes, ridges)) in spokes.into_iter().zip(ridges).enumerate() {
+            for (vertex, ((spokes, sides), ridges)) in spokes.into_iter().zip(sides).zip(ridges).enumerate() {
                 if !ridges.is_empty() {
-                    body.corners.push(Corner { vertex: first + vertex as u32, spokes, ridges });
+                    body.corners.push(Corner { vertex: first + vertex as u32, spokes, sides, ridges });
                 }
             }
             body.vertices.extend(&surface.vertices);
@@ -87,11 +93,6 @@ impl Body {
 
     pub(super) fn at(&self, vertex: u32) -> DVec3 {
         self.vertices[vertex as usize]
-    }
-
-    /// How far its farthest vertex is from the approach axis, in D.
-    pub(super) fn reach(&self) -> f64 {
-        self.vertices.iter().map(|v| v.length()).fold(0.0, f64::max)
     }
 }
 

@@ -61,7 +61,6 @@ fn walk(
     while let Some(Reached { height, number }) = open.pop() {
         match visit(number, height) {
             Onward::Go => tree.neighbours(&tree.cells[number], |next| push(&mut open, next, height)),
-            Onward::Stay => {}
             Onward::End => return,
         }
     }
@@ -70,7 +69,6 @@ fn walk(
 /// Whether to go on from a box.
 enum Onward {
     Go,
-    Stay,
     End,
 }
 
@@ -114,7 +112,7 @@ pub(super) struct Flood {
 }
 
 /// Most boxes in the way that are told at once.
-const MOST_BLOCKING: usize = 2048;
+const MOST_BLOCKING: usize = 512;
 
 /// Labels what heights decide, and says what is in the way.
 pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>) -> Flood {

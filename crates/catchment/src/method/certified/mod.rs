@@ -28,6 +28,7 @@ mod survey;
 mod tests;
 mod touch;
 mod tree;
+mod tube;
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::contact::{Nearby, Pair, SEAT_CORE};
@@ -40,6 +41,7 @@ use placed::{Bodies, PoseBox};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use tree::{Cell, Label, Tree};
+use tube::Tube;
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -119,6 +121,8 @@ pub(crate) struct Certified {
 const FIRST_LEVEL: [u8; 5] = [8, 6, 4, 3, 2];
 /// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
 const FINEST: f64 = 1e-4;
+/// Rounds in which nothing but what is in the way of the seat is halved.
+const SEAT_ROUNDS: usize = 16;
 /// Boxes that are halved at once, at least, and as a part of all.
 const AT_ONCE: usize = 1024;
 const PART: usize = 8;
@@ -142,23 +146,29 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     let (holds, meets) = (|poses: &PoseBox| sits.holds(poses), |poses: &PoseBox| sits.meets(poses));
     let mated = pair.mated_height();
     let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, meets: &meets };
+    let mut round = 0;
     loop {
         let flooded = flood(&mut tree, &seat);
+        // Nowhere to lead to before.
+        if alignment.free.rotations() <= 1 && (round >= SEAT_ROUNDS || flooded.blocking.is_empty()) {
+            bundle(&mut tree, pair, &bodies, exec)?;
+        }
         let gap = tree.undecided();
         exec.report(tree.cells.len() as f64 / settings.boxes as f64, "boxes");
         let found = (gap <= settings.gap, tree.cells.len() >= settings.boxes);
-        let chosen = chosen(&tree, &flooded.blocking, &bodies, settings);
+        let chosen = chosen(&tree, &flooded.blocking, round < SEAT_ROUNDS, &bodies, settings);
         if found.0 || found.1 || chosen.is_empty() {
             let [at_least, at_most] = retention(&tree, &seat, flooded.level);
             let certificate = tree.certificate(at_least, at_most);
             return Ok(Certified { tree, certificate });
         }
         halve(&mut tree, &chosen, pair, &bodies, exec)?;
+        round += 1;
     }
 }
 
 /// Which boxes to halve: those in the way of the seat's own part, and the largest undecided ones.
-fn chosen(tree: &Tree, blocking: &[usize], bodies: &Bodies, settings: &Settings) -> Vec<usize> {
+fn chosen(tree: &Tree, blocking: &[usize], seat_first: bool, bodies: &Bodies, settings: &Settings) -> Vec<usize> {
     let most = (tree.cells.len() / PART).max(AT_ONCE);
     let is_fine = |cell: &Cell| {
         let poses = tree.poses(cell);
@@ -175,7 +185,11 @@ fn chosen(tree: &Tree, blocking: &[usize], bodies: &Bodies, settings: &Settings)
         .map(|(number, cell)| (cell.level, number))
         .collect();
     open.sort_unstable();
-    let mut chosen: Vec<usize> = blocking.chain(open.into_iter().map(|(_, number)| number).take(most)).collect();
+    // First what is in the way of the seat: nothing docks for certain before that is known.
+    let mut chosen: Vec<usize> = blocking.collect();
+    if chosen.is_empty() || !seat_first || tree.cells.len() > settings.boxes / 2 {
+        chosen.extend(open.into_iter().map(|(_, number)| number).take(most));
+    }
     chosen.truncate(room.max(1));
     chosen.sort_unstable();
     chosen.dedup();
@@ -184,8 +198,6 @@ fn chosen(tree: &Tree, blocking: &[usize], bodies: &Bodies, settings: &Settings)
 
 /// Halves leaves, in parallel; their parts are in the order of the leaves.
 fn halve(tree: &mut Tree, numbers: &[usize], pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
-    /// Poses of one box are about so near each other: lists of what may touch are kept so long.
-    const REACH: f64 = 0.02;
     let parts: Vec<Vec<Cell>> = exec.install(|| {
         let look = |nearby: &mut Nearby<'_>, number: &usize| {
             exec.check()?;
@@ -198,6 +210,27 @@ fn halve(tree: &mut Tree, numbers: &[usize], pair: &Pair, bodies: &Bodies, exec:
     }
     Ok(())
 }
+
+/// Labels the boxes all of whose motions lead to labelled ones.
+fn bundle(tree: &mut Tree, pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
+    let open = tree.leaves().filter(|(_, cell)| cell.label.is_none() && !cell.sudden && tree.is_asked(cell));
+    let open: Vec<usize> = open.map(|(number, _)| number).collect();
+    let found: Vec<Option<Label>> = exec.install(|| {
+        let tube = Tube { bodies, tree };
+        let follow = |nearby: &mut Nearby<'_>, number: &usize| {
+            exec.check()?;
+            Ok(tube.follow(&tree.cells[*number], nearby))
+        };
+        open.par_iter().map_init(|| pair.about(REACH), follow).collect::<Result<_, Cancelled>>()
+    })?;
+    for (number, label) in open.into_iter().zip(found) {
+        tree.cells[number].label = label;
+    }
+    Ok(())
+}
+
+/// Poses of one box are about so near each other: lists of what may touch are kept so long.
+const REACH: f64 = 0.02;
 
 /// Which boxes belong to the seat.
 struct SeatBoxes<'a> {
@@ -268,17 +301,9 @@ impl Tree {
         open.map(|(_, cell)| self.share(cell)).sum()
     }
 
-    /// The label that holds all over a box of poses; of two ways not to dock that of any.
+    /// The label that holds all over a box of poses.
     fn label_over(&self, poses: &PoseBox) -> Option<Label> {
-        let mut label = None;
-        let span = self.inner_places(poses)?;
-        let one = self.visit(&span, |_, cell| {
-            let docks = |label: Label| label == Label::Yes;
-            let agrees = cell.label.is_some() && label.is_none_or(|l| Some(docks(l)) == cell.label.map(docks));
-            label = label.or(cell.label);
-            agrees
-        });
-        label.filter(|_| one)
+        self.common_label(&self.inner_places(poses)?)
     }
 
     fn certificate(&self, at_least: f64, at_most: f64) -> Certificate {
@@ -308,5 +333,13 @@ impl Tree {
             retention_at_most: at_most.is_finite().then_some(at_most),
             boxes: self.cells.len(),
         }
+    }
+}
+
+impl Certified {
+    /// Whether all motions of the box that holds a pose dock, or none; nothing where that is open.
+    pub(crate) fn label_at(&self, error: &crate::pose::PoseError) -> Option<bool> {
+        let poses = error.to_array().map(Interval::thin);
+        self.tree.common_label(&self.tree.places(&poses)?).map(|label| label == Label::Yes)
     }
 }

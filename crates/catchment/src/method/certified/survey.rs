@@ -20,15 +20,21 @@ use super::placed::{Bodies, Placed, PoseBox, middle};
 use super::touch::{Touch, Touching, plan};
 use crate::contact::Nearby;
 use crate::pose::{Dof, ROTATIONS};
+use glam::DVec3;
 
 /// What an exact height may be wrong by, in D: rounding, and features that support within 4·10⁻⁶.
 pub(super) const ROUNDING: f64 = 1e-9;
+
+/// How often what cannot carry is left out, and the bounds taken anew.
+const LOOKS: usize = 2;
 
 /// What is certain over a box.
 #[derive(Debug, Clone)]
 pub(super) struct Survey {
     /// All that may carry.
     pub(super) touches: Vec<Touch>,
+    /// Where each pushes alone.
+    pub(super) pushes: Vec<PoseBox>,
     /// No pose of the box at which the halves touch is lower than `lo` or higher than `up`, in D. Nothing touches where this is `None`.
     pub(super) height: Option<Interval>,
     /// Whether h may jump in the box, or end.
@@ -45,14 +51,15 @@ impl Survey {
         let touching = Touching::new(bodies, poses);
         let mut touches: Vec<Touch> = among.iter().filter_map(|number| touching.touch(*number)).collect();
         let Some(mut height) = span(&touches) else {
-            return Self { touches, height: None, sudden: false, walled: false, downhill: None };
+            let pushes = Vec::new();
+            return Self { touches, pushes, height: None, sudden: false, walled: false, downhill: None };
         };
         let mut rims = None;
         let mut sudden = true;
         if let Some(mid) = nearby.height(&middle(poses)) {
             let mid = Interval::thin(mid).widened(ROUNDING);
             // Each time what cannot carry is left out, and the bounds hold for the rest.
-            for _ in 0..2 {
+            for _ in 0..LOOKS {
                 let Some(mean) = mean_value(bodies, poses, mid, &touches) else { break };
                 let rims = rims.get_or_insert_with(|| Rims::meeting(bodies, &touching.over));
                 // Before h could jump it would have to be as high as what it jumps from or to.
@@ -72,7 +79,28 @@ impl Survey {
         };
         let walled = rims.iter().any(inwards);
         let downhill = downhill(bodies, &touches);
-        Self { touches, height: Some(height), sudden, walled, downhill }
+        Self { touches, pushes, height: Some(height), sudden, walled, downhill }
+    }
+
+    /// Which of these touches may carry in a box within theirs, and how; over which h may jump or not.
+    pub(super) fn among(
+        bodies: &Bodies,
+        poses: &PoseBox,
+        touches: &[Touch],
+        sudden: bool,
+        nearby: &mut Nearby<'_>,
+    ) -> (Vec<Touch>, Vec<PoseBox>) {
+        let touching = Touching::new(bodies, poses);
+        let mut touches: Vec<Touch> = touches.iter().filter_map(|touch| touching.touch(touch.number)).collect();
+        if !sudden && let Some(mid) = nearby.height(&middle(poses)) {
+            let mid = Interval::thin(mid).widened(ROUNDING);
+            for _ in 0..LOOKS {
+                let Some(mean) = mean_value(bodies, poses, mid, &touches) else { break };
+                touches.retain(|touch| touch.height.up >= mean.lo);
+            }
+        }
+        let pushes = touches.iter().map(|touch| touch.push(bodies, &touching.over)).collect();
+        (touches, pushes)
     }
 
     /// The numbers of all that may carry.
@@ -125,8 +153,8 @@ struct Rim<'a> {
     ends: [[Interval; 2]; 2],
     /// From its first end to its second, unit in space.
     along: [Interval; 2],
-    /// Whether outside may be to its right, and whether to its left.
-    sides: [bool; 2],
+    /// The normals out of it, where outside may be to its right and where to its left.
+    outward: [Option<[Interval; 2]>; 2],
 }
 
 /// What counts as facing neither up nor down, and as nearer in plan view than rounding.
@@ -136,25 +164,27 @@ impl Rims {
     /// All corners that may come to a rim from outside.
     fn meeting(bodies: &Bodies, at: &Placed) -> Vec<Meet> {
         let Bodies { fixed, moving, .. } = bodies;
-        let own = |ridge: &Ridge| ridge.normals.map(|n| Interval::thin(n.z).widened(LEVEL));
-        let its = |ridge: &Ridge| ridge.normals.map(|n| -dot(&at.rows[2], &thin(n)).widened(LEVEL));
-        let rims = |body: &'_ Body, rises: &dyn Fn(&Ridge) -> [Interval; 2]| -> Vec<Option<[bool; 2]>> {
-            body.ridges.iter().map(|ridge| sides(rises(ridge))).collect()
+        // How far a facet with this normal faces the other half.
+        let own = |n: DVec3| Interval::thin(n.z);
+        let its = |n: DVec3| -dot(&at.rows[2], &thin(n));
+        let rims = |body: &Body, facing: &dyn Fn(DVec3) -> Interval| -> Vec<Option<[bool; 2]>> {
+            body.ridges.iter().map(|ridge| sides(ridge.normals.map(facing))).collect()
         };
         let (own_sides, its_sides) = (rims(fixed, &own), rims(moving, &its));
         let mut found = Vec::new();
-        let turned = |v| at.turn(v);
         // Corners of the moving half at rims of the fixed one.
         for (ridge, sides) in fixed.ridges.iter().zip(&own_sides).filter_map(|(r, s)| Some((r, (*s)?))) {
             let [a, b] = ridge.ends.map(|k| fixed.at(k));
             let along = [Interval::thin(ridge.along.x), Interval::thin(ridge.along.y)];
-            let rim = Rim { ridge, ends: [plan(a), plan(b)], along, sides };
+            let right = ending(along, ridge.normals.map(thin));
+            let outward = [sides[0].then_some(right[0]), sides[1].then_some(right[1])];
+            let rim = Rim { ridge, ends: [plan(a), plan(b)], along, outward };
             let level = Interval::new(a.z.min(b.z), a.z.max(b.z));
             for corner in moving.corners.iter().filter(|c| is_on_rim(c, &its_sides)) {
                 let k = corner.vertex as usize;
-                let spokes = rim_spokes(moving, corner, &its_sides).map(&turned);
+                let sheet = sheet(corner, its).map(|v| at.turn(v));
                 let lift = level - at.turned[k][2];
-                rim.meet(at.lateral[k], spokes, |outward| {
+                rim.meet(at.lateral[k], sheet, |outward| {
                     found.push(Meet { lift, apart: moved(bodies, at, k, outward) });
                 });
             }
@@ -163,19 +193,17 @@ impl Rims {
         for (ridge, sides) in moving.ridges.iter().zip(&its_sides).filter_map(|(r, s)| Some((r, (*s)?))) {
             let [p, q] = ridge.ends.map(|k| k as usize);
             let along = at.turn(ridge.along);
-            let [right, left] = sides;
-            let rim = Rim {
-                ridge,
-                ends: [at.lateral[p], at.lateral[q]],
-                along: [along[0], along[1]],
-                sides: [left, right],
-            };
+            let along = [along[0], along[1]];
+            let [left, right] = ridge.normals.map(|n| at.turn(n));
+            let out = ending(along, [right, left]);
+            let outward = [sides[1].then_some(out[0]), sides[0].then_some(out[1])];
+            let rim = Rim { ridge, ends: [at.lateral[p], at.lateral[q]], along, outward };
             let level = at.turned[p][2].hull(at.turned[q][2]);
             for corner in fixed.corners.iter().filter(|c| is_on_rim(c, &own_sides)) {
                 let point = fixed.at(corner.vertex);
-                let spokes = rim_spokes(fixed, corner, &own_sides).map(thin);
+                let sheet = sheet(corner, own).map(thin);
                 let lift = Interval::thin(point.z) - level;
-                rim.meet(plan(point), spokes, |outward| {
+                rim.meet(plan(point), sheet, |outward| {
                     // As the rim moves inwards, the corner comes out: either end tells, and all between.
                     let ends = rim.ridge.ends.map(|k| moved(bodies, at, k as usize, outward));
                     let apart = [0, 1, 2, 3, 4].map(|k| -ends[0][k].hull(ends[1][k]));
@@ -188,8 +216,8 @@ impl Rims {
 }
 
 impl Rim<'_> {
-    /// Tells the outward normals by which a corner with these spokes of its own rim may come to this one from outside.
-    fn meet(&self, corner: [Interval; 2], spokes: impl Iterator<Item = Vector> + Clone, mut tell: impl FnMut([Interval; 2])) {
+    /// Tells the outward normals by which a corner may come to this rim from outside whose facets lead these ways.
+    fn meet(&self, corner: [Interval; 2], sheet: impl Iterator<Item = Vector> + Clone, mut tell: impl FnMut([Interval; 2])) {
         let [a, b] = self.ends;
         let near = |axis: usize| corner[axis].meets(a[axis].hull(b[axis]).widened(LEVEL));
         if !near(0) || !near(1) {
@@ -199,21 +227,30 @@ impl Rim<'_> {
         if beside.lo > LEVEL || beside.up < -LEVEL {
             return;
         }
-        let right = [self.along[1], -self.along[0]];
-        for (outward, side) in [right, right.map(|x| -x)].into_iter().zip(self.sides) {
+        for outward in self.outward.into_iter().flatten() {
             // One that leads inwards for certain: the halves overlap in plan view, and go on doing so.
             let inside = |s: Vector| (s[0] * outward[0] + s[1] * outward[1]).up < -LEVEL;
-            if side && !spokes.clone().any(inside) {
+            if !sheet.clone().any(inside) {
                 tell(outward);
             }
         }
     }
 }
 
+/// The normals, in plan view, out of a rim to its right and to its left, whose facets to the left and to the right, as seen from where the
+/// half is looked at, have these normals: across it, or, of a facet that is a wall for certain, its own. A rim may stand upright.
+fn ending(along: [Interval; 2], [left, right]: [Vector; 2]) -> [[Interval; 2]; 2] {
+    let across = [along[1], -along[0]];
+    let is_wall = |n: &Vector| n[2].lo >= -LEVEL && n[2].up <= LEVEL;
+    let plan = |n: Vector| [n[0], n[1]];
+    let to_right = if is_wall(&right) { plan(right) } else { across };
+    [to_right, if is_wall(&left) { plan(left) } else { across.map(|x| -x) }]
+}
+
 /// On which sides, right and left, the outside of a ridge may be whose facets, left and right, face the other half by so much; nothing
 /// where it is no rim.
 fn sides([left, right]: [Interval; 2]) -> Option<[bool; 2]> {
-    let ends = |facing: Interval, other: Interval| facing.up > 0.0 && other.lo <= LEVEL;
+    let ends = |facing: Interval, other: Interval| facing.up > LEVEL && other.lo <= LEVEL;
     let sides = [ends(left, right), ends(right, left)];
     (sides[0] || sides[1]).then_some(sides)
 }
@@ -222,17 +259,9 @@ fn is_on_rim(corner: &Corner, sides: &[Option<[bool; 2]>]) -> bool {
     corner.ridges.iter().any(|ridge| sides[*ridge as usize].is_some())
 }
 
-/// Where rims lead to from one of their corners.
-fn rim_spokes<'a>(
-    body: &'a Body,
-    corner: &'a Corner,
-    sides: &'a [Option<[bool; 2]>],
-) -> impl Iterator<Item = glam::DVec3> + Clone + 'a {
-    let rims = corner.ridges.iter().filter(|ridge| sides[**ridge as usize].is_some());
-    rims.map(move |ridge| {
-        let ridge = &body.ridges[*ridge as usize];
-        if ridge.ends[0] == corner.vertex { ridge.along } else { -ridge.along }
-    })
+/// Where the facets around a corner lead that face the other half for certain.
+fn sheet(corner: &Corner, facing: impl Fn(DVec3) -> Interval + Clone) -> impl Iterator<Item = DVec3> + Clone {
+    corner.sides.iter().filter(move |[_, normal]| facing(*normal).lo > LEVEL).map(|[along, _]| *along)
 }
 
 /// What a moving vertex goes outward by, per unit of each error.
@@ -244,34 +273,39 @@ fn moved(bodies: &Bodies, at: &Placed, vertex: usize, outward: [Interval; 2]) ->
 
 /// A direction that opens every touch for certain: the shortest vector of the hull of their mean rates, tried on all of their bounds.
 fn downhill(bodies: &Bodies, touches: &[Touch]) -> Option<[f64; 5]> {
-    /// Steps of the search for it: it need not be exact.
-    const STEPS: usize = 60;
-    let metric: [f64; 5] = Dof::ALL.map(|dof| if ROTATIONS.contains(&dof) { bodies.rho.powi(-2) } else { 1.0 });
-    let mean = |touch: &Touch| touch.rates.map(Interval::middle);
-    let inner = |a: &[f64; 5], b: &[f64; 5]| (0..5).map(|k| a[k] * b[k] * metric[k]).sum::<f64>();
+    let unit: [f64; 5] = Dof::ALL.map(|dof| if ROTATIONS.contains(&dof) { 1.0 / bodies.rho } else { 1.0 });
     let rates: Vec<[f64; 5]> = touches
         .iter()
         .map(|touch| {
-            let mean = mean(touch);
-            let size = inner(&mean, &mean).sqrt().max(f64::MIN_POSITIVE);
+            let mean: [f64; 5] = std::array::from_fn(|k| touch.rates[k].middle() * unit[k]);
+            let size = mean.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
             mean.map(|x| x / size)
         })
         .collect();
-    let mut at = *rates.first()?;
-    for _ in 0..STEPS {
-        let least = rates.iter().min_by(|a, b| inner(&at, a).total_cmp(&inner(&at, b)))?;
-        let way: [f64; 5] = std::array::from_fn(|k| at[k] - least[k]);
-        let length = inner(&way, &way);
-        if length <= 0.0 {
-            break;
-        }
-        let share = (inner(&at, &way) / length).clamp(0.0, 1.0);
-        at = std::array::from_fn(|k| at[k] - share * way[k]);
-    }
-    let direction: [f64; 5] = std::array::from_fn(|k| at[k] * metric[k]);
+    let shortest = shortest(&rates)?;
+    let direction: [f64; 5] = std::array::from_fn(|k| shortest[k] * unit[k]);
     let opens = |touch: &Touch| {
         let parts = (0..5).map(|k| touch.rates[k] * direction[k]);
         parts.fold(Interval::ZERO, |sum, part| sum + part).lo > 0.0
     };
     touches.iter().all(opens).then_some(direction)
+}
+
+/// The shortest vector of the convex hull of some (Gilbert 1966), nearly.
+pub(super) fn shortest(vectors: &[[f64; 5]]) -> Option<[f64; 5]> {
+    /// Steps of the search: what rests on it is tried.
+    const STEPS: usize = 100;
+    let inner = |a: &[f64; 5], b: &[f64; 5]| (0..5).map(|k| a[k] * b[k]).sum::<f64>();
+    let mut at = *vectors.first()?;
+    for _ in 0..STEPS {
+        let least = vectors.iter().min_by(|a, b| inner(&at, a).total_cmp(&inner(&at, b)))?;
+        let way: [f64; 5] = std::array::from_fn(|k| at[k] - least[k]);
+        let (length, gain) = (inner(&way, &way), inner(&at, &way));
+        if gain <= 1e-12 * inner(&at, &at) || length <= 0.0 {
+            break;
+        }
+        let share = (gain / length).min(1.0);
+        at = std::array::from_fn(|k| at[k] - share * way[k]);
+    }
+    Some(at)
 }

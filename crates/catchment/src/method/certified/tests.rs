@@ -1,8 +1,7 @@
 //! Bounds against exact poses, labels against exact motions.
 
 use super::*;
-use crate::design::Design;
-use crate::problem::{Draft, Problem};
+use crate::problem::Problem;
 
 fn problem(name: &str) -> Problem {
     Problem::open(format!("{}/../../designs/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()

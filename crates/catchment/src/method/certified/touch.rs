@@ -24,6 +24,8 @@ const SLACK: f64 = 1e-9;
 const SEAM: f64 = 1e-12;
 /// Below this part of its own length a normal's rise gives no mean value form.
 const STEEP: f64 = 1e-6;
+/// Sine below which ridges count as parallel in plan view, as [`crate::contact::brute`] has it.
+const PARALLEL: f64 = 1e-9;
 /// Normals of two facets with a smaller cosine have no mean direction to speak of.
 const OPPOSED: f64 = -0.9;
 
@@ -144,6 +146,10 @@ impl<'a> Touching<'a> {
         let (u, w) = (b - a, bodies.moving.at(its.ends[1]) - bodies.moving.at(its.ends[0]));
         let w = self.over.turn(w);
         let turn = perp([Interval::thin(u.x), Interval::thin(u.y)], [w[0], w[1]]);
+        let lengths = u.truncate().length() * its_length(&w);
+        if turn.lo.abs().max(turn.up.abs()) <= PARALLEL * lengths {
+            return None; // in plan view parallel all over the box: their ends speak for them
+        }
         let apart = [p[0] - Interval::thin(a.x), p[1] - Interval::thin(a.y)];
         let share = |along: [Interval; 2]| perp(apart, along).over_signed(turn);
         let unit = Interval::new(0.0, 1.0);
@@ -151,8 +157,11 @@ impl<'a> Touching<'a> {
         let within = |share: Option<Interval>| share.map_or(Some(unit), |k| k.widened(SEAM).and(unit));
         let (on_own, on_its) = (within(s)?, within(t)?);
         let start = self.over.turned[its.ends[0] as usize];
-        let among = Interval::thin(a.z) + on_own * u.z - (start[2] + on_its * w[2]);
+        let mut among = Interval::thin(a.z) + on_own * u.z - (start[2] + on_its * w[2]);
         let straight = turn.lo > 0.0 || turn.up < 0.0;
+        if !straight && let Some(along) = beside([a, b], p, start[2], &w) {
+            among = among.and(along)?;
+        }
         // The plane and its slope hold along the whole lines, beyond the ends of the ridges.
         let reach = t.filter(|_| straight).unwrap_or(unit);
         let arm_at = |share: Interval| [0, 1, 2].map(|k| start[k] + share * w[k]);
@@ -284,6 +293,30 @@ fn may_hold(polygon: impl Iterator<Item = [Interval; 2]>, point: [Interval; 2], 
         let (a, b) = (polygon[k], polygon[(k + 1) % n]);
         (perp(from(a, b), from(a, point)) * turn).up >= -SEAM
     })
+}
+
+/// Heights at which two ridges may touch that are nearly parallel in plan view, where what they share of their common direction is known.
+/// At any pose the height is linear along it.
+fn beside([a, b]: [DVec3; 2], p: [Interval; 2], level: Interval, w: &Vector) -> Option<Interval> {
+    let u = b - a;
+    let length = u.truncate().length();
+    let unit = u.truncate().try_normalize()?;
+    let onto = |v: [Interval; 2]| v[0] * unit.x + v[1] * unit.y;
+    let (first, reach) = (onto(from(plan(a), p)), onto([w[0], w[1]]));
+    let rise = w[2].over_signed(reach)?;
+    let its = first.hull(first + reach);
+    let shared = its.widened(SEAM).and(Interval::new(0.0, length))?;
+    let at = |l: f64| {
+        let own = Interval::thin(a.z) + Interval::thin(l) * (u.z / length);
+        (own - (level + (Interval::thin(l) - first) * rise)).widened(SEAM)
+    };
+    Some(at(shared.lo).hull(at(shared.up)))
+}
+
+/// The greatest length that a vector may have in plan view.
+fn its_length(w: &Vector) -> f64 {
+    let most = |x: Interval| x.lo.abs().max(x.up.abs());
+    most(w[0]).hypot(most(w[1]))
 }
 
 /// Whether two segments may cross or touch in plan view.

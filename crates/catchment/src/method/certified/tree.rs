@@ -235,6 +235,18 @@ impl Tree {
         true
     }
 
+    /// The label that all leaves have that share more than a border with a span; of two ways not to dock that of the first.
+    pub(super) fn common_label(&self, span: &Span) -> Option<Label> {
+        let mut label: Option<Label> = None;
+        let docks = |label: Label| label == Label::Yes;
+        let all = self.visit(span, |_, cell| {
+            let agrees = cell.label.is_some_and(|own| label.is_none_or(|label| docks(label) == docks(own)));
+            label = label.or(cell.label);
+            agrees
+        });
+        label.filter(|_| all)
+    }
+
     /// Visits every leaf that shares a face with a leaf.
     pub(super) fn neighbours(&self, cell: &Cell, mut visit: impl FnMut(usize)) {
         let own = self.span(cell);

@@ -1,6 +1,7 @@
 //! The same of the parts that only some methods have: basins, a partition, a sample.
 
 use super::{UnsoundError, hold, not_negative, share};
+use crate::method::certified::Certificate;
 use crate::method::flood::Reason;
 use crate::report::schema::{BasinsReport, RunBody};
 
@@ -15,6 +16,9 @@ impl RunBody {
         }
         if let Some(partition) = &self.partition {
             not_negative(partition.sum, "partition.sum")?;
+        }
+        if let Some(certificate) = &self.certificate {
+            check_certificate(certificate)?;
         }
         self.check_sample()
     }
@@ -37,6 +41,21 @@ impl RunBody {
         hold(is_whole, name("strata.share"), "must add up to 1")?;
         hold(descents == sample.descents, name("descents"), "must be those of the strata")
     }
+}
+
+fn check_certificate(found: &Certificate) -> Result<(), UnsoundError> {
+    for (value, name) in [(found.yes, "yes"), (found.no, "no"), (found.undecided, "undecided")] {
+        share(value, &format!("certificate.{name}"))?;
+    }
+    // Shares are sums over boxes: they make 1 but for rounding.
+    let whole = found.yes + found.no + found.undecided;
+    hold((whole - 1.0).abs() <= 1e-9, "certificate.undecided", "must make 1 with yes and no")?;
+    for measure in found.measures {
+        not_negative(measure, "certificate.measures")?;
+    }
+    not_negative(found.retention_at_least, "certificate.retention_at_least")?;
+    let ordered = found.retention_at_most.is_none_or(|most| most >= found.retention_at_least);
+    hold(ordered, "certificate.retention_at_most", "must be no less than retention_at_least")
 }
 
 fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError> {
@@ -77,6 +96,7 @@ fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError>
 #[cfg(test)]
 mod tests {
     use crate::exec::Exec;
+    use crate::method::certified::Certificate;
     use crate::method::correction::Stratum;
     use crate::report::Report;
     use crate::report::schema::{PartitionReport, RunBody, SampleReport, basins};
@@ -90,6 +110,7 @@ mod tests {
         let report = Report::new(&design, &found.acceptance, null.clone(), None, &Exec::new()).unwrap();
         let mut body = report.with_basins(&found.acceptance, &found.hierarchy).body;
         body.partition = Some(PartitionReport::default());
+        body.certificate = Some(Certificate { yes: 0.3, no: 0.6, undecided: 0.1, ..Certificate::default() });
         let stratum = |share| Stratum {
             name: "all".to_owned(),
             share,
@@ -112,7 +133,7 @@ mod tests {
     #[test]
     fn parts_that_cannot_be_are_named() {
         body().check().unwrap();
-        let spoils: [(&str, Spoil); 14] = [
+        let spoils: [(&str, Spoil); 16] = [
             ("basins.tolerance.depth must", |b| b.basins.as_mut().unwrap().tolerance.depth = -1.0),
             ("basins.merged must", |b| b.basins.as_mut().unwrap().minima = 0),
             ("basins.largest must be at most", |b| {
@@ -128,6 +149,10 @@ mod tests {
                 b.basins.as_mut().unwrap().staircase[0].cells = usize::MAX;
             }),
             ("partition.sum must", |b| b.partition.as_mut().unwrap().sum = f64::NAN),
+            ("certificate.undecided must", |b| b.certificate.as_mut().unwrap().yes = 0.4),
+            ("certificate.retention_at_most must", |b| {
+                b.certificate.as_mut().unwrap().retention_at_most = Some(-0.1);
+            }),
             ("acceptance.sample.strata.share must lie", |b| sample(b).strata[0].share = -0.25),
             ("acceptance.sample.strata.share must add", |b| sample(b).strata[0].share = 0.5),
             ("acceptance.sample.strata.descents must", |b| sample(b).strata[1].aligned = usize::MAX),

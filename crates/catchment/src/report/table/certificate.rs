@@ -1,0 +1,19 @@
+//! What is certain, as text: the three parts of the error box, and how well the seat holds.
+
+use crate::method::certified::Certificate;
+use crate::report::schema::Report;
+use crate::report::text::{grouped, percent, row, significant};
+
+/// Writes a certificate.
+pub(super) fn lines(text: &mut String, found: &Certificate, report: &Report) {
+    let unit = &report.acceptance.unit;
+    let [yes, no, open] = found.measures;
+    let boxes = format!("{} boxes", grouped(found.boxes));
+    row(text, "certainly docks", &format!("{} of the error box, {yes:.4} {unit}   ({boxes})", percent(found.yes)));
+    row(text, "certainly not", &format!("{}, {no:.4} {unit}", percent(found.no)));
+    row(text, "undecided", &format!("{}, {open:.4} {unit}", percent(found.undecided)));
+    let least = significant(found.retention_at_least);
+    let most = found.retention_at_most.map_or_else(String::new, |most| format!(" … {}", significant(most)));
+    let lift = if most.is_empty() { format!("at least {least}") } else { format!("{least}{most}") };
+    row(text, "retention", &format!("leaves when lifted by {lift} D   (energy per force)"));
+}
