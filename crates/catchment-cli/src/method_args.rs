@@ -30,6 +30,12 @@ pub(crate) struct SettingArgs {
     /// Partition: strips per D into which the moving half is cut; 1 is the dissertation's method [default: 12, or 1 for two angles]
     #[arg(long, value_name = "COUNT")]
     strips: Option<usize>,
+    /// Certified: undecided share of the error box at which it is enough [default: 0.02]
+    #[arg(long, value_name = "SHARE")]
+    gap: Option<f64>,
+    /// Certified: boxes of poses that are looked at at most
+    #[arg(long, value_name = "COUNT")]
+    boxes: Option<usize>,
     #[command(flatten)]
     drop: DropArgs,
 }
@@ -53,6 +59,8 @@ impl SettingArgs {
         add("--depth-tolerance", "depth_tolerance", self.depth_tolerance.map(Value::from));
         add("--slices", "slices", self.slices.map(Value::from));
         add("--strips", "strips", self.strips.map(Value::from));
+        add("--gap", "gap", self.gap.map(Value::from));
+        add("--boxes", "boxes", self.boxes.map(Value::from));
         changes.extend(self.drop.changes());
         changes
     }

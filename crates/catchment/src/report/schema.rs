@@ -11,6 +11,7 @@ use crate::merit::success::{Distribution, Success, success};
 use crate::merit::sum::Sum;
 use crate::merit::tolerance::Tolerance;
 use crate::merit::{MeritError, Merits};
+use crate::method::certified::Certificate;
 use crate::pose::Dof;
 use crate::run::Seating;
 use serde::{Deserialize, Serialize};

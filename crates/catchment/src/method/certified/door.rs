@@ -6,7 +6,9 @@ use crate::contact::{Pair, Seat};
 use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::Grid;
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Entry, Info, NotApplicable, grid_of};
+use crate::method::door::{
+    ByProducts, Cost, Decide, DecideError, Decided, Entry, Info, NotApplicable, grid_of,
+};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

@@ -15,6 +15,7 @@
 
 use super::placed::PoseBox;
 use super::tree::{Cell, Label, Tree};
+use crate::exec::{Cancelled, Exec};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -43,11 +44,13 @@ impl PartialOrd for Reached {
 /// from it, or to end.
 fn walk(
     tree: &Tree,
+    exec: &Exec,
     sources: impl Iterator<Item = usize>,
     height: impl Fn(&Cell) -> Option<f64>,
     mut visit: impl FnMut(usize, f64) -> Onward,
-) {
+) -> Result<(), Cancelled> {
     let mut open = BinaryHeap::new();
+    let mut taken = 0usize;
     let mut seen = vec![false; tree.cells.len()];
     let mut push = |open: &mut BinaryHeap<Reached>, number: usize, from: f64| {
         if !seen[number]
@@ -59,12 +62,20 @@ fn walk(
     };
     sources.for_each(|number| push(&mut open, number, f64::NEG_INFINITY));
     while let Some(Reached { height, number }) = open.pop() {
+        taken += 1;
+        if taken.is_multiple_of(BETWEEN) {
+            exec.check()?;
+        }
         match visit(number, height) {
             Onward::Go => tree.neighbours(&tree.cells[number], |next| push(&mut open, next, height)),
-            Onward::End => return,
+            Onward::End => break,
         }
     }
+    Ok(())
 }
+
+/// Boxes that are taken between two looks at whether to stop.
+const BETWEEN: usize = 1024;
 
 /// Whether to go on from a box.
 enum Onward {
@@ -112,14 +123,17 @@ pub(super) struct Flood {
 }
 
 /// Most boxes in the way that are told at once.
-const MOST_BLOCKING: usize = 512;
+const MOST_BLOCKING: usize = 256;
 
 /// Labels what heights decide, and says what is in the way.
-pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>) -> Flood {
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop.
+pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Flood, Cancelled> {
     let floor = |cell: &Cell| cell.height.map(|height| height.lo);
     let near = seat.boxes(tree);
     let (mut level, mut inside, mut blocking) = (None, Vec::new(), Vec::new());
-    walk(tree, near.iter().copied(), floor, |number, height| {
+    walk(tree, exec, near.iter().copied(), floor, |number, height| {
         let cell = &tree.cells[number];
         let (rests, leaks) = (seat.lets_rest(tree, cell), leaks(tree, cell));
         if rests || leaks {
@@ -130,7 +144,7 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>) -> Flood {
         }
         let certain = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
         if certain || blocking.len() >= MOST_BLOCKING { Onward::End } else { Onward::Go }
-    });
+    })?;
     let level = level.unwrap_or(f64::INFINITY);
     for number in inside {
         let cell = &mut tree.cells[number];
@@ -142,30 +156,37 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>) -> Flood {
     let unknown = tree.leaves().filter(|(_, cell)| cell.walled || tree.is_at_border(cell)).map(|(k, _)| k);
     let sources: Vec<usize> = near.iter().copied().chain(unknown).collect();
     let mut way = vec![f64::INFINITY; tree.cells.len()];
-    walk(tree, sources.into_iter(), floor, |number, height| {
+    walk(tree, exec, sources.into_iter(), floor, |number, height| {
         way[number] = height;
         Onward::Go
-    });
+    })?;
     let lone = |cell: &Cell, way: f64| cell.height.is_none_or(|height| height.up < way && way > seat.level);
     for (cell, way) in tree.cells.iter_mut().zip(way) {
         if cell.label.is_none() && !cell.is_split() && lone(cell, way) {
             cell.label = Some(if cell.height.is_none() || cell.sudden { Label::Leaves } else { Label::Jams });
         }
     }
-    Flood { level, blocking }
+    Ok(Flood { level, blocking })
 }
 
 /// How high a half that is in the seat must be lifted before it can leave, above the mated height: at least and at most, in D.
-pub(super) fn retention(tree: &Tree, seat: &Seat<'_>, level: f64) -> [f64; 2] {
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop.
+pub(super) fn retention(
+    tree: &Tree,
+    seat: &Seat<'_>,
+    level: f64,
+    exec: &Exec,
+) -> Result<[f64; 2], Cancelled> {
     let mut out = f64::INFINITY;
-    walk(tree, seat.boxes(tree).into_iter(), |cell| Some(cell.height.map_or(f64::NEG_INFINITY, |height| height.up)), |number, height| {
-        match tree.cells[number].label {
-            Some(Label::Jams | Label::Leaves) => {
-                out = height;
-                Onward::End
-            }
-            _ => Onward::Go,
+    let roof = |cell: &Cell| Some(cell.height.map_or(f64::NEG_INFINITY, |height| height.up));
+    walk(tree, exec, seat.boxes(tree).into_iter(), roof, |number, height| match tree.cells[number].label {
+        Some(Label::Jams | Label::Leaves) => {
+            out = height;
+            Onward::End
         }
-    });
-    [(level - seat.mated).max(0.0), out - seat.mated]
+        _ => Onward::Go,
+    })?;
+    Ok([(level - seat.mated).max(0.0), out - seat.mated])
 }

@@ -72,7 +72,8 @@ impl Interval {
 
     /// Over a number above 0; `None` where it may be 0 or below.
     pub(super) fn over(self, divisor: Self) -> Option<Self> {
-        (divisor.lo > 0.0).then(|| self * Self { lo: (1.0 / divisor.up).next_down(), up: (1.0 / divisor.lo).next_up() })
+        (divisor.lo > 0.0)
+            .then(|| self * Self { lo: (1.0 / divisor.up).next_down(), up: (1.0 / divisor.lo).next_up() })
     }
 
     /// Over a number that is not 0; `None` where it may be.
@@ -91,7 +92,8 @@ impl Interval {
     /// A wave that has its crests at `crest` and every turn from there.
     fn wave(self, crest: f64, of: impl Fn(f64) -> f64) -> Self {
         // What nearly reaches a crest counts as reaching it: π is rounded.
-        let reaches = |at: f64| ((self.lo - SINE - at) / TAU - SINE).ceil() <= (self.up + SINE - at) / TAU + SINE;
+        let reaches =
+            |at: f64| ((self.lo - SINE - at) / TAU - SINE).ceil() <= (self.up + SINE - at) / TAU + SINE;
         let (a, b) = (of(self.lo), of(self.up));
         let up = if reaches(crest) { 1.0 } else { (a.max(b) + SINE).min(1.0) };
         let lo = if reaches(crest + 0.5 * TAU) { -1.0 } else { (a.min(b) - SINE).max(-1.0) };

@@ -55,7 +55,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { gap: 0.02, boxes: 200_000 }
+        Self { gap: 0.02, boxes: 60_000 }
     }
 }
 
@@ -75,7 +75,9 @@ pub enum CertifiedError {
         boxes: usize,
     },
     /// So many features that all their meetings cannot be listed.
-    #[error("the halves have {meetings} pairs of features that may meet, more than the {MOST_MEETINGS} that are looked at for every box")]
+    #[error(
+        "the halves have {meetings} pairs of features that may meet, more than the {MOST_MEETINGS} that are looked at for every box"
+    )]
     Large {
         /// How many.
         meetings: usize,
@@ -120,7 +122,7 @@ pub(crate) struct Certified {
 /// Levels of boxes that are looked at anyway, for one to five free errors.
 const FIRST_LEVEL: [u8; 5] = [8, 6, 4, 3, 2];
 /// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
-const FINEST: f64 = 1e-4;
+const FINEST: f64 = 3e-4;
 /// Rounds in which nothing but what is in the way of the seat is halved.
 const SEAT_ROUNDS: usize = 16;
 /// Boxes that are halved at once, at least, and as a part of all.
@@ -148,7 +150,7 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, meets: &meets };
     let mut round = 0;
     loop {
-        let flooded = flood(&mut tree, &seat);
+        let flooded = flood(&mut tree, &seat, exec)?;
         // Nowhere to lead to before.
         if alignment.free.rotations() <= 1 && (round >= SEAT_ROUNDS || flooded.blocking.is_empty()) {
             bundle(&mut tree, pair, &bodies, exec)?;
@@ -158,7 +160,7 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
         let found = (gap <= settings.gap, tree.cells.len() >= settings.boxes);
         let chosen = chosen(&tree, &flooded.blocking, round < SEAT_ROUNDS, &bodies, settings);
         if found.0 || found.1 || chosen.is_empty() {
-            let [at_least, at_most] = retention(&tree, &seat, flooded.level);
+            let [at_least, at_most] = retention(&tree, &seat, flooded.level, exec)?;
             let certificate = tree.certificate(at_least, at_most);
             return Ok(Certified { tree, certificate });
         }
@@ -168,7 +170,13 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
 }
 
 /// Which boxes to halve: those in the way of the seat's own part, and the largest undecided ones.
-fn chosen(tree: &Tree, blocking: &[usize], seat_first: bool, bodies: &Bodies, settings: &Settings) -> Vec<usize> {
+fn chosen(
+    tree: &Tree,
+    blocking: &[usize],
+    seat_first: bool,
+    bodies: &Bodies,
+    settings: &Settings,
+) -> Vec<usize> {
     let most = (tree.cells.len() / PART).max(AT_ONCE);
     let is_fine = |cell: &Cell| {
         let poses = tree.poses(cell);
@@ -197,7 +205,13 @@ fn chosen(tree: &Tree, blocking: &[usize], seat_first: bool, bodies: &Bodies, se
 }
 
 /// Halves leaves, in parallel; their parts are in the order of the leaves.
-fn halve(tree: &mut Tree, numbers: &[usize], pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
+fn halve(
+    tree: &mut Tree,
+    numbers: &[usize],
+    pair: &Pair,
+    bodies: &Bodies,
+    exec: &Exec,
+) -> Result<(), Cancelled> {
     let parts: Vec<Vec<Cell>> = exec.install(|| {
         let look = |nearby: &mut Nearby<'_>, number: &usize| {
             exec.check()?;
@@ -333,13 +347,5 @@ impl Tree {
             retention_at_most: at_most.is_finite().then_some(at_most),
             boxes: self.cells.len(),
         }
-    }
-}
-
-impl Certified {
-    /// Whether all motions of the box that holds a pose dock, or none; nothing where that is open.
-    pub(crate) fn label_at(&self, error: &crate::pose::PoseError) -> Option<bool> {
-        let poses = error.to_array().map(Interval::thin);
-        self.tree.common_label(&self.tree.places(&poses)?).map(|label| label == Label::Yes)
     }
 }

@@ -73,7 +73,8 @@ impl Placed {
             [-sp, cp * sr, cp * cr],
         ];
         let one = Interval::thin(1.0);
-        let axes = [[cy * cp, sy * cp, -sp], [-sy, cy, Interval::ZERO], [Interval::ZERO, Interval::ZERO, one]];
+        let axes =
+            [[cy * cp, sy * cp, -sp], [-sy, cy, Interval::ZERO], [Interval::ZERO, Interval::ZERO, one]];
         let face = rows.map(|row| row[2] * bodies.cor);
         let slides = [0, 1].map(|axis| bodies.slides(axis));
         let offset = [0, 1].map(|axis| if slides[axis] { poses[axis] } else { Interval::ZERO });

@@ -72,10 +72,12 @@ impl Survey {
                 touches.retain(|touch| touch.height.up >= height.lo);
             }
         }
-        let rims = if sudden { rims.unwrap_or_else(|| Rims::meeting(bodies, &touching.over)) } else { Vec::new() };
+        let rims =
+            if sudden { rims.unwrap_or_else(|| Rims::meeting(bodies, &touching.over)) } else { Vec::new() };
         let pushes: Vec<PoseBox> = touches.iter().map(|t| t.push(bodies, &touching.over)).collect();
         let inwards = |rim: &Meet| {
-            rim.lift.up >= height.lo && (bodies.free.rotations() > 1 || pushes.iter().any(|push| rim.closes(push)))
+            rim.lift.up >= height.lo
+                && (bodies.free.rotations() > 1 || pushes.iter().any(|push| rim.closes(push)))
         };
         let walled = rims.iter().any(inwards);
         let downhill = downhill(bodies, &touches);
@@ -91,7 +93,8 @@ impl Survey {
         nearby: &mut Nearby<'_>,
     ) -> (Vec<Touch>, Vec<PoseBox>) {
         let touching = Touching::new(bodies, poses);
-        let mut touches: Vec<Touch> = touches.iter().filter_map(|touch| touching.touch(touch.number)).collect();
+        let mut touches: Vec<Touch> =
+            touches.iter().filter_map(|touch| touching.touch(touch.number)).collect();
         if !sudden && let Some(mid) = nearby.height(&middle(poses)) {
             let mid = Interval::thin(mid).widened(ROUNDING);
             for _ in 0..LOOKS {
@@ -151,6 +154,8 @@ struct Rims;
 struct Rim<'a> {
     ridge: &'a Ridge,
     ends: [[Interval; 2]; 2],
+    /// Their heights.
+    levels: [Interval; 2],
     /// From its first end to its second, unit in space.
     along: [Interval; 2],
     /// The normals out of it, where outside may be to its right and where to its left.
@@ -178,13 +183,13 @@ impl Rims {
             let along = [Interval::thin(ridge.along.x), Interval::thin(ridge.along.y)];
             let right = ending(along, ridge.normals.map(thin));
             let outward = [sides[0].then_some(right[0]), sides[1].then_some(right[1])];
-            let rim = Rim { ridge, ends: [plan(a), plan(b)], along, outward };
-            let level = Interval::new(a.z.min(b.z), a.z.max(b.z));
+            let levels = [a, b].map(|end| Interval::thin(end.z));
+            let rim = Rim { ridge, ends: [plan(a), plan(b)], levels, along, outward };
             for corner in moving.corners.iter().filter(|c| is_on_rim(c, &its_sides)) {
                 let k = corner.vertex as usize;
                 let sheet = sheet(corner, its).map(|v| at.turn(v));
-                let lift = level - at.turned[k][2];
-                rim.meet(at.lateral[k], sheet, |outward| {
+                rim.meet(at.lateral[k], sheet, |outward, level| {
+                    let lift = level - at.turned[k][2];
                     found.push(Meet { lift, apart: moved(bodies, at, k, outward) });
                 });
             }
@@ -197,13 +202,13 @@ impl Rims {
             let [left, right] = ridge.normals.map(|n| at.turn(n));
             let out = ending(along, [right, left]);
             let outward = [sides[1].then_some(out[0]), sides[0].then_some(out[1])];
-            let rim = Rim { ridge, ends: [at.lateral[p], at.lateral[q]], along, outward };
-            let level = at.turned[p][2].hull(at.turned[q][2]);
+            let levels = [p, q].map(|end| at.turned[end][2]);
+            let rim = Rim { ridge, ends: [at.lateral[p], at.lateral[q]], levels, along, outward };
             for corner in fixed.corners.iter().filter(|c| is_on_rim(c, &own_sides)) {
                 let point = fixed.at(corner.vertex);
                 let sheet = sheet(corner, own).map(thin);
-                let lift = Interval::thin(point.z) - level;
-                rim.meet(plan(point), sheet, |outward| {
+                rim.meet(plan(point), sheet, |outward, level| {
+                    let lift = Interval::thin(point.z) - level;
                     // As the rim moves inwards, the corner comes out: either end tells, and all between.
                     let ends = rim.ridge.ends.map(|k| moved(bodies, at, k as usize, outward));
                     let apart = [0, 1, 2, 3, 4].map(|k| -ends[0][k].hull(ends[1][k]));
@@ -216,8 +221,27 @@ impl Rims {
 }
 
 impl Rim<'_> {
-    /// Tells the outward normals by which a corner may come to this rim from outside whose facets lead these ways.
-    fn meet(&self, corner: [Interval; 2], sheet: impl Iterator<Item = Vector> + Clone, mut tell: impl FnMut([Interval; 2])) {
+    /// How high it is beside a corner that may be at it in plan view.
+    fn level(&self, corner: [Interval; 2]) -> Interval {
+        let ([a, b], [low, high]) = (self.ends, self.levels);
+        let square = |x: Interval| {
+            let (near, far) =
+                (if x.contains(0.0) { 0.0 } else { x.lo.abs().min(x.up.abs()) }, x.lo.abs().max(x.up.abs()));
+            Interval::new((near * near).next_down(), (far * far).next_up())
+        };
+        let (way, off) = ([0, 1].map(|k| b[k] - a[k]), [0, 1].map(|k| corner[k] - a[k]));
+        let share = (way[0] * off[0] + way[1] * off[1]).over(square(way[0]) + square(way[1]));
+        let share = share.and_then(|share| share.widened(LEVEL).and(Interval::new(0.0, 1.0)));
+        low + share.unwrap_or(Interval::new(0.0, 1.0)) * (high - low)
+    }
+
+    /// Tells the outward normals by which a corner may come to this rim from outside whose facets lead these ways, and how high it is there.
+    fn meet(
+        &self,
+        corner: [Interval; 2],
+        sheet: impl Iterator<Item = Vector> + Clone,
+        mut tell: impl FnMut([Interval; 2], Interval),
+    ) {
         let [a, b] = self.ends;
         let near = |axis: usize| corner[axis].meets(a[axis].hull(b[axis]).widened(LEVEL));
         if !near(0) || !near(1) {
@@ -231,7 +255,7 @@ impl Rim<'_> {
             // One that leads inwards for certain: the halves overlap in plan view, and go on doing so.
             let inside = |s: Vector| (s[0] * outward[0] + s[1] * outward[1]).up < -LEVEL;
             if !sheet.clone().any(inside) {
-                tell(outward);
+                tell(outward, self.level(corner));
             }
         }
     }

@@ -1,18 +1,191 @@
 //! Bounds against exact poses, labels against exact motions.
 
+use super::survey::Survey;
 use super::*;
-use crate::problem::Problem;
+use crate::acceptance::Stream;
+use crate::connector::Connector;
+use crate::contact::brute;
+use crate::design::{Alignment, Family, FamilySpec};
+use crate::method::descent;
+use crate::pose::{CorPose, DofSet, PoseError};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
-fn problem(name: &str) -> Problem {
-    Problem::open(format!("{}/../../designs/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+fn pair_of(family: Family, free: &[Dof], cor: f64) -> Pair {
+    let mut alignment = Alignment::default_for(Some(family));
+    if !free.is_empty() {
+        alignment.free = free.iter().copied().collect::<DofSet>();
+    }
+    alignment.center_of_rotation = cor;
+    let connector = Connector::of_family(&FamilySpec::new(family), alignment.mount).unwrap();
+    Pair::new(&connector, &alignment)
+}
+
+/// Random numbers in [0, 1), one after another.
+fn numbers(seed: u64) -> impl FnMut() -> f64 {
+    let (stream, mut next) = (Stream::new(seed), 0);
+    move || {
+        next += 1;
+        stream.uniform(next)
+    }
+}
+
+/// A random box of poses in the error box, up to `most` of the range wide, and a random pose in it.
+fn random_box(pair: &Pair, most: f64, number: &mut impl FnMut() -> f64) -> (PoseBox, PoseError) {
+    let (mut poses, mut error) = ([Interval::ZERO; 5], [0.0; 5]);
+    for dof in pair.alignment.free.iter() {
+        let (half, k) = (pair.alignment.half_range(dof), dof.index());
+        let width = 2.0 * half * most * number();
+        let lo = -half + (2.0 * half - width) * number();
+        poses[k] = Interval::new(lo, lo + width);
+        error[k] = lo + width * number();
+    }
+    (poses, PoseError::from_array(error))
+}
+
+/// Heights lie between floor and roof, and what carries is among the touches with a height, a slope and a push within its bounds.
+fn holds_what_is(pair: &Pair, boxes: usize, most: f64) {
+    let bodies = Bodies::of(pair);
+    let all: Vec<u32> = (0..bodies.meetings.len() as u32).collect();
+    let (mut number, mut nearby) = (numbers(17), pair.about(REACH));
+    let mut touched = 0;
+    for _ in 0..boxes {
+        let (poses, error) = random_box(pair, most, &mut number);
+        let survey = Survey::of(&bodies, &poses, &all, &mut nearby);
+        let alignment = &pair.alignment;
+        let pose = CorPose::from_error(&error, alignment.center_of_rotation, alignment.free);
+        let Some(height) = brute::height(pair, &pose) else {
+            assert!(survey.height.is_none() || survey.sudden, "{error:?} passes by in {poses:?}");
+            continue;
+        };
+        touched += 1;
+        let bounds = survey.height.expect("something carries");
+        assert!(bounds.widened(1e-9).contains(height), "{height} at {error:?} not in {bounds:?}");
+        let carries = |touch: &&super::touch::Touch| touch.height.widened(1e-9).contains(height);
+        assert!(survey.touches.iter().any(|touch| carries(&touch)), "nothing carries {error:?}");
+        // The gradient of the exact contact, where there is one alone.
+        let mut found = Vec::new();
+        let cor = pose.lateral.extend(height);
+        pair.at_rotation(pose.rotation).contacts(cor, 1e-9, &mut found);
+        let Some(contact) =
+            found.first().filter(|c| found.iter().all(|o| o.normal.distance(c.normal) < 1e-9))
+        else {
+            continue;
+        };
+        let ([gx, gy], _) = contact.gradient(cor);
+        let slopes = |touch: &super::touch::Touch| {
+            let within = |dof: Dof, value: f64| {
+                !alignment.free.contains(dof)
+                    || touch.slope(dof).is_none_or(|slope| slope.widened(1e-6).contains(value))
+            };
+            within(Dof::X, gx) && within(Dof::Y, gy)
+        };
+        assert!(
+            survey.touches.iter().any(|t| carries(&t) && slopes(t)),
+            "no touch slopes by {gx}, {gy} at {error:?}"
+        );
+    }
+    assert!(touched > boxes / 10, "{touched} of {boxes}");
 }
 
 #[test]
-fn trial() {
-    let name = std::env::var("DESIGN").unwrap_or("v-face".into());
-    let boxes = std::env::var("BOXES").ok().and_then(|b| b.parse().ok()).unwrap_or(50_000);
-    let problem = problem(&name);
-    let start = std::time::Instant::now();
-    let found = certify(problem.pair(), &Settings { boxes, ..Settings::default() }, &Exec::new()).unwrap();
-    println!("{name} {:?} {:?}", found.certificate, start.elapsed());
+fn bounds_hold_exact_heights_and_slopes() {
+    for family in [Family::VFace, Family::XFace, Family::SFace] {
+        for most in [0.2, 0.02, 1e-4] {
+            holds_what_is(&pair_of(family, &[], 0.3), 300, most);
+        }
+    }
+    for most in [0.2, 0.02] {
+        holds_what_is(&pair_of(Family::Pyramid, &[], -0.4), 150, most);
+        holds_what_is(&pair_of(Family::XFace3d, &[], 0.5), 150, most);
+    }
+}
+
+impl Certified {
+    /// Whether all motions of the box that holds a pose dock, or none; nothing where that is open.
+    fn label_at(&self, error: &PoseError) -> Option<bool> {
+        let poses = error.to_array().map(Interval::thin);
+        self.tree.common_label(&self.tree.places(&poses)?).map(|label| label == Label::Yes)
+    }
+}
+
+fn certified(pair: &Pair, boxes: usize) -> Certified {
+    certify(pair, &Settings { boxes, ..Settings::default() }, &Exec::new()).unwrap()
+}
+
+/// No exact motion from a random pose contradicts its label; how many were labelled.
+fn contradicts_nothing(pair: &Pair, found: &Certified, poses: usize) -> usize {
+    let (settings, mut number) = (descent::Settings::default(), numbers(5));
+    let mut follower = descent::Follower::new(pair, &settings);
+    let mut labelled = 0;
+    for _ in 0..poses {
+        let (_, error) = random_box(pair, 1.0, &mut number);
+        if let Some(docks) = found.label_at(&error) {
+            labelled += 1;
+            let end = follower.follow(&error);
+            assert_eq!(end.outcome == Outcome::Aligned, docks, "{error:?} ends {end:?}");
+        }
+    }
+    labelled
+}
+
+#[test]
+fn no_motion_contradicts_a_planar_certificate() {
+    let pair = pair_of(Family::VFace, &[], 0.0);
+    let found = certified(&pair, 20_000);
+    let Certificate { yes, no, undecided, retention_at_least, retention_at_most, .. } = found.certificate;
+    assert!(yes > 0.02 && no > 0.1 && (yes + no + undecided - 1.0).abs() < 1e-9, "{:?}", found.certificate);
+    assert!(contradicts_nothing(&pair, &found, 1000) > 200);
+    assert!(retention_at_least > 0.4 && retention_at_most.is_some_and(|most| most >= retention_at_least));
+}
+
+/// In translation the pyramid leaves its socket when its tip is at the rim: lifted by the depth H.
+#[test]
+fn the_pyramid_is_held_by_its_depth() {
+    let pair = pair_of(Family::Pyramid, &[Dof::X, Dof::Y], 0.0);
+    let found = certified(&pair, 20_000);
+    let depth = FamilySpec::new(Family::Pyramid).aspect_ratio();
+    let Certificate { retention_at_least: least, retention_at_most: most, yes, .. } = found.certificate;
+    let most = most.unwrap();
+    assert!(
+        least <= depth + 1e-9 && depth <= most + 1e-9 && most - least < 0.2 * depth,
+        "{least} {depth} {most}"
+    );
+    // The captured set is the open square |x|, |y| < 1/2: a quarter of the error box.
+    assert!(yes <= 0.25 + 1e-9 && yes > 0.15, "{yes}");
+    contradicts_nothing(&pair, &found, 500);
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let pair = pair_of(Family::XFace, &[], 0.5);
+    let on = |threads: usize| {
+        let exec = Exec::new().with_threads(threads).unwrap();
+        let found = certify(&pair, &Settings { boxes: 9000, ..Settings::default() }, &exec).unwrap();
+        let labels: Vec<_> = found
+            .tree
+            .cells
+            .iter()
+            .map(|cell| (cell.corner, cell.label, cell.height.map(|h| h.lo.to_bits())))
+            .collect();
+        (found.certificate, labels)
+    };
+    let one = on(1);
+    assert!(on(2) == one && on(4) == one);
+}
+
+#[test]
+fn it_ends_soon_when_asked_to() {
+    let pair = pair_of(Family::Pyramid, &[], 0.0);
+    let exec = Exec::new();
+    let flag = exec.cancel_flag();
+    let asked = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(300));
+        flag.store(true, Ordering::Relaxed);
+        Instant::now()
+    });
+    let settings = Settings { gap: 0.0, boxes: 10_000_000 };
+    let found = certify(&pair, &settings, &exec);
+    assert!(matches!(found, Err(CertifiedError::Cancelled(_))));
+    assert!(asked.join().unwrap().elapsed() < Duration::from_secs(1));
 }

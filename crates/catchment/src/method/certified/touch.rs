@@ -66,7 +66,8 @@ impl Plane {
     fn height(&self, at: &Placed) -> Option<Interval> {
         let [x, y, z] = self.normal;
         let lateral = at.lateral[self.moving as usize];
-        let across = x * (lateral[0] - Interval::thin(self.fixed.x)) + y * (lateral[1] - Interval::thin(self.fixed.y));
+        let across =
+            x * (lateral[0] - Interval::thin(self.fixed.x)) + y * (lateral[1] - Interval::thin(self.fixed.y));
         let foot = Interval::thin(self.fixed.z) - at.turned[self.moving as usize][2];
         // Levels of facets are those of single corners, which are rounded.
         across.over(z).map(|fall| (foot - fall).widened(SEAM))
@@ -127,7 +128,8 @@ impl<'a> Touching<'a> {
         if !may_hold(polygon, plan(point), -1.0) {
             return None;
         }
-        let among = Interval::thin(point.z) - range(facet.corners.iter().map(|k| self.over.turned[*k as usize][2]))?;
+        let among =
+            Interval::thin(point.z) - range(facet.corners.iter().map(|k| self.over.turned[*k as usize][2]))?;
         let plane =
             |at: &Placed| Plane { normal: at.turn(-facet.normal), fixed: point, moving: facet.corners[0] };
         let arm = |height| self.over.arm_to(self.bodies, point, height);
@@ -237,7 +239,13 @@ impl<'a> Touching<'a> {
         Some(self.touch_with(number, normal, height, arm))
     }
 
-    fn touch_with(&self, number: u32, normal: Vector, height: Interval, arm: impl Fn(Interval) -> Vector) -> Touch {
+    fn touch_with(
+        &self,
+        number: u32,
+        normal: Vector,
+        height: Interval,
+        arm: impl Fn(Interval) -> Vector,
+    ) -> Touch {
         let normal = [normal[0], normal[1], Interval::new(normal[2].lo.max(0.0), normal[2].up)];
         let torque = cross(&arm(height), &normal);
         let rates = self.over.gap_rates(self.bodies, &normal, &torque);

@@ -106,7 +106,11 @@ impl Frame {
             }
         }
         std::array::from_fn(|k| {
-            if self.columns.iter().all(|column| column[k] == 0.0) { poses[k] } else { poses[k].widened(ROUNDING) }
+            if self.columns.iter().all(|column| column[k] == 0.0) {
+                poses[k]
+            } else {
+                poses[k].widened(ROUNDING)
+            }
         })
     }
 
@@ -255,17 +259,21 @@ impl Tube<'_> {
                 let slope = all[j - 1];
                 let reach = step * 1.000_000_1;
                 let (mut low, mut high) = (bundle[j], bundle[j]);
-                (low.lo, low.up) = (low.lo + (reach * slope.lo).min(0.0), low.lo + (reach * slope.up).max(0.0));
-                (high.lo, high.up) = (high.up + (reach * slope.lo).min(0.0), high.up + (reach * slope.up).max(0.0));
+                (low.lo, low.up) =
+                    (low.lo + (reach * slope.lo).min(0.0), low.lo + (reach * slope.up).max(0.0));
+                (high.lo, high.up) =
+                    (high.up + (reach * slope.lo).min(0.0), high.up + (reach * slope.up).max(0.0));
                 let mut face = self.slab(&bundle, at, step, guess);
                 let mut rate = |side: Interval, face: &mut Bundle| {
                     face[j] = side;
                     let poses = frame.hull(face);
-                    let (_, pushes) = Survey::among(self.bodies, &poses, &survey.touches, survey.sudden, nearby);
+                    let (_, pushes) =
+                        Survey::among(self.bodies, &poses, &survey.touches, survey.sudden, nearby);
                     slopes(&frame, &pushes).map_or(slope, |slopes| slopes[j - 1])
                 };
                 let (falls, rises) = (rate(low, &mut face).lo, rate(high, &mut face).up);
-                next[j] = Interval::new(bundle[j].lo + step * falls, bundle[j].up + step * rises).widened(ROUNDING);
+                next[j] =
+                    Interval::new(bundle[j].lo + step * falls, bundle[j].up + step * rises).widened(ROUNDING);
                 if next[j].lo > next[j].up {
                     return None;
                 }
