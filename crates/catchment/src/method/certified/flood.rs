@@ -122,7 +122,8 @@ pub(super) struct Flood {
     pub(super) blocking: Vec<usize>,
 }
 
-/// Most boxes in the way that are told at once.
+/// Most boxes in the way that are told at once, and how many are told where the way is out for certain.
+const LEAST_BLOCKING: usize = 32;
 const MOST_BLOCKING: usize = 256;
 
 /// Labels what heights decide, and says what is in the way.
@@ -142,8 +143,9 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Flo
         } else if level.is_none() {
             inside.push(number);
         }
-        let certain = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
-        if certain || blocking.len() >= MOST_BLOCKING { Onward::End } else { Onward::Go }
+        let out = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
+        let enough = blocking.len() >= if out { LEAST_BLOCKING } else { MOST_BLOCKING };
+        if enough { Onward::End } else { Onward::Go }
     })?;
     let level = level.unwrap_or(f64::INFINITY);
     for number in inside {

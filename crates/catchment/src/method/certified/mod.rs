@@ -123,8 +123,6 @@ pub(crate) struct Certified {
 const FIRST_LEVEL: [u8; 5] = [8, 6, 4, 3, 2];
 /// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
 const FINEST: f64 = 3e-4;
-/// Rounds in which nothing but what is in the way of the seat is halved.
-const SEAT_ROUNDS: usize = 16;
 /// Boxes that are halved at once, at least, and as a part of all.
 const AT_ONCE: usize = 1024;
 const PART: usize = 8;
@@ -148,54 +146,52 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     let (holds, meets) = (|poses: &PoseBox| sits.holds(poses), |poses: &PoseBox| sits.meets(poses));
     let mated = pair.mated_height();
     let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, meets: &meets };
-    let mut round = 0;
+    // Until what is in the way of the seat is as small as it gets, or half of the boxes are spent on it.
+    let mut settled = false;
     loop {
         let flooded = flood(&mut tree, &seat, exec)?;
+        let in_the_way = coarse(&tree, flooded.blocking, &bodies);
+        settled |= in_the_way.is_empty() || tree.cells.len() > settings.boxes / 2;
         // Nowhere to lead to before.
-        if alignment.free.rotations() <= 1 && (round >= SEAT_ROUNDS || flooded.blocking.is_empty()) {
+        if alignment.free.rotations() <= 1 && settled {
             bundle(&mut tree, pair, &bodies, exec)?;
         }
         let gap = tree.undecided();
         exec.report(tree.cells.len() as f64 / settings.boxes as f64, "boxes");
-        let found = (gap <= settings.gap, tree.cells.len() >= settings.boxes);
-        let chosen = chosen(&tree, &flooded.blocking, round < SEAT_ROUNDS, &bodies, settings);
-        if found.0 || found.1 || chosen.is_empty() {
+        let chosen = chosen(&tree, in_the_way, settled, settings);
+        if gap <= settings.gap || tree.cells.len() >= settings.boxes || chosen.is_empty() {
             let [at_least, at_most] = retention(&tree, &seat, flooded.level, exec)?;
             let certificate = tree.certificate(at_least, at_most);
             return Ok(Certified { tree, certificate });
         }
         halve(&mut tree, &chosen, pair, &bodies, exec)?;
-        round += 1;
     }
 }
 
-/// Which boxes to halve: those in the way of the seat's own part, and the largest undecided ones.
-fn chosen(
-    tree: &Tree,
-    blocking: &[usize],
-    seat_first: bool,
-    bodies: &Bodies,
-    settings: &Settings,
-) -> Vec<usize> {
-    let most = (tree.cells.len() / PART).max(AT_ONCE);
-    let is_fine = |cell: &Cell| {
-        let poses = tree.poses(cell);
-        tree.axes.iter().all(|dof| {
+/// Those boxes that are not as small as it gets.
+fn coarse(tree: &Tree, mut numbers: Vec<usize>, bodies: &Bodies) -> Vec<usize> {
+    numbers.retain(|number| {
+        let poses = tree.poses(&tree.cells[*number]);
+        tree.axes.iter().any(|dof| {
             let unit = if dof.is_rotation() { bodies.rho } else { 1.0 };
-            unit * poses[dof.index()].width() <= FINEST
+            unit * poses[dof.index()].width() > FINEST
         })
-    };
+    });
+    numbers
+}
+
+/// Which boxes to halve: those in the way of the seat's own part, and, once that is settled, the largest undecided ones.
+fn chosen(tree: &Tree, in_the_way: Vec<usize>, settled: bool, settings: &Settings) -> Vec<usize> {
+    let most = (tree.cells.len() / PART).max(AT_ONCE);
     let room = settings.boxes.saturating_sub(tree.cells.len()) >> tree.axes.len();
-    let blocking = blocking.iter().copied().filter(|number| !is_fine(&tree.cells[*number]));
-    let mut open: Vec<(u8, usize)> = tree
-        .leaves()
-        .filter(|(_, cell)| cell.label.is_none() && tree.is_asked(cell) && cell.level < tree::DEEPEST)
-        .map(|(number, cell)| (cell.level, number))
-        .collect();
-    open.sort_unstable();
-    // First what is in the way of the seat: nothing docks for certain before that is known.
-    let mut chosen: Vec<usize> = blocking.collect();
-    if chosen.is_empty() || !seat_first || tree.cells.len() > settings.boxes / 2 {
+    let mut chosen = in_the_way;
+    if settled {
+        let mut open: Vec<(u8, usize)> = tree
+            .leaves()
+            .filter(|(_, cell)| cell.label.is_none() && tree.is_asked(cell) && cell.level < tree::DEEPEST)
+            .map(|(number, cell)| (cell.level, number))
+            .collect();
+        open.sort_unstable();
         chosen.extend(open.into_iter().map(|(_, number)| number).take(most));
     }
     chosen.truncate(room.max(1));
