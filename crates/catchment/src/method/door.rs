@@ -21,6 +21,7 @@ use crate::contact::Pair;
 use crate::design::{Design, nearest};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
+use crate::method::confluence::Joined;
 use crate::method::flood::{Hierarchy, Watersheds};
 use crate::method::partition::Partition;
 use crate::problem::Problem;
@@ -202,6 +203,8 @@ pub struct ByProducts {
     pub watersheds: Option<Watersheds>,
     /// The polytopes of the contact space.
     pub partition: Option<Partition>,
+    /// How many cells were decided by others, and how often that was wrong.
+    pub joined: Option<Joined>,
 }
 
 impl Decided {

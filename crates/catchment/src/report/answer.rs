@@ -7,6 +7,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::merit::Merits;
+use crate::method::confluence::Joined;
 use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
 use crate::problem::Problem;
@@ -31,6 +32,7 @@ impl Answer {
         if let Some(partition) = &self.by_products.partition {
             report.partition = Some(PartitionReport::new(partition));
         }
+        report.joined = self.by_products.joined;
         if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
@@ -131,6 +133,9 @@ impl Run {
         }
         if by_products.contains(&"watersheds") {
             report.watersheds = Some(WatershedsReport::default());
+        }
+        if by_products.contains(&"joined") {
+            report.joined = Some(Joined::default());
         }
         if by_products.contains(&"partition") {
             report.partition = Some(PartitionReport::default());

@@ -11,6 +11,7 @@ use crate::merit::success::{Distribution, Success, success};
 use crate::merit::sum::Sum;
 use crate::merit::tolerance::Tolerance;
 use crate::merit::{MeritError, Merits};
+use crate::method::confluence::Joined;
 use crate::pose::Dof;
 use crate::run::Seating;
 use serde::{Deserialize, Serialize};
@@ -47,6 +48,10 @@ pub struct RunBody {
     pub watersheds: Option<WatershedsReport>,
     /// The polytopes behind the outcomes; null for all methods but `partition`.
     pub partition: Option<PartitionReport>,
+    /// How many cells joined others, and how often that was wrong; null for all methods but `confluence`, and in reports of versions that did
+    /// not know it.
+    #[serde(default)]
+    pub joined: Option<Joined>,
     /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
     #[serde(default)]
     pub seat: Option<Seating>,
@@ -263,6 +268,7 @@ impl Report {
             basins: None,
             watersheds: None,
             partition: None,
+            joined: None,
             seat: None,
         };
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)

@@ -63,6 +63,20 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
         row(&mut text, "watersheds", &format!("{first} first labels{dams}, {merged} after merging"));
         row(&mut text, "", &format!("{} of the cells joined another", percent(found.moved_share)));
     }
+    if let Some(found) = &report.joined {
+        let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
+        row(
+            &mut text,
+            "joined",
+            &format!("{joined} of {cells} cells in contact took the outcome of others;"),
+        );
+        let most = percent(found.wrong_ci95[1]);
+        row(
+            &mut text,
+            "",
+            &format!("of {tried} tried {} end otherwise (at most {most} of them)", grouped(found.wrong)),
+        );
+    }
     if let Some(found) = &report.partition {
         text.push('\n');
         let counts = found.counts;
@@ -148,6 +162,12 @@ fn acceptance(text: &mut String, report: &Report) {
             String::new()
         };
         row(text, "", &format!("{cells}one cell of doubt: {} … {}", significant(lo), significant(hi)));
+    }
+    if let Some(sample) = &a.sample {
+        let [lo, hi] = sample.differing_ci95.map(percent);
+        let told =
+            format!("cells fare otherwise than {} of the box ({lo} … {hi})", percent(sample.differing));
+        row(text, "", &told);
     }
     let share =
         |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
