@@ -173,8 +173,11 @@ pub struct ToleranceReport {
     pub minus: f64,
     /// Above zero; not negative.
     pub plus: f64,
-    /// Uncertainty of both: half a cell.
+    /// Uncertainty of both: half a cell, or half the distance between a pose that docks and one that does not.
     pub half_cell: f64,
+    /// Whether poses were followed along the axis, so that it does not rest on cells; false in reports of versions that did not.
+    #[serde(default)]
+    pub followed: bool,
     /// The border of the error box stopped `minus`: it may be larger.
     pub minus_reaches_border: bool,
     /// The border of the error box stopped `plus`: it may be larger.
@@ -371,6 +374,7 @@ impl From<Tolerance> for ToleranceReport {
             minus: t.minus,
             plus: t.plus,
             half_cell: t.half_cell,
+            followed: t.is_followed,
             minus_reaches_border: t.minus_reaches_border,
             plus_reaches_border: t.plus_reaches_border,
         }

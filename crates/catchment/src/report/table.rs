@@ -217,7 +217,11 @@ fn tolerances(text: &mut String, report: &Report) {
             }
         })
         .collect();
-    wrapped(text, "  each ± half a cell: ", &half.join(", "));
+    if report.tolerances.iter().all(|t| t.followed) {
+        line(text, "  each alone, by poses followed exactly along its axis");
+    } else {
+        wrapped(text, "  each ± half a cell: ", &half.join(", "));
+    }
     if open {
         line(text, "  * up to the border of the error box, perhaps further");
     }
