@@ -65,11 +65,7 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     }
     if let Some(found) = &report.joined {
         let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
-        row(
-            &mut text,
-            "joined",
-            &format!("{joined} of {cells} cells in contact took the outcome of others;"),
-        );
+        row(&mut text, "joined", &format!("{joined} of {cells} cells in contact joined others;"));
         let most = percent(found.wrong_ci95[1]);
         row(
             &mut text,
