@@ -37,6 +37,11 @@ impl Running {
         let bar = self.bar.clone();
         signals::may_leave(move || bar.finish_and_clear());
     }
+
+    /// Prints something while the progress bar makes room.
+    pub(crate) fn beside_bar<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.bar.suspend(print)
+    }
 }
 
 impl Drop for Running {

@@ -49,6 +49,11 @@ impl OutputArgs {
         Some(path.into())
     }
 
+    /// Whether it is printed, so that parts of it can be told before the whole is there.
+    pub(crate) const fn is_printed(&self) -> bool {
+        self.output.is_none()
+    }
+
     /// Writes `text` where it should go.
     pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
         match &self.output {

@@ -47,11 +47,11 @@
 //! let problem = draft.build()?;
 //! assert!(problem.doubts().is_empty() && problem.digest().len() == 64);
 //!
-//! // 3. A run is data: the method with its settings, the grid, the random poses. The default method, transport, decides every
-//! //    cell of the error box from its neighbours; random poses, followed exactly, then make the Sum unbiased.
+//! // 3. A run is data: the method with its settings, the grid, the random poses. The default method, confluence, follows
+//! //    the cells of the error box until they join others; random poses, followed exactly, then make the Sum unbiased.
 //! let run = Run { over: Over::Grid("40".parse()?), ..Run::default() };
 //! let plan = run.plan(&problem)?;
-//! assert_eq!((plan.method.name(), plan.domain.len()), ("transport", 1600));
+//! assert_eq!((plan.method.name(), plan.domain.len()), ("confluence", 1600));
 //!
 //! // 4. What the accepted set is worth: 2.38 D·rad, 38 % of the error box, with a 95 % interval.
 //! let answer = run.on(&problem, &Exec::new())?;
@@ -86,7 +86,7 @@
 //! - [`problem`]: the alignment problem as one value: geometry, alignment, mated pose checked, digest.
 //! - [`landscape`]: the error grid over any of the five errors, and the heights over it.
 //! - [`acceptance`]: what becomes of every pose error; the one result that all methods share.
-//! - [`method`]: ways to decide, all through one door: transport (the default), exact descent, flooding in three forms, the
+//! - [`method`]: ways to decide, all through one door: confluence of exact motions (the default), exact descent, transport, flooding in three forms, the
 //!   polyhedral partition, the planar kinematic one, drop tests; and translation alone.
 //! - [`merit`]: what an accepted set is worth: Sum, ONAA, tolerances, success probability.
 //! - [`run`]: plan, decide, correct, settle, measure: from a problem to its answer. Over many machines, too.

@@ -40,7 +40,7 @@ pub(crate) struct CompareArgs {
     /// The other; without it, A is decided by two methods
     #[arg(value_name = "B", value_hint = clap::ValueHint::AnyPath)]
     second: Option<PathBuf>,
-    /// The method of every design among A and B, in their order; one counts for both [default: transport]
+    /// The method of every design among A and B, in their order; one counts for both [default: confluence]
     #[arg(long, value_name = "METHOD", value_delimiter = ',', value_parser = method_parser())]
     methods: Vec<Method>,
     /// Cells per axis, such as 30 or x=40,yaw=24 [default: those of a stored result, else by number of axes]

@@ -5,21 +5,26 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
-use crate::output::{OutputArgs, to_stderr};
+use crate::output::{OutputArgs, to_stderr, to_stdout};
 use crate::signals;
 use crate::source::read_table;
 use catchment::advice::Advice;
 use catchment::design::Findings;
+use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
-use catchment::report::OutcomesReport;
+use catchment::problem::Problem;
+use catchment::report::{OutcomeRows, OutcomesReport};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::sync::{Mutex, PoisonError};
 
 /// Decide what becomes of listed pose errors
 ///
 /// Reads a CSV table with a header and prints it again with the outcome (aligned, jammed, missed, undecided)
-/// and the last pose error of every row. How many met which outcome goes to stderr. Where it is interrupted (Ctrl-C) the rows that are
-/// finished are printed; instead of the file of -o they go into FILE.partial. Exit code 130 then.
+/// and the last pose error of every row, each row as soon as it and all before it are decided. How many met which outcome goes to
+/// stderr. Where it is interrupted (Ctrl-C) the rows that are finished are printed; instead of the file of -o they go into
+/// FILE.partial. Exit code 130 then.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment outcome design.toml --poses poses.csv -o outcomes.csv\n  \
@@ -81,10 +86,22 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     running
         .exec
         .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
-    let followed = problem.follow_keeping(&method, table.errors(), &running.exec)?;
+    let printed = Printed::new(&problem, &table);
+    let streams = args.output.is_printed() && !args.json;
+    let stop = running.exec.cancel_flag();
+    let tell = |number, end| {
+        if streams && !running.beside_bar(|| printed.push(number, end)) {
+            stop.store(true, Ordering::Relaxed);
+        }
+    };
+    let followed = problem.follow_telling(&method, table.errors(), &running.exec, &tell)?;
     drop(running);
     let report = OutcomesReport::new(&problem, &table, &method, &followed);
-    let text = if args.json { report.to_json()? } else { report.to_csv()? };
+    let text = match (streams, args.json) {
+        (true, _) => printed.rest()?,
+        (false, true) => report.to_json()?,
+        (false, false) => report.to_csv()?,
+    };
     if report.partial().is_some() {
         let place = args.output.write_partial(&text)?;
         let beside = place.map(|path| format!("they are in {}", path.display()));
@@ -99,4 +116,53 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     said.extend(report.summary());
     to_stderr(&said);
     Ok(ExitStatus::Done)
+}
+
+/// Rows on stdout as they are decided. The names of the columns come with the first row: where nothing is decided nothing is printed.
+struct Printed<'a>(Mutex<Printing<'a>>);
+
+struct Printing<'a> {
+    rows: OutcomeRows<'a>,
+    has_begun: bool,
+    /// Why it cannot go on.
+    failed: Option<Failure>,
+}
+
+impl<'a> Printed<'a> {
+    fn new(problem: &'a Problem, table: &'a PoseTable<'a>) -> Self {
+        Self(Mutex::new(Printing { rows: OutcomeRows::new(problem, table), has_begun: false, failed: None }))
+    }
+
+    /// A pose is decided; false where rows cannot be printed any more.
+    fn push(&self, number: usize, end: End) -> bool {
+        let mut printing = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if printing.failed.is_none()
+            && let Err(failure) = printing.push(number, end)
+        {
+            printing.failed = Some(failure);
+        }
+        printing.failed.is_none()
+    }
+
+    /// What is left to print when no more poses will be decided.
+    fn rest(self) -> Result<String, Failure> {
+        let printing = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if let Some(failure) = printing.failed {
+            return Err(failure);
+        }
+        let header = if printing.has_begun { String::new() } else { printing.rows.header()? };
+        Ok(header + &printing.rows.rest()?)
+    }
+}
+
+impl Printing<'_> {
+    fn push(&mut self, number: usize, end: End) -> Result<(), Failure> {
+        let text = self.rows.push(number, end)?;
+        if text.is_empty() {
+            return Ok(());
+        }
+        let header = if self.has_begun { String::new() } else { self.rows.header()? };
+        self.has_begun = true;
+        to_stdout(&(header + &text))
+    }
 }

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout, written};
 use catchment::report::csv;
 use catchment_validation::report::{Effort, folder};
-use catchment_validation::study::accuracy::{self, CASES};
+use catchment_validation::study::accuracy::{self, CASES, DRAWN, LABELLED};
 use catchment_validation::study::reproduce::Settings;
 use catchment_validation::study::{COVERAGE, FIGURE, Request};
 use catchment_validation::tables::TABLES;
@@ -133,7 +133,7 @@ fn accuracy(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let running = args.exec.start()?;
     let threads = running.exec.threads();
-    let table = accuracy::run(&CASES, &running.exec)?;
+    let table = accuracy::run(&CASES, &LABELLED, DRAWN, &running.exec)?;
     drop(running);
     let effort = Effort { seconds: started.elapsed().as_secs_f64(), threads };
     let text = if args.form.json {

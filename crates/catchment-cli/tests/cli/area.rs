@@ -287,7 +287,8 @@ fn slices_and_strips_belong_to_the_partition() {
     let home = home();
     let said = run(home.path(), &["run", "v.toml", "--slices", "8"]);
     assert!(
-        said.starts_with("exit 2") && said.contains("--slices is a setting of partition; transport has none"),
+        said.starts_with("exit 2")
+            && said.contains("--slices is a setting of partition; confluence has none"),
         "{said}"
     );
     let said = run(home.path(), &["run", "v.toml", "--method", "partition", "--strips", "0"]);

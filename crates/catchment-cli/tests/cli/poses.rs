@@ -321,3 +321,31 @@ fn what_was_decided_until_an_interrupt_is_kept_beside_the_result() {
     let row = last["number"].as_u64().unwrap();
     assert_eq!(last["carried"]["name"], format!("p{row}"));
 }
+
+/// Rows come while others are still followed; a reader that has seen enough ends the command quietly.
+#[test]
+fn rows_are_printed_as_they_are_decided() {
+    use std::fmt::Write;
+    use std::io::{BufRead, BufReader};
+    const POSES: usize = 300_000;
+    let home = super::home();
+    let mut table = "name,x,pitch\n".to_owned();
+    for k in 0..POSES {
+        writeln!(table, "p{k},{},0.1", 0.4 - 0.8 * (k as f64 / POSES as f64)).unwrap();
+    }
+    fs::write(home.path().join("poses.csv"), &table).unwrap();
+    let mut child = catchment(home.path())
+        .args(["outcome", "v.toml", "--poses", "poses.csv", "--threads", "1"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let first: Vec<String> = lines.by_ref().take(3).map(Result::unwrap).collect();
+    assert!(first[0].starts_with("name,x,pitch,outcome,final_x"), "{first:?}");
+    assert!(first[1].starts_with("p0,0.4,0.1,aligned,") && first[2].starts_with("p1,"), "{first:?}");
+    assert!(child.try_wait().unwrap().is_none(), "all poses were decided before the first was told");
+    drop(lines);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), b"".as_slice()));
+}

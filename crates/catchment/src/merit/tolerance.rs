@@ -9,11 +9,14 @@
 //! lies between the centres on either side of it, so within half a cell ([`Tolerance::half_cell`]). With an even
 //! number of cells no centre lies at zero; then a cell along the axis counts as accepted if it is so on every
 //! side of zero along the other axes.
+//!
+//! Where poses can be followed one by one, no grid is needed ([`followed`]): poses from zero outwards, evenly, and from the
+//! first that does not dock back by bisection.
 
 use super::{MeritError, gap, grid_of};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::Grid;
-use crate::pose::Dof;
+use crate::pose::{Dof, PoseError};
 
 /// Tolerance along one axis, in D or radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,8 +31,11 @@ pub struct Tolerance {
     pub minus_reaches_border: bool,
     /// The border of the error box stopped `plus`: it may be larger.
     pub plus_reaches_border: bool,
-    /// Half the width of a cell: the uncertainty of `minus` and `plus`.
+    /// The uncertainty of `minus` and `plus`: half the width of a cell, or half the distance between the last pose that was seen to dock and
+    /// the first that does not.
     pub half_cell: f64,
+    /// Whether it was found by following poses, without a grid.
+    pub is_followed: bool,
 }
 
 impl Tolerance {
@@ -75,7 +81,77 @@ fn along(acceptance: &Acceptance, grid: &Grid, number: usize) -> Option<Toleranc
         minus_reaches_border: below == Some(0),
         plus_reaches_border: above == Some(axis.cells - 1),
         half_cell: 0.5 * step,
+        is_followed: false,
     })
+}
+
+/// Bisections of the step between a pose that docks and one that does not.
+const BISECTIONS: i32 = 7;
+
+/// One side of an axis while it is looked at.
+struct Side {
+    dof: Dof,
+    /// Where the error box ends.
+    border: f64,
+    /// As far as poses were seen to dock, and the first that does not; in steps.
+    between: [f64; 2],
+}
+
+/// The tolerance along every axis whose range holds zero, in the order of `grid`, which says no more than the error box: `steps` poses on either
+/// side and some bisections are decided by `decide`, which gives one outcome per pose. A gap narrower than a step is not seen.
+///
+/// # Errors
+/// Those of `decide`.
+pub fn followed<E>(
+    grid: &Grid,
+    steps: usize,
+    mut decide: impl FnMut(Vec<PoseError>) -> Result<Vec<Outcome>, E>,
+) -> Result<Vec<Tolerance>, E> {
+    let whole = steps.max(1) as f64;
+    let pose = |dof: Dof, value: f64| {
+        let mut error = [0.0; Dof::ALL.len()];
+        error[dof.index()] = value;
+        PoseError::from_array(error)
+    };
+    let holds = |lo: f64, hi: f64| lo < 0.0 && hi > 0.0;
+    let axes: Vec<_> = grid.axes.iter().filter(|axis| holds(axis.lo, axis.hi)).collect();
+    let sides = axes.iter().flat_map(|axis| [(axis.dof, axis.lo), (axis.dof, axis.hi)]);
+    let mut sides: Vec<Side> =
+        sides.map(|(dof, border)| Side { dof, border, between: [0.0, whole] }).collect();
+    let at = |side: &Side, step: f64| pose(side.dof, side.border * (step / whole));
+    let scan = sides.iter().flat_map(|side| (1..=steps.max(1)).map(move |k| at(side, k as f64)));
+    let docks = |outcome: &Outcome| *outcome == Outcome::Aligned;
+    let found = decide([PoseError::default()].into_iter().chain(scan).collect())?;
+    let is_home = found.first().is_some_and(docks);
+    for (side, found) in sides.iter_mut().zip(found.get(1..).unwrap_or_default().chunks(steps.max(1))) {
+        let reached = if is_home { found.iter().take_while(|outcome| docks(outcome)).count() } else { 0 };
+        side.between = [reached as f64, (reached + 1) as f64];
+    }
+    let is_open = |side: &Side| is_home && side.between[0] < whole;
+    for _ in 0..BISECTIONS {
+        let middle = |side: &Side| 0.5 * (side.between[0] + side.between[1]);
+        let poses = sides.iter().filter(|side| is_open(side)).map(|side| at(side, middle(side))).collect();
+        let found = decide(poses)?;
+        for (side, outcome) in sides.iter_mut().filter(|side| is_open(side)).zip(&found) {
+            side.between[usize::from(!docks(outcome))] = middle(side);
+        }
+    }
+    let reach = |side: &Side| side.border.abs() * (side.between[0] / whole);
+    let doubt = |side: &Side| {
+        if is_open(side) { 0.5f64.powi(BISECTIONS + 1) * side.border.abs() / whole } else { 0.0 }
+    };
+    Ok(sides
+        .chunks_exact(2)
+        .map(|sides| Tolerance {
+            dof: sides[0].dof,
+            minus: reach(&sides[0]),
+            plus: reach(&sides[1]),
+            minus_reaches_border: sides[0].between[0] >= whole,
+            plus_reaches_border: sides[1].between[0] >= whole,
+            half_cell: doubt(&sides[0]).max(doubt(&sides[1])),
+            is_followed: true,
+        })
+        .collect())
 }
 
 /// The cells that hold zero or have it on their border: one, or two per axis with an even number of cells. Empty if
@@ -95,6 +171,31 @@ pub(super) fn around_zero(grid: &Grid) -> Vec<usize> {
 mod tests {
     use super::super::testing::*;
     use super::*;
+
+    #[test]
+    fn followed_they_are_those_of_the_set_and_not_of_cells() {
+        let g = grid(&[2, 3], &[1.0, 2.0]);
+        let inside = |e: &PoseError| (-0.5..0.3).contains(&e.x) && e.y.abs() < 0.25 && e.x + e.y > -0.6;
+        let decide = |poses: Vec<PoseError>| {
+            let label = |e: &PoseError| if inside(e) { Outcome::Aligned } else { Outcome::Missed };
+            Ok::<_, ()>(poses.iter().map(label).collect())
+        };
+        let found = followed(&g, 40, decide).unwrap();
+        for (tolerance, exact) in found.iter().zip([[0.5, 0.3], [0.25, 0.25]]) {
+            assert!(tolerance.is_followed && !tolerance.plus_reaches_border && tolerance.half_cell < 3e-4);
+            for (side, exact) in [tolerance.minus, tolerance.plus].into_iter().zip(exact) {
+                assert!((exact - side).abs() <= 2.0 * tolerance.half_cell + 1e-12, "{side} for {exact}");
+            }
+        }
+        // To the border, and nothing at all.
+        let all = followed(&g, 4, |poses| Ok::<_, ()>(vec![Outcome::Aligned; poses.len()])).unwrap();
+        assert_eq!(
+            (all[1].minus, all[1].plus, all[1].plus_reaches_border, all[1].half_cell),
+            (2.0, 2.0, true, 0.0)
+        );
+        let none = followed(&g, 4, |poses| Ok::<_, ()>(vec![Outcome::Jammed; poses.len()])).unwrap();
+        assert_eq!((none[0].minus, none[0].plus, none[0].plus_reaches_border), (0.0, 0.0, false));
+    }
 
     #[test]
     fn of_a_box_off_centre_both_sides_are_found() {

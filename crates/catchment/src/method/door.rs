@@ -22,6 +22,7 @@ use crate::design::{Design, nearest};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::method::certified::Certificate;
+use crate::method::confluence::Joined;
 use crate::method::flood::{Hierarchy, Watersheds};
 use crate::method::partition::Partition;
 use crate::problem::Problem;
@@ -205,6 +206,8 @@ pub struct ByProducts {
     pub partition: Option<Partition>,
     /// What is certain.
     pub certificate: Option<Certificate>,
+    /// How many cells were decided by others, and how often that was wrong.
+    pub joined: Option<Joined>,
 }
 
 impl Decided {

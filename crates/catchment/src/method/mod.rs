@@ -2,19 +2,21 @@
 //! outcomes, doubts and by-products ([`Decided`]).
 //!
 //! ```text
-//!   transport   arrival along exact directions over a grid      the default
+//!   confluence  exact motions that join each other              the default
 //!   descent     exact quasi-static motion of every pose         the ground truth
 //!   flood       basins of the heights, to the lowest neighbour  steepest: to the steepest; meyer: by a queue, with dams
 //!   partition   the contact space as polytopes, without a grid
 //!   kinematic   planar bounds and stepping
 //!   certified   boxes of poses that certainly dock, or do not
 //!   drop        trials in a rigid-body engine                   feature `drop`
+//!   transport   arrival along exact directions over a grid
 //! ```
 //!
 //! [`correction`] gives the Sum of any of them its interval by exact descents. [`zraa`] decides translation alone and is
 //! entered by itself. A method is added by its folder, which implements [`Decide`], and by one line in [`REGISTRY`].
 
 pub mod certified;
+pub mod confluence;
 pub mod correction;
 pub mod descent;
 mod door;
@@ -22,6 +24,7 @@ mod door;
 pub mod drop;
 pub mod flood;
 pub mod kinematic;
+mod metric;
 pub mod partition;
 pub mod transport;
 pub mod zraa;
@@ -33,7 +36,7 @@ pub use door::{
 
 /// Every method, the default first.
 pub static REGISTRY: &[Entry] = &[
-    transport::door::ENTRY,
+    confluence::door::ENTRY,
     descent::door::ENTRY,
     flood::door::ENTRY,
     flood::door::ENTRY_STEEPEST,
@@ -43,6 +46,7 @@ pub static REGISTRY: &[Entry] = &[
     certified::door::ENTRY,
     #[cfg(feature = "drop")]
     drop::door::ENTRY,
+    transport::door::ENTRY,
 ];
 
 impl Method {

@@ -8,6 +8,7 @@ use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::merit::Merits;
 use crate::method::certified::Certificate;
+use crate::method::confluence::Joined;
 use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
 use crate::problem::Problem;
@@ -33,6 +34,7 @@ impl Answer {
             report.partition = Some(PartitionReport::new(partition));
         }
         report.certificate = self.by_products.certificate;
+        report.joined = self.by_products.joined;
         if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
@@ -133,6 +135,9 @@ impl Run {
         }
         if by_products.contains(&"watersheds") {
             report.watersheds = Some(WatershedsReport::default());
+        }
+        if by_products.contains(&"joined") {
+            report.joined = Some(Joined::default());
         }
         if by_products.contains(&"partition") {
             report.partition = Some(PartitionReport::default());

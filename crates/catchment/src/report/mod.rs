@@ -59,7 +59,7 @@ pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
 pub use lever::{LeverBody, LeverFound, LeverReport};
-pub use outcomes::OutcomesReport;
+pub use outcomes::{OutcomeRows, OutcomesReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
 pub use schema::{Report, RunBody};

@@ -2,7 +2,7 @@
 
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use super::text::number;
+use super::text::number as number_in_table;
 use crate::acceptance::{Acceptance, Outcome, Reason};
 use crate::design::Design;
 use crate::method::Method;
@@ -17,6 +17,7 @@ use std::collections::BTreeMap;
 /// The outcomes of a table of poses.
 #[derive(Debug)]
 pub struct OutcomesReport<'a> {
+    problem: &'a Problem,
     /// The design.
     pub design: &'a Design,
     /// The poses.
@@ -33,6 +34,84 @@ pub struct OutcomesReport<'a> {
     pub warnings: Vec<WarningReport>,
     /// The numbers of the rows that were finished, where it was stopped before all of them were.
     pub finished: Option<&'a [usize]>,
+}
+
+/// The rows of a table as CSV, as soon as their poses are decided, in whatever order: each comes when all before it have come.
+pub struct OutcomeRows<'a> {
+    problem: &'a Problem,
+    table: &'a PoseTable<'a>,
+    rows: Box<dyn Iterator<Item = (usize, Vec<String>)> + Send + 'a>,
+    /// The first row that has not come.
+    next: usize,
+    /// Decided, but some before them are not.
+    waiting: BTreeMap<usize, End>,
+}
+
+impl<'a> OutcomeRows<'a> {
+    /// Of a table whose poses are decided for a problem.
+    pub fn new(problem: &'a Problem, table: &'a PoseTable<'a>) -> Self {
+        let rows = Box::new(table.rows().enumerate());
+        Self { problem, table, rows, next: 0, waiting: BTreeMap::new() }
+    }
+
+    /// The names of the columns: those of the table, `outcome`, the final errors, and `reason` where there is something to tell.
+    ///
+    /// # Errors
+    /// As for [`OutcomesReport::to_csv`].
+    pub fn header(&self) -> Result<String, csv::Error> {
+        let mut header = self.table.header();
+        header.push("outcome".to_owned());
+        header.extend(self.table.names().map(|name| format!("final_{name}")));
+        if self.problem.may_cross() {
+            header.push("reason".to_owned());
+        }
+        record(&header)
+    }
+
+    /// A pose is decided: the rows that can be told now.
+    ///
+    /// # Errors
+    /// As for [`OutcomesReport::to_csv`].
+    pub fn push(&mut self, number: usize, end: End) -> Result<String, csv::Error> {
+        self.waiting.insert(number, end);
+        let mut text = String::new();
+        while let Some(end) = self.waiting.remove(&self.next) {
+            text.push_str(&self.row(self.next, &end)?);
+        }
+        Ok(text)
+    }
+
+    /// No more poses will be decided: the rows that waited for others.
+    ///
+    /// # Errors
+    /// As for [`OutcomesReport::to_csv`].
+    pub fn rest(mut self) -> Result<String, csv::Error> {
+        let waiting = std::mem::take(&mut self.waiting);
+        waiting.iter().map(|(number, end)| self.row(*number, end)).collect()
+    }
+
+    /// A row that comes after all that came before.
+    fn row(&mut self, number: usize, end: &End) -> Result<String, csv::Error> {
+        self.next = number + 1;
+        let Some((_, mut row)) = self.rows.find(|(k, _)| *k == number) else { return Ok(String::new()) };
+        row.push(end.outcome.name().to_owned());
+        row.extend(self.table.in_units(&end.error).map(number_in_table));
+        if self.problem.may_cross() {
+            let reason = Reason::of(self.problem, end.outcome, &end.error);
+            row.push(reason.map_or("", Reason::name).to_owned());
+        }
+        record(&row)
+    }
+}
+
+/// One line of CSV.
+fn record(cells: &[String]) -> Result<String, csv::Error> {
+    let mut bytes = Vec::new();
+    let mut writer = csv::Writer::from_writer(&mut bytes);
+    writer.write_record(cells)?;
+    writer.flush()?;
+    std::mem::drop(writer);
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// The answer for programs; lengths in D, angles in radians.
@@ -89,7 +168,8 @@ impl<'a> OutcomesReport<'a> {
         let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());
         let (design, settings) = (problem.design(), method.settings());
         let finished = finished.as_deref();
-        let mut report = Self { design, table, settings, acceptance, ends, reasons, warnings, finished };
+        let mut report =
+            Self { problem, design, table, settings, acceptance, ends, reasons, warnings, finished };
         let partial = report.partial().map(|partial| WarningReport::note(&partial));
         report.warnings.extend(partial);
         report
@@ -138,33 +218,18 @@ impl<'a> OutcomesReport<'a> {
     }
 
     /// The table as it came, with the outcome and the final errors in the units of their columns; where reasons can be told, with a
-    /// column of them.
+    /// column of them: what [`OutcomeRows`] gives row by row.
     ///
     /// # Errors
     /// If a row cannot be written, which text in memory gives no reason for.
     pub fn to_csv(&self) -> Result<String, csv::Error> {
-        let mut bytes = Vec::new();
-        let mut writer = csv::Writer::from_writer(&mut bytes);
-        let mut header = self.table.header();
-        header.push("outcome".to_owned());
-        header.extend(self.table.names().map(|name| format!("final_{name}")));
-        if self.reasons.is_some() {
-            header.push("reason".to_owned());
+        let mut rows = OutcomeRows::new(self.problem, self.table);
+        let mut text = rows.header()?;
+        for (number, end) in self.told().zip(self.ends) {
+            text.push_str(&rows.push(number, *end)?);
         }
-        writer.write_record(&header)?;
-        let mut told = self.told().peekable();
-        let rows = self.table.rows().enumerate().filter(|(number, _)| told.next_if_eq(number).is_some());
-        for (k, ((_, mut row), end)) in rows.zip(self.ends).enumerate() {
-            row.push(end.outcome.name().to_owned());
-            row.extend(self.table.in_units(&end.error).map(number));
-            if self.reasons.is_some() {
-                row.push(self.reason(k).map_or("", Reason::name).to_owned());
-            }
-            writer.write_record(&row)?;
-        }
-        writer.flush()?;
-        std::mem::drop(writer);
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
+        text.push_str(&rows.rest()?);
+        Ok(text)
     }
 
     /// The answer for programs: lengths in D, angles in radians, offsets at the point where the table has them.

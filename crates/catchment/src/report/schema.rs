@@ -12,6 +12,7 @@ use crate::merit::sum::Sum;
 use crate::merit::tolerance::Tolerance;
 use crate::merit::{MeritError, Merits};
 use crate::method::certified::Certificate;
+use crate::method::confluence::Joined;
 use crate::pose::Dof;
 use crate::run::Seating;
 use serde::{Deserialize, Serialize};
@@ -51,6 +52,10 @@ pub struct RunBody {
     /// What is certain of the error box and of the seat; null for all methods but `certified`, and in reports of versions without it.
     #[serde(default)]
     pub certificate: Option<Certificate>,
+    /// How many cells joined others, and how often that was wrong; null for all methods but `confluence`, and in reports of versions that did
+    /// not know it.
+    #[serde(default)]
+    pub joined: Option<Joined>,
     /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
     #[serde(default)]
     pub seat: Option<Seating>,
@@ -172,8 +177,11 @@ pub struct ToleranceReport {
     pub minus: f64,
     /// Above zero; not negative.
     pub plus: f64,
-    /// Uncertainty of both: half a cell.
+    /// Uncertainty of both: half a cell, or half the distance between a pose that docks and one that does not.
     pub half_cell: f64,
+    /// Whether poses were followed along the axis, so that it does not rest on cells; false in reports of versions that did not.
+    #[serde(default)]
+    pub followed: bool,
     /// The border of the error box stopped `minus`: it may be larger.
     pub minus_reaches_border: bool,
     /// The border of the error box stopped `plus`: it may be larger.
@@ -268,6 +276,7 @@ impl Report {
             watersheds: None,
             partition: None,
             certificate: None,
+            joined: None,
             seat: None,
         };
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
@@ -370,6 +379,7 @@ impl From<Tolerance> for ToleranceReport {
             minus: t.minus,
             plus: t.plus,
             half_cell: t.half_cell,
+            followed: t.is_followed,
             minus_reaches_border: t.minus_reaches_border,
             plus_reaches_border: t.plus_reaches_border,
         }

@@ -64,6 +64,16 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
         row(&mut text, "watersheds", &format!("{first} first labels{dams}, {merged} after merging"));
         row(&mut text, "", &format!("{} of the cells joined another", percent(found.moved_share)));
     }
+    if let Some(found) = &report.joined {
+        let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
+        row(&mut text, "joined", &format!("{joined} of {cells} cells in contact joined others;"));
+        let most = percent(found.wrong_ci95[1]);
+        row(
+            &mut text,
+            "",
+            &format!("of {tried} tried {} end otherwise (at most {most} of them)", grouped(found.wrong)),
+        );
+    }
     if let Some(found) = &report.partition {
         text.push('\n');
         let counts = found.counts;
@@ -154,6 +164,12 @@ fn acceptance(text: &mut String, report: &Report) {
         };
         row(text, "", &format!("{cells}one cell of doubt: {} … {}", significant(lo), significant(hi)));
     }
+    if let Some(sample) = &a.sample {
+        let [lo, hi] = sample.differing_ci95.map(percent);
+        let told =
+            format!("cells fare otherwise than {} of the box ({lo} … {hi})", percent(sample.differing));
+        row(text, "", &told);
+    }
     let share =
         |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
     let o = &a.outcomes;
@@ -202,7 +218,11 @@ fn tolerances(text: &mut String, report: &Report) {
             }
         })
         .collect();
-    wrapped(text, "  each ± half a cell: ", &half.join(", "));
+    if report.tolerances.iter().all(|t| t.followed) {
+        line(text, "  each alone, by poses followed exactly along its axis");
+    } else {
+        wrapped(text, "  each ± half a cell: ", &half.join(", "));
+    }
     if open {
         line(text, "  * up to the border of the error box, perhaps further");
     }

@@ -3,7 +3,7 @@
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower, Trajectory};
-use crate::method::{DecideError, Method};
+use crate::method::{DecideError, Finished, Method};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 use std::sync::{Mutex, PoisonError};
@@ -58,9 +58,26 @@ impl Problem {
         poses: &[PoseError],
         exec: &Exec,
     ) -> Result<Followed, DecideError> {
+        self.follow_telling(method, poses, exec, &|_, _| {})
+    }
+
+    /// The same; `told` is told of every pose as soon as it is decided.
+    ///
+    /// # Errors
+    /// As for [`Problem::follow_keeping`].
+    pub fn follow_telling(
+        &self,
+        method: &Method,
+        poses: &[PoseError],
+        exec: &Exec,
+        told: Finished<'_>,
+    ) -> Result<Followed, DecideError> {
         let follow = method.follows().ok_or(DecideError::NeedsGrid { method: method.name() })?;
         let kept = Mutex::new(Vec::new());
-        let keep = |number, end| kept.lock().unwrap_or_else(PoisonError::into_inner).push((number, end));
+        let keep = |number, end| {
+            kept.lock().unwrap_or_else(PoisonError::into_inner).push((number, end));
+            told(number, end);
+        };
         match follow.rest_told(self, Domain::Poses(poses.to_vec()), exec, &keep) {
             Ok((acceptance, ends)) => Ok(Followed { acceptance, ends, finished: None }),
             Err(DecideError::Cancelled(cancelled)) => {

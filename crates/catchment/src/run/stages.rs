@@ -6,8 +6,9 @@ use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
 use crate::merit::Merits;
 use crate::merit::success::success;
+use crate::merit::tolerance::followed;
 use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError};
-use crate::method::{Decided, Doubts, Follow, Method, descent};
+use crate::method::{Decided, Doubts, Follow, Method, affordable, descent};
 use crate::problem::Problem;
 
 /// What follows random poses and doubtful cells exactly: the method itself where it decides each pose by itself (descents would know
@@ -32,6 +33,10 @@ impl Judge<'_> {
 pub(super) fn decide(plan: &Plan, problem: &Problem, exec: &Exec) -> Result<Decided, RunError> {
     Ok(plan.method.decide(problem, &plan.domain, exec)?)
 }
+
+/// Poses on either side of an axis for the tolerances of simple halves, and of any halves.
+const STEPS: f64 = 48.0;
+const LEAST_STEPS: f64 = 12.0;
 
 /// Everything after the decision.
 pub(super) fn finish(
@@ -62,7 +67,15 @@ pub(super) fn finish(
     if judge.own.is_some() || corrected.is_some() || doubts.is_some() {
         acceptance.warnings.extend(judge.as_follow().doubt(problem, run.seed, exec)?);
     }
-    let merits = Merits::of(&acceptance, problem.alignment(), exec)?;
+    let mut merits = Merits::of(&acceptance, problem.alignment(), exec)?;
+    if let (Some(_), Domain::Grid(grid)) = (&corrected, &plan.domain) {
+        // What follows random poses exactly can follow some along the axes.
+        let steps = (STEPS * affordable(problem.pair()).sqrt()).max(LEAST_STEPS) as usize;
+        merits.tolerances = followed(grid, steps, |poses| {
+            let decided = judge.as_follow().follow(problem, Domain::Poses(poses), exec);
+            Ok::<_, RunError>(decided?.0.outcomes)
+        })?;
+    }
     let success = match &run.errors {
         Some(distribution) => Some(success(&acceptance, distribution, exec)?),
         None => None,

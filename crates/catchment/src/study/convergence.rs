@@ -279,7 +279,7 @@ mod tests {
         let found = run(&problem, &settings, &Exec::new()).unwrap();
         assert_eq!(
             found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(),
-            ["transport", "descent", "flood", "steepest"]
+            ["confluence", "descent", "flood", "steepest", "transport"]
         );
         assert_eq!(found.unit, "D·rad");
         for sequence in &found.sequences {

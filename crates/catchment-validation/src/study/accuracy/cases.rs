@@ -30,6 +30,9 @@ const fn case(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: &'sta
 /// tan 30°, the dissertation's choice for the 3-D X-Face.
 const SADDLE: f64 = FamilySpec::new(Family::XFace3d).aspect_ratio();
 
+/// That of the locking one.
+const LOCKING: f64 = FamilySpec::new(Family::XFace3dLocking).aspect_ratio();
+
 /// Planar and spatial, convex and not, two to five errors, centres of rotation from far behind the face to far before
 /// it; the two with thin ravines and shallow jams (V-Face) are there because they are hard.
 pub const CASES: [Case; 11] = [
@@ -46,13 +49,22 @@ pub const CASES: [Case; 11] = [
     case(Family::XFace3d, SADDLE, 0.5, 0.5, ALL),
 ];
 
+/// The designs whose labels are looked at cell by cell, and cells per axis.
+pub const LABELLED: [(Case, usize); 5] = [
+    (case(Family::Pyramid, 0.5, 0.5, 0.5, ALL), 20),
+    (case(Family::Pyramid, 0.5, 0.0, 0.5, ALL), 20),
+    (case(Family::XFace3d, SADDLE, 0.5, 0.5, ALL), 20),
+    (case(Family::XFace3d, SADDLE, 0.0, 0.5, ALL), 20),
+    (case(Family::XFace3dLocking, LOCKING, 0.5, 0.5, ALL), 13),
+];
+
 impl Case {
     /// Cells per axis, coarse to fine.
     pub const fn resolutions(&self) -> [usize; 3] {
         match self.free.len() {
             ..=2 => [50, 100, 200],
             3 => [20, 30, 40],
-            _ => [8, 10, 12],
+            _ => [12, 20, 30],
         }
     }
 

@@ -74,6 +74,17 @@ impl Seen {
         self.weighted.map(|w| if total == 0 { 0.0 } else { w / total as f64 })
     }
 
+    /// The same poses, counting those that neither aligned nor are undecided, after `total` poses in all strata.
+    pub(super) fn reversed(&self, total: usize) -> Self {
+        let [aligned, undecided] = self.weighted;
+        let decided = self.descents - self.undecided;
+        Self {
+            aligned: decided - self.aligned,
+            weighted: [(total as f64 - aligned - undecided).max(0.0), undecided],
+            ..*self
+        }
+    }
+
     /// Variance of the estimated share, were `share` the true one.
     fn variance(&self, share: f64, total: usize) -> f64 {
         share * (1.0 - share) * self.spread / (total as f64 * total as f64)

@@ -110,6 +110,10 @@ pub struct Corrected {
     pub ci95: [f64; 2],
     /// `sum` as a share of the error box, in [0, 1].
     pub fraction: f64,
+    /// Share of the error box whose poses fare otherwise than their cells, accepted or not, in [0, 1]; and its 95 % interval.
+    pub differing: f64,
+    /// See [`Corrected::differing`].
+    pub differing_ci95: [f64; 2],
     /// Poses followed.
     pub descents: usize,
     /// How many poses drawn evenly over the whole box would have told as much; infinite where no doubt was seen.
@@ -193,10 +197,14 @@ pub fn estimate(
         }
     }
     let measure = grid.measure();
+    let against = |(s, seen): (&usize, &Seen)| if strata.accepts(*s) { seen.reversed(total) } else { *seen };
+    let differing = Whole::of(&present.iter().zip(&seen).map(against).collect::<Vec<_>>(), total);
     Ok(Corrected {
         sum: whole.fraction * measure,
         ci95: whole.ci95.map(|share| share * measure),
         fraction: whole.fraction,
+        differing: differing.fraction,
+        differing_ci95: differing.ci95,
         descents: total,
         plain_descents: whole.plain,
         strata: present

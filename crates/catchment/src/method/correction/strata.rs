@@ -21,6 +21,8 @@ pub trait Stratify: Sync {
     fn strata(&self) -> usize;
     /// The stratum of a cell, below [`Stratify::strata`].
     fn stratum(&self, cell: usize) -> u8;
+    /// Whether the method accepts the cells of a stratum.
+    fn accepts(&self, stratum: usize) -> bool;
     /// What a stratum holds, for people.
     fn name(&self, stratum: usize) -> String;
 }
@@ -89,6 +91,11 @@ impl<'a, S: Stratify> Strata<'a, S> {
     /// Number of cells of a stratum.
     pub(super) fn cells(&self, stratum: usize) -> u64 {
         self.before(stratum)[self.blocks]
+    }
+
+    /// Whether the method accepts the cells of a stratum.
+    pub(super) fn accepts(&self, stratum: usize) -> bool {
+        self.by.accepts(stratum)
     }
 
     /// What a stratum holds.
@@ -170,8 +177,12 @@ impl Stratify for ByNeighbours<'_> {
         (side + differ) as u8
     }
 
+    fn accepts(&self, stratum: usize) -> bool {
+        stratum < self.levels()
+    }
+
     fn name(&self, stratum: usize) -> String {
-        let own = if stratum < self.levels() { "accepted" } else { "rejected" };
+        let own = if self.accepts(stratum) { "accepted" } else { "rejected" };
         match stratum % self.levels() {
             1 => format!("{own}, 1 neighbour differs"),
             differ => format!("{own}, {differ} neighbours differ"),
@@ -210,6 +221,10 @@ impl<F: Fn(usize) -> f64 + Sync> Stratify for ByFraction<F> {
         let differ = differing(&self.shape, cell, |cell| (self.fraction)(cell) > 0.5);
         let side = SIDES.iter().position(|(most, _)| differ <= *most).unwrap_or(0);
         (band * SIDES.len() + side) as u8
+    }
+
+    fn accepts(&self, stratum: usize) -> bool {
+        BORDERS[stratum / SIDES.len()] >= 0.5
     }
 
     fn name(&self, stratum: usize) -> String {

@@ -210,6 +210,9 @@ impl Stratify for Table {
     fn stratum(&self, cell: usize) -> u8 {
         self.0[cell]
     }
+    fn accepts(&self, _: usize) -> bool {
+        false
+    }
     fn name(&self, stratum: usize) -> String {
         stratum.to_string()
     }

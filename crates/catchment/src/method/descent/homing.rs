@@ -14,7 +14,7 @@
 //! Not promised: that no pose near it jams, only that fewer than three in a hundred do, with 95 % confidence.
 
 use super::Settings;
-use super::motion::{Motion, Until};
+use super::motion::{Motion, Until, Unwatched};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::{Pair, Seat};
 use crate::pose::{Dof, PoseError, face_from_cor};
@@ -51,7 +51,7 @@ pub(super) fn all_dock(pair: &Pair) -> bool {
                 let number = stream.uniform(Dof::ALL.len() as u64 * k + dof.index() as u64);
                 error[dof.index()] = most * (2.0 * number - 1.0);
             }
-            motion.follow(&PoseError::from_array(error), Until::Known, None).0 == Outcome::Aligned
+            motion.follow(&PoseError::from_array(error), Until::Known, &mut Unwatched).0 == Outcome::Aligned
         })
     })
 }

@@ -32,7 +32,7 @@ use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
 use crate::method::door::Finished;
 use crate::pose::PoseError;
-use motion::{Motion, Until};
+use motion::{Motion, Until, Unwatched};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -77,13 +77,22 @@ impl<'a> Follower<'a> {
     /// Follows one pose until it is known what becomes of it: a half in a seat all of which counts is docked before it has come
     /// to rest.
     pub fn follow(&mut self, error: &PoseError) -> End {
-        let (outcome, error) = self.0.follow(error, Until::Known, None);
+        let (outcome, error) = self.0.follow(error, Until::Known, &mut Unwatched);
         End { outcome, error }
+    }
+
+    /// The same, but no further than to where `known` tells what becomes of a pose error on the way.
+    pub fn follow_until(
+        &mut self,
+        error: &PoseError,
+        mut known: impl FnMut(&PoseError) -> Option<Outcome>,
+    ) -> Outcome {
+        self.0.follow(error, Until::Known, &mut known).0
     }
 
     /// Follows one pose until it has come to rest, also in the seat.
     pub fn rest(&mut self, error: &PoseError) -> End {
-        let (outcome, error) = self.0.follow(error, Until::AtRest, None);
+        let (outcome, error) = self.0.follow(error, Until::AtRest, &mut Unwatched);
         End { outcome, error }
     }
 }
@@ -96,7 +105,7 @@ pub fn outcome(pair: &Pair, error: &PoseError, settings: &Settings) -> End {
 /// Follows one pose until it has come to rest, and keeps its path.
 pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory {
     let mut waypoints = Vec::new();
-    let (outcome, _) = Motion::new(pair, settings).follow(error, Until::AtRest, Some(&mut waypoints));
+    let (outcome, _) = Motion::new(pair, settings).follow(error, Until::AtRest, &mut waypoints);
     Trajectory { waypoints, outcome }
 }
 
@@ -160,7 +169,7 @@ fn each(
                 || Motion::new(pair, settings).homing(),
                 |motion, k| {
                     exec.check()?;
-                    let (outcome, error) = motion.follow(&domain.pose(k), until, None);
+                    let (outcome, error) = motion.follow(&domain.pose(k), until, &mut Unwatched);
                     finished(k, End { outcome, error });
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(between) {

@@ -44,6 +44,36 @@ pub(super) enum Advance {
     Ended(Outcome, State),
 }
 
+/// Sees a motion at every step.
+pub(super) trait Watch {
+    /// What becomes of the motion, if that is known from here: it is followed no further.
+    fn see(&mut self, motion: &Motion, state: &State, travelled: f64) -> Option<Outcome>;
+}
+
+/// Sees nothing.
+pub(super) struct Unwatched;
+
+impl Watch for Unwatched {
+    fn see(&mut self, _: &Motion, _: &State, _: f64) -> Option<Outcome> {
+        None
+    }
+}
+
+/// Keeps every waypoint.
+impl Watch for Vec<Waypoint> {
+    fn see(&mut self, motion: &Motion, state: &State, travelled: f64) -> Option<Outcome> {
+        self.push(motion.waypoint(state, travelled));
+        None
+    }
+}
+
+/// Asks at every pose error on the way.
+impl<F: FnMut(&PoseError) -> Option<Outcome>> Watch for F {
+    fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
+        self(&motion.error_of(state))
+    }
+}
+
 /// How boldly a motion steps; kept from step to step.
 pub(super) struct Pace {
     /// Length of the next step in the ρ-metric, in D.
@@ -139,13 +169,13 @@ impl<'a> Motion<'a> {
         self
     }
 
-    /// Lowers the moving half at `error` and follows it to its end; returns the outcome and the last pose error.
-    /// `record` sees every waypoint.
+    /// Lowers the moving half at `error` and follows it to its end, or until `watch` calls it; returns the outcome and the last pose
+    /// error.
     pub(super) fn follow(
         &mut self,
         error: &PoseError,
         until: Until,
-        mut record: Option<&mut Vec<Waypoint>>,
+        watch: &mut impl Watch,
     ) -> (Outcome, PoseError) {
         let alignment = &self.pair.alignment;
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
@@ -173,8 +203,8 @@ impl<'a> Motion<'a> {
             } else {
                 self.gather(&state, pace.step);
             }
-            if let Some(waypoints) = record.as_deref_mut() {
-                waypoints.push(self.waypoint(&state, travelled));
+            if let Some(outcome) = watch.see(self, &state, travelled) {
+                return (outcome, self.error_of(&state));
             }
             // What is deep enough moves on in its own part of what is: once tells whether that is the seat. Where all motion near the
             // mated pose leads to it, coming near tells as much, and what slides off has not to ask.

@@ -2,12 +2,12 @@
 //! found anew at every cell. Slow, plain, and the judge of the fast path.
 
 use super::links::{CROSSINGS, LEAST, NEGLIGIBLE};
-use super::metric::Metric;
 use super::{Settings, surface};
 use crate::acceptance::Outcome;
 use crate::contact::Pair;
 use crate::landscape::{Grid, Landscape};
 use crate::method::descent;
+use crate::method::metric::Metric;
 use crate::pose::CorPose;
 
 /// How near to its plane a contact counts as the carrier, in D.

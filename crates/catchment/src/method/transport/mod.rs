@@ -28,7 +28,7 @@
 pub mod brute;
 pub(super) mod door;
 mod links;
-mod metric;
+
 mod solve;
 #[cfg(test)]
 mod tests;
@@ -39,8 +39,8 @@ use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Fold, Gradient, Grid, LandscapeError, Relief, Resolution};
+use crate::method::metric::Metric;
 use crate::pose::{Dof, PoseError};
-use metric::Metric;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use solve::Shares;

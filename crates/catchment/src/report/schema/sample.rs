@@ -19,8 +19,23 @@ pub struct SampleReport {
     pub seed: u64,
     /// Poses followed.
     pub descents: usize,
+    /// Share of the error box whose poses fare otherwise than their cells, accepted or not, in [0, 1]; 1 in reports of versions that did
+    /// not count it.
+    #[serde(default = "unknown")]
+    pub differing: f64,
+    /// Its 95 % interval.
+    #[serde(default = "open")]
+    pub differing_ci95: [f64; 2],
     /// Where they lay.
     pub strata: Vec<Stratum>,
+}
+
+const fn unknown() -> f64 {
+    1.0
+}
+
+const fn open() -> [f64; 2] {
+    [0.0, 1.0]
 }
 
 impl Report {
@@ -37,6 +52,8 @@ impl Report {
             settings: settings.clone(),
             seed: *seed,
             descents: found.descents,
+            differing: found.differing,
+            differing_ci95: found.differing_ci95,
             strata: found.strata.clone(),
         });
         self

@@ -8,6 +8,7 @@
 use super::{Reach, Settings, WindowError};
 use crate::acceptance::{Outcome, Stream};
 use crate::exec::{Cancelled, Exec};
+use crate::method::affordable;
 use crate::method::descent::{self, Follower};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
@@ -25,6 +26,8 @@ const LOOKS_BESIDE: usize = 4;
 /// Moves per batch, and how many in a row that find nothing end the search.
 const BATCH: usize = 64;
 const QUIET: usize = 512;
+/// The same of halves whose motions take long.
+const LEAST_QUIET: f64 = 128.0;
 /// Random poses between two looks at whether one failed.
 const CERTIFIED_AT_ONCE: usize = 4096;
 /// Beyond so many batches of moves what is found is good enough; the certificate has the last word.
@@ -193,14 +196,14 @@ impl<'a> Search<'a> {
     /// Looks along every direction of {−1, 0, 1}ⁿ.
     pub(super) fn directions(&mut self, exec: &Exec) -> Result<(), Cancelled> {
         let all = self.space.all();
-        self.try_all(&all, [0.0, self.space.border], LOOKS, exec)
+        self.try_batches(&all, 0.0, LOOKS, exec)
     }
 
     /// How far the only error that grows may go, which it is known to do up to `from`.
     pub(super) fn reach(&mut self, from: f64, exec: &Exec) -> Result<Reach, Cancelled> {
         let all = self.space.all();
         let looks = if all.len() == 2 { LOOKS_ALONE } else { LOOKS_BESIDE };
-        self.try_all(&all, [from, self.space.border], looks, exec)?;
+        self.try_batches(&all, from, looks, exec)?;
         if all.len() > 2 && self.scale() > from {
             self.moves(exec)?;
         }
@@ -211,14 +214,16 @@ impl<'a> Search<'a> {
     /// Moves about the nearest pose that fails, and elsewhere, until many in a row find none nearer.
     pub(super) fn moves(&mut self, exec: &Exec) -> Result<(), Cancelled> {
         let mut quiet = 0;
+        let enough = (QUIET as f64 * affordable(self.problem.pair()).sqrt()).max(LEAST_QUIET) as usize;
         let last = self.batches + MOST_BATCHES;
-        while quiet < QUIET && self.batches < last {
+        while quiet < enough && self.batches < last {
             let random = self.random.branch(self.batches);
             self.batches += 1;
             let all: Vec<Direction> =
                 (0..BATCH as u64).filter_map(|k| self.moved(random.branch(k))).collect();
             let before = self.scale();
             self.try_all(&all, [0.0, INSIDE * before], 1, exec)?;
+            exec.report(quiet as f64 / enough as f64, "moves about the worst pose");
             quiet = if self.scale() < before { 0 } else { quiet + BATCH };
         }
         Ok(())
@@ -264,6 +269,27 @@ impl<'a> Search<'a> {
             }
         };
         self.space.onto_surface(u)
+    }
+
+    /// Looks along directions from a scale on, a batch at a time and no further than to the nearest failing pose before it: as
+    /// densely as `looks` times up to the error box.
+    fn try_batches(
+        &mut self,
+        all: &[Direction],
+        from: f64,
+        looks: usize,
+        exec: &Exec,
+    ) -> Result<(), Cancelled> {
+        let whole = self.space.border - from;
+        for (number, batch) in all.chunks(BATCH).enumerate() {
+            exec.report((number * BATCH) as f64 / all.len() as f64, "directions");
+            let to = if self.nearest.is_some() { INSIDE * self.scale() } else { self.space.border };
+            if to > from {
+                let share = (looks as f64 * (to - from) / whole).ceil() as usize;
+                self.try_all(batch, [from, to], share.max(1), exec)?;
+            }
+        }
+        Ok(())
     }
 
     /// Looks along directions between two scales, and keeps the nearest failing pose.

@@ -20,6 +20,11 @@ impl RunBody {
         if let Some(certificate) = &self.certificate {
             check_certificate(certificate)?;
         }
+        if let Some(joined) = &self.joined {
+            hold(joined.joined <= joined.cells, "joined.joined", "must be at most joined.cells")?;
+            hold(joined.wrong <= joined.tried, "joined.wrong", "must be at most joined.tried")?;
+            interval(joined.wrong_ci95, "joined.wrong_ci95")?;
+        }
         self.check_sample()
     }
 
@@ -36,6 +41,8 @@ impl RunBody {
             descents = descents.saturating_add(stratum.descents);
         }
         let whole: f64 = sample.strata.iter().map(|stratum| stratum.share).sum();
+        share(sample.differing, &name("differing"))?;
+        interval(sample.differing_ci95, &name("differing_ci95"))?;
         // Shares are counts of cells over all cells: their sum is 1 but for rounding.
         let is_whole = sample.strata.is_empty() || (whole - 1.0).abs() <= 1e-9;
         hold(is_whole, name("strata.share"), "must add up to 1")?;
@@ -56,6 +63,13 @@ fn check_certificate(found: &Certificate) -> Result<(), UnsoundError> {
     not_negative(found.retention_at_least, "certificate.retention_at_least")?;
     let ordered = found.retention_at_most.is_none_or(|most| most >= found.retention_at_least);
     hold(ordered, "certificate.retention_at_most", "must be no less than retention_at_least")
+}
+
+/// An interval of a share.
+fn interval([lo, hi]: [f64; 2], name: &str) -> Result<(), UnsoundError> {
+    share(lo, name)?;
+    share(hi, name)?;
+    hold(lo <= hi, name, "must be in order")
 }
 
 fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError> {
@@ -97,6 +111,7 @@ fn check_basins(basins: &BasinsReport, cells: usize) -> Result<(), UnsoundError>
 mod tests {
     use crate::exec::Exec;
     use crate::method::certified::Certificate;
+    use crate::method::confluence::Joined;
     use crate::method::correction::Stratum;
     use crate::report::Report;
     use crate::report::schema::{PartitionReport, RunBody, SampleReport, basins};
@@ -111,6 +126,7 @@ mod tests {
         let mut body = report.with_basins(&found.acceptance, &found.hierarchy).body;
         body.partition = Some(PartitionReport::default());
         body.certificate = Some(Certificate { yes: 0.3, no: 0.6, undecided: 0.1, ..Certificate::default() });
+        body.joined = Some(Joined { cells: 9, joined: 7, tried: 5, ..Joined::default() });
         let stratum = |share| Stratum {
             name: "all".to_owned(),
             share,
@@ -125,6 +141,8 @@ mod tests {
             settings: null,
             seed: 1,
             descents: 20,
+            differing: 0.1,
+            differing_ci95: [0.05, 0.2],
             strata,
         });
         body
@@ -133,7 +151,7 @@ mod tests {
     #[test]
     fn parts_that_cannot_be_are_named() {
         body().check().unwrap();
-        let spoils: [(&str, Spoil); 16] = [
+        let spoils: [(&str, Spoil); 20] = [
             ("basins.tolerance.depth must", |b| b.basins.as_mut().unwrap().tolerance.depth = -1.0),
             ("basins.merged must", |b| b.basins.as_mut().unwrap().minima = 0),
             ("basins.largest must be at most", |b| {
@@ -153,6 +171,10 @@ mod tests {
             ("certificate.retention_at_most must", |b| {
                 b.certificate.as_mut().unwrap().retention_at_most = Some(-0.1);
             }),
+            ("joined.joined must", |b| b.joined.as_mut().unwrap().joined = 10),
+            ("joined.wrong must", |b| b.joined.as_mut().unwrap().wrong = 6),
+            ("joined.wrong_ci95 must", |b| b.joined.as_mut().unwrap().wrong_ci95 = [0.2, 0.1]),
+            ("acceptance.sample.differing must", |b| sample(b).differing = 1.5),
             ("acceptance.sample.strata.share must lie", |b| sample(b).strata[0].share = -0.25),
             ("acceptance.sample.strata.share must add", |b| sample(b).strata[0].share = 0.5),
             ("acceptance.sample.strata.descents must", |b| sample(b).strata[1].aligned = usize::MAX),

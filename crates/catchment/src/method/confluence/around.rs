@@ -1,0 +1,190 @@
+//! The centres of the cells around a pose error, and whether those that are known agree.
+//!
+//! ```text
+//!   ·  ·  ·  ·   │       2ⁿ centres: the two nearest along every axis; beyond the last ones, up to half a cell
+//!   ·  a──a  ·   │       outside the box, there is one
+//!   ·  │q │  b   │
+//!   ·  a──?  ·  q│       three of four are known, and alike: a
+//!   ·  ·  ·  b   │
+//! ```
+
+use super::label::Label;
+use crate::landscape::{Fold, Grid};
+use crate::pose::{Dof, PoseError};
+
+/// Looks up the centres around poses.
+pub(super) struct Around<'a> {
+    fold: &'a Fold,
+    axes: Vec<Lookup>,
+    /// How many of the axes, the first ones, are lateral.
+    lateral: usize,
+    /// Where x and y are among them; none if not sampled.
+    places: [Option<usize>; 2],
+    /// Share of the centres that must be known.
+    share: f64,
+}
+
+/// One axis of the grid.
+struct Lookup {
+    /// Its number among [`Dof::ALL`].
+    error: usize,
+    lo: f64,
+    per_cell: f64,
+    cells: i32,
+    /// Of the rotation number; 0 for lateral axes.
+    stride: usize,
+}
+
+impl Lookup {
+    fn has(&self, number: i32) -> bool {
+        (0..self.cells).contains(&number)
+    }
+}
+
+/// Numbers of the lower centre along every axis, −1 below the first: what is around a pose depends on nothing else.
+pub(super) type Base = [i32; 5];
+
+/// Of so few centres all must be known: with three axes and less, motions are cheaper than errors.
+const FEW: u32 = 8;
+
+impl<'a> Around<'a> {
+    /// For the cells of a folded grid; at least `share` of the centres around a pose must be known.
+    pub(super) fn new(grid: &Grid, fold: &'a Fold, share: f64) -> Self {
+        let mut next = 1;
+        let lookup = |axis: &crate::landscape::GridAxis| {
+            let stride = if axis.dof.is_rotation() { next } else { 0 };
+            next *= if axis.dof.is_rotation() { axis.cells } else { 1 };
+            let (error, lo, per_cell) = (axis.dof.index(), axis.lo, axis.step().recip());
+            Lookup { error, lo, per_cell, cells: axis.cells as i32, stride }
+        };
+        let axes: Vec<Lookup> = grid.axes.iter().map(lookup).collect();
+        let lateral = grid.axes.iter().filter(|axis| !axis.dof.is_rotation()).count();
+        let place = |dof| grid.axes.iter().position(|axis| axis.dof == dof);
+        let share = if 1 << axes.len() <= FEW { 1.0 } else { share };
+        Self { fold, axes, lateral, places: [place(Dof::X), place(Dof::Y)], share }
+    }
+
+    /// Where a pose lies among the centres.
+    pub(super) fn base(&self, error: &PoseError) -> Base {
+        let error = error.to_array();
+        let mut base = [0; 5];
+        for (base, axis) in base.iter_mut().zip(&self.axes) {
+            let place = (error[axis.error] - axis.lo) * axis.per_cell - 0.5;
+            // Further outside is as good as outside.
+            *base = place.floor().clamp(-2.0, f64::from(axis.cells)) as i32;
+        }
+        base
+    }
+
+    /// The centres towards which a velocity, in the order of the axes, leads from the centre of a cell: the cell itself, and those beside it
+    /// on that side.
+    pub(super) fn ahead(&self, centre: &PoseError, velocity: &[f32; 5]) -> Base {
+        let error = centre.to_array();
+        let mut base = [0; 5];
+        for ((base, axis), velocity) in base.iter_mut().zip(&self.axes).zip(velocity) {
+            let number = ((error[axis.error] - axis.lo) * axis.per_cell) as i32;
+            *base = number - i32::from(*velocity < 0.0);
+        }
+        base
+    }
+
+    /// What all known centres around a pose are labelled, if enough are known and all are alike. `asking` of them ask, and need not be known.
+    pub(super) fn agreed(&self, base: &Base, labels: &[Label], asking: u32) -> Option<Label> {
+        let sides =
+            |(axis, base): (&Lookup, &i32)| u32::from(axis.has(*base)) + u32::from(axis.has(base + 1));
+        let centres: u32 = self.axes.iter().zip(base).map(sides).product();
+        if centres == 0 {
+            return None;
+        }
+        let mut spare = (centres - (self.share * f64::from(centres)).ceil() as u32).max(asking);
+        let mut found: Option<Label> = None;
+        // Bit k of a corner: whether it is the upper one along axis k.
+        let number = |axis: usize, corner: usize| {
+            let number = base[axis] + (corner >> axis & 1) as i32;
+            self.axes[axis].has(number).then_some(number as usize)
+        };
+        let rotations = self.axes.len() - self.lateral;
+        for turn in 0..1usize << rotations {
+            let along = |rotation: Option<usize>, axis: usize| {
+                Some(rotation? + number(axis, turn << self.lateral)? * self.axes[axis].stride)
+            };
+            let Some(rotation) = (self.lateral..self.axes.len()).fold(Some(0), along) else { continue };
+            for shift in 0..1usize << self.lateral {
+                let [x, y] = self.places.map(|place| place.map_or(Some(0), |axis| number(axis, shift)));
+                let (Some(x), Some(y)) = (x, y) else { continue };
+                let label = labels[self.fold.kept(rotation, x, y)];
+                match found {
+                    _ if !label.is_known() => spare = spare.checked_sub(1)?,
+                    None => found = Some(label),
+                    Some(first) if label.outcome() != first.outcome() => return None,
+                    Some(_) => {}
+                }
+            }
+        }
+        Some(Label::joined(found?.outcome(), centres < 1 << self.axes.len()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::acceptance::Outcome::{self, Aligned, Jammed};
+    use crate::design::Alignment;
+    use crate::pose::{DofSet, Mount};
+
+    fn flat(cells: usize) -> Grid {
+        let free: DofSet = [Dof::X, Dof::Y].into_iter().collect();
+        Grid::over(&Alignment::new(free, Mount::X), |_| cells)
+    }
+
+    #[test]
+    fn centres_agree_where_all_are_alike() {
+        let grid = flat(4);
+        let fold = Fold::new(&grid, &[]).unwrap();
+        let around = Around::new(&grid, &fold, 0.75);
+        let mut labels = vec![Label::own(Aligned); 16];
+        let between = |x: f64, y: f64| {
+            let at = |dof: Dof, number: f64| {
+                let axis = grid.axis(dof).unwrap();
+                axis.lo + (number + 0.5) * axis.step()
+            };
+            PoseError { x: at(Dof::X, x), y: at(Dof::Y, y), ..PoseError::default() }
+        };
+        let agreed = |labels: &[Label], x: f64, y: f64| {
+            around.agreed(&around.base(&between(x, y)), labels, 0).map(|label| {
+                assert!(label.has_joined());
+                (label.outcome(), label.has_joined_beyond())
+            })
+        };
+        assert_eq!(agreed(&labels, 1.5, 2.2), Some((Aligned, false)));
+        // Half a cell outside the nearest centres count, further outside none.
+        assert_eq!(agreed(&labels, -0.9, 2.2), Some((Aligned, true)));
+        assert_eq!(agreed(&labels, -1.1, 2.2), None);
+        assert_eq!(agreed(&labels, 3.9, -0.9), Some((Aligned, true)));
+        labels[4 * 2 + 1] = Label::own(Jammed);
+        assert_eq!(agreed(&labels, 1.5, 2.2), None);
+        labels[4 * 2 + 1] = Label::UNKNOWN;
+        assert_eq!(agreed(&labels, 1.5, 2.2), None);
+        let own = around.agreed(&around.base(&between(1.5, 2.2)), &labels, 1);
+        assert_eq!(own.map(Label::outcome), Some(Aligned));
+    }
+
+    #[test]
+    fn of_many_centres_some_may_be_unknown() {
+        let grid = Grid::over(&Alignment::new(DofSet::ALL, Mount::X), |_| 2);
+        let fold = Fold::new(&grid, &[]).unwrap();
+        let around = Around::new(&grid, &fold, 0.75);
+        let middle = around.base(&PoseError::default());
+        let outcomes = |unknown: usize| {
+            let mut labels = vec![Label::own(Aligned); 32];
+            labels[..unknown].fill(Label::UNKNOWN);
+            around.agreed(&middle, &labels, 0).map(Label::outcome)
+        };
+        let some: Vec<Option<Outcome>> = [0, 8, 9, 32].into_iter().map(outcomes).collect();
+        assert_eq!(some, [Some(Aligned), Some(Aligned), None, None]);
+        // From a corner inwards, and outwards along x.
+        let corner = grid.pose(0);
+        assert_eq!(around.ahead(&corner, &[1.0; 5]), [0; 5]);
+        assert_eq!(around.ahead(&corner, &[-1.0, 1.0, 1.0, 1.0, 1.0]), [-1, 0, 0, 0, 0]);
+    }
+}

@@ -1,0 +1,95 @@
+//! Confluence as a method: exact motions over a grid, which join each other.
+
+use super::{ConfluenceError, Settings, bytes, run};
+use crate::acceptance::Domain;
+use crate::contact::Pair;
+use crate::exec::Exec;
+use crate::landscape::{Grid, LandscapeError};
+use crate::method::descent;
+use crate::method::door::{
+    ByProducts, Cost, DESCENT_SECONDS, Decide, DecideError, Decided, Entry, Info, affordable, grid_of,
+};
+use crate::problem::Problem;
+use serde_json::{Value, json};
+
+pub(super) const NAME: &str = "confluence";
+
+const INFO: Info = Info {
+    name: NAME,
+    summary: "exact motion of every cell's centre, until it joins others that are known",
+    on_grids: true,
+    departs: false,
+};
+
+/// Its line in the registry.
+pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);
+
+impl Decide for Settings {
+    fn info(&self) -> &'static Info {
+        &INFO
+    }
+
+    fn settings(&self) -> Value {
+        json!(self)
+    }
+
+    fn check(&self) -> Result<(), DecideError> {
+        if !(self.known > 0.5 && self.known <= 1.0) {
+            return Err(DecideError::method(KnownOutOfRange));
+        }
+        Ok(())
+    }
+
+    /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once; fewer where motions take long.
+    fn default_cells(&self, pair: &Pair) -> [usize; 5] {
+        const SIMPLE: [usize; 5] = [1000, 200, 30, 24, 20];
+        let share = affordable(pair);
+        let mut axes = 0.0;
+        SIMPLE.map(|cells| {
+            axes += 1.0;
+            let cells = cells as f64 * share.powf(1.0 / axes);
+            (cells as usize / 2 * 2).max(4)
+        })
+    }
+
+    fn default_samples(&self, pair: &Pair) -> usize {
+        descent::default_samples(pair)
+    }
+
+    fn cost(&self, problem: &Problem, grid: &Grid) -> Cost {
+        /// Share of the cells that are followed, and of its way that a motion is.
+        const FOLLOWED: f64 = 0.2;
+        let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
+        Cost {
+            what: "the outcome of every cell",
+            bytes_per_cell: bytes(problem.pair(), grid).div_ceil(cells.max(1)),
+            seconds: cells as f64 * FOLLOWED * DESCENT_SECONDS / affordable(problem.pair()),
+        }
+    }
+
+    fn by_products(&self) -> &'static [&'static str] {
+        &["joined"]
+    }
+
+    fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
+        let labels = run(problem.pair(), grid_of(&INFO, domain)?, self, exec)?;
+        let by_products = ByProducts { joined: Some(labels.joined), ..ByProducts::default() };
+        Ok(Decided { by_products, ..Decided::plain(labels.acceptance(exec), self.settings()) })
+    }
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("known is a share of the centres around a pose, above 0.5 and at most 1")]
+struct KnownOutOfRange;
+
+impl From<ConfluenceError> for DecideError {
+    fn from(error: ConfluenceError) -> Self {
+        match error {
+            ConfluenceError::OutOfBudget(error)
+            | ConfluenceError::Landscape(LandscapeError::OutOfBudget(error)) => Self::OutOfBudget(error),
+            ConfluenceError::Cancelled(error)
+            | ConfluenceError::Landscape(LandscapeError::Cancelled(error)) => Self::Cancelled(error),
+            error => Self::method(error),
+        }
+    }
+}

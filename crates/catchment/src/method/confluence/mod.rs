@@ -1,0 +1,172 @@
+//! Confluence: the outcome of every cell of a grid by exact motions, each followed only until it joins others that are known.
+//!
+//! ```text
+//!   ·   ·   ·   ·   ·        cells by rising height. From the centre of a cell
+//!         ╲                    1  the 2ⁿ centres towards which the exact direction of descent leads: known, and alike? Then it
+//!   ·   ·  ╲·   ·   ·             is one of them, and nothing is followed
+//!           ╰─╮                2  else its exact motion, until it comes among centres that are
+//!   a   a   a ▼ j   j          3  at last the neighbours of thin jams, where they joined others, to their end: what jams
+//!   a   a   a   j   j             may be thinner than a cell
+//! ```
+//!
+//! What lies lower is known before: motion falls. As rivers do, motions flow together, so most are followed for a fraction of their way, and
+//! where a whole neighbourhood ends alike not at all. Cells are decided in batches that read only what earlier batches found: the same
+//! bits for any number of threads.
+//!
+//! **Not guaranteed:** the label of a cell that joined others may differ from that of its centre's own motion, where
+//! something thinner than a cell lies between. [`Joined`] says how often: cells drawn at random among them are followed to their end. For 5-D grids of the pyramid and the
+//! 3-D X-Face it is less than one in ten thousand. Outcomes hold at the centres of cells; nothing is said about what lies between two of
+//! them.
+//!
+//! Memory: 11 bytes per kept cell (height, carrier, order, label; [`Relief`] keeps a half or a quarter of a
+//! symmetric grid) and one per cell of the whole grid. Sources: cell mapping, Hsu 1980; interpolated, Tongue 1987: here the map is
+//! the motion itself. Lengths in D, angles in radians.
+
+mod around;
+pub(super) mod door;
+mod label;
+mod river;
+#[cfg(test)]
+mod tests;
+
+use super::descent;
+use super::metric::Metric;
+use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::advice::Advice;
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::landscape::{Fold, Gradient, Grid, LandscapeError, Relief, Resolution};
+use crate::pose::PoseError;
+use label::Label;
+use rayon::prelude::*;
+use river::River;
+use serde::{Deserialize, Serialize};
+
+/// What may change the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Share of the centres around a pose that must be known, all of them alike, above ½ and at most 1. Of the eight and fewer that
+    /// grids of up to three axes have, all must be.
+    pub known: f64,
+    /// How poses are followed.
+    pub descent: descent::Settings,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { known: 0.75, descent: descent::Settings::default() }
+    }
+}
+
+/// Why there are no labels.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConfluenceError {
+    /// More cells than can be numbered.
+    #[error("{cells} cells are more than can be numbered ({}); lower the resolution", u32::MAX)]
+    TooManyCells {
+        /// How many.
+        cells: usize,
+    },
+    /// No heights.
+    #[error(transparent)]
+    Landscape(#[from] LandscapeError),
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// How many cells were decided by others, and how often that was wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Joined {
+    /// Cells in contact; mirror images count once.
+    pub cells: usize,
+    /// How many of them joined others, on their way or at once.
+    pub joined: usize,
+    /// How many motions were followed, to their end or until they joined others.
+    pub motions: usize,
+    /// Cells that joined others, drawn at random and followed to their end.
+    pub tried: usize,
+    /// How many of these end otherwise than they were labelled.
+    pub wrong: usize,
+    /// 95 % interval of the share of the joined cells that do, in [0, 1].
+    pub wrong_ci95: [f64; 2],
+}
+
+/// The outcome of every cell of a grid.
+#[derive(Debug, Clone)]
+pub struct Labels {
+    grid: Grid,
+    fold: Fold,
+    labels: Vec<Label>,
+    /// How they came about.
+    pub joined: Joined,
+}
+
+/// Labels every cell of `grid`.
+///
+/// # Errors
+/// See [`ConfluenceError`].
+pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result<Labels, ConfluenceError> {
+    let cells = grid.checked_len().unwrap_or(usize::MAX);
+    if cells >= u32::MAX as usize {
+        return Err(ConfluenceError::TooManyCells { cells });
+    }
+    let needed = bytes(pair, grid);
+    exec.ensure_fits("the outcome of every cell", needed, |budget| {
+        let per_cell = (needed / (cells as u64).max(1)).max(1) + 1;
+        vec![Advice::AtMostResolution(Resolution::largest_that_fits(budget, per_cell, grid.axes.len()))]
+    })?;
+    let part = |from, to| exec.part([from, to], STAGE);
+    let relief = Relief::compute(pair, grid, &part(0.0, HEIGHTS_SHARE), |error: &PoseError| {
+        let metric = Metric::new(pair, grid, error);
+        move |gradient: &Gradient| metric.velocity(gradient)
+    })?;
+    let river = River { pair, relief: &relief, settings };
+    let (labels, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
+    let Relief { grid, fold, .. } = relief;
+    Ok(Labels { grid, fold, labels, joined })
+}
+
+const STAGE: &str = "motions";
+/// Share of the time that goes to the heights.
+const HEIGHTS_SHARE: f64 = 0.1;
+
+/// Bytes that it takes at the peak, for a pair.
+pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
+    let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
+    let kept = Fold::new(grid, pair.mirrors()).map_or(cells, |fold| fold.kept_cells() as u64);
+    let per_kept = Relief::BYTES_PER_CELL + (size_of::<u32>() + size_of::<Label>()) as u64;
+    kept.saturating_mul(per_kept).saturating_add(cells)
+}
+
+impl Labels {
+    /// The grid.
+    pub const fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// What becomes of the centre of a cell.
+    pub fn outcome(&self, cell: usize) -> Outcome {
+        self.labels[self.fold.kept_cell(cell)].outcome()
+    }
+
+    /// The outcomes of all cells.
+    pub fn acceptance(&self, exec: &Exec) -> Acceptance {
+        let slab = self.fold.slab();
+        let mut outcomes = vec![Outcome::Missed; self.grid.len()];
+        exec.install(|| {
+            outcomes.par_chunks_exact_mut(slab).enumerate().for_each(|(rotation, outcomes)| {
+                for (lateral, outcome) in outcomes.iter_mut().enumerate() {
+                    *outcome = self.outcome(rotation * slab + lateral);
+                }
+            });
+        });
+        let cells = outcomes.par_iter().filter(|outcome| **outcome == Outcome::Undecided).count();
+        let warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
+        Acceptance { method: door::NAME, domain: Domain::Grid(self.grid.clone()), outcomes, warnings }
+    }
+}

@@ -1,0 +1,207 @@
+//! Labels the kept cells of a relief by rising height.
+//!
+//! ```text
+//!   order   ▁▁▂▂▂▃▃▄▄▅▅▆▆▇▇     cells by height; a batch reads what earlier batches found, and nothing of its own
+//!           ├──┼──┼──┼──┼──┤
+//!   then    thin jams mended, some of what joined others followed to its end
+//! ```
+
+use super::around::Around;
+use super::label::Label;
+use super::{Joined, STAGE, Settings};
+use crate::acceptance::{Outcome, Stream};
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec};
+use crate::landscape::Relief;
+use crate::method::correction::wilson95;
+use crate::method::descent::Follower;
+use crate::method::door::affordable;
+use crate::pose::Dof;
+use rayon::prelude::*;
+
+/// What labels the kept cells.
+pub(super) struct River<'a> {
+    pub(super) pair: &'a Pair,
+    /// Its patches hold velocities, in cells.
+    pub(super) relief: &'a Relief,
+    pub(super) settings: &'a Settings,
+}
+
+/// Cells per batch at most, and how many batches there are at least where each has enough cells for the threads.
+const BATCH: usize = 4096;
+const BATCHES: usize = 256;
+const LEAST_BATCH: usize = 32;
+
+/// Cells of the box of simple halves that are drawn to be tried, and of any halves; and their seed.
+const TRIED: f64 = 4000.0;
+const LEAST_TRIED: f64 = 200.0;
+const SEED: u64 = 0xc0f1;
+
+impl River<'_> {
+    /// Labels all kept cells.
+    pub(super) fn run(&self, exec: &Exec) -> Result<(Vec<Label>, Joined), Cancelled> {
+        let Relief { grid, fold, heights, carriers, .. } = self.relief;
+        let touches = |cell: &u32| carriers[*cell as usize] != Relief::NOTHING;
+        let mut order: Vec<u32> = (0..carriers.len() as u32).filter(touches).collect();
+        exec.install(|| {
+            order.par_sort_unstable_by(|a, b| {
+                heights[*a as usize].total_cmp(&heights[*b as usize]).then(a.cmp(b))
+            });
+        });
+        let mut labels = vec![Label::own(Outcome::Missed); carriers.len()];
+        for cell in &order {
+            labels[*cell as usize] = Label::UNKNOWN;
+        }
+        let around = Around::new(grid, fold, self.settings.known);
+        // Motion leaves a grid that does not have all free errors as axes: its cells say nothing of each other then.
+        let joins = self.pair.alignment.free.iter().all(|dof| grid.axis(dof).is_some());
+        let mut told = Joined { cells: order.len(), ..Joined::default() };
+        let size = order.len().div_ceil(BATCHES).clamp(LEAST_BATCH, BATCH);
+        for (number, batch) in order.chunks(size).enumerate() {
+            exec.report((number * size) as f64 / order.len() as f64, STAGE);
+            let found = self.each(batch, exec, |follower, cell| {
+                if joins {
+                    self.label(cell, follower, &around, &labels)
+                } else {
+                    (self.follow(cell, follower), true)
+                }
+            })?;
+            for (cell, (label, is_followed)) in batch.iter().zip(found) {
+                labels[*cell as usize] = label;
+                told.motions += usize::from(is_followed);
+            }
+        }
+        drop(order);
+        told.motions += self.mend(&mut labels, exec)?;
+        told.joined = labels.iter().filter(|label| label.has_joined()).count();
+        self.judge(&labels, &mut told, exec)?;
+        Ok((labels, told))
+    }
+
+    /// Does something with every cell of a list, in its order, in parallel; every thread has a follower of its own.
+    fn each<T: Send>(
+        &self,
+        cells: &[u32],
+        exec: &Exec,
+        work: impl Fn(&mut Follower<'_>, u32) -> T + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
+        let start = || Follower::new(self.pair, &self.settings.descent);
+        exec.install(|| {
+            let one = |follower: &mut Follower<'_>, cell: &u32| {
+                exec.check()?;
+                Ok(work(follower, *cell))
+            };
+            cells.par_iter().map_init(start, one).collect()
+        })
+    }
+
+    /// Number of a kept cell in the whole grid.
+    fn whole(&self, cell: u32) -> usize {
+        let fold = &self.relief.fold;
+        let (representative, lateral) = (cell as usize / fold.slab(), cell as usize % fold.slab());
+        fold.rotation(representative) * fold.slab() + lateral
+    }
+
+    /// A cell by its own motion, to the end.
+    fn follow(&self, cell: u32, follower: &mut Follower<'_>) -> Label {
+        Label::own(follower.follow(&self.relief.grid.pose(self.whole(cell))).outcome)
+    }
+
+    /// A cell by those ahead of it, else by its own motion until it joins others; and whether it was followed.
+    fn label(
+        &self,
+        cell: u32,
+        follower: &mut Follower<'_>,
+        around: &Around<'_>,
+        labels: &[Label],
+    ) -> (Label, bool) {
+        let centre = self.relief.grid.pose(self.whole(cell));
+        let ahead = around.ahead(&centre, &self.velocity(cell));
+        if let Some(label) = around.agreed(&ahead, labels, 1) {
+            return (label, false);
+        }
+        // Where it starts it is among any of those beside it.
+        let mut base = around.base(&centre);
+        let mut joined = None;
+        let outcome = follower.follow_until(&centre, |error| {
+            let now = around.base(error);
+            if now != base {
+                base = now;
+                joined = around.agreed(&base, labels, 0);
+            }
+            joined.map(Label::outcome)
+        });
+        (joined.unwrap_or(Label::own(outcome)), true)
+    }
+
+    /// The exact velocity at the centre of a cell, in cells; only its signs are asked for.
+    fn velocity(&self, cell: u32) -> [f32; 5] {
+        let Relief { grid, fold, patches, carriers, .. } = self.relief;
+        let (representative, lateral) = (cell as usize / fold.slab(), cell as usize % fold.slab());
+        let width = grid.axis(Dof::X).map_or(1, |axis| axis.cells);
+        let patch = &patches[representative][usize::from(carriers[cell as usize])];
+        patch.at(lateral % width, lateral / width)
+    }
+
+    /// Follows the neighbours of thin jams to their end, where they joined others, until nothing more jams; returns how many. Thin is what has
+    /// no neighbour that jams on either side along some axis: it may be thinner than a cell elsewhere. Beyond the border of the box, where
+    /// less is known, neighbours of neighbours are followed too.
+    fn mend(&self, labels: &mut [Label], exec: &Exec) -> Result<usize, Cancelled> {
+        let mut jammed: Vec<u32> =
+            (0..labels.len() as u32).filter(|cell| labels[*cell as usize].jams()).collect();
+        let mut motions = 0;
+        while !jammed.is_empty() {
+            let label = |cell: &u32| labels[*cell as usize];
+            let is_thin = |cell: &u32| {
+                self.sides(*cell).any(|sides| !sides.into_iter().flatten().any(|side| label(&side).jams()))
+            };
+            let near = |cell: &u32| self.sides(*cell).flatten().flatten().collect::<Vec<u32>>();
+            let mut beside: Vec<u32> = jammed.iter().filter(|cell| is_thin(cell)).flat_map(near).collect();
+            let further = beside.iter().flat_map(near).filter(|cell| label(cell).has_joined_beyond());
+            beside.extend(further.collect::<Vec<u32>>());
+            beside.retain(|cell| label(cell).has_joined() && !label(cell).jams());
+            beside.sort_unstable();
+            beside.dedup();
+            let found = self.each(&beside, exec, |follower, cell| self.follow(cell, follower))?;
+            motions += beside.len();
+            for (cell, label) in beside.iter().zip(found) {
+                labels[*cell as usize] = label;
+            }
+            jammed = beside;
+            jammed.retain(|cell| labels[*cell as usize].jams());
+        }
+        Ok(motions)
+    }
+
+    /// The kept cells on both sides of one, along every axis.
+    fn sides(&self, cell: u32) -> impl Iterator<Item = [Option<u32>; 2]> {
+        let Relief { grid, fold, .. } = self.relief;
+        let whole = self.whole(cell);
+        let mut stride = 1;
+        grid.axes.iter().map(move |axis| {
+            let number = whole / stride % axis.cells;
+            let below = (number > 0).then(|| whole - stride);
+            let above = (number + 1 < axis.cells).then(|| whole + stride);
+            stride *= axis.cells;
+            [below, above].map(|cell| cell.map(|cell| fold.kept_cell(cell) as u32))
+        })
+    }
+
+    /// Follows some of the cells that joined others, drawn at random, to their end.
+    fn judge(&self, labels: &[Label], told: &mut Joined, exec: &Exec) -> Result<(), Cancelled> {
+        let Relief { grid, fold, .. } = self.relief;
+        let draws = (TRIED * affordable(self.pair)).max(LEAST_TRIED) as u64;
+        let stream = Stream::new(SEED);
+        let draw = |k| fold.kept_cell((stream.uniform(k) * grid.len() as f64) as usize) as u32;
+        let cells: Vec<u32> =
+            (0..draws).map(draw).filter(|cell| labels[*cell as usize].has_joined()).collect();
+        let ends = self.each(&cells, exec, |follower, cell| self.follow(cell, follower).outcome())?;
+        let differs = |(cell, end): &(&u32, Outcome)| labels[**cell as usize].outcome() != *end;
+        told.tried = cells.len();
+        told.wrong = cells.iter().zip(ends).filter(differs).count();
+        if told.tried > 0 {
+            told.wrong_ci95 = wilson95(told.wrong as f64 / told.tried as f64, told.tried as f64);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,121 @@
+use super::*;
+use crate::connector::Connector;
+use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+use crate::pose::{Dof, DofSet};
+use std::sync::atomic::Ordering;
+
+fn pair(family: Family, aspect_ratio: f64, cor: f64, rho: f64, free: Option<&[Dof]>) -> Pair {
+    let mut alignment = Alignment::default_for(Some(family));
+    if let Some(free) = free {
+        alignment.free = free.iter().copied().collect::<DofSet>();
+    }
+    alignment.center_of_rotation = cor;
+    alignment.rotation_length = rho;
+    let connector = ConnectorSpec::Family(FamilySpec::new(family).with_aspect_ratio(aspect_ratio));
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
+}
+
+fn labels(pair: &Pair, cells: usize) -> Labels {
+    run(pair, &Grid::over(&pair.alignment, |_| cells), &Settings::default(), &Exec::new()).unwrap()
+}
+
+/// Every cell by its own motion: the judge.
+fn judge(labels: &Labels, pair: &Pair) -> Vec<Outcome> {
+    let domain = Domain::Grid(labels.grid().clone());
+    let (acceptance, _) = descent::run(pair, domain, &descent::Settings::default(), &Exec::new()).unwrap();
+    acceptance.outcomes
+}
+
+/// Per thousand of the cells, how many may differ: ridges from which a half slides to either side, by rounding; nothing else.
+#[test]
+fn labels_are_those_of_each_cells_own_motion() {
+    use Dof::{Pitch, X, Y, Yaw};
+    for (pair, cells, per_thousand) in [
+        (pair(Family::VFace, 1.0, 0.0, 1.0, None), 60, 0.0),
+        (pair(Family::VFace, 0.5, -0.5, 1.0, None), 60, 0.0),
+        (pair(Family::SFace, 1.0, -1.0, 1.0, None), 60, 0.3),
+        (pair(Family::XFace, 0.5, -0.5, 1.0, None), 61, 0.3),
+        (pair(Family::Pyramid, 0.5, 0.5, 0.5, Some(&[X, Pitch, Yaw])), 14, 0.4),
+        (pair(Family::XFace3d, 0.577, 0.2, 0.5, Some(&[X, Y, Pitch])), 14, 0.4),
+        (pair(Family::Pyramid, 0.5, 0.5, 0.5, None), 7, 0.2),
+        (pair(Family::XFace3d, 0.577, 0.0, 0.5, None), 7, 0.2),
+    ] {
+        let labels = labels(&pair, cells);
+        let exact = judge(&labels, &pair);
+        let found = labels.acceptance(&Exec::new()).outcomes;
+        let wrong = exact.iter().zip(&found).filter(|(a, b)| a != b).count();
+        assert!(wrong as f64 * 1e3 <= per_thousand * found.len() as f64, "{wrong} of {}", found.len());
+        let Joined { joined, cells, motions, .. } = labels.joined;
+        assert!(2 * joined > cells && motions > 0, "{:?}", labels.joined);
+    }
+}
+
+/// The jams of the 3-D X-Face are thinner than a cell: 0.3 % of the box.
+#[test]
+fn thin_jams_are_not_lost() {
+    let pair = pair(Family::XFace3d, 0.577, 0.5, 0.5, None);
+    let labels = labels(&pair, 10);
+    let exact = judge(&labels, &pair);
+    let jams = |cell: &usize| exact[*cell] == Outcome::Jammed;
+    let all = (0..exact.len()).filter(jams).count();
+    let lost = (0..exact.len()).filter(jams).filter(|cell| labels.outcome(*cell) != Outcome::Jammed).count();
+    assert!(all > 100 && lost * 20 <= all, "{lost} of {all} lost");
+}
+
+/// Where mirrors fold the grid and where they do not, the same comes out but on ridges.
+#[test]
+fn folding_changes_nothing() {
+    let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
+    let folded = labels(&pair, 6);
+    let mut grid = Grid::over(&pair.alignment, |_| 6);
+    for axis in &mut grid.axes {
+        axis.hi += 1e-6;
+    }
+    let whole = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+    assert!(whole.labels.len() > folded.labels.len());
+    let differ = (0..grid.len()).filter(|cell| folded.outcome(*cell) != whole.outcome(*cell)).count();
+    assert!(differ * 100 <= grid.len(), "{differ} of {}", grid.len());
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let pair = pair(Family::XFace3d, 0.577, 0.5, 0.5, None);
+    let grid = Grid::over(&pair.alignment, |_| 6);
+    let with = |threads| {
+        let exec = Exec::new().with_threads(threads).unwrap();
+        let labels = run(&pair, &grid, &Settings::default(), &exec).unwrap();
+        (labels.labels, labels.joined)
+    };
+    let one = with(1);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(4));
+}
+
+/// Motion leaves a slice at once: each of its cells is followed by itself.
+#[test]
+fn a_slice_is_followed_cell_by_cell() {
+    let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
+    let mut grid = Grid::over(&pair.alignment, |_| 12);
+    grid.axes.retain(|axis| matches!(axis.dof, Dof::X | Dof::Pitch));
+    let labels = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
+    assert_eq!((labels.joined.joined, labels.joined.tried), (0, 0));
+    assert_eq!(labels.joined.motions, labels.joined.cells);
+    assert_eq!(labels.acceptance(&Exec::new()).outcomes, judge(&labels, &pair));
+}
+
+#[test]
+fn refusals() {
+    let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
+    let grid = Grid::over(&pair.alignment, |_| 40);
+    let small = Exec::new().with_memory_budget(1 << 20);
+    let error = run(&pair, &grid, &Settings::default(), &small).unwrap_err().to_string();
+    assert!(error.contains("cells per axis fit"), "{error}");
+    let stopped = Exec::new();
+    stopped.cancel_flag().store(true, Ordering::Relaxed);
+    let error = run(&pair, &grid, &Settings::default(), &stopped).unwrap_err();
+    assert_eq!(error, ConfluenceError::Landscape(LandscapeError::Cancelled(Cancelled)));
+    let many = Grid::over(&pair.alignment, |_| 100);
+    let error = run(&pair, &many, &Settings::default(), &Exec::new()).unwrap_err();
+    assert_eq!(error, ConfluenceError::TooManyCells { cells: 10_000_000_000 });
+}
