@@ -55,7 +55,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { gap: 0.02, boxes: 60_000 }
+        Self { gap: 0.02, boxes: 20_000 }
     }
 }
 

@@ -136,7 +136,9 @@ fn no_motion_contradicts_a_planar_certificate() {
     let Certificate { yes, no, undecided, retention_at_least, retention_at_most, .. } = found.certificate;
     assert!(yes > 0.02 && no > 0.1 && (yes + no + undecided - 1.0).abs() < 1e-9, "{:?}", found.certificate);
     assert!(contradicts_nothing(&pair, &found, 1000) > 200);
-    assert!(retention_at_least > 0.4 && retention_at_most.is_some_and(|most| most >= retention_at_least));
+    // From above nothing may have been found: a way out needs boxes all along it.
+    assert!(retention_at_least > 0.4, "{retention_at_least}");
+    assert!(retention_at_most.is_none_or(|most| most >= retention_at_least));
 }
 
 /// In translation the pyramid leaves its socket when its tip is at the rim: lifted by the depth H.
