@@ -188,7 +188,7 @@ impl Rims {
             for corner in moving.corners.iter().filter(|c| is_on_rim(c, &its_sides)) {
                 let k = corner.vertex as usize;
                 let sheet = sheet(corner, its).map(|v| at.turn(v));
-                rim.meet(at.lateral[k], sheet, |outward, level| {
+                rim.meet(at.lateral[k], &sheet, |outward, level| {
                     let lift = level - at.turned[k][2];
                     found.push(Meet { lift, apart: moved(bodies, at, k, outward) });
                 });
@@ -207,7 +207,7 @@ impl Rims {
             for corner in fixed.corners.iter().filter(|c| is_on_rim(c, &own_sides)) {
                 let point = fixed.at(corner.vertex);
                 let sheet = sheet(corner, own).map(thin);
-                rim.meet(plan(point), sheet, |outward, level| {
+                rim.meet(plan(point), &sheet, |outward, level| {
                     let lift = Interval::thin(point.z) - level;
                     // As the rim moves inwards, the corner comes out: either end tells, and all between.
                     let ends = rim.ridge.ends.map(|k| moved(bodies, at, k as usize, outward));
@@ -239,7 +239,7 @@ impl Rim<'_> {
     fn meet(
         &self,
         corner: [Interval; 2],
-        sheet: impl Iterator<Item = Vector> + Clone,
+        sheet: &(impl Iterator<Item = Vector> + Clone),
         mut tell: impl FnMut([Interval; 2], Interval),
     ) {
         let [a, b] = self.ends;

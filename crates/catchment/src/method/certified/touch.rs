@@ -9,7 +9,7 @@
 //! The normal of two ridges is their cross product, of either sense; where they may be parallel it is what lies between the normals of
 //! their facets. Only the direction of n matters, so it need not be unit.
 //!
-//! May carry: the features support the normal, their feet may meet in plan view, and n_z may be above 0. All three are judged by bounds,
+//! May carry: the features support the normal, their feet may meet in plan view, and `n_z` may be above 0. All three are judged by bounds,
 //! so nothing that carries is left out; what does not carry may be left in.
 
 use super::body::{Meeting, Ridge};
@@ -261,9 +261,9 @@ impl Touch {
     /// ```
     pub(super) fn push(&self, bodies: &Bodies, at: &Placed) -> PoseBox {
         let mut way = [Interval::ZERO; 5];
-        for axis in 0..2 {
+        for (axis, way) in way.iter_mut().enumerate().take(2) {
             if bodies.slides(axis) {
-                way[axis] = self.normal[axis];
+                *way = self.normal[axis];
             }
         }
         for (k, dof) in ROTATIONS.into_iter().enumerate() {
@@ -351,6 +351,6 @@ fn between([a, b]: [Vector; 2]) -> Vector {
         return [Interval::new(-1.0 - SLACK, 1.0 + SLACK); 3];
     }
     // A chord is nowhere shorter than the cosine of half the angle.
-    let bulge = Interval::new(1.0, (1.0 / ((1.0 + cosine.min(1.0)) / 2.0).sqrt()).next_up());
+    let bulge = Interval::new(1.0, (1.0 / f64::midpoint(1.0, cosine.min(1.0)).sqrt()).next_up());
     [0, 1, 2].map(|k| (a[k].hull(b[k]) * bulge).widened(SLACK))
 }

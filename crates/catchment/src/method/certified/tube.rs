@@ -215,7 +215,7 @@ impl Tube<'_> {
             }
             let step = STEP * width;
             let survey = {
-                let slab = self.slab(&bundle, at, step, guess);
+                let slab = slab(&bundle, at, step, guess);
                 self.look(&frame.hull(&slab), nearby)?
             };
             if survey.height.is_none() {
@@ -241,7 +241,7 @@ impl Tube<'_> {
                 let turned = Frame::new(self.bodies, &self.tree.axes, &frame.hull(&section), &here.touches)?;
                 start = turned.of_bundle(&frame, &section);
                 frame = turned;
-                bundle = start.clone();
+                bundle.clone_from(&start);
                 at = start[0].lo;
                 fresh = true;
                 continue;
@@ -263,7 +263,7 @@ impl Tube<'_> {
                     (low.lo + (reach * slope.lo).min(0.0), low.lo + (reach * slope.up).max(0.0));
                 (high.lo, high.up) =
                     (high.up + (reach * slope.lo).min(0.0), high.up + (reach * slope.up).max(0.0));
-                let mut face = self.slab(&bundle, at, step, guess);
+                let mut face = slab(&bundle, at, step, guess);
                 let mut rate = |side: Interval, face: &mut Bundle| {
                     face[j] = side;
                     let poses = frame.hull(face);
@@ -286,13 +286,6 @@ impl Tube<'_> {
             guess = (1.5 * steepest).max(0.25);
         }
         None
-    }
-
-    /// The slab of a step, as wide as slopes up to `guess` can make it.
-    fn slab(&self, bundle: &[Interval], at: f64, step: f64, guess: f64) -> Bundle {
-        let mut slab = section(bundle, at, at + step);
-        slab[1..].iter_mut().for_each(|part| *part = part.widened(1.01 * step * guess));
-        slab
     }
 
     /// What is certain over a box within the root; nothing where a wall may be met.
@@ -336,4 +329,11 @@ fn slopes(frame: &Frame, pushes: &[PoseBox]) -> Option<Vec<Interval>> {
         });
     }
     slopes
+}
+
+/// The slab of a step, as wide as slopes up to `guess` can make it.
+fn slab(bundle: &[Interval], at: f64, step: f64, guess: f64) -> Bundle {
+    let mut slab = section(bundle, at, at + step);
+    slab[1..].iter_mut().for_each(|part| *part = part.widened(1.01 * step * guess));
+    slab
 }

@@ -55,7 +55,7 @@ impl<'a> Around<'a> {
             let stride = if axis.dof.is_rotation() { next } else { 0 };
             next *= if axis.dof.is_rotation() { axis.cells } else { 1 };
             let (error, lo, per_cell) = (axis.dof.index(), axis.lo, axis.step().recip());
-            Lookup { error, lo, per_cell, cells: axis.cells as i32, stride }
+            Lookup { error, lo, per_cell, cells: i32::try_from(axis.cells).unwrap_or(i32::MAX), stride }
         };
         let axes: Vec<Lookup> = grid.axes.iter().map(lookup).collect();
         let lateral = grid.axes.iter().filter(|axis| !axis.dof.is_rotation()).count();
@@ -100,7 +100,7 @@ impl<'a> Around<'a> {
         let mut found: Option<Label> = None;
         // Bit k of a corner: whether it is the upper one along axis k.
         let number = |axis: usize, corner: usize| {
-            let number = base[axis] + (corner >> axis & 1) as i32;
+            let number = base[axis] + i32::from(corner >> axis & 1 == 1);
             self.axes[axis].has(number).then_some(number as usize)
         };
         let rotations = self.axes.len() - self.lateral;

@@ -101,7 +101,7 @@ pub struct Joined {
 pub struct Labels {
     grid: Grid,
     fold: Fold,
-    labels: Vec<Label>,
+    kept: Vec<Label>,
     /// How they came about.
     pub joined: Joined,
 }
@@ -126,9 +126,9 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
     let river = River { pair, relief: &relief, settings };
-    let (labels, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
+    let (kept, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
     let Relief { grid, fold, .. } = relief;
-    Ok(Labels { grid, fold, labels, joined })
+    Ok(Labels { grid, fold, kept, joined })
 }
 
 const STAGE: &str = "motions";
@@ -151,7 +151,7 @@ impl Labels {
 
     /// What becomes of the centre of a cell.
     pub fn outcome(&self, cell: usize) -> Outcome {
-        self.labels[self.fold.kept_cell(cell)].outcome()
+        self.kept[self.fold.kept_cell(cell)].outcome()
     }
 
     /// The outcomes of all cells.

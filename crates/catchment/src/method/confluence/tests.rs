@@ -73,7 +73,7 @@ fn folding_changes_nothing() {
         axis.hi += 1e-6;
     }
     let whole = run(&pair, &grid, &Settings::default(), &Exec::new()).unwrap();
-    assert!(whole.labels.len() > folded.labels.len());
+    assert!(whole.kept.len() > folded.kept.len());
     let differ = (0..grid.len()).filter(|cell| folded.outcome(*cell) != whole.outcome(*cell)).count();
     assert!(differ * 100 <= grid.len(), "{differ} of {}", grid.len());
 }
@@ -85,7 +85,7 @@ fn threads_do_not_change_a_bit() {
     let with = |threads| {
         let exec = Exec::new().with_threads(threads).unwrap();
         let labels = run(&pair, &grid, &Settings::default(), &exec).unwrap();
-        (labels.labels, labels.joined)
+        (labels.kept, labels.joined)
     };
     let one = with(1);
     assert_eq!(one, with(2));
