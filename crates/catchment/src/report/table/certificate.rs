@@ -9,12 +9,8 @@ pub(super) fn lines(text: &mut String, found: &Certificate, report: &Report) {
     let unit = &report.acceptance.unit;
     let [yes, no, open] = found.measures;
     let boxes = format!("{} boxes", grouped(found.boxes));
-    row(
-        text,
-        "certainly docks",
-        &format!("{} of the error box, {yes:.4} {unit}   ({boxes})", percent(found.yes)),
-    );
-    row(text, "certainly not", &format!("{}, {no:.4} {unit}", percent(found.no)));
+    row(text, "all dock", &format!("{} of the error box, {yes:.4} {unit}   ({boxes})", percent(found.yes)));
+    row(text, "none docks", &format!("{}, {no:.4} {unit}", percent(found.no)));
     row(text, "undecided", &format!("{}, {open:.4} {unit}", percent(found.undecided)));
     let least = significant(found.retention_at_least);
     let most = found.retention_at_most.map_or_else(String::new, |most| format!(" … {}", significant(most)));
