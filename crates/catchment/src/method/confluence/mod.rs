@@ -15,7 +15,7 @@
 //!
 //! **Not guaranteed:** the label of a cell that joined others may differ from that of its centre's own motion, where
 //! something thinner than a cell lies between. [`Joined`] says how often: cells drawn at random among them are followed to their end. For 5-D grids of the pyramid and the
-//! 3-D X-Face it is less than one in ten thousand. Outcomes hold at the centres of cells; nothing is said about what lies between two of
+//! 3-D X-Face it is one or two in ten thousand. Outcomes hold at the centres of cells; nothing is said about what lies between two of
 //! them.
 //!
 //! Memory: 11 bytes per kept cell (height, carrier, order, label; [`Relief`] keeps a half or a quarter of a
