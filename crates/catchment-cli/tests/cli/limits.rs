@@ -253,9 +253,9 @@ fn extreme_but_allowed_alignments_end() {
     for args in [
         "check far.toml --cor 100",
         "check far.toml --rotation-length 0.001",
-        "run v.toml --cor 100 --resolution 10",
-        "run v.toml --cor=-100 --rotation-length 0.1 --resolution 10",
-        "run far.toml --rotation-length 1000 --resolution 10",
+        "run v.toml --cor 100 --resolution 10 --samples 500",
+        "run v.toml --cor=-100 --rotation-length 0.1 --resolution 10 --samples 500",
+        "run far.toml --rotation-length 1000 --resolution 10 --samples 500",
     ] {
         let started = Instant::now();
         let output = limited(home.path(), "true", args);

@@ -187,14 +187,18 @@ impl River<'_> {
         })
     }
 
-    /// Follows some of the cells that joined others, drawn at random, to their end.
+    /// Follows some of the cells that joined others to their end: drawn at random, or all where they are few.
     fn judge(&self, labels: &[Label], told: &mut Joined, exec: &Exec) -> Result<(), Cancelled> {
         let Relief { grid, fold, .. } = self.relief;
         let draws = (TRIED * affordable(self.pair)).max(LEAST_TRIED) as u64;
         let stream = Stream::new(SEED);
         let draw = |k| fold.kept_cell((stream.uniform(k) * grid.len() as f64) as usize) as u32;
-        let cells: Vec<u32> =
-            (0..draws).map(draw).filter(|cell| labels[*cell as usize].has_joined()).collect();
+        let mut cells: Vec<u32> = if labels.len() as u64 <= draws {
+            (0..labels.len() as u32).collect()
+        } else {
+            (0..draws).map(draw).collect()
+        };
+        cells.retain(|cell| labels[*cell as usize].has_joined());
         let ends = self.each(&cells, exec, |follower, cell| self.follow(cell, follower).outcome())?;
         let differs = |(cell, end): &(&u32, Outcome)| labels[**cell as usize].outcome() != *end;
         told.tried = cells.len();
