@@ -28,7 +28,6 @@
 pub mod brute;
 pub(super) mod door;
 mod links;
-
 mod solve;
 #[cfg(test)]
 mod tests;
