@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn text_and_bytes_make_the_same_cube() {
         let cube = read(CUBE.as_bytes()).unwrap();
-        assert_eq!((cube.vertices.len(), cube.facets.len()), (8, 12));
+        assert_eq!((cube.vertices.len(), cube.facets.len()), (8, 6));
         assert!(cube.vertices.contains(&DVec3::splat(0.5)), "scaled");
         assert_eq!(read(&binary()).unwrap(), cube);
     }

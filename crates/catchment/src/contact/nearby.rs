@@ -23,7 +23,7 @@ use glam::{DMat3, DVec2, DVec3};
 const OVERHANG: f64 = 0.5;
 
 /// What is announced to a motion of halves of many facets, in D.
-const MET: f64 = 1e-4;
+pub(super) const MET: f64 = 1e-4;
 
 /// Skin and shift in units of the widest slack and reach: longer lists against more collecting. Flat around its optimum.
 const SKIN: f64 = 1.0;

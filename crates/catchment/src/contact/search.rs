@@ -67,6 +67,13 @@ pub(super) struct Asked {
     pub(super) ceiling: f64,
     /// Any height above this one is as good as the greatest.
     pub(super) enough: f64,
+    /// Whether something above the ceiling is known to stop it earlier.
+    pub(super) covered: bool,
+}
+
+impl Asked {
+    /// The greatest height of all.
+    pub(super) const WHOLE: Self = Self { ceiling: f64::INFINITY, enough: f64::INFINITY, covered: false };
 }
 
 /// What carries a half lowered from a ceiling.
@@ -93,6 +100,8 @@ struct Turned<'a> {
     counts: Counts,
     /// Which cones hold.
     cones: Option<usize>,
+    /// Which parts are looked at together.
+    pairs: fn(Child, Child) -> bool,
     /// Sine and cosine of how far beyond the horizontal normals may lean.
     overhang: [f32; 2],
     /// Where the moving half is, and by how much bounds may be wrong there.
@@ -108,7 +117,8 @@ impl<'a> Turned<'a> {
         let extent = trees.fixed.extent + 2.0 * trees.moving.extent + position.abs().max_element();
         let (placed, rounding) = (Placed::new(rotation, position), rounding(extent));
         let (rotation, back) = (*rotation, rotation.transpose());
-        Self { pair, trees, rotation, back, counts, cones, overhang, placed, rounding }
+        let pairs = Child::meets;
+        Self { pair, trees, rotation, back, counts, cones, pairs, overhang, placed, rounding }
     }
 
     /// Which of two is divided first: the larger one, in plan view.
@@ -156,7 +166,7 @@ impl<'a> Turned<'a> {
             }
             alive &= !(1 << lane);
             let child = node.child(lane);
-            if child.meets(other) {
+            if (self.pairs)(child, other) {
                 let heights = [least[lane], most[lane]];
                 if divides_fixed {
                     look(&Side { child, four: f, lane }, moving, heights);
@@ -234,7 +244,7 @@ struct Lowered<'a> {
 impl Lowered<'_> {
     /// Whether anything between these heights may still count, which are right to some rounding.
     fn may_count(&self, [least, most]: [f64; 2], sure: f64) -> bool {
-        let Asked { ceiling, enough } = self.asked;
+        let Asked { ceiling, enough, .. } = self.asked;
         let best = self.found.height().unwrap_or(f64::NEG_INFINITY);
         if best > enough {
             return false;
@@ -340,6 +350,34 @@ impl Close<'_> {
     }
 }
 
+/// The search for an edge of one half that passes through a facet of the other.
+struct Piercing<'a> {
+    turned: &'a Turned<'a>,
+    position: DVec3,
+    found: bool,
+}
+
+impl Piercing<'_> {
+    /// Tries two parts.
+    fn descend(&mut self, fixed: &Side<'_>, moving: &Side<'_>) {
+        if self.found {
+            return;
+        }
+        let turned = self.turned;
+        if fixed.child.is_leaf && moving.child.is_leaf {
+            let (f, m) = (turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child));
+            let (fixed, moving) = turned.shapes([f.shape, m.shape]);
+            let seen = |p: DVec3| turned.back * (p - self.position);
+            let placed = |p: DVec3| turned.rotation * p + self.position;
+            self.found = fixed.pierces_at(f.index, moving, m.index, seen)
+                || moving.pierces_at(m.index, fixed, f.index, placed);
+            return;
+        }
+        let test = |f: &Four, m: &Four| (f.is_near(m, 0.0, turned.rounding).to_bitmask(), [0.0; 4], [0.0; 4]);
+        turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
+    }
+}
+
 /// How much larger a part of the fixed half is that is divided first. Of a turned part the box is larger than it need be.
 const LARGER: f32 = 1.25;
 
@@ -369,7 +407,7 @@ impl Trees {
         seed: Option<Number>,
     ) -> Carried {
         let turned = Turned::new(pair, self, rotation, lateral.extend(0.0), counts);
-        let mut found = Carried::default();
+        let mut found = Carried { by: None, covered: asked.covered };
         let seed = seed.and_then(|number| Some((number, turned.element(&number)?)));
         if let Some((number, element)) = seed.filter(|(_, element)| element.normal.z > GENTLE) {
             let z = element.height(lateral);
@@ -404,6 +442,30 @@ impl Trees {
             Close { turned: &turned, position, reach, out }.descend(&fixed, &moving);
         }
         out.sort_unstable_by_key(|(number, _)| *number);
+    }
+
+    /// The element of two features, if it counts.
+    pub(super) fn element(
+        &self,
+        pair: &Pair,
+        rotation: &DMat3,
+        counts: Counts,
+        number: &Number,
+    ) -> Option<Element> {
+        Turned::new(pair, self, rotation, DVec3::ZERO, counts).element(number)
+    }
+
+    /// Whether an edge of one half passes through a facet of the other with the COR at `position`.
+    pub(super) fn is_pierced(&self, pair: &Pair, rotation: &DMat3, position: DVec3) -> bool {
+        let any = Counts { slack: f64::INFINITY, lowest: f64::NEG_INFINITY };
+        let turned = Turned { pairs: Child::are_facets, ..Turned::new(pair, self, rotation, position, any) };
+        let mut search = Piercing { turned: &turned, position, found: false };
+        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
+            let [fixed, moving] =
+                [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
+            search.descend(&fixed, &moving);
+        }
+        search.found
     }
 }
 

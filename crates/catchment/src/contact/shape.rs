@@ -133,34 +133,49 @@ impl Shape {
 
     /// Whether an edge of this shape, moved by `seen` into the other's frame, passes through a facet of the other.
     pub(super) fn pierces(&self, other: &Self, seen: impl Fn(DVec3) -> DVec3) -> bool {
+        (0..self.facets.len() as u32).any(|own| {
+            self.edges(own).any(|ends| {
+                let ends = ends.map(|k| seen(self.at(k)));
+                let over = Plan::around(ends.iter().map(|p| p.truncate()));
+                other.plans.facets.any(&over, |facet| other.is_passed(facet, ends))
+            })
+        })
+    }
+
+    /// The same of one facet of each.
+    pub(super) fn pierces_at(
+        &self,
+        own: u32,
+        other: &Self,
+        facet: u32,
+        seen: impl Fn(DVec3) -> DVec3,
+    ) -> bool {
+        self.edges(own).any(|ends| other.is_passed(facet, ends.map(|k| seen(self.at(k)))))
+    }
+
+    /// The sides of a facet, each for one of the two facets that it borders.
+    fn edges(&self, facet: u32) -> impl Iterator<Item = [u32; 2]> {
+        let corners = &self.facets[facet as usize].corners;
+        let n = corners.len();
+        (0..n).map(move |k| [corners[k], corners[(k + 1) % n]]).filter(|[a, b]| a < b)
+    }
+
+    /// Whether a segment passes through a facet.
+    fn is_passed(&self, facet: u32, [a, b]: [DVec3; 2]) -> bool {
         /// What counts as through rather than touching, in D.
         const THROUGH: f64 = 1e-6;
-        self.facets.iter().any(|own| {
-            let n = own.corners.len();
-            (0..n).any(|k| {
-                let (a, b) = (own.corners[k], own.corners[(k + 1) % n]);
-                // Every edge is met once in each direction.
-                if a > b {
-                    return false;
-                }
-                let (a, b) = (seen(self.at(a)), seen(self.at(b)));
-                let over = Plan::around([a, b].iter().map(|p| p.truncate()));
-                other.plans.facets.any(&over, |facet| {
-                    let facet = &other.facets[facet as usize];
-                    let origin = other.at(facet.corners[0]);
-                    let (above, below) = (facet.normal.dot(a - origin), facet.normal.dot(b - origin));
-                    if above.min(below) > -THROUGH || above.max(below) < THROUGH {
-                        return false;
-                    }
-                    let point = a + (b - a) * (above / (above - below));
-                    let m = facet.corners.len();
-                    (0..m).all(|k| {
-                        let (p, q) = (other.at(facet.corners[k]), other.at(facet.corners[(k + 1) % m]));
-                        let along = (q - p).normalize_or_zero();
-                        facet.normal.dot(along.cross(point - p)) > THROUGH
-                    })
-                })
-            })
+        let facet = &self.facets[facet as usize];
+        let origin = self.at(facet.corners[0]);
+        let (above, below) = (facet.normal.dot(a - origin), facet.normal.dot(b - origin));
+        if above.min(below) > -THROUGH || above.max(below) < THROUGH {
+            return false;
+        }
+        let point = a + (b - a) * (above / (above - below));
+        let m = facet.corners.len();
+        (0..m).all(|k| {
+            let (p, q) = (self.at(facet.corners[k]), self.at(facet.corners[(k + 1) % m]));
+            let along = (q - p).normalize_or_zero();
+            facet.normal.dot(along.cross(point - p)) > THROUGH
         })
     }
 

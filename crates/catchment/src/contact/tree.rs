@@ -227,6 +227,11 @@ impl Child {
         const SWAPPED: [u8; 8] = [0, 2, 1, 3, 4, 6, 5, 7];
         self.kinds & SWAPPED[other.kinds as usize] != 0
     }
+
+    /// Whether both hold facets.
+    pub(super) const fn are_facets(self, other: Self) -> bool {
+        self.kinds & other.kinds & Kind::Facet as u8 != 0
+    }
 }
 
 impl Node {

@@ -3,6 +3,7 @@
 use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
+use super::nearby::MET;
 use super::search::{Asked, Carried, Number, Trees};
 use super::shape::Shape;
 use super::{Contact, Pair};
@@ -22,17 +23,38 @@ pub(super) struct Turned<'a> {
     trees: Option<&'a Trees>,
     /// Which of their elements count.
     counts: Counts,
-    /// What carried the half last, as the trees number it: where it is looked for first.
-    carrier: Option<Number>,
-    /// What the trees found near, kept to be allocated once.
-    near: Vec<(Number, Element)>,
+    /// What carried the half last, as the trees number it, from far above and from a ceiling: where it is looked for first.
+    carriers: [Option<Number>; 2],
+    /// What the trees found near a few poses, the last one asked for last: a step returns to where it started, and goes on where it was tried.
+    near: Vec<Near>,
+}
+
+/// Poses near which what was found is kept: a step and all that is tried for it.
+const KEPT: usize = 8;
+
+/// What may touch near one pose, by the trees.
+#[derive(Debug, Clone)]
+struct Near {
+    rotation: DMat3,
+    position: DVec3,
+    counts: Counts,
+    reach: f64,
+    elements: Vec<(Number, Element)>,
 }
 
 impl<'a> Turned<'a> {
     /// Not turned yet: nothing touches.
     pub(super) fn new(pair: &'a Pair) -> Self {
         let (rotation, counts) = (DMat3::IDENTITY, Counts { slack: 0.0, lowest: VERTICAL });
-        Self { pair, rotation, elements: Vec::new(), trees: None, counts, carrier: None, near: Vec::new() }
+        Self {
+            pair,
+            rotation,
+            elements: Vec::new(),
+            trees: None,
+            counts,
+            carriers: [None; 2],
+            near: Vec::new(),
+        }
     }
 
     /// Replaces the elements by those among `candidates` at `rotation`.
@@ -67,11 +89,11 @@ impl<'a> Turned<'a> {
     /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
     pub(super) fn height_below(&mut self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
         if let Some(trees) = self.trees {
-            let mut ask = |ceiling| self.carried(trees, lateral, Asked { ceiling, enough: f64::INFINITY });
             // As a rule nothing is above the ceiling, and the whole is searched faster than a part.
-            let first = ask(f64::INFINITY);
-            let above = first.height().is_some_and(|height| height > ceiling);
-            let carried = if above { ask(ceiling) } else { first };
+            let mut carried = self.carried(trees, lateral, Asked::WHOLE);
+            if carried.height().is_some_and(|height| height > ceiling) {
+                carried = self.carried(trees, lateral, Asked { ceiling, covered: true, ..Asked::WHOLE });
+            }
             return (carried.height(), carried.covered);
         }
         let mut highest = f64::NEG_INFINITY;
@@ -96,9 +118,7 @@ impl<'a> Turned<'a> {
     /// Whether a half lowered from far above is stopped above `level`.
     pub(super) fn is_stopped_above(&mut self, lateral: DVec2, level: f64) -> bool {
         let height = match self.trees {
-            Some(trees) => {
-                self.carried(trees, lateral, Asked { ceiling: f64::INFINITY, enough: level }).height()
-            }
+            Some(trees) => self.carried(trees, lateral, Asked { enough: level, ..Asked::WHOLE }).height(),
             None => self.height_below(lateral, f64::INFINITY).0,
         };
         height.is_some_and(|height| height > level)
@@ -106,15 +126,15 @@ impl<'a> Turned<'a> {
 
     /// What carries a half lowered from far above, by the trees.
     pub(super) fn carried_by(&mut self, lateral: DVec2) -> Option<(Element, Number, f64)> {
-        let whole = Asked { ceiling: f64::INFINITY, enough: f64::INFINITY };
-        self.trees.and_then(|trees| self.carried(trees, lateral, whole).by)
+        self.trees.and_then(|trees| self.carried(trees, lateral, Asked::WHOLE).by)
     }
 
     /// By what supports: what does only within a slack is above the other half, and carries nothing.
     fn carried(&mut self, trees: &Trees, lateral: DVec2, asked: Asked) -> Carried {
         let counts = Counts { slack: FLUSH, lowest: VERTICAL };
-        let carried = trees.carried(self.pair, &self.rotation, lateral, counts, asked, self.carrier);
-        self.carrier = carried.by.map(|(_, number, _)| number).or(self.carrier);
+        let carrier = &mut self.carriers[usize::from(asked.ceiling.is_finite())];
+        let carried = trees.carried(self.pair, &self.rotation, lateral, counts, asked, *carrier);
+        *carrier = carried.by.map(|(_, number, _)| number).or(*carrier);
         carried
     }
 
@@ -127,29 +147,61 @@ impl<'a> Turned<'a> {
         seam: f64,
         mut meet: impl FnMut((Contact, Meeting)),
     ) {
-        let mut near = std::mem::take(&mut self.near);
         if let Some(trees) = self.trees {
             // Feet may lie beyond both borders.
-            let reach = reach + 2.0 * seam;
-            trees.near(self.pair, &self.rotation, position, self.counts, reach, &mut near);
+            self.look_near(trees, position, reach + 2.0 * seam);
         }
-        for element in self.elements.iter().chain(near.iter().map(|(_, element)| element)) {
+        let mut meet_near = |element: &Element| {
             let gap = element.gap(position);
             // Deeper than `reach` the halves are not near each other along this normal: they passed.
             if gap.abs() > reach {
-                continue;
+                return;
             }
-            let Some(point) = self.foot(element, position, seam) else { continue };
+            let Some(point) = self.foot(element, position, seam) else { return };
             if self.is_exposed(element, point, position) {
                 meet((Contact { gap, normal: element.normal, point }, element.meeting));
             }
+        };
+        self.elements.iter().for_each(&mut meet_near);
+        if let (Some(trees), Some(near)) = (self.trees, self.near.last()) {
+            let is_more = near.counts.slack > self.counts.slack;
+            let counts =
+                |number| !is_more || trees.element(self.pair, &self.rotation, self.counts, number).is_some();
+            for (number, element) in &near.elements {
+                if element.gap(position).abs() <= reach && counts(number) {
+                    meet_near(element);
+                }
+            }
         }
-        self.near = near;
+    }
+
+    /// Sees to it that what was found last is what may touch within `reach` here, or more.
+    fn look_near(&mut self, trees: &Trees, position: DVec3, reach: f64) {
+        let Self { pair, rotation, counts, near, .. } = self;
+        let holds = |near: &Near| {
+            near.position == position
+                && near.rotation == *rotation
+                && near.counts.lowest == counts.lowest
+                && near.counts.slack >= counts.slack
+                && near.reach >= reach
+        };
+        if let Some(k) = near.iter().position(holds) {
+            near[k..].rotate_left(1);
+            return;
+        }
+        let mut elements = if near.len() < KEPT { Vec::new() } else { near.remove(0).elements };
+        // What a motion tries is where it may go on.
+        let reach = reach.max(MET + 2.0 * SEAM);
+        trees.near(pair, rotation, position, *counts, reach, &mut elements);
+        near.push(Near { rotation: *rotation, position, counts: *counts, reach, elements });
     }
 
     /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than
     /// touching.
     pub(super) fn is_pierced(&self, position: DVec3) -> bool {
+        if let Some(trees) = self.trees {
+            return trees.is_pierced(self.pair, &self.rotation, position);
+        }
         let back = self.rotation.transpose();
         let fixed_in_moving = |p: DVec3| back * (p - position);
         let moving_in_fixed = |p: DVec3| self.rotation * p + position;

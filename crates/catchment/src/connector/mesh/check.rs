@@ -2,6 +2,7 @@
 
 use super::crossing::crossings;
 use super::indexed::Indexed;
+use super::polygons;
 use super::shells::{self, Shell};
 use super::sides::Sides;
 use super::{MAX_REPORTED, MeshProblem, Point, Reported};
@@ -36,9 +37,9 @@ pub(super) fn problems(mesh: &Indexed, sides: &Sides) -> Vec<MeshProblem> {
 
 /// The surface of a mesh with which nothing is wrong, in D.
 pub(super) fn surface(mesh: &Indexed, scale: f64) -> Result<Surface, Vec<MeshProblem>> {
-    let polygons: Vec<Vec<u32>> = mesh.triangles.iter().map(|t| t.to_vec()).collect();
+    let (vertices, polygons) = polygons::of(mesh);
     // Everything that the surface refuses has been looked for before; what is left can only be rounding.
-    Surface::from_polygons(mesh.vertices.iter().map(|v| *v * scale).collect(), &polygons)
+    Surface::from_polygons(vertices.into_iter().map(|v| v * scale).collect(), &polygons)
         .map_err(|_| vec![MeshProblem::InsideOut { at: mesh.at(0).into() }])
 }
 

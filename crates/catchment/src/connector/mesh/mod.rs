@@ -1,7 +1,7 @@
 //! A closed triangle mesh as half of a connector: from loose triangles to a [`Surface`], or to every reason why they are none.
 //!
 //! ```text
-//! triangles, each with its place ──weld──▶ corners shared ──check──▶ [repair] ──▶ [simplify] ──▶ Surface, in D
+//! triangles, each with its place ──weld──▶ corners shared ──check──▶ [repair] ──▶ [simplify] ──▶ polygons ──▶ Surface, in D
 //! ```
 //!
 //! Every source of triangles comes through here, the files of the sources as well as triangles in memory. Corners closer
@@ -9,6 +9,7 @@
 //! counter-clockwise seen from outside. A mesh that is then closed, wound outward and free of self-intersections is taken as it is. Another one is
 //! repaired where the [`Treatment`] allows it, and what was done is told; if that leaves anything, every reason
 //! against it is reported with its place. Coordinates in messages are those of the source. Triangles in memory are never repaired.
+//! Triangles that lie in one plane become polygons.
 //!
 //! Not promised: holes are not closed, and coplanar overlaps of separate shells are not looked for.
 
@@ -19,6 +20,7 @@ mod deviation;
 mod divide;
 mod indexed;
 mod point;
+mod polygons;
 mod problem;
 mod repair;
 mod shells;
@@ -75,6 +77,8 @@ pub(super) const fn too_many(treatment: Treatment, count: u64) -> MeshProblem {
 #[derive(Debug)]
 pub(super) struct Ready {
     pub(super) half: Half,
+    /// Of which so many triangles were made.
+    pub(super) triangles: usize,
     pub(super) repairs: Repairs,
 }
 
@@ -157,13 +161,14 @@ pub(super) fn part(
         return Err(vec![too_many(treatment, count as u64)]);
     }
     sound_numbers(&bodies)?;
-    let mut ready = Ready { half: Half::default(), repairs: Repairs::default() };
+    let mut ready = Ready { half: Half::default(), triangles: 0, repairs: Repairs::default() };
     let mut problems = Vec::new();
     for body in bodies.into_iter().filter(|body| !body.is_empty()) {
         match solid(body, scale, treatment) {
-            Ok((surface, repairs)) => {
-                ready.half.surfaces.push(surface);
-                ready.repairs.add(&repairs);
+            Ok(solid) => {
+                ready.half.surfaces.push(solid.surface);
+                ready.triangles += solid.triangles;
+                ready.repairs.add(&solid.repairs);
             }
             Err(found) => problems.extend(found),
         }
@@ -182,11 +187,15 @@ pub(super) fn implausible_width(corners: impl Iterator<Item = DVec3>) -> Option<
 }
 
 /// A closed surface from the triangles of one body, and what was done to it.
-fn solid(
-    triangles: Vec<Triangle>,
-    scale: f64,
-    treatment: Treatment,
-) -> Result<(Surface, Repairs), Vec<MeshProblem>> {
+#[derive(Debug)]
+struct Solid {
+    surface: Surface,
+    triangles: usize,
+    repairs: Repairs,
+}
+
+/// The solid that triangles bound.
+fn solid(triangles: Vec<Triangle>, scale: f64, treatment: Treatment) -> Result<Solid, Vec<MeshProblem>> {
     fits(triangles.len())?;
     let (mut mesh, sides) = Indexed::of(triangles);
     let mut problems = check::problems(&mesh, &sides);
@@ -213,7 +222,7 @@ fn solid(
     if mesh.triangles.len() > MAX_TRIANGLES {
         return Err(vec![MeshProblem::TooManyLeft { count: mesh.triangles.len() }]);
     }
-    Ok((check::surface(&mesh, scale)?, repairs))
+    Ok(Solid { surface: check::surface(&mesh, scale)?, triangles: mesh.triangles.len(), repairs })
 }
 
 /// Refuses a large mesh for which there is too little memory.

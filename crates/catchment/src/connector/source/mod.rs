@@ -155,14 +155,13 @@ pub(super) fn read_mesh(
         build(held.bodies, scale, spec.treatment).map(|ready| (ready, scale, held.curves))
     };
     let in_unit = |problem: MeshProblem| problem.in_unit(spec.written);
-    let (Ready { half, repairs }, scale, curves) =
+    let (Ready { half, triangles, repairs }, scale, curves) =
         read().map_err(|problems| problems.into_iter().map(in_unit).collect::<Vec<_>>())?;
-    let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum();
     let bodies = half.surfaces.len();
     let meshed = curves.map(|step::FromCurves { deflection, reached, by, sha256 }| {
         Box::new(Meshed { deflection: deflection * scale, reached: reached * scale, by, sha256 })
     });
-    Ok((half, MeshContent { bodies, repairs, meshed, ..MeshContent::of(&file.bytes, facets) }, scale))
+    Ok((half, MeshContent { bodies, repairs, meshed, ..MeshContent::of(&file.bytes, triangles) }, scale))
 }
 
 /// The half that a mesh file holds, however large it is in D.

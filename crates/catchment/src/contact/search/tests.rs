@@ -88,6 +88,17 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
     let [mut listed, mut searched] = both(pair, &pose.rotation, counts);
     let position = pose.lateral.extend(z - below.min(reach));
     prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
+    // What was found is asked for again, and less of it.
+    let fewer = Counts { slack: 0.5 * counts.slack, ..counts };
+    let mut listed = both(pair, &pose.rotation, fewer)[0].clone();
+    searched.turn_trees(&pose.rotation, pair.trees.as_ref().unwrap(), fewer);
+    prop_assert_eq!(
+        contacts(&mut searched, position, 0.5 * reach),
+        contacts(&mut listed, position, 0.5 * reach)
+    );
+    prop_assert_eq!(searched.is_pierced(position), listed.is_pierced(position));
+    let deep = position - DVec3::Z * reach;
+    prop_assert_eq!(searched.is_pierced(deep), listed.is_pierced(deep));
     Ok(())
 }
 

@@ -33,7 +33,7 @@ const BATCHES: usize = 256;
 const LEAST_BATCH: usize = 32;
 
 /// Cells of the box of simple halves that are drawn to be tried, and of any halves; and their seed.
-const TRIED: f64 = 4000.0;
+const TRIED: f64 = 1000.0;
 const LEAST_TRIED: f64 = 200.0;
 const SEED: u64 = 0xc0f1;
 
