@@ -1,6 +1,7 @@
 //! All comparisons as a page of the documentation.
 
 use super::text::significant;
+use crate::study::claims::{Claim, claims};
 use crate::study::reproduce::{Entry, TableComparison};
 use crate::study::resolution;
 use crate::tables::HELD;
@@ -62,7 +63,29 @@ pub fn page(
     if let Some(figure) = figure {
         write_figure(&mut page, figure)?;
     }
+    write_claims(&mut page, &claims(tables))?;
     Ok(page)
+}
+
+fn write_claims(page: &mut String, claims: &[Claim]) -> fmt::Result {
+    if claims.is_empty() {
+        return Ok(());
+    }
+    page.push_str(
+        "\n## What the text says of these tables\n\n\
+         Each sentence as a count: in the printed tables, in ours by the same method, and in the exact ones (a dash: not computed, or said of \
+         the method).\n\n\
+         | section | the text | counted | printed | ours | exact |\n|---|---|---|---:|---:|---:|\n",
+    );
+    for claim in claims {
+        let [printed, ours, exact] = claim.shown();
+        writeln!(
+            page,
+            "| {} | {} | {} | {printed} | {ours} | {exact} |",
+            claim.section, claim.says, claim.counted
+        )?;
+    }
+    Ok(())
 }
 
 fn write_table(page: &mut String, table: &TableComparison) -> fmt::Result {

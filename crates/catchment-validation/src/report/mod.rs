@@ -23,6 +23,7 @@ mod text;
 pub use markdown::page;
 
 use crate::study::accuracy::Accuracy;
+use crate::study::claims::claims;
 use crate::study::reproduce::TableComparison;
 use crate::study::{COVERAGE, Reproduction};
 use catchment::acceptance::Warning;
@@ -70,6 +71,10 @@ impl Reproduction {
     pub fn json(&self, version: &str) -> Value {
         let tables: Vec<Value> = self.tables.iter().map(table).collect();
         let mut report = json!({ "schema": JSON_SCHEMA, "catchment": version, "tables": tables });
+        let claims = claims(&self.tables);
+        if !claims.is_empty() {
+            report["claims"] = json!(claims);
+        }
         if let Some(figure) = &self.figure {
             report["figure_5_13"] = json!(figure);
         }

@@ -1,5 +1,6 @@
 //! Everything that was reproduced, as one text.
 
+use crate::study::claims::{Claim, Verdict, claims};
 use crate::study::reproduce::TableComparison;
 use crate::study::resolution::Found;
 use crate::study::{FIGURE, Reproduction};
@@ -18,7 +19,32 @@ impl fmt::Display for Reproduction {
         if self.tables.len() > 1 {
             write_summary(f, &self.tables)?;
         }
+        write_claims(f, &claims(&self.tables))?;
         self.coverage.as_ref().map_or(Ok(()), |coverage| write!(f, "{coverage}"))
+    }
+}
+
+fn write_claims(f: &mut fmt::Formatter<'_>, claims: &[Claim]) -> fmt::Result {
+    if !claims.is_empty() {
+        writeln!(f, "\nWhat the text says of these tables: counted in print, in ours, in the exact ones")?;
+    }
+    for claim in claims {
+        let [printed, ours, exact] = claim.shown();
+        writeln!(f, "  {} \"{}\"", claim.section, claim.says)?;
+        writeln!(f, "    {}: {printed}, {ours}, {exact}", claim.counted)?;
+    }
+    Ok(())
+}
+
+impl Claim {
+    /// What was found in print, in ours, and in the exact tables.
+    pub(super) fn shown(&self) -> [String; 3] {
+        let show = |verdict: Option<Verdict>| match verdict {
+            Some(Verdict::Count { holds, of }) => format!("{holds} of {of}"),
+            Some(Verdict::Number { value }) => format!("{value:.1}"),
+            None => "–".to_owned(),
+        };
+        [Some(self.printed), self.ours, self.exact].map(show)
     }
 }
 

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //!   reproduce    published tables, computed again                 many designs
+//!   claims       what the text says of its tables, counted        in print, by ours, exactly
 //!   resolution   figure 5.13: Sum and time over the resolution    one design, every method
 //!   coverage     how often stated intervals hold                  many runs
 //!   accuracy     how far each method is off the exact Sum         many designs
 //! ```
 
 pub mod accuracy;
+pub mod claims;
 pub mod coverage;
 pub mod reproduce;
 pub mod resolution;

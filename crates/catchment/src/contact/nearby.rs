@@ -96,6 +96,16 @@ impl<'a> Nearby<'a> {
         self.turned.height_below(lateral, ceiling)
     }
 
+    /// The same, sooner where it is above what is `expected`.
+    pub(crate) fn height_about(
+        &mut self,
+        lateral: DVec2,
+        ceiling: f64,
+        expected: f64,
+    ) -> (Option<f64>, bool) {
+        self.turned.height_about(lateral, ceiling, expected)
+    }
+
     /// The height of first contact at a pose error, in D; `None` where the halves pass each other by. Cheap where the last one was near.
     pub fn height(&mut self, error: &PoseError) -> Option<f64> {
         let lateral = self.go_to(error);

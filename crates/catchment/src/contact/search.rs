@@ -67,13 +67,16 @@ pub(super) struct Asked {
     pub(super) ceiling: f64,
     /// Any height above this one is as good as the greatest.
     pub(super) enough: f64,
+    /// Heights below this one are as good as none.
+    pub(super) floor: f64,
     /// Whether something above the ceiling is known to stop it earlier.
     pub(super) covered: bool,
 }
 
 impl Asked {
     /// The greatest height of all.
-    pub(super) const WHOLE: Self = Self { ceiling: f64::INFINITY, enough: f64::INFINITY, covered: false };
+    pub(super) const WHOLE: Self =
+        Self { ceiling: f64::INFINITY, enough: f64::INFINITY, floor: f64::NEG_INFINITY, covered: false };
 }
 
 /// What carries a half lowered from a ceiling.
@@ -413,9 +416,7 @@ impl Trees {
             let z = element.height(lateral);
             found.meet(&turned, lateral.extend(z), asked.ceiling, number, element);
         }
-        // What is lower than enough is not asked for.
-        let floor = if asked.enough < f64::INFINITY { asked.enough } else { f64::NEG_INFINITY };
-        let mut search = Lowered { turned: &turned, lateral, asked, found, floor };
+        let mut search = Lowered { turned: &turned, lateral, asked, found, floor: asked.floor };
         if let Some(([fixed, moving], [f, m])) = &turned.roots() {
             let [fixed, moving] =
                 [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });

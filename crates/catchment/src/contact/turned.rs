@@ -88,9 +88,22 @@ impl<'a> Turned<'a> {
     /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
     /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
     pub(super) fn height_below(&mut self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
+        self.height_about(lateral, ceiling, f64::NEG_INFINITY)
+    }
+
+    /// The same, sooner where it is above what is `expected`.
+    pub(super) fn height_about(
+        &mut self,
+        lateral: DVec2,
+        ceiling: f64,
+        expected: f64,
+    ) -> (Option<f64>, bool) {
         if let Some(trees) = self.trees {
             // As a rule nothing is above the ceiling, and the whole is searched faster than a part.
-            let mut carried = self.carried(trees, lateral, Asked::WHOLE);
+            let mut carried = self.carried(trees, lateral, Asked { floor: expected, ..Asked::WHOLE });
+            if carried.height().is_none_or(|height| height < expected) {
+                carried = self.carried(trees, lateral, Asked::WHOLE);
+            }
             if carried.height().is_some_and(|height| height > ceiling) {
                 carried = self.carried(trees, lateral, Asked { ceiling, covered: true, ..Asked::WHOLE });
             }
@@ -118,7 +131,9 @@ impl<'a> Turned<'a> {
     /// Whether a half lowered from far above is stopped above `level`.
     pub(super) fn is_stopped_above(&mut self, lateral: DVec2, level: f64) -> bool {
         let height = match self.trees {
-            Some(trees) => self.carried(trees, lateral, Asked { enough: level, ..Asked::WHOLE }).height(),
+            Some(trees) => {
+                self.carried(trees, lateral, Asked { enough: level, floor: level, ..Asked::WHOLE }).height()
+            }
             None => self.height_below(lateral, f64::INFINITY).0,
         };
         height.is_some_and(|height| height > level)

@@ -82,6 +82,8 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
     prop_assert_eq!(searched.height_below(pose.lateral, ceiling), expected);
     prop_assert_eq!(searched.height_below(pose.lateral, ceiling), expected);
     for level in [z - 1e-3, z, z + 1e-3] {
+        prop_assert_eq!(searched.height_about(pose.lateral, ceiling, level), expected);
+        prop_assert_eq!(searched.height_about(pose.lateral, f64::INFINITY, level), whole);
         prop_assert_eq!(searched.is_stopped_above(pose.lateral, level), z > level);
     }
     let counts = Counts { slack: slack.max(FLUSH), lowest: -0.5 };

@@ -271,7 +271,9 @@ impl<'a> Motion<'a> {
                 let next = self.moved(state, &u);
                 self.turn(&next.rotation, next.cor.truncate(), pace.step);
                 let ceiling = state.cor.z.max(next.cor.z) + longest;
-                let (below, covered) = self.nearby.height_below(next.cor.truncate(), ceiling);
+                let allowed = self.settings.surprise * pace.step.min(longest);
+                let expected = next.cor.z - allowed;
+                let (below, covered) = self.nearby.height_about(next.cor.truncate(), ceiling, expected);
                 let z = below.unwrap_or(next.cor.z);
                 let landed = State { cor: next.cor.truncate().extend(z), ..next };
                 let blocked = covered && self.nearby.is_pierced(landed.cor);
@@ -279,7 +281,6 @@ impl<'a> Motion<'a> {
                     return Advance::Ended(Outcome::Missed, next);
                 }
                 let rise = z - next.cor.z;
-                let allowed = self.settings.surprise * pace.step.min(longest);
                 let climbs = z > state.cor.z + ROUNDING;
                 halve = if blocked {
                     // A wall that no contact announced is one more contact, if it was not met before.

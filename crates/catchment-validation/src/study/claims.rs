@@ -1,0 +1,303 @@
+//! What the dissertation's text says of its own numbers, counted in them.
+//!
+//! ```text
+//!   "a more positive COR generally means a higher AA"
+//!
+//!       0.123  0.248  0.55  1.23  1.56      neighbours along a row that rise: 4 of 4
+//!            ↗      ↗     ↗     ↗           … in the printed tables, in ours by the same method, and in the exact ones
+//! ```
+//!
+//! A sentence becomes a count that anybody can repeat: how many neighbours rise, how many entries are larger. Where the text gives a number, the number is
+//! computed again. Every claim is counted three times, so that a reader sees whether it is a fact of docking (exact), of the method (ours), or only of
+//! what was printed.
+//!
+//! Not promised: that the counts say what the author meant by "often" or "generally".
+
+use super::reproduce::{Entry, TableComparison};
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// A sentence, and what becomes of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Claim {
+    /// Where it stands.
+    pub section: &'static str,
+    /// What it says, shortened.
+    pub says: &'static str,
+    /// What is counted or computed.
+    pub counted: &'static str,
+    /// In the printed numbers.
+    pub printed: Verdict,
+    /// In ours by the same method; null where one of them is not computed.
+    pub ours: Option<Verdict>,
+    /// In the exact ones; null where one of them is not computed, or the claim is about the method.
+    pub exact: Option<Verdict>,
+}
+
+/// What was found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Verdict {
+    /// So many of so many.
+    Count {
+        /// For how many it holds.
+        holds: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// A number.
+    Number {
+        /// Its value, in the unit that is `counted`.
+        value: f64,
+    },
+}
+
+/// Rows of numbers.
+type Rows = Vec<Vec<f64>>;
+
+/// A question to the numbers of some tables.
+struct Asked {
+    section: &'static str,
+    says: &'static str,
+    counted: &'static str,
+    tables: &'static [&'static str],
+    ask: fn(&[Rows]) -> Verdict,
+    /// Whether what is exact can answer it, too.
+    of_docking: bool,
+}
+
+/// Aspect ratios rise from row to row, centres of rotation from column to column: −1, −½, 0, ½, 1.
+const ASKED: &[Asked] = &[
+    Asked {
+        section: "5.2",
+        says: "most areas are larger for the X-Face than for the V-Face, four are not",
+        counted: "entries of 5.3 above those of 5.2",
+        tables: &["5.2", "5.3"],
+        ask: |t| each(t, |v, x| x > v),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.2",
+        says: "by a factor of up to two",
+        counted: "entries of 5.3 at most twice those of 5.2",
+        tables: &["5.2", "5.3"],
+        ask: |t| each(t, |v, x| x <= 2.0 * v),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "with few exceptions the discrete results are within 80 % of those of partitioning",
+        counted: "entries of 5.4, 5.5 that differ from 5.2, 5.3 by at most 80 %",
+        tables: &["5.2", "5.3", "5.4", "5.5"],
+        ask: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.8),
+        of_docking: false,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "more than half are within 20 %",
+        counted: "entries that differ by at most 20 %",
+        tables: &["5.2", "5.3", "5.4", "5.5"],
+        ask: |t| each(t, |slices, discrete| (discrete / slices - 1.0).abs() <= 0.2),
+        of_docking: false,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "and typically larger",
+        counted: "entries of 5.4, 5.5 above those of 5.2, 5.3",
+        tables: &["5.2", "5.3", "5.4", "5.5"],
+        ask: |t| each(t, |slices, discrete| discrete > slices),
+        of_docking: false,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "the ONAA is smaller than the Sum",
+        counted: "entries of 5.6, 5.7 below those of 5.4, 5.5",
+        tables: &["5.4", "5.5", "5.6", "5.7"],
+        ask: |t| each(t, |sum, onaa| onaa < sum),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "the ONAA reaches its maximum in the right-hand column",
+        counted: "rows of 5.6, 5.7 whose largest entry is the last",
+        tables: &["5.6", "5.7"],
+        ask: |t| count(t.iter().flatten().map(|row| row.iter().all(|value| value <= &row[row.len() - 1]))),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "a more positive COR generally means a higher AA",
+        counted: "neighbours along the rows of 5.8 to 5.11 that rise",
+        tables: PYRAMIDS,
+        ask: |t| count(t.iter().flatten().flat_map(|row| rises(row))),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "higher AR often increases AA for high COR",
+        counted: "neighbours down the last columns of 5.8 to 5.11 that rise",
+        tables: PYRAMIDS,
+        ask: |t| count(t.iter().flat_map(|rows| rises(&column(rows, 4)))),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "but decreases AA for negative COR",
+        counted: "neighbours down the columns COR −1 and −½ of 5.8 to 5.11 that fall",
+        tables: PYRAMIDS,
+        ask: |t| {
+            let falls =
+                |rows: &Rows, k| rises(&column(rows, k)).into_iter().map(|rises| !rises).collect::<Vec<_>>();
+            count(t.iter().flat_map(|rows| [falls(rows, 0), falls(rows, 1)].concat()))
+        },
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "lower AR values yield AA that vary less with COR",
+        counted: "rows of 5.8 to 5.11 whose largest entry is fewer times the least than in the next row",
+        tables: PYRAMIDS,
+        ask: |t| {
+            count(
+                t.iter().flat_map(|rows| {
+                    rises(&rows.iter().map(|row| most(row) / least(row)).collect::<Vec<_>>())
+                }),
+            )
+        },
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "in (x, y, pitch) the minimum occurs at low AR rather than high AR",
+        counted: "tables of 5.8 whose least entry is in the first row",
+        tables: &["5.8"],
+        ask: |t| count(t.iter().map(|rows| lowest_row(rows) == 0)),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "in the other cases at high AR",
+        counted: "tables 5.9 to 5.11 whose least entry is in the last row",
+        tables: &["5.9", "5.10", "5.11"],
+        ask: |t| count(t.iter().map(|rows| lowest_row(rows) + 1 == rows.len())),
+        of_docking: true,
+    },
+    Asked {
+        section: "5.3.2",
+        says: "the largest value of (x, y, pitch) is 42 points above the one at the highest COR and AR",
+        counted: "their difference, in cells of 16π/31³",
+        tables: &["5.8"],
+        ask: |t| {
+            let most = t[0].iter().map(|row| most(row)).fold(0.0, f64::max);
+            Verdict::Number { value: (most - t[0][4][4]) / (16.0 * PI / f64::from(31 * 31 * 31)) }
+        },
+        of_docking: false,
+    },
+];
+
+/// The pyramid's tables, by three errors each.
+const PYRAMIDS: &[&str] = &["5.8", "5.9", "5.10", "5.11"];
+
+/// What the text says of the tables that were computed; of tables that were not, nothing.
+pub fn claims(tables: &[TableComparison]) -> Vec<Claim> {
+    let named = |name: &str| tables.iter().find(|table| table.table == name);
+    ASKED
+        .iter()
+        .filter_map(|asked| {
+            let used: Vec<_> = asked.tables.iter().map(|name| named(name)).collect::<Option<_>>()?;
+            let ask = |value: fn(&Entry) -> Option<f64>| {
+                let rows = |table: &&TableComparison| {
+                    table.entries.iter().map(|row| row.iter().map(value).collect()).collect::<Option<Rows>>()
+                };
+                used.iter().map(rows).collect::<Option<Vec<Rows>>>().map(|tables| (asked.ask)(&tables))
+            };
+            let exact = || ask(|entry| entry.exact.map(|exact| exact.value));
+            Some(Claim {
+                section: asked.section,
+                says: asked.says,
+                counted: asked.counted,
+                printed: ask(|entry| Some(entry.published))?,
+                ours: ask(|entry| entry.ours),
+                exact: asked.of_docking.then(exact).flatten(),
+            })
+        })
+        .collect()
+}
+
+fn count(holds: impl Iterator<Item = bool>) -> Verdict {
+    let (holds, of) = holds.fold((0, 0), |(holds, of), is| (holds + usize::from(is), of + 1));
+    Verdict::Count { holds, of }
+}
+
+/// Counts entries of the second half of some tables beside those in the same places of the first half.
+fn each(tables: &[Rows], is: fn(f64, f64) -> bool) -> Verdict {
+    let (first, second) = tables.split_at(tables.len() / 2);
+    let flat = |tables: &[Rows]| tables.concat().concat();
+    count(flat(first).into_iter().zip(flat(second)).map(|(a, b)| is(a, b)))
+}
+
+/// Whether each number is followed by a larger one.
+fn rises(values: &[f64]) -> Vec<bool> {
+    values.windows(2).map(|pair| pair[1] > pair[0]).collect()
+}
+
+fn column(rows: &Rows, k: usize) -> Vec<f64> {
+    rows.iter().map(|row| row[k]).collect()
+}
+
+fn most(row: &[f64]) -> f64 {
+    row.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn least(row: &[f64]) -> f64 {
+    row.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+fn lowest_row(rows: &Rows) -> usize {
+    let lows: Vec<f64> = rows.iter().map(|row| least(row)).collect();
+    lows.iter().position(|low| *low == least(&lows)).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::reproduce::{Settings, reproduce};
+    use catchment::exec::Exec;
+
+    fn tables(names: &[&str]) -> Vec<TableComparison> {
+        names.iter().map(|name| reproduce(name, &Settings::default(), &Exec::new()).unwrap()).collect()
+    }
+
+    fn found<'a>(claims: &'a [Claim], says: &str) -> &'a Claim {
+        claims.iter().find(|claim| claim.says.contains(says)).unwrap()
+    }
+
+    #[test]
+    fn of_tables_that_are_not_there_nothing_is_said() {
+        assert_eq!(claims(&tables(&["3.3", "5.2"])), []);
+    }
+
+    /// Counted by hand in the printed tables.
+    #[test]
+    fn what_the_text_says_of_the_planar_tables() {
+        let claims = claims(&tables(&["5.4", "5.5", "5.6", "5.7"]));
+        let onaa = found(&claims, "smaller than the Sum");
+        // AR 2, COR −1 of the V-Face: 0.061575 after 0.0339; AR 4, COR −½: 0.045239 after 0.0440: printed, and not so.
+        assert_eq!(onaa.printed, Verdict::Count { holds: 48, of: 50 });
+        // X-Face, AR 1/4: 0.7854 at COR −½.
+        let right = found(&claims, "right-hand column");
+        assert_eq!(right.printed, Verdict::Count { holds: 9, of: 10 });
+        assert_eq!(right.ours, Some(right.printed));
+        assert_eq!(right.exact, None);
+    }
+
+    #[test]
+    fn what_the_text_says_of_the_pyramid() {
+        let claims = claims(&tables(&["5.8"]));
+        assert_eq!(claims.len(), 2);
+        let Verdict::Number { value } = found(&claims, "42 points").printed else { panic!("a number") };
+        assert!((value - 42.0).abs() < 1.0, "{value}");
+        let low = found(&claims, "at low AR");
+        assert_eq!((low.printed, low.ours), (Verdict::Count { holds: 1, of: 1 }, Some(low.printed)));
+    }
+}
