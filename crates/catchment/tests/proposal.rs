@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::connector::{Half, stl};
+use catchment::connector::{Half, convex_hull, stl};
 use catchment::design::LengthUnit;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
@@ -174,6 +174,40 @@ fn balls_in_grooves_come_back() {
     let text =
         text.unwrap().replace("sphere = { radius = 6 }", "sphere = { radius = 6 }\nchord_error = 0.05");
     comes_back(&problem(&text), None, 1e-4, 5, &[Frames::Any]);
+}
+
+/// A peg that rattles in its tray, by more than a seat's play may be without being said: what walls stop is free, and the play is what counts as docked.
+#[test]
+fn what_walls_hold_far_apart_is_docked_within_the_play() {
+    let (peg, hole, outside) = (DVec2::new(0.2, 0.17), DVec2::new(0.23, 0.2), 0.6);
+    let hull = |points: Vec<DVec3>| convex_hull(&points).unwrap();
+    let ring = |size: DVec2, z: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, y)| DVec3::new(x * size.x, y * size.y, z))
+    };
+    // Four walls around the hole, chamfered at their tops, on a floor.
+    let wall = |k: usize| {
+        let edge = |size: DVec2, z: f64| [ring(size, z)[k], ring(size, z)[(k + 1) % 4]];
+        let (all, rim) = (DVec2::splat(outside), hole + DVec2::splat(0.06));
+        hull([edge(hole, 0.0), edge(hole, 0.54), edge(rim, 0.6), edge(all, 0.0), edge(all, 0.6)].concat())
+    };
+    let floor = hull([ring(DVec2::splat(outside), -0.2), ring(DVec2::splat(outside), 0.0)].concat());
+    let fixed = Half { surfaces: (0..4).map(wall).chain([floor]).collect() };
+    let moving = Half { surfaces: vec![hull([ring(peg, 0.0), ring(peg, 1.2)].concat())] };
+    let folder = tempfile::tempdir().unwrap();
+    let frame = DAffine3::IDENTITY;
+    let parts =
+        [write(folder.path(), "tray.stl", &fixed, &frame), write(folder.path(), "peg.stl", &moving, &frame)];
+    let found = proposed(&parts, folder.path(), &settings(Frames::Any));
+    let alignment = found.problem.alignment();
+    assert_eq!(alignment.free, DofSet::ALL, "{}", found.text);
+    // Its play in parts of D, two digits of it; straight or turned.
+    let width = found.problem.design().width / WIDTH;
+    let limit = |dof: Dof| alignment.docked.limit(dof).unwrap();
+    assert!((0.03..0.034).contains(&(limit(Dof::X) * width)), "{}", found.text);
+    assert!((0.03..0.036).contains(&(limit(Dof::Y) * width)), "{}", found.text);
+    assert!((5.0..30.0).contains(&limit(Dof::Yaw).to_degrees()), "{}", found.text);
+    assert_eq!(alignment.docked.limit(Dof::Pitch), None);
 }
 
 /// Ungendered: one file, twice.

@@ -125,7 +125,7 @@ impl MatedProblem {
             Self::Free { dof, .. } => {
                 let name = dof.name();
                 let ignore =
-                    if *dof == Dof::Yaw { ", dont_care = [\"yaw\"] if it does not matter" } else { "" };
+                    if *dof == Dof::Yaw { ", dont_care = [\"yaw\"] in the place of free if it does not matter" } else { "" };
                 let unit = if dof.is_rotation() { "1 deg" } else { "0.01 D" };
                 Some(format!(
                     "say how far off still counts as docked: [docked] {name} = \"{unit}\"{ignore}, or lock it: leave {name} \
@@ -133,7 +133,7 @@ impl MatedProblem {
                 ))
             }
             Self::Round { .. } => Some(
-                "write dont_care = [\"yaw\"]; or, if its facets are meant, [docked] yaw = \"1 deg\""
+                "leave yaw out of free and write dont_care = [\"yaw\"]; or, if its facets are meant, [docked] yaw = \"1 deg\""
                     .to_owned(),
             ),
             Self::LimitCutsPlay { .. } => Some("allow more, or draw a tighter seat".to_owned()),

@@ -8,7 +8,8 @@
 //!   └────┴───┘        └────────┘
 //! ```
 //!
-//! So is a convex partition by leaving out diagonals (Hertel and Mehlhorn, 1983), which has at most four times the fewest polygons there are. Corners inside a
+//! So is a convex partition by leaving out diagonals (Hertel and Mehlhorn, 1983), which has at most four times the fewest polygons there are; here of
+//! up to [`MOST_CORNERS`] corners each. Corners inside a
 //! face stay where more than two polygons meet at them. A mesh whose triangles are not mirror images of each other, as the halves of a
 //! square are not, becomes symmetric where its polygons are.
 
@@ -17,8 +18,12 @@ use super::sides::{Side, Sides};
 use glam::DVec3;
 
 /// How far corners of a polygon may lie from its plane, and from the line between their neighbours, in parts of the distance below which
-/// two points are one: far below the rounding of single precision, so that only what is drawn flat is flat.
-const FLAT: f64 = 1e-3;
+/// two points are one: the rounding of computed coordinates. Faces that single precision bends, however little, stay bent: where two of them lie
+/// flush, a common plane that is not quite theirs leads a half astray.
+const FLAT: f64 = 1e-6;
+
+/// Corners of a polygon at most: whether a point is on it is asked of every side.
+const MOST_CORNERS: usize = 16;
 
 /// No half-edge.
 const NONE: u32 = u32::MAX;
@@ -152,6 +157,11 @@ impl<'a> Rings<'a> {
         while self.twin(self.next(last)) == self.before(self.twin(last)) && self.next(last) != first {
             last = self.next(last);
         }
+        let shared = 1 + self.along(first).position(|half| half == last).unwrap_or(0);
+        let sides: usize = [first, self.twin(first)].map(|half| self.along(half).count()).iter().sum();
+        if sides - 2 * shared > MOST_CORNERS {
+            return true;
+        }
         let [into, out] = [self.before(first), self.next(self.twin(first))];
         let [back, on] = [self.before(self.twin(last)), self.next(last)];
         let area = |triangle: u32| self.areas[triangle as usize];
@@ -168,15 +178,11 @@ impl<'a> Rings<'a> {
             return false;
         }
         self.larger[(own + other - plane) as usize] = plane;
-        let mut gone = first;
-        loop {
-            let twin = self.twin(gone);
-            self.from[gone as usize] = NONE;
+        let gone: Vec<u32> = self.along(first).take(shared).collect();
+        for half in gone {
+            let twin = self.twin(half);
+            self.from[half as usize] = NONE;
             self.from[twin as usize] = NONE;
-            if gone == last {
-                break;
-            }
-            gone = self.next(gone);
         }
         self.link(into, out);
         self.link(back, on);
@@ -195,16 +201,12 @@ impl<'a> Rings<'a> {
     /// Whether all corners of the ring of a half-edge lie in the plane of a triangle.
     fn lies_in(&self, ring: u32, triangle: u32, normal: DVec3) -> bool {
         let [origin, ..] = self.mesh.corners(triangle as usize);
-        let mut half = ring;
-        loop {
-            if normal.dot(self.start(half) - origin).abs() > self.flat {
-                return false;
-            }
-            half = self.next(half);
-            if half == ring {
-                return true;
-            }
-        }
+        self.along(ring).all(|half| normal.dot(self.start(half) - origin).abs() <= self.flat)
+    }
+
+    /// The half-edges of a ring, from one of them.
+    fn along(&self, ring: u32) -> impl Iterator<Item = u32> {
+        std::iter::successors(Some(ring), move |half| Some(self.next(*half)).filter(|next| *next != ring))
     }
 
     /// Leaves out corners that two polygons share, and no third, on the line between their neighbours.

@@ -159,6 +159,20 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &Settings, unit:
     line("center_of_rotation = 0.0");
     line("# rho: how far one radian counts as when motion is damped. Declare it; the answer depends on it.");
     line("rotation_length = 0.5");
+    let said = Dof::ALL.into_iter().filter_map(|dof| Some((dof, seat.play[dof.index()]?)));
+    for (k, (dof, play)) in said.enumerate() {
+        if k == 0 {
+            line(
+                "\n# Walls hold these within a play only, and anywhere in it counts as docked. What is behind the face may need less.",
+            );
+            line("[docked]");
+        }
+        line(&if dof.is_rotation() {
+            format!("{} = \"{} deg\"", dof.name(), number(play.to_degrees(), 1e-4))
+        } else {
+            format!("{} = {} # D", dof.name(), decimal(number(play, 1e-6)))
+        });
+    }
     line("\n# Up to where errors are looked at, to both sides.");
     line("[errors]");
     for dof in seat.free.iter() {

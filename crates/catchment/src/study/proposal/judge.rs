@@ -5,7 +5,8 @@
 //!                                                                    └ climb: what an offset of 0.1 D and 0.3 D takes, all around
 //! ```
 //!
-//! Errors that the seat leaves free (along a groove, the yaw of what is round) are left out of what is free.
+//! Errors that the seat leaves free (along a groove, the yaw of what is round) are left out of what is free; where walls stop them, but later than a seat's
+//! play may be without being said ([`Docked::MOST_PLAY`]), the play is what counts as docked.
 
 use super::relief::{broadest, plan_box};
 use super::way::Lie;
@@ -62,7 +63,12 @@ pub(super) struct Seat {
     pub(super) settle: bool,
     /// Turned by this part of a turn they are mated as well; 1 for none.
     pub(super) symmetry: u32,
+    /// How far off they may rest, where it must be said: D and radians, in the order of [`Dof::ALL`].
+    pub(super) play: [Option<f64>; 5],
 }
+
+/// The largest play that counts as a seat's, in D and radians: beyond it no wall is looked for.
+const LOOSEST: [f64; 2] = [0.25, 30.0 / 180.0 * std::f64::consts::PI];
 
 impl Judged {
     pub(super) fn score(&self) -> f64 {
@@ -237,19 +243,30 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
             settles = off.iter().any(|off| off.abs() > AT_REST);
             found = problems(&Pair::new(&settled, &alignment));
         }
+        // Where nothing stops it near, a wall may stop it farther off.
+        let unsaid = found.iter().find_map(|problem| match problem {
+            MatedProblem::Free { dof, .. } => Some(*dof),
+            _ => None,
+        });
+        if let Some(dof) = unsaid {
+            alignment.docked.limits[dof.index()] = Some(LOOSEST[usize::from(dof.is_rotation())]);
+            continue;
+        }
         let loose = found.iter().find_map(|problem| match problem {
             MatedProblem::Round { .. } => Some(Dof::Yaw),
-            MatedProblem::Free { dof, .. } => Some(*dof),
+            MatedProblem::LimitCutsPlay { dof, .. } => Some(*dof),
             _ => None,
         });
         let loose = loose.filter(|dof| !exactly || *dof == Dof::Yaw);
         match (found.first(), loose) {
             (None, _) => {
+                let play = said(&Pair::new(connector, &alignment));
                 let Alignment { free, dont_care, .. } = alignment;
-                return Ok(Seat { free, dont_care, settle: settles, symmetry });
+                return Ok(Seat { free, dont_care, settle: settles, symmetry, play });
             }
             (Some(_), Some(dof)) => {
                 alignment.free = alignment.free.without(dof);
+                alignment.docked.limits[dof.index()] = None;
                 if dof == Dof::Yaw {
                     alignment.dont_care = alignment.dont_care.with(dof);
                 }
@@ -261,6 +278,26 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
             (Some(problem), None) => return Err(problem.to_string()),
         }
     }
+}
+
+/// The play of the errors that have a limit, two digits of it and not less.
+fn said(pair: &Pair) -> [Option<f64>; 5] {
+    let docked = &pair.alignment.docked;
+    let mut said = [None; 5];
+    if docked.limits.iter().all(Option::is_none) {
+        return said;
+    }
+    for found in play(pair) {
+        let dof = found.axis;
+        let up = |value: f64| {
+            let step = 10f64.powf(value.log10().floor() - 1.0);
+            (value / step).ceil() * step
+        };
+        let most =
+            if dof.is_rotation() { up(found.most().to_degrees()).to_radians() } else { up(found.most()) };
+        said[dof.index()] = docked.limit(dof).map(|limit| most.min(limit));
+    }
+    said
 }
 
 impl Half {
