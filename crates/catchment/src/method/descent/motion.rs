@@ -82,8 +82,6 @@ pub(super) struct Pace {
     reach: f64,
     /// How far it reached: the length of the last displacement before it was cut to a step, in steps.
     share: f64,
-    /// How many steps are taken before a longer one is tried again.
-    patience: u32,
 }
 
 /// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
@@ -108,9 +106,6 @@ const FALL: f64 = 1.0;
 const STRAIGHT: f64 = 0.01;
 const BENT: f64 = 0.04;
 const LONG: f64 = 2.0;
-/// Of halves of many facets, where a step that is tried in vain costs as much as one that is taken: so many steps after a longer one failed,
-/// none is tried.
-const PATIENCE: u32 = 6;
 
 /// Rounding of a height, in D.
 const ROUNDING: f64 = 1e-12;
@@ -143,7 +138,7 @@ pub(super) struct Motion<'a> {
 impl Pace {
     /// For a first step of this length.
     pub(super) const fn new(step: f64) -> Self {
-        Self { step, reach: 1.0, share: 1.0, patience: 0 }
+        Self { step, reach: 1.0, share: 1.0 }
     }
 }
 
@@ -301,7 +296,6 @@ impl<'a> Motion<'a> {
                     }
                     true
                 } else if pace.step > longest && (rise.abs() > allowed || climbs) {
-                    pace.patience = if self.pair.is_large() { PATIENCE } else { 0 };
                     true
                 } else if rise > allowed || climbs {
                     // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
@@ -321,9 +315,7 @@ impl<'a> Motion<'a> {
                     rise < -FALL * allowed && pace.step > longest * COARSE_SHARE
                 };
                 if !halve {
-                    let is_calm = bend <= STRAIGHT && pace.patience == 0;
-                    let most = if is_calm { longest * LONG } else { pace.step.max(longest) };
-                    pace.patience = pace.patience.saturating_sub(1);
+                    let most = if bend > STRAIGHT { pace.step.max(longest) } else { longest * LONG };
                     pace.step = (pace.step * 2.0).min(most);
                     return Advance::Moved(landed, length);
                 }
@@ -341,7 +333,7 @@ impl<'a> Motion<'a> {
     ///
     /// The reach of the pace is adapted: raised on gentle slopes.
     fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
-        let Pace { step, reach, share, .. } = pace;
+        let Pace { step, reach, share } = pace;
         let step = *step;
         let Self { projection, rows: Rows { vectors: rows, gaps, .. }, .. } = self;
         let mut solve = |reach: f64| {

@@ -233,7 +233,8 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
     }
     let symmetry = if alignment.free.contains(Dof::Yaw) { symmetry(&pair) } else { 1 };
     drop(pair);
-    // Every step leaves one out.
+    let mut is_without_walls = DofSet::EMPTY;
+    // Every step leaves one out, or says the play of some.
     loop {
         let mut settles = false;
         let mut found = problems(&Pair::new(connector, &alignment));
@@ -243,26 +244,26 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
             settles = off.iter().any(|off| off.abs() > AT_REST);
             found = problems(&Pair::new(&settled, &alignment));
         }
-        // Where nothing stops it near, a wall may stop it farther off.
-        let unsaid = found.iter().find_map(|problem| match problem {
-            MatedProblem::Free { dof, .. } => Some(*dof),
+        // What nothing stops near, a wall may stop farther off.
+        let unsaid = found.iter().filter_map(|problem| match problem {
+            MatedProblem::Free { dof, .. } if !is_without_walls.contains(*dof) => Some(*dof),
             _ => None,
         });
-        if let Some(dof) = unsaid {
-            alignment.docked.limits[dof.index()] = Some(LOOSEST[usize::from(dof.is_rotation())]);
+        let unsaid: DofSet = unsaid.collect();
+        if !unsaid.is_empty() {
+            is_without_walls = walls(connector, &mut alignment, unsaid);
             continue;
         }
         let loose = found.iter().find_map(|problem| match problem {
             MatedProblem::Round { .. } => Some(Dof::Yaw),
-            MatedProblem::LimitCutsPlay { dof, .. } => Some(*dof),
+            MatedProblem::Free { dof, .. } | MatedProblem::LimitCutsPlay { dof, .. } => Some(*dof),
             _ => None,
         });
         let loose = loose.filter(|dof| !exactly || *dof == Dof::Yaw);
         match (found.first(), loose) {
             (None, _) => {
-                let play = said(&Pair::new(connector, &alignment));
-                let Alignment { free, dont_care, .. } = alignment;
-                return Ok(Seat { free, dont_care, settle: settles, symmetry, play });
+                let Alignment { free, dont_care, docked, .. } = alignment;
+                return Ok(Seat { free, dont_care, settle: settles, symmetry, play: docked.limits });
             }
             (Some(_), Some(dof)) => {
                 alignment.free = alignment.free.without(dof);
@@ -280,24 +281,31 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
     }
 }
 
-/// The play of the errors that have a limit, two digits of it and not less.
-fn said(pair: &Pair) -> [Option<f64>; 5] {
-    let docked = &pair.alignment.docked;
-    let mut said = [None; 5];
-    if docked.limits.iter().all(Option::is_none) {
-        return said;
+/// Says the play of some errors, two digits of it and not less, where walls stop them; returns those that nothing stops.
+fn walls(connector: &Connector, alignment: &mut Alignment, unsaid: DofSet) -> DofSet {
+    let loosest = |dof: Dof| LOOSEST[usize::from(dof.is_rotation())];
+    for dof in unsaid.iter() {
+        alignment.docked.limits[dof.index()] = Some(loosest(dof));
     }
-    for found in play(pair) {
-        let dof = found.axis;
-        let up = |value: f64| {
-            let step = 10f64.powf(value.log10().floor() - 1.0);
-            (value / step).ceil() * step
-        };
-        let most =
-            if dof.is_rotation() { up(found.most().to_degrees()).to_radians() } else { up(found.most()) };
-        said[dof.index()] = docked.limit(dof).map(|limit| most.min(limit));
+    let mut free = DofSet::EMPTY;
+    for found in play(&Pair::new(connector, alignment)) {
+        let (dof, most) = (found.axis, found.most());
+        if unsaid.contains(dof) {
+            let is_stopped = most <= loosest(dof);
+            alignment.docked.limits[dof.index()] = is_stopped.then(|| two_digits(dof, most));
+            free = if is_stopped { free } else { free.with(dof) };
+        }
     }
-    said
+    free
+}
+
+/// A play as it is written: in D or degrees, rounded up.
+fn two_digits(dof: Dof, most: f64) -> f64 {
+    let up = |value: f64| {
+        let step = 10f64.powf(value.log10().floor() - 1.0);
+        (value / step).ceil() * step
+    };
+    if dof.is_rotation() { up(most.to_degrees()).to_radians() } else { up(most) }
 }
 
 impl Half {
