@@ -16,6 +16,7 @@
 use super::Pair;
 use super::plan::Plan;
 use super::shape::Shape;
+use crate::pose::Dof;
 use glam::{DMat3, DVec3};
 
 /// What counts as through rather than touching, in D.
@@ -25,9 +26,10 @@ impl Pair {
     /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`; `placed` is scratch for the
     /// moving vertices.
     pub(crate) fn overlaps(&self, rotation: &DMat3, position: DVec3, placed: &mut Vec<DVec3>) -> bool {
+        let narrower = narrower(self);
         self.moving_shapes.iter().any(|moving| {
             placed.clear();
-            placed.extend(moving.vertices.iter().map(|v| *rotation * *v + position));
+            placed.extend(moving.vertices.iter().map(|v| *rotation * (*v * narrower) + position));
             let whole = Plan::around(placed.iter().map(|p| p.truncate()));
             self.fixed_shapes
                 .iter()
@@ -35,6 +37,14 @@ impl Pair {
                 .any(|fixed| pierce(fixed, moving, placed, rotation))
         })
     }
+}
+
+/// As what part of its size the moving half is looked at, along x, y and z. Halves that move in the plane of x and z end in the same two planes, where
+/// the edges of one pass the facets of the other on their borders: which is no passing through, unless one half is a little narrower.
+pub(super) fn narrower(pair: &Pair) -> DVec3 {
+    const NARROWER: f64 = 1e-4;
+    let is_planar = pair.alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch));
+    if is_planar { DVec3::new(1.0, 1.0 - NARROWER, 1.0) } else { DVec3::ONE }
 }
 
 fn pierce(fixed: &Shape, moving: &Shape, placed: &[DVec3], rotation: &DMat3) -> bool {

@@ -4,6 +4,7 @@ use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
 use super::nearby::MET;
+use super::overlap::narrower;
 use super::search::{Asked, Carried, Number, Trees};
 use super::shape::Shape;
 use super::{Contact, Pair};
@@ -218,8 +219,9 @@ impl<'a> Turned<'a> {
             return trees.is_pierced(self.pair, &self.rotation, position);
         }
         let back = self.rotation.transpose();
-        let fixed_in_moving = |p: DVec3| back * (p - position);
-        let moving_in_fixed = |p: DVec3| self.rotation * p + position;
+        let narrower = narrower(self.pair);
+        let fixed_in_moving = |p: DVec3| back * (p - position) / narrower;
+        let moving_in_fixed = |p: DVec3| self.rotation * (p * narrower) + position;
         self.pair.fixed_shapes.iter().any(|fixed| {
             self.pair.moving_shapes.iter().any(|moving| {
                 fixed.pierces(moving, fixed_in_moving) || moving.pierces(fixed, moving_in_fixed)

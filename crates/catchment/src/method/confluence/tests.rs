@@ -34,6 +34,7 @@ fn labels_are_those_of_each_cells_own_motion() {
     for (pair, cells, per_thousand) in [
         (pair(Family::VFace, 1.0, 0.0, 1.0, None), 60, 0.0),
         (pair(Family::VFace, 0.5, -0.5, 1.0, None), 60, 0.0),
+        (pair(Family::VFace, 0.25, -0.5, 0.5, None), 100, 0.3),
         (pair(Family::SFace, 1.0, -1.0, 1.0, None), 60, 0.3),
         (pair(Family::XFace, 0.5, -0.5, 1.0, None), 61, 0.3),
         (pair(Family::Pyramid, 0.5, 0.5, 0.5, Some(&[X, Pitch, Yaw])), 14, 0.4),

@@ -196,3 +196,29 @@ fn walls_are_followed_to_the_end() {
         }
     }
 }
+
+/// Flush on the flank of a flat V the other one's corner comes into its bottom, and the half rests there, as at `(0.4, −53.13°)`; from wherever it slides there.
+/// Both end in the same planes: that the corner passes through the other flank shows on the borders of facets alone.
+#[test]
+fn a_corner_does_not_pass_through_the_bottom_of_a_v() {
+    let mut alignment = Alignment::default_for(Some(Family::VFace));
+    (alignment.center_of_rotation, alignment.rotation_length) = (-0.5, 0.5);
+    let spec = FamilySpec::new(Family::VFace).with_aspect_ratio(0.25);
+    let connector = ConnectorSpec::Family(spec);
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
+    for (x, pitch) in
+        [(0.43, -0.958_186), (0.43, -0.926_77), (0.4, -0.930_26), (0.45, -0.99), (0.4, -0.923_28)]
+    {
+        let trajectory = trace(&pair, &PoseError { x, pitch, ..PoseError::default() }, &Settings::default());
+        for waypoint in &trajectory.waypoints {
+            let alignment = &pair.alignment;
+            let pose = CorPose::from_error(&waypoint.error, alignment.center_of_rotation, alignment.free);
+            let lowest = pair.height(&pose).unwrap();
+            assert!(
+                waypoint.height > lowest - 1e-6,
+                "({x}, {pitch}) passes through at {waypoint:?}: {lowest}"
+            );
+        }
+    }
+}
