@@ -26,10 +26,10 @@ impl Pair {
     /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`; `placed` is scratch for the
     /// moving vertices.
     pub(crate) fn overlaps(&self, rotation: &DMat3, position: DVec3, placed: &mut Vec<DVec3>) -> bool {
-        let narrower = narrower(self);
         self.moving_shapes.iter().any(|moving| {
             placed.clear();
-            placed.extend(moving.vertices.iter().map(|v| *rotation * (*v * narrower) + position));
+            let between = Between::new(self, moving, rotation, position);
+            placed.extend(moving.vertices.iter().map(|v| between.placed(*v)));
             let whole = Plan::around(placed.iter().map(|p| p.truncate()));
             self.fixed_shapes
                 .iter()
@@ -39,12 +39,39 @@ impl Pair {
     }
 }
 
-/// As what part of its size the moving half is looked at, along x, y and z. Halves that move in the plane of x and z end in the same two planes, where
-/// the edges of one pass the facets of the other on their borders: which is no passing through, unless one half is a little narrower.
-pub(super) fn narrower(pair: &Pair) -> DVec3 {
-    const NARROWER: f64 = 1e-4;
-    let is_planar = pair.alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch));
-    if is_planar { DVec3::new(1.0, 1.0 - NARROWER, 1.0) } else { DVec3::ONE }
+/// From the frame of one half to that of the other, for a moving shape of a pair.
+///
+/// Halves that move in the plane of x and z often end in the same two planes, where the edges of one pass the facets of the other on their
+/// borders, which is no passing through. So there a moving shape that is drawn along y between two planes is looked at as a little narrower: it lies
+/// within itself, so that nothing overlaps that did not.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Between {
+    rotation: DMat3,
+    back: DMat3,
+    position: DVec3,
+    /// What becomes of y: its factor, and what is added.
+    narrow: [f64; 2],
+}
+
+impl Between {
+    pub(super) fn new(pair: &Pair, moving: &Shape, rotation: &DMat3, position: DVec3) -> Self {
+        let is_planar = pair.alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch));
+        let narrow = moving.narrow.filter(|_| is_planar).unwrap_or([1.0, 0.0]);
+        Self { rotation: *rotation, back: rotation.transpose(), position, narrow }
+    }
+
+    /// Where a point of the moving shape is.
+    pub(super) fn placed(&self, mut p: DVec3) -> DVec3 {
+        p.y = self.narrow[0] * p.y + self.narrow[1];
+        self.rotation * p + self.position
+    }
+
+    /// Where the moving shape sees a point of the fixed half.
+    pub(super) fn seen(&self, p: DVec3) -> DVec3 {
+        let mut p = self.back * (p - self.position);
+        p.y = (p.y - self.narrow[1]) / self.narrow[0];
+        p
+    }
 }
 
 fn pierce(fixed: &Shape, moving: &Shape, placed: &[DVec3], rotation: &DMat3) -> bool {

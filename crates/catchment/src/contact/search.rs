@@ -12,6 +12,7 @@
 use super::bounds::{Four, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
 use super::element::Element;
+use super::overlap::Between;
 use super::shape::Shape;
 use super::tree::{Child, Kind, Leaf, MARGIN, SLACKS, Tree};
 use super::turned::VERTICAL;
@@ -370,10 +371,9 @@ impl Piercing<'_> {
         if fixed.child.is_leaf && moving.child.is_leaf {
             let (f, m) = (turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child));
             let (fixed, moving) = turned.shapes([f.shape, m.shape]);
-            let seen = |p: DVec3| turned.back * (p - self.position);
-            let placed = |p: DVec3| turned.rotation * p + self.position;
-            self.found = fixed.pierces_at(f.index, moving, m.index, seen)
-                || moving.pierces_at(m.index, fixed, f.index, placed);
+            let between = Between::new(turned.pair, moving, &turned.rotation, self.position);
+            self.found = fixed.pierces_at(f.index, moving, m.index, |p| between.seen(p))
+                || moving.pierces_at(m.index, fixed, f.index, |p| between.placed(p));
             return;
         }
         let test = |f: &Four, m: &Four| (f.is_near(m, 0.0, turned.rounding).to_bitmask(), [0.0; 4], [0.0; 4]);

@@ -62,7 +62,20 @@ pub(super) struct Shape {
     pub(super) normals: Vec<DVec3>,
     pub(super) ridges: Vec<Ridge>,
     pub(super) convex: bool,
+    /// Of what is drawn along y between two planes: what becomes of y a little narrower, its factor and what is added.
+    pub(super) narrow: Option<[f64; 2]>,
     pub(super) plans: Plans,
+}
+
+/// The width along y that is left to a narrower shape, and how far corners may be off its end planes, in D.
+const NARROWER: f64 = 1.0 - 1e-4;
+const ON_PLANE: f64 = 1e-12;
+
+/// See [`Shape::narrow`].
+fn narrow(surface: &Surface) -> Option<[f64; 2]> {
+    let (DVec3 { y: low, .. }, DVec3 { y: high, .. }) = surface.bounds();
+    let is_drawn = surface.vertices.iter().all(|v| (v.y - low).min(high - v.y) <= ON_PLANE);
+    is_drawn.then(|| [NARROWER, (1.0 - NARROWER) * low.midpoint(high)])
 }
 
 impl Shape {
@@ -110,6 +123,7 @@ impl Shape {
             normals,
             ridges,
             convex: surface.convex,
+            narrow: narrow(surface),
             plans,
         }
     }

@@ -4,7 +4,7 @@ use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
 use super::nearby::MET;
-use super::overlap::narrower;
+use super::overlap::Between;
 use super::search::{Asked, Carried, Number, Trees};
 use super::shape::Shape;
 use super::{Contact, Pair};
@@ -167,26 +167,23 @@ impl<'a> Turned<'a> {
             // Feet may lie beyond both borders.
             self.look_near(trees, position, reach + 2.0 * seam);
         }
-        let mut meet_near = |element: &Element| {
+        let Self { pair, rotation, counts, .. } = &*self;
+        // What was found for a wider slack is asked again.
+        let near = self.trees.zip(self.near.last()).into_iter().flat_map(|(trees, near)| {
+            let is_more = near.counts.slack > counts.slack;
+            let does_count =
+                move |number| !is_more || trees.element(pair, rotation, *counts, number).is_some();
+            near.elements.iter().filter(move |(number, _)| does_count(number)).map(|(_, element)| element)
+        });
+        for element in self.elements.iter().chain(near) {
             let gap = element.gap(position);
             // Deeper than `reach` the halves are not near each other along this normal: they passed.
             if gap.abs() > reach {
-                return;
+                continue;
             }
-            let Some(point) = self.foot(element, position, seam) else { return };
+            let Some(point) = self.foot(element, position, seam) else { continue };
             if self.is_exposed(element, point, position) {
                 meet((Contact { gap, normal: element.normal, point }, element.meeting));
-            }
-        };
-        self.elements.iter().for_each(&mut meet_near);
-        if let (Some(trees), Some(near)) = (self.trees, self.near.last()) {
-            let is_more = near.counts.slack > self.counts.slack;
-            let counts =
-                |number| !is_more || trees.element(self.pair, &self.rotation, self.counts, number).is_some();
-            for (number, element) in &near.elements {
-                if element.gap(position).abs() <= reach && counts(number) {
-                    meet_near(element);
-                }
             }
         }
     }
@@ -218,13 +215,10 @@ impl<'a> Turned<'a> {
         if let Some(trees) = self.trees {
             return trees.is_pierced(self.pair, &self.rotation, position);
         }
-        let back = self.rotation.transpose();
-        let narrower = narrower(self.pair);
-        let fixed_in_moving = |p: DVec3| back * (p - position) / narrower;
-        let moving_in_fixed = |p: DVec3| self.rotation * (p * narrower) + position;
-        self.pair.fixed_shapes.iter().any(|fixed| {
-            self.pair.moving_shapes.iter().any(|moving| {
-                fixed.pierces(moving, fixed_in_moving) || moving.pierces(fixed, moving_in_fixed)
+        self.pair.moving_shapes.iter().any(|moving| {
+            let between = Between::new(self.pair, moving, &self.rotation, position);
+            self.pair.fixed_shapes.iter().any(|fixed| {
+                fixed.pierces(moving, |p| between.seen(p)) || moving.pierces(fixed, |p| between.placed(p))
             })
         })
     }

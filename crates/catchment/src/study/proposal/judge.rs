@@ -251,7 +251,8 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
         });
         let unsaid: DofSet = unsaid.collect();
         if !unsaid.is_empty() {
-            is_without_walls = walls(connector, &mut alignment, unsaid);
+            let without = walls(connector, &mut alignment, unsaid);
+            is_without_walls = without.iter().fold(is_without_walls, DofSet::with);
             continue;
         }
         let loose = found.iter().find_map(|problem| match problem {
