@@ -1,11 +1,13 @@
-"""Drops 100 random poses of a design in MuJoCo and compares their outcomes with `catchment outcome`.
+"""Drops random poses of a design in MuJoCo and compares their outcomes with `catchment outcome`.
 
     python tests/mujoco_agrees.py target/debug/catchment designs/pyramid.toml
+    python tests/mujoco_agrees.py target/debug/catchment designs/pyramid.toml --friction 0.2 --poses 200 --aspect-ratio 1
 
 MuJoCo runs the world that `catchment export` wrote; catchment answers by exact quasi-static motion. Both describe the same
-frictionless, heavily damped drop, so they must agree on at least 95 of 100 poses. Exits with a message if they do not.
+heavily damped drop, so they must agree on at least 95 of 100 poses, 97 with friction. Exits with a message if they do not.
 """
 
+import argparse
 import csv
 import json
 import subprocess
@@ -16,8 +18,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-POSES = 100
 AGREE = 0.95
+AGREE_WITH_FRICTION = 0.97
 # MuJoCo's contacts are springs of two time steps: they give way by force · (2 · timestep)² / mass = 8e-4 D. Damping makes the
 # half stop within 0.02 D.
 SETTINGS = ["--push", "50", "--damping", "50", "--mass", "1", "--timestep", "0.002"]
@@ -72,20 +74,29 @@ def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: flo
     return False
 
 
-def main(program: str, design: str) -> None:
+def main() -> None:
+    say = argparse.ArgumentParser()
+    say.add_argument("program")
+    say.add_argument("design")
+    say.add_argument("--friction", type=float, default=0.0)
+    say.add_argument("--poses", type=int, default=100)
+    say.add_argument("--aspect-ratio")
+    args = say.parse_args()
+    friction = ["--friction", str(args.friction)]
+    drawn = ["--aspect-ratio", args.aspect_ratio] if args.aspect_ratio else []
     with tempfile.TemporaryDirectory() as folder:
         trial, poses = Path(folder) / "trial", Path(folder) / "poses.csv"
         said = subprocess.run(
-            [program, "export", design, "--pose", "x=0", "-o", trial, "--json", *SETTINGS],
+            [args.program, "export", args.design, *drawn, "--pose", "x=0", "-o", trial, "--json", *SETTINGS, *friction],
             check=True, capture_output=True, text=True,
         )
         alignment = json.loads(said.stdout)["design"]["alignment"]
         half = np.array([0.5, 0.5, np.pi / 4, np.pi / 4, np.pi / 4])
-        errors = (np.random.default_rng(1).uniform(-1, 1, (POSES, 5)) * half).tolist()
+        errors = (np.random.default_rng(1).uniform(-1, 1, (args.poses, 5)) * half).tolist()
         with poses.open("w", newline="") as file:
             csv.writer(file).writerows([["x", "y", "roll", "pitch", "yaw"], *errors])
         said = subprocess.run(
-            [program, "outcome", design, "--poses", poses, "--method", "descent", "--json"],
+            [args.program, "outcome", args.design, *drawn, "--poses", poses, "--method", "descent", "--json", *friction],
             check=True, capture_output=True, text=True,
         )
         expected = [row["outcome"] == "aligned" for row in json.loads(said.stdout)["poses"]]
@@ -94,10 +105,11 @@ def main(program: str, design: str) -> None:
     cor, symmetry = alignment["center_of_rotation"], alignment["symmetry"]
     found = [drop(model, data, pose, cor, 1.5, symmetry) for pose in errors]
     same = sum(a == b for a, b in zip(found, expected, strict=True))
-    print(f"{same} of {POSES} poses end alike, {sum(found)} of them aligned in MuJoCo, {sum(expected)} by descent")
-    if same < AGREE * POSES:
-        sys.exit(f"MuJoCo and catchment agree on {same} of {POSES} poses only")
+    at = f" at a friction of {args.friction}" if args.friction else ""
+    print(f"{same} of {args.poses} poses end alike{at}, {sum(found)} of them aligned in MuJoCo, {sum(expected)} by descent")
+    if same < (AGREE_WITH_FRICTION if args.friction else AGREE) * args.poses:
+        sys.exit(f"MuJoCo and catchment agree on {same} of {args.poses} poses only")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

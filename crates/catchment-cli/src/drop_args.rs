@@ -35,8 +35,8 @@ pub(crate) struct DropArgs {
     /// The same for turning, 1/s: the torque -mass·rate·rho²·omega [default: as --damping]
     #[arg(long, value_name = "RATE", help_heading = DROP)]
     angular_damping: Option<f64>,
-    /// Coefficient of friction between the halves [default: 0]
-    #[arg(long, value_name = "MU", help_heading = DROP)]
+    /// Coefficient of friction between the halves, in exact motions and in drop tests [default: 0]
+    #[arg(long, value_name = "MU")]
     friction: Option<f64>,
     /// Share of the approach speed that a bounce gives back [default: 0]
     #[arg(long, value_name = "SHARE", help_heading = DROP)]

@@ -77,7 +77,7 @@ impl SettingArgs {
             .map(|method| {
                 let own: Vec<Change> = changes
                     .iter()
-                    .filter(|change| method.settings().get(change.setting).is_some())
+                    .filter(|change| method.has(change.setting))
                     .cloned()
                     .collect();
                 with_changes(&method, &own)

@@ -15,7 +15,7 @@ use clap::{Args, ValueEnum};
 
 /// Follow one pose from first contact to its end
 ///
-/// The motion is exact and quasi-static: no friction, no inertia, contact kept. Prints waypoints spread over the
+/// The motion is exact and quasi-static: no inertia, contact kept, Coulomb friction where it is given. Prints waypoints spread over the
 /// path; -o writes all of them, or a picture. By the kinematic method it is the first contact alone: rotation points, lever
 /// arms and angles of the dissertation's planar analysis.
 #[derive(Debug, Args)]
@@ -35,6 +35,9 @@ pub(crate) struct TraceArgs {
     /// What follows the pose
     #[arg(long, value_enum, default_value_t = By::Descent)]
     method: By,
+    /// Coefficient of friction between the halves
+    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    friction: f64,
     /// Print the whole path as JSON
     #[arg(long)]
     json: bool,
@@ -73,7 +76,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
         to_stdout(&told)?;
         return Ok(ExitStatus::Done);
     }
-    let settings = Settings::default();
+    let settings = Settings::with_friction(args.friction)?;
     let path = descent::trace(pair, &error, &settings);
     let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
     let doubts = problem.objections().iter().map(WarningReport::note).collect();

@@ -46,6 +46,9 @@ pub(crate) struct WindowArgs {
     /// Seed of the search and of the random poses
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
+    /// Coefficient of friction between the halves
+    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    friction: f64,
     /// Print JSON, in D and radians
     #[arg(long)]
     json: bool,
@@ -112,6 +115,7 @@ impl WindowArgs {
             proportions: proportions.map(|sizes| PoseError::from_array(sizes.map(Option::unwrap_or_default))),
             motions: self.motions.map(|motions| motions as usize),
             seed: self.seed,
+            friction: self.friction,
         })
     }
 }

@@ -14,7 +14,7 @@
 //!
 //! What decides translation alone ([`zraa`](super::zraa)) is not forced in.
 
-use super::descent::End;
+use super::descent::{self, End};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
@@ -109,6 +109,11 @@ pub trait Decide: fmt::Debug + Send + Sync {
     /// # Errors
     /// See [`DecideError`].
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError>;
+
+    /// How it follows motions, and how random poses beside it are followed.
+    fn motions(&self) -> descent::Settings {
+        descent::Settings::default()
+    }
 
     /// The same method pose by pose, where each is decided by itself.
     fn follows(&self) -> Option<&dyn Follow> {
@@ -296,6 +301,9 @@ impl Entry {
     }
 }
 
+/// Under this name a method has the settings of the motions that it follows.
+pub(super) const MOTIONS: &str = "descent";
+
 /// Any of the registered methods, with its settings.
 ///
 /// As text its name; as JSON `{"name": …, "settings": {…}}`, settings that are missing being the defaults.
@@ -326,8 +334,14 @@ impl Method {
             _ => Map::new(),
         };
         for (key, value) in changes {
+            // Also of the motions that it follows.
+            let motions = settings.get_mut(MOTIONS).and_then(Value::as_object_mut);
+            if let Some(motions) = motions.filter(|motions| motions.contains_key(key)) {
+                motions.insert(key.clone(), value.clone());
+                continue;
+            }
             if !settings.contains_key(key) {
-                let owners = super::REGISTRY.iter().filter(|e| e.method().settings().get(key).is_some());
+                let owners = super::REGISTRY.iter().filter(|e| e.method().has(key));
                 return Err(MethodError::NoSuchSetting {
                     method: self.name(),
                     setting: key.clone(),
@@ -341,6 +355,12 @@ impl Method {
             .check()
             .map_err(|error| MethodError::Refused { method: method.name(), reason: error.to_string() })?;
         Ok(method)
+    }
+
+    /// Whether it has a setting of this name, or its motions have.
+    pub fn has(&self, setting: &str) -> bool {
+        let settings = self.settings();
+        settings.get(setting).or_else(|| settings.get(MOTIONS)?.get(setting)).is_some()
     }
 
     fn read(name: &str, settings: Value) -> Result<Self, MethodError> {

@@ -71,10 +71,11 @@ impl Seating {
     pub(super) fn of(
         problem: &Problem,
         acceptance: &Acceptance,
+        settings: &descent::Settings,
         seed: u64,
         exec: &Exec,
     ) -> Result<Self, Cancelled> {
-        let (pair, settings) = (problem.pair(), descent::Settings::default());
+        let pair = problem.pair();
         let count = (settings.default_samples(pair) / SHARE).max(FEWEST);
         let poses = accepted(acceptance, count as u64, seed);
         let ends: Vec<End> = exec.install(|| {
@@ -82,7 +83,7 @@ impl Seating {
                 exec.check()?;
                 Ok(follower.rest(pose))
             };
-            poses.par_iter().map_init(|| Follower::new(pair, &settings), follow).collect::<Result<_, _>>()
+            poses.par_iter().map_init(|| Follower::new(pair, settings), follow).collect::<Result<_, _>>()
         })?;
         let seat = Seat::new(pair);
         let docked: Vec<PoseError> =

@@ -14,7 +14,7 @@ use crate::problem::Problem;
 /// What follows random poses and doubtful cells exactly: the method itself where it decides each pose by itself (descents would know
 /// nothing of the friction of a drop test), else exact descent.
 pub(super) fn judge(method: &Method) -> Judge<'_> {
-    Judge { own: method.follows(), descent: descent::Settings::default() }
+    Judge { own: method.follows(), descent: method.motions() }
 }
 
 /// Either of the two.
@@ -80,7 +80,7 @@ pub(super) fn finish(
         Some(distribution) => Some(success(&acceptance, distribution, exec)?),
         None => None,
     };
-    let seating = Seating::of(problem, &acceptance, run.seed, exec)?;
+    let seating = Seating::of(problem, &acceptance, &plan.method.motions(), run.seed, exec)?;
     Ok(Answer {
         problem: problem.clone(),
         run: run.clone(),

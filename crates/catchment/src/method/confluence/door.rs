@@ -37,7 +37,11 @@ impl Decide for Settings {
         if !(self.known > 0.5 && self.known <= 1.0) {
             return Err(DecideError::method(KnownOutOfRange));
         }
-        Ok(())
+        self.descent.check()
+    }
+
+    fn motions(&self) -> descent::Settings {
+        self.descent.clone()
     }
 
     /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once; fewer where motions take long.

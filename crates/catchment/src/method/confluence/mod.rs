@@ -13,6 +13,8 @@
 //! where a whole neighbourhood ends alike not at all. Cells are decided in batches that read only what earlier batches found: the same
 //! bits for any number of threads.
 //!
+//! With friction ([`descent::Settings::friction`]) the first of the three is left out: the way bends from the direction of descent.
+//!
 //! **Not guaranteed:** the label of a cell that joined others may differ from that of its centre's own motion, where
 //! something thinner than a cell lies between. [`Joined`] says how often: cells drawn at random among them are followed to their end. For 5-D grids of the pyramid and the
 //! 3-D X-Face it is one or two in ten thousand. Outcomes hold at the centres of cells; nothing is said about what lies between two of

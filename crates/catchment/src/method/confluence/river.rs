@@ -116,9 +116,12 @@ impl River<'_> {
         labels: &[Label],
     ) -> (Label, bool) {
         let centre = self.relief.grid.pose(self.whole(cell));
-        let ahead = around.ahead(&centre, &self.velocity(cell));
-        if let Some(label) = around.agreed(&ahead, labels, 1) {
-            return (label, false);
+        // Friction bends the way, and may end it.
+        if self.settings.descent.friction == 0.0 {
+            let ahead = around.ahead(&centre, &self.velocity(cell));
+            if let Some(label) = around.agreed(&ahead, labels, 1) {
+                return (label, false);
+            }
         }
         // Where it starts it is among any of those beside it.
         let mut base = around.base(&centre);

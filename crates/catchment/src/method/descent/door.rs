@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 const INFO: Info = Info {
     name: "descent",
-    summary: "exact frictionless motion of every cell's centre",
+    summary: "exact motion of every cell's centre",
     on_grids: true,
     departs: false,
 };
@@ -59,6 +59,14 @@ impl Decide for Settings {
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
         let (acceptance, _) = run(problem.pair(), domain.clone(), self, exec)?;
         Ok(Decided::plain(acceptance, self.settings()))
+    }
+
+    fn check(&self) -> Result<(), DecideError> {
+        Settings::with_friction(self.friction).map(|_| ()).map_err(DecideError::method)
+    }
+
+    fn motions(&self) -> Self {
+        self.clone()
     }
 
     fn follows(&self) -> Option<&dyn Follow> {

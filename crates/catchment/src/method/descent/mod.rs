@@ -1,4 +1,4 @@
-//! Exact quasi-static motion of one pose: frictionless, overdamped, contact kept. The ground truth.
+//! Exact quasi-static motion of one pose: overdamped, contact kept, without friction or with Coulomb's. The ground truth.
 //!
 //! ```text
 //!   q̇ = −M⁻¹ · (minimum-norm point of the convex hull of the active contacts' gradients of h)
@@ -9,9 +9,13 @@
 //! the halves face each other closely (a peg in its hole) motion goes from one change of contacts to the next (`sliding`),
 //! elsewhere by plain steps (`motion`).
 //!
-//! Not promised: friction, speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
+//! With friction ([`Settings::friction`]) the forces of the contacts lie in Coulomb's cones instead of along their normals (`coulomb`), and motion
+//! ends where they hold it; from which friction on they may, [`sticking()`] says.
+//!
+//! Not promised: speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
 //! the motion could go either way, may be reported as jammed there.
 
+mod coulomb;
 mod dependence;
 pub(super) mod door;
 mod homing;
@@ -19,12 +23,16 @@ mod motion;
 mod projection;
 mod rows;
 mod sliding;
+mod sticking;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_friction;
 mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
+pub use sticking::{Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
@@ -33,6 +41,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::method::door::Finished;
 use crate::pose::PoseError;
 use motion::{Motion, Until, Unwatched};
+use sticking::Doubting;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -48,11 +57,38 @@ pub struct Settings {
     pub surprise: f64,
     /// Steps after which a motion counts as undecided.
     pub max_steps: usize,
+    /// Coefficient of friction between the halves, at least 0.
+    pub friction: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { step: 0.02, surprise: 0.05, max_steps: 20_000 }
+        Self { step: 0.02, surprise: 0.05, max_steps: 20_000, friction: 0.0 }
+    }
+}
+
+/// More than any dry surface has: rubber on rubber has 1 to 2.
+const MOST_FRICTION: f64 = 10.0;
+
+/// A number that is no coefficient of friction.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{friction} is no coefficient of friction: that is a number from 0 to {MOST_FRICTION}, such as 0.2")]
+pub struct FrictionOutOfRange {
+    /// What was given.
+    pub friction: f64,
+}
+
+impl Settings {
+    /// The defaults with friction between the halves.
+    ///
+    /// # Errors
+    /// A coefficient of friction is at least 0, and at most 10.
+    pub fn with_friction(friction: f64) -> Result<Self, FrictionOutOfRange> {
+        if (0.0..=MOST_FRICTION).contains(&friction) {
+            Ok(Self { friction, ..Self::default() })
+        } else {
+            Err(FrictionOutOfRange { friction })
+        }
     }
 }
 
@@ -79,6 +115,14 @@ impl<'a> Follower<'a> {
     pub fn follow(&mut self, error: &PoseError) -> End {
         let (outcome, error) = self.0.follow(error, Until::Known, &mut Unwatched);
         End { outcome, error }
+    }
+
+    /// The same; and whether it came by a place where it slips and some force could hold it as well, so that Coulomb's law leaves open whether it
+    /// sticks there: see [`sticking()`].
+    pub fn follow_doubting(&mut self, error: &PoseError) -> (End, bool) {
+        let mut doubting = Doubting::default();
+        let (outcome, last) = self.0.follow(error, Until::Known, &mut doubting);
+        (End { outcome, error: last }, doubting.may_stick && outcome != Outcome::Jammed)
     }
 
     /// The same, but no further than to where `known` tells what becomes of a pose error on the way.

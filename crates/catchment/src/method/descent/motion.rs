@@ -5,6 +5,7 @@
 //! first contact, so that errors of the linearisation never build up. A step that the height contradicts
 //! is halved. Pairs with tight fits go by [`super::sliding`] instead.
 
+use super::coulomb::Coulomb;
 use super::homing;
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::rows::{OVERLAP, Rows, horizon};
@@ -86,6 +87,8 @@ pub(super) struct Pace {
 
 /// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
 const MAX_REACH: f64 = 1e7;
+/// The same with friction, whose forces are found less exactly: rest is a slope below 10⁻⁷ beyond what friction holds.
+const MAX_REACH_OF_FRICTION: f64 = 1e4;
 /// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
 const REST: f64 = 1e-3;
 /// Steps are halved down to this share of the chosen one.
@@ -127,6 +130,7 @@ pub(super) struct Motion<'a> {
     /// What holds for the displacement of this step: [`super::rows`].
     pub(super) rows: Rows,
     pub(super) projection: Projection,
+    pub(super) coulomb: Coulomb,
     /// Buffers of [`super::sliding`], for pairs with tight fits.
     pub(super) sliding: Sliding,
     /// Largest distance of a moving corner from the COR.
@@ -157,15 +161,21 @@ impl<'a> Motion<'a> {
             carrying: Vec::new(),
             rows: Rows::default(),
             projection: Projection::default(),
+            coulomb: Coulomb::default(),
             sliding: Sliding::default(),
             radius,
             spherical: pair.alignment.free.rotations() == 3,
         }
     }
 
-    /// Calls motions before they have come to rest also where all motion near the mated pose leads to it.
+    /// How far the push reaches at most, in steps.
+    fn most_reach(&self) -> f64 {
+        if self.settings.friction > 0.0 { MAX_REACH_OF_FRICTION } else { MAX_REACH }
+    }
+
+    /// Calls motions before they have come to rest also where all motion near the mated pose leads to it, which friction may end.
     pub(super) fn homing(mut self) -> Self {
-        self.homing = homing::all_dock(self.pair);
+        self.homing = self.settings.friction == 0.0 && homing::all_dock(self.pair);
         self
     }
 
@@ -177,23 +187,10 @@ impl<'a> Motion<'a> {
         until: Until,
         watch: &mut impl Watch,
     ) -> (Outcome, PoseError) {
-        let alignment = &self.pair.alignment;
-        let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
         let mut pace = Pace::new(self.settings.step);
-        self.nearby.leave();
-        self.sliding.forget();
-        self.turn(&start.rotation, start.lateral, pace.step);
-        let (Some(z), _) = self.nearby.height_below(start.lateral, f64::INFINITY) else {
-            return (Outcome::Missed, *error);
-        };
-        let mut state = State {
-            cor: start.lateral.extend(z),
-            rotation: start.rotation,
-            spin: DQuat::from_mat3(&start.rotation),
-            angles: [error.roll, error.pitch, error.yaw],
-        };
+        let Some(mut state) = self.touch_down(error) else { return (Outcome::Missed, *error) };
         let mut travelled = 0.0;
-        let mut mark = (0, travelled, z);
+        let mut mark = (0, travelled, state.cor.z);
         // A half that is seated stays so; whether it is docked then is known before it has come to rest, unless some rests do not count.
         let (mut seated, mut asked, mut docked) = (false, false, false);
         let all_count = !self.seat.is_limited();
@@ -238,6 +235,33 @@ impl<'a> Motion<'a> {
         self.end(Outcome::Undecided, &state, [seated, docked])
     }
 
+    /// The moving half lowered at `error` until it first touches; `None` where it touches nothing.
+    fn touch_down(&mut self, error: &PoseError) -> Option<State> {
+        let alignment = &self.pair.alignment;
+        let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        self.nearby.leave();
+        self.sliding.forget();
+        self.coulomb.begin_at(None);
+        self.turn(&start.rotation, start.lateral, self.settings.step);
+        let (z, _) = self.nearby.height_below(start.lateral, f64::INFINITY);
+        Some(State {
+            cor: start.lateral.extend(z?),
+            rotation: start.rotation,
+            spin: DQuat::from_mat3(&start.rotation),
+            angles: [error.roll, error.pitch, error.yaw],
+        })
+    }
+
+    /// The same, with its contacts.
+    pub(super) fn lower(&mut self, error: &PoseError) -> Option<State> {
+        let state = self.touch_down(error)?;
+        if self.pair.is_tight() {
+            return Some(self.feel(&state));
+        }
+        self.gather(&state, self.settings.step);
+        Some(state)
+    }
+
     /// What an end is called: rest in the seat, within what the design allows, is docked.
     fn end(&mut self, outcome: Outcome, last: &State, [seated, docked]: [bool; 2]) -> (Outcome, PoseError) {
         let error = self.error_of(last);
@@ -256,7 +280,7 @@ impl<'a> Motion<'a> {
         let mut cuts = 0;
         let mut bend = 0.0;
         loop {
-            if length <= REST * pace.step && pace.reach >= MAX_REACH {
+            if length <= REST * pace.step && pace.reach >= self.most_reach() {
                 return Advance::Ended(Outcome::Jammed, *state);
             }
             let mut halve = false;
@@ -266,6 +290,13 @@ impl<'a> Motion<'a> {
                 (u, length) = self.displacement(pace);
                 bend = deflection(&before, &u);
                 halve = pace.step > longest && bend > BENT;
+                if self.settings.friction > 0.0 && length <= REST * pace.step {
+                    // What slips here sticks within the step: where, shorter ones say.
+                    if pace.step <= longest * SMALLEST_SHARE {
+                        return Advance::Ended(Outcome::Jammed, *state);
+                    }
+                    halve = true;
+                }
             }
             if !halve {
                 let next = self.moved(state, &u);
@@ -335,25 +366,28 @@ impl<'a> Motion<'a> {
     fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
         let Pace { step, reach, share } = pace;
         let step = *step;
-        let Self { projection, rows: Rows { vectors: rows, gaps, .. }, .. } = self;
+        let most = self.most_reach();
+        let Self { projection, coulomb, rows, settings, .. } = self;
+        let contacts = rows.contacts(settings.friction);
         let mut solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;
-            let u = projection
-                .closest_allowed(&push, rows, gaps.iter().copied(), step * reach)
+            let u = coulomb
+                .displacement(projection, &push, contacts, |k| rows.gaps[k], step * reach)
                 // Squeezed between two walls there is no clearance to regain.
                 .or_else(|| {
-                    projection.closest_allowed(&push, rows, gaps.iter().map(|g| g.max(0.0)), step * reach)
+                    let gap = |k: usize| rows.gaps[k].max(0.0);
+                    coulomb.displacement(projection, &push, contacts, gap, step * reach)
                 })
                 .unwrap_or_default();
             let length = u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>();
             (u, length.sqrt())
         };
         // As far as the last push would have had to reach for a whole step.
-        *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, MAX_REACH);
+        *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, most);
         let mut found = solve(*reach);
-        while found.1 < 0.5 * step && *reach < MAX_REACH {
-            *reach = (*reach * (step / found.1).clamp(2.0, 16.0)).min(MAX_REACH);
+        while found.1 < 0.5 * step && *reach < most {
+            *reach = (*reach * (step / found.1).clamp(2.0, 16.0)).min(most);
             found = solve(*reach);
         }
         while found.1 > 2.0 * step && *reach > 1.0 {

@@ -5,11 +5,13 @@
 //!                 g   the gap, less the clearance that is kept from walls
 //! ```
 //!
-//! with n the normal of a contact, p its point on the moving half and c the COR. Rows are those of the contacts seen now ([`Motion::gather`]),
+//! with n the normal of a contact, p its point on the moving half and c the COR; with friction two rows more say how its point slides along either
+//! tangent. Rows are those of the contacts seen now ([`Motion::gather`]),
 //! of the same contacts halfway along a step ([`Motion::look_ahead`]), and of what was met without being announced
 //! ([`Motion::cut`], [`Motion::meet`]).
 
 use super::motion::{Motion, State};
+use super::coulomb::{Contacts, Tangents};
 use super::projection::{MAX_COORDINATES, Vector, dot};
 use crate::contact::Contact;
 use crate::pose::{Dof, ROTATIONS, euler_axes};
@@ -34,6 +36,8 @@ const SUM_SAME: f64 = 8.0 * SAME;
 pub(super) struct Rows {
     pub(super) vectors: Vec<Vector>,
     pub(super) gaps: Vec<f64>,
+    /// How each slips; empty without friction.
+    pub(super) tangents: Vec<Tangents>,
     /// Sums over the numbers of each row, in order, with its place: equal rows have equal ones. Of the first rows only where there are many.
     sums: BTreeSet<(u64, u32)>,
 }
@@ -45,14 +49,22 @@ impl Rows {
     fn clear(&mut self) {
         self.vectors.clear();
         self.gaps.clear();
+        self.tangents.clear();
         self.sums.clear();
     }
 
+    /// What the projection and the cones of friction are asked with.
+    pub(super) fn contacts(&self, friction: f64) -> Contacts<'_> {
+        Contacts { rows: &self.vectors, tangents: &self.tangents, friction }
+    }
+
     /// Adds a row unless it is known; says whether it was new.
-    fn learn(&mut self, row: Vector, gap: f64) -> bool {
+    fn learn(&mut self, row: Vector, tangents: Option<Tangents>, gap: f64) -> bool {
+        let same = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
         let is = |k: usize| {
             (self.gaps[k] - gap).abs() < SAME
-                && self.vectors[k].iter().zip(&row).all(|(a, b)| (a - b).abs() < SAME)
+                && same(&self.vectors[k], &row)
+                && tangents.is_none_or(|t| self.tangents[k].iter().zip(&t).all(|(a, b)| same(a, b)))
         };
         let known = if self.vectors.len() < Self::FEW {
             (0..self.vectors.len()).any(is)
@@ -67,6 +79,7 @@ impl Rows {
         if !known {
             self.vectors.push(row);
             self.gaps.push(gap);
+            self.tangents.extend(tangents);
         }
         !known
     }
@@ -97,16 +110,29 @@ impl Motion<'_> {
             let clear = margin(contact);
             let gap = if clear > 0.0 { contact.gap - clear } else { contact.gap.max(0.0) };
             // Corners, edges and facets that meet at one point say the same thing several times.
-            self.rows.learn(row, gap);
+            let tangents = self.tangents(contact, state, &axes);
+            self.rows.learn(row, tangents, gap);
         }
         self.contacts = contacts;
     }
 
     /// What a displacement does to the gap of a contact.
     pub(super) fn row(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
+        self.row_along(contact.normal, contact, state, axes)
+    }
+
+    /// How a displacement makes a contact slip along its tangents; `None` without friction.
+    pub(super) fn tangents(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Option<Tangents> {
+        (self.settings.friction > 0.0).then(|| {
+            let (side, across) = contact.normal.any_orthonormal_pair();
+            [side, across].map(|tangent| self.row_along(tangent, contact, state, axes))
+        })
+    }
+
+    /// How far a displacement moves the touching point of the moving half along a direction.
+    fn row_along(&self, n: DVec3, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Vector {
         let free = self.pair.alignment.free;
-        let n = contact.normal;
-        let arm = contact.point + n * contact.gap - state.cor;
+        let arm = contact.point + contact.normal * contact.gap - state.cor;
         let turn = arm.cross(n) / self.pair.alignment.rotation_length;
         let mut row = [0.0; MAX_COORDINATES];
         row[0] = if free.contains(Dof::X) { n.x } else { 0.0 };
@@ -131,7 +157,8 @@ impl Motion<'_> {
             let here = there - dot(&row, u);
             // A contact this step already respects tells nothing new.
             if there < -OVERLAP && here > 0.25 * there {
-                added |= self.rows.learn(row, here.max(0.0));
+                let tangents = self.tangents(contact, landed, &axes);
+                added |= self.rows.learn(row, tangents, here.max(0.0));
             }
         }
         self.carrying = carrying;
@@ -151,7 +178,8 @@ impl Motion<'_> {
             let here = there - dot(&row, u);
             // A contact that was as deep before is another way through the same wall.
             if here > 0.25 * there {
-                added |= self.rows.learn(row, here);
+                let tangents = self.tangents(contact, landed, &axes);
+                added |= self.rows.learn(row, tangents, here);
             }
         }
         self.carrying = met;
@@ -187,7 +215,8 @@ impl Motion<'_> {
             let row = self.row(&contact, &middle, &axes);
             let gap = contact.gap - dot(&row, &half);
             let clear = margin(&contact);
-            self.rows.learn(row, if clear > 0.0 { gap - clear } else { gap.max(0.0) });
+            let tangents = self.tangents(&contact, &middle, &axes);
+            self.rows.learn(row, tangents, if clear > 0.0 { gap - clear } else { gap.max(0.0) });
         }
         self.contacts = contacts;
     }

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::atomic::Ordering;
 
-fn pair(family: Family, change: impl FnOnce(&mut Alignment)) -> Pair {
+pub(super) fn pair(family: Family, change: impl FnOnce(&mut Alignment)) -> Pair {
     let mut alignment = Alignment::default_for(Some(family));
     change(&mut alignment);
     let connector = ConnectorSpec::Family(FamilySpec::new(family));
@@ -20,7 +20,7 @@ fn pair(family: Family, change: impl FnOnce(&mut Alignment)) -> Pair {
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
-fn at(x: f64, y: f64) -> PoseError {
+pub(super) fn at(x: f64, y: f64) -> PoseError {
     PoseError { x, y, ..PoseError::default() }
 }
 

@@ -6,7 +6,7 @@ use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
 use crate::method::descent;
-use crate::method::door::{Cost, Decide, DecideError, Decided, Doubts, Entry, Info, grid_of};
+use crate::method::door::{Cost, MOTIONS, Decide, DecideError, Decided, Doubts, Entry, Info, grid_of};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
@@ -26,7 +26,10 @@ impl Decide for Settings {
     }
 
     fn settings(&self) -> Value {
-        json!(self)
+        // Along the frictionless direction of descent there is no friction to be set.
+        let mut settings = json!(self);
+        settings.get_mut(MOTIONS).and_then(Value::as_object_mut).map(|motions| motions.remove("friction"));
+        settings
     }
 
     /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once.

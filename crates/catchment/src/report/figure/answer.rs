@@ -92,7 +92,7 @@ impl Answer {
         if self.run.method.info().departs || grid.axes.len() < 3 {
             return Ok(Vec::new());
         }
-        let (pair, settings) = (self.problem.pair(), descent::Settings::default());
+        let (pair, settings) = (self.problem.pair(), self.run.method.motions());
         // Where descents are dear, so are their slices.
         let affordable = settings.default_cells(pair)[1];
         let mut slices = Vec::new();

@@ -27,7 +27,7 @@ mod tests;
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
-use crate::method::descent::{self, Touch};
+use crate::method::descent::{self, FrictionOutOfRange, Touch};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
 use search::{Search, Space};
@@ -45,11 +45,20 @@ pub struct Settings {
     pub motions: Option<usize>,
     /// Their seed, and that of the search.
     pub seed: u64,
+    /// Coefficient of friction between the halves.
+    pub friction: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { fixed: [None; 5], proportions: None, motions: None, seed: 1 }
+        Self { fixed: [None; 5], proportions: None, motions: None, seed: 1, friction: 0.0 }
+    }
+}
+
+impl Settings {
+    /// How its poses are followed.
+    fn motions(&self) -> Result<descent::Settings, FrictionOutOfRange> {
+        descent::Settings::with_friction(self.friction)
     }
 }
 
@@ -123,6 +132,9 @@ pub struct Certificate {
 /// Why there is no window.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WindowError {
+    /// No coefficient of friction.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
     /// Not even zero docks.
     #[error("the mated pose itself is {}: there is no window around it", outcome.name())]
     NotDocked {
@@ -251,11 +263,13 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
     let space = Space::of(problem, settings)?;
     let motions = settings.motions.unwrap_or_else(|| default_motions(problem));
     let settings = &Settings { motions: Some(motions), ..settings.clone() };
-    let home = problem.follow(&PoseError::default()).outcome;
+    let motions_by = settings.motions()?;
+    let outcome_of = |error: &PoseError| descent::outcome(problem.pair(), error, &motions_by).outcome;
+    let home = outcome_of(&PoseError::default());
     if home != Outcome::Aligned {
         return Err(WindowError::NotDocked { outcome: home });
     }
-    let mut search = Search::new(problem, space, settings.seed);
+    let mut search = Search::new(problem, space, settings.seed, &motions_by);
     search.directions(exec)?;
     search.moves(exec)?;
     let mut redrawn = 0;
@@ -263,7 +277,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
         let scale = search.window(MARGIN);
         if scale <= NONE * search.space().border() {
             let error = search.worst().unwrap_or_default();
-            let outcome = problem.follow(&error).outcome;
+            let outcome = outcome_of(&error);
             let given = settings.fixed.iter().flatten().any(|half_width| *half_width > 0.0);
             return Err(if given {
                 WindowError::GivenFails { error, outcome }
@@ -289,7 +303,8 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
     for axis in problem.alignment().free.iter() {
         let half_width = half_widths[axis.index()];
         let mut reach = |others: [f64; 5], from: f64| {
-            let mut search = Search::new(problem, Space::along(problem, axis, others), settings.seed);
+            let space = Space::along(problem, axis, others);
+            let mut search = Search::new(problem, space, settings.seed, &motions_by);
             let reach = search.reach(from, exec)?;
             followed += search.followed();
             Ok::<_, Cancelled>(reach)
@@ -304,7 +319,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
     let spare = |side: &&Side| side.beside.to / side.half_width;
     let tightest = axes.iter().filter(|side| side.half_width > 0.0 && !side.beside.is_border);
     let tightest = tightest.min_by(|a, b| spare(a).total_cmp(&spare(b))).map(|side| side.axis);
-    let worst = search.worst().map(|error| Worst::of(problem, error));
+    let worst = search.worst().map(|error| Worst::of(problem, error, &motions_by));
     Ok(Window { settings: settings.clone(), axes, scale, worst, tightest, certificate, motions: followed })
 }
 
@@ -322,8 +337,8 @@ fn default_motions(problem: &Problem) -> usize {
 }
 
 impl Worst {
-    fn of(problem: &Problem, error: PoseError) -> Self {
-        let path = problem.trace(&error);
+    fn of(problem: &Problem, error: PoseError, motions: &descent::Settings) -> Self {
+        let path = descent::trace(problem.pair(), &error, motions);
         let last = path.waypoints.last();
         Self {
             error,

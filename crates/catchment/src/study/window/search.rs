@@ -158,10 +158,10 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(problem: &'a Problem, space: Space, seed: u64) -> Self {
+    pub(super) fn new(problem: &'a Problem, space: Space, seed: u64, settings: &descent::Settings) -> Self {
         Self {
             problem,
-            settings: descent::Settings::default(),
+            settings: settings.clone(),
             space,
             nearest: None,
             random: Stream::new(seed),

@@ -25,6 +25,7 @@
 mod correction;
 mod event;
 
+use super::coulomb::{Contacts, Tangents};
 use super::motion::{Advance, Motion, Pace, State};
 use super::projection::Vector;
 use crate::acceptance::Outcome;
@@ -80,6 +81,7 @@ pub(super) struct Sliding {
     /// The moving half's vertices there.
     placed: Vec<DVec3>,
     rows: Vec<Vector>,
+    tangents: Vec<Tangents>,
     gaps: Vec<f64>,
 }
 
@@ -201,16 +203,20 @@ impl Motion<'_> {
     fn direction(&mut self, state: &State) -> Option<Vector> {
         let axes = self.axes(state);
         let mut rows = std::mem::take(&mut self.sliding.rows);
+        let mut tangents = std::mem::take(&mut self.sliding.tangents);
         rows.clear();
-        rows.extend(self.contacts.iter().map(|(before, meeting)| {
+        tangents.clear();
+        for (before, meeting) in &self.contacts {
             let contact = self.pair.contact(before, meeting, &state.rotation, state.cor);
-            self.row(&contact, state, &axes)
-        }));
-        let gaps = std::iter::repeat(0.0);
-        let u = self.projection.closest_allowed(&DOWN, &rows, gaps, 1.0).unwrap_or_default();
-        self.sliding.rows = rows;
+            rows.push(self.row(&contact, state, &axes));
+            tangents.extend(self.tangents(&contact, state, &axes));
+        }
+        let contacts = Contacts { rows: &rows, tangents: &tangents, friction: self.settings.friction };
+        let touching = |_| 0.0;
+        let u = self.coulomb.displacement(&mut self.projection, &DOWN, contacts, touching, 1.0).unwrap_or_default();
+        (self.sliding.rows, self.sliding.tangents) = (rows, tangents);
         self.sliding.carrying.clear();
-        self.sliding.carrying.extend_from_slice(self.projection.pressed());
+        self.sliding.carrying.extend_from_slice(self.coulomb.pressed());
         let size = lateral(&u).max(u[2].abs());
         (size > STILL).then(|| u.map(|x| x / size))
     }

@@ -1,0 +1,270 @@
+//! Coulomb friction in the one small optimisation behind every step.
+//!
+//! ```text
+//!   u = p + Σ (λᵢ aᵢ + τᵢ·bᵢ)                    p push, aᵢ row of the gap of contact i, bᵢ the two rows of its slip
+//!   0 ≤ λᵢ  ⟂  aᵢ·u + gᵢ ≥ 0                     pressed where it touches
+//!   |τᵢ| ≤ μ λᵢ,   = μ λᵢ against bᵢ·u ≠ 0        sticks, or slips against all the friction there is
+//! ```
+//!
+//! As De Saxcé and Feng wrote it (*Math. Comput. Modelling* 28, 1998) the last two lines are one cone: with sᵢ = μ|bᵢ·u|,
+//!
+//! ```text
+//!   aᵢ·u + gᵢ + sᵢ ≥ μ |bᵢ·u|        and u the closest to p of all that hold it
+//! ```
+//!
+//! so that for given s friction is the same projection as without it, and s is found by repeating it (Cadoux 2009; Acary, Cadoux, Lemaréchal and
+//! Malick, *ZAMM* 91, 2011). On one slope every round leaves μ²/(1 + μ²) of what is missing. The cone is cut out by its tangent planes, each found where the last
+//! answer violates it: exact forces, no polygons.
+//!
+//! Rounds begin with the slip that there would be without friction, and end at the slip they come to: where a force that makes the half
+//! stick exists as well ([`Coulomb::may_stick`]), rigid bodies under Coulomb's law do not say which of the two happens, and slip it is.
+//!
+//! Not promised: that there is only one such slip, nor that the rounds find it where there is. What they have not found after [`ROUNDS`] is taken as
+//! it is then.
+
+use super::projection::{Projection, Vector, dot};
+
+/// How a contact slips: rows of both tangents.
+pub(super) type Tangents = [Vector; 2];
+
+/// What may be left of a cone or of a slip, as a share of the displacement that the push alone would make.
+const EXACT: f64 = 1e-9;
+/// Most rounds of a step, and where it is asked whether slip ends.
+const ROUNDS: usize = 100;
+const PATIENT: usize = 20_000;
+/// Rounds before slips are extrapolated: directions settle first.
+const SETTLED: usize = 4;
+/// A round goes on by at most so many times what was missing, and leaves a slip that falls at least this share of what the round says: where it
+/// falls to nothing the half sticks, and nothing makes it slip again.
+const BOLDEST: f64 = 20.0;
+const LEFT: f64 = 0.5;
+/// What moves less than this share of what the push alone would make stays.
+const STILL: f64 = 1e-7;
+
+/// The solver: owns its buffers.
+#[derive(Debug, Clone)]
+pub(super) struct Coulomb {
+    /// Most rounds.
+    rounds: usize,
+    /// The planes that cut out the cones.
+    planes: Vec<Vector>,
+    /// Of which contact each is.
+    owners: Vec<usize>,
+    /// sᵢ of every contact, what the last round says is missing of it, and what the round before said.
+    slips: Vec<f64>,
+    missing: Vec<f64>,
+    before: Vec<f64>,
+    /// The contacts that are pressed.
+    pressed: Vec<usize>,
+    /// How the half moved last, where the push alone would make 1: what slips goes on slipping.
+    last: Option<Vector>,
+}
+
+/// The contacts of a step.
+#[derive(Clone, Copy)]
+pub(super) struct Contacts<'a> {
+    pub(super) rows: &'a [Vector],
+    pub(super) tangents: &'a [Tangents],
+    pub(super) friction: f64,
+}
+
+impl Contacts<'_> {
+    /// How a contact slips.
+    fn slip(&self, contact: usize, u: &Vector) -> [f64; 2] {
+        self.tangents[contact].map(|tangent| dot(&tangent, u))
+    }
+
+    /// The plane of the cone of a contact along its slip.
+    fn plane(&self, contact: usize, [a, b]: [f64; 2]) -> Vector {
+        let size = size([a, b]);
+        let share = if size > 0.0 { self.friction / size } else { 0.0 };
+        let [s, t] = &self.tangents[contact];
+        let row = &self.rows[contact];
+        std::array::from_fn(|k| row[k] - share * (a * s[k] + b * t[k]))
+    }
+}
+
+impl Default for Coulomb {
+    fn default() -> Self {
+        Self {
+            rounds: ROUNDS,
+            planes: Vec::new(),
+            owners: Vec::new(),
+            slips: Vec::new(),
+            missing: Vec::new(),
+            before: Vec::new(),
+            pressed: Vec::new(),
+            last: None,
+        }
+    }
+}
+
+impl Coulomb {
+    /// One that takes the time it needs.
+    pub(super) fn patient() -> Self {
+        Self { rounds: PATIENT, ..Self::default() }
+    }
+
+    /// The displacement that the push comes to; `None` where negative gaps contradict each other. As
+    /// [`Projection::closest_allowed`], which it is without friction.
+    pub(super) fn displacement(
+        &mut self,
+        projection: &mut Projection,
+        push: &Vector,
+        contacts: Contacts<'_>,
+        gap: impl Fn(usize) -> f64 + Copy,
+        scale: f64,
+    ) -> Option<Vector> {
+        let u = match self.last {
+            Some(last) if contacts.friction > 0.0 => last.map(|x| scale * x),
+            _ => {
+                let gaps = (0..contacts.rows.len()).map(gap);
+                let u = projection.closest_allowed(push, contacts.rows, gaps, scale)?;
+                self.pressed.clear();
+                self.pressed.extend_from_slice(projection.pressed());
+                if contacts.friction == 0.0 || self.pressed.is_empty() {
+                    return Some(u);
+                }
+                u
+            }
+        };
+        self.slips.clear();
+        self.slips.extend((0..contacts.rows.len()).map(|k| contacts.friction * size(contacts.slip(k, &u))));
+        let u = self.settle(projection, push, contacts, gap, scale, true)?;
+        self.last = Some(u.map(|x| x / scale));
+        Some(u)
+    }
+
+    /// How the half moved last, where the push alone would make 1: where the rounds begin. `None`: as without friction.
+    pub(super) const fn begin_at(&mut self, last: Option<Vector>) {
+        self.last = last;
+    }
+
+    /// Whether some force within the cones holds the half against the push, with all contacts touching.
+    pub(super) fn may_stick(&mut self, projection: &mut Projection, push: &Vector, contacts: Contacts<'_>) -> bool {
+        self.slips.clear();
+        self.slips.resize(contacts.rows.len(), 0.0);
+        self.settle(projection, push, contacts, |_| 0.0, 1.0, false).is_some_and(|u| is_still(&u))
+    }
+
+    /// The contacts that carry in the last displacement.
+    pub(super) fn pressed(&self) -> &[usize] {
+        &self.pressed
+    }
+
+    /// The closest to the push that lies in all cones; their slips are brought to those that it makes if they are `free`.
+    fn settle(
+        &mut self,
+        projection: &mut Projection,
+        push: &Vector,
+        contacts: Contacts<'_>,
+        gap: impl Fn(usize) -> f64,
+        scale: f64,
+        free: bool,
+    ) -> Option<Vector> {
+        self.planes.clear();
+        self.owners.clear();
+        self.missing.clear();
+        let mut boldness = 1.0;
+        let mut u = *push;
+        for round in 0..self.rounds {
+            let gaps = self.owners.iter().map(|&k| gap(k) + self.slips[k]);
+            u = projection.closest_allowed(push, &self.planes, gaps, scale)?;
+            self.keep_pressed(projection);
+            std::mem::swap(&mut self.before, &mut self.missing);
+            self.missing.clear();
+            let mut worst = 0.0f64;
+            for k in 0..contacts.rows.len() {
+                let slip = contacts.slip(k, &u);
+                let (slips, open) = (contacts.friction * size(slip), dot(&contacts.rows[k], &u) + gap(k));
+                let missing = slips - self.slips[k];
+                self.missing.push(missing);
+                // Outside of its cone; or, if it is pressed, of another slip than was thought.
+                let outside = missing - open;
+                let is_pressed = self.pressed.contains(&k);
+                if outside > EXACT * scale {
+                    self.planes.push(contacts.plane(k, slip));
+                    self.owners.push(k);
+                }
+                worst = worst.max(outside);
+                if free {
+                    worst = worst.max(if is_pressed { missing.abs() } else { -open });
+                }
+            }
+            if worst <= EXACT * scale {
+                break;
+            }
+            if !free {
+                continue;
+            }
+            // Aitken's step: as far as the last two rounds say that it will go.
+            if round > SETTLED {
+                let (mut along, mut size) = (0.0, 0.0);
+                for (before, now) in self.before.iter().zip(&self.missing) {
+                    along += before * (now - before);
+                    size += (now - before) * (now - before);
+                }
+                boldness = if size > 0.0 { (-boldness * along / size).clamp(1.0, BOLDEST) } else { 1.0 };
+            }
+            for (slip, missing) in self.slips.iter_mut().zip(&self.missing) {
+                *slip = (*slip + boldness * missing).max(LEFT * (*slip + missing));
+            }
+        }
+        Some(u)
+    }
+
+    /// Keeps the planes that the last projection pressed against, and says of which contacts they are.
+    fn keep_pressed(&mut self, projection: &Projection) {
+        self.pressed.clear();
+        let mut kept = 0;
+        let mut planes: Vec<usize> = projection.pressed().to_vec();
+        planes.sort_unstable();
+        for plane in planes {
+            self.planes.swap(kept, plane);
+            self.owners.swap(kept, plane);
+            let contact = self.owners[kept];
+            if !self.pressed.contains(&contact) {
+                self.pressed.push(contact);
+            }
+            kept += 1;
+        }
+        self.planes.truncate(kept);
+        self.owners.truncate(kept);
+    }
+}
+
+/// Whether a displacement is none, where the push alone would make 1.
+pub(super) fn is_still(u: &Vector) -> bool {
+    u.iter().all(|x| x.abs() <= STILL)
+}
+
+fn size([a, b]: [f64; 2]) -> f64 {
+    a.hypot(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const S: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+    fn contacts<'a>(rows: &'a [Vector], tangents: &'a [Tangents], friction: f64) -> Contacts<'a> {
+        Contacts { rows, tangents, friction }
+    }
+
+    /// A slope of 45°: slips by (1 − μ)·sin 45° along itself as long as μ < 1.
+    #[test]
+    fn a_slope_holds_from_its_tangent_on() {
+        let rows = [[S, 0.0, S, 0.0, 0.0, 0.0]];
+        let tangents = [[[S, 0.0, -S, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]]];
+        let push = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
+        let (mut coulomb, mut projection) = (Coulomb::default(), Projection::default());
+        for friction in [0.0, 0.1, 0.5, 0.9, 0.999, 1.001, 2.0] {
+            let contacts = contacts(&rows, &tangents, friction);
+            let u = coulomb.displacement(&mut projection, &push, contacts, |_| 0.0, 1.0).unwrap();
+            let slips = (1.0 - friction).max(0.0) * S;
+            assert!((u[0] - slips * S).abs() < 1e-8 && (u[2] + slips * S).abs() < 1e-8, "{friction} {u:?}");
+            assert_eq!(coulomb.may_stick(&mut projection, &push, contacts), friction > 1.0);
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! From which friction on a half sticks where it touches: two thresholds, not one.
+//!
+//! ```text
+//!   friction   0 ───────────┬──────────────┬─────────▶
+//!                 slips     │  either      │  sticks
+//!                       holds from     slips until
+//! ```
+//!
+//! From the first on forces within the cones of friction exist that hold the half against the push; up to the second there is a way to slip. Between
+//! them Coulomb's law for rigid bodies leaves open what happens: let go at rest it may hold, and once it slides it goes on. Motions
+//! ([`super::Settings::friction`]) slip there; [`super::Follower::follow_doubting`] says whether they came through such a place.
+//!
+//! Not promised: that a half which comes to a place where it slips did not stick before. What happens at each friction, motions say.
+
+use super::{MOST_FRICTION as MOST, Settings};
+use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
+use super::motion::{Motion, State, Watch};
+use super::projection::{MAX_COORDINATES, Projection, Vector};
+use super::rows::OVERLAP;
+use crate::acceptance::Outcome;
+use crate::contact::Pair;
+use crate::pose::PoseError;
+
+/// The friction from which on a half sticks where it touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sticking {
+    /// From this friction on some force holds it; `None`: at none.
+    pub holds_from: Option<f64>,
+    /// Up to this friction there is a way to slip; `None`: at any.
+    pub slips_until: Option<f64>,
+}
+
+/// To so much the first threshold is found.
+const HOLDS_TO: f64 = 1e-9;
+/// For the second, slips are asked for at these shares of the first, then by so much of the way to where they seem to end, until that is as near as this
+/// share of it: what is left is of second order.
+const FIRST: f64 = 0.9;
+const SECOND: f64 = 0.95;
+const SHARE: f64 = 0.7;
+const NEAR: f64 = 2e-3;
+
+/// Where the force pushes.
+const DOWN: Vector = {
+    let mut down = [0.0; MAX_COORDINATES];
+    down[2] = -1.0;
+    down
+};
+
+/// From which friction on a half that is lowered at a pose error sticks where it first touches; `None` where it touches nothing.
+pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
+    // Any friction: what slips is asked for.
+    let settings = Settings { friction: 1.0, ..Settings::default() };
+    let mut motion = Motion::new(pair, &settings);
+    let state = motion.lower(error)?;
+    let mut touching = Touching::default();
+    touching.see(&motion, &state);
+    Some(touching.thresholds())
+}
+
+/// What touches, as rows.
+#[derive(Debug, Default)]
+struct Touching {
+    rows: Vec<Vector>,
+    tangents: Vec<Tangents>,
+    coulomb: Coulomb,
+    projection: Projection,
+}
+
+impl Touching {
+    fn see(&mut self, motion: &Motion, state: &State) {
+        let axes = motion.axes(state);
+        self.rows.clear();
+        self.tangents.clear();
+        for (contact, _) in motion.contacts.iter().filter(|(contact, _)| contact.gap <= OVERLAP) {
+            self.rows.push(motion.row(contact, state, &axes));
+            self.tangents.extend(motion.tangents(contact, state, &axes));
+        }
+    }
+
+    fn holds(&mut self, friction: f64) -> bool {
+        let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
+        self.coulomb.may_stick(&mut self.projection, &DOWN, contacts)
+    }
+
+    /// How it slips at a friction, from a slip at less; `None` where it sticks.
+    fn slip(&mut self, friction: f64, from: Option<Vector>) -> Option<Vector> {
+        let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
+        self.coulomb.begin_at(from);
+        let touching = |_| 0.0;
+        let u = self.coulomb.displacement(&mut self.projection, &DOWN, contacts, touching, 1.0);
+        u.filter(|u| !is_still(u))
+    }
+
+    fn thresholds(&mut self) -> Sticking {
+        self.coulomb = Coulomb::patient();
+        let holds_from = self.holds(MOST).then(|| {
+            let [mut slips, mut holds] = [0.0, MOST];
+            while holds - slips > HOLDS_TO {
+                let middle = f64::midpoint(slips, holds);
+                if self.holds(middle) { holds = middle } else { slips = middle }
+            }
+            holds
+        });
+        let slips_until = holds_from.and_then(|holds| self.slips_until(holds));
+        Sticking { holds_from, slips_until }
+    }
+
+    /// Where the speed of the slip falls to nothing, from where no force holds on: by secants, as close to it rounds take long.
+    fn slips_until(&mut self, holds: f64) -> Option<f64> {
+        let mut way = None;
+        let mut known: Option<[f64; 2]> = None;
+        let mut friction = FIRST * holds;
+        loop {
+            let Some(found) = self.slip(friction, way) else { return Some(friction) };
+            let speed = found.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let ends = match known {
+                None => SECOND * holds,
+                Some([before, faster]) if faster > speed => {
+                    let ends = friction + speed * (friction - before) / (faster - speed);
+                    if ends - friction <= NEAR * ends {
+                        return Some(ends);
+                    }
+                    friction + SHARE * (ends - friction)
+                }
+                // More friction lets it slip faster.
+                Some(_) => friction / FIRST,
+            };
+            if ends > MOST {
+                return None;
+            }
+            (known, way, friction) = (Some([friction, speed]), Some(found), ends);
+        }
+    }
+}
+
+/// Whether a motion comes by a place where it slips and could as well stick.
+#[derive(Debug, Default)]
+pub(super) struct Doubting {
+    touching: Touching,
+    pub(super) may_stick: bool,
+}
+
+impl Watch for Doubting {
+    fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
+        if !self.may_stick {
+            self.touching.see(motion, state);
+            self.may_stick = !self.touching.rows.is_empty() && self.touching.holds(motion.settings.friction);
+        }
+        None
+    }
+}

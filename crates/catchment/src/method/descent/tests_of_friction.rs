@@ -1,0 +1,119 @@
+//! Closed forms of friction. Agreement with independent engines: `tests/trials.rs`, and `tests/mujoco_agrees.py` of the repository.
+
+use super::tests::{at, pair};
+use super::{Settings, outcome, run, sticking};
+use crate::acceptance::{Domain, Outcome, Stream};
+use crate::contact::Pair;
+use crate::design::Family;
+use crate::exec::Exec;
+use crate::pose::{Dof, DofSet, PoseError};
+use crate::problem::{Draft, Problem};
+use std::f64::consts::{FRAC_PI_4, SQRT_2};
+
+fn of(family: Family, aspect_ratio: f64, free: &[Dof]) -> Pair {
+    let free: Vec<String> = free.iter().map(|dof| format!("\"{}\"", dof.name())).collect();
+    let text = format!(
+        "[connector]\nfamily = \"{}\"\naspect_ratio = {aspect_ratio}\n[alignment]\nfree = [{}]\ncenter_of_rotation = 0.0\nrotation_length = 0.5\n",
+        family.name(),
+        free.join(", ")
+    );
+    let source = crate::design::SourceText::new("f.toml", text.as_str());
+    let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
+    problem.pair().clone()
+}
+
+/// Rotations locked: a half on one facet slides as long as friction is less than the facet's slope, and both thresholds are that.
+#[test]
+fn on_a_facet_both_thresholds_are_its_slope() {
+    let lateral = [Dof::X, Dof::Y];
+    let cases = [
+        (Family::VFace, 0.7, &lateral[..1], at(0.2, 0.0), 1.4),
+        (Family::XFace, 0.7, &lateral[..1], at(0.2, 0.0), 0.7),
+        (Family::Pyramid, 0.5, &lateral[..], at(0.2, 0.1), 1.0),
+        (Family::Pyramid, 1.0, &lateral[..], at(0.2, -0.1), 2.0),
+        // Two facets carry where |y| < |x|, as h = AR·max(|x|, |y|); the force has no part across.
+        (Family::XFace3d, 0.3, &lateral[..], at(0.2, 0.1), 0.3),
+    ];
+    for (family, aspect_ratio, free, error, slope) in cases {
+        let found = sticking(&of(family, aspect_ratio, free), &error).unwrap();
+        // Found to 1e-9 where a slip of 1e-7 of the push counts as none; slip ends to 1e-6.
+        assert!((found.holds_from.unwrap() - slope).abs() < 1e-6, "{family:?} {found:?}");
+        assert!((found.slips_until.unwrap() - slope).abs() < 1e-5, "{family:?} {found:?}");
+    }
+}
+
+/// The apex of a pyramid of AR ½ in the valley between two facets of its socket, which both carry.
+#[test]
+fn in_a_valley_slip_ends_later_than_sticking_begins() {
+    let found = sticking(&of(Family::Pyramid, 0.5, &[Dof::X, Dof::Y]), &at(0.2, 0.2)).unwrap();
+    let slope = |ar: f64| SQRT_2 * ar * (1.0 + 2.0 * ar * ar).sqrt() / (1.0 + 4.0 * ar * ar).sqrt();
+    assert!((found.holds_from.unwrap() - 3f64.sqrt().recip()).abs() < 2e-6, "{found:?}");
+    assert!((found.slips_until.unwrap() - slope(0.5)).abs() < 1e-4, "{found:?}");
+}
+
+/// A pyramid turned by ψ in its socket, yaw alone free: four ridges lie on the rim. A force holds from tan(45° − ψ)·√2 AR/√(1 + 2 AR²) on.
+#[test]
+fn a_turned_pyramid_has_both_thresholds() {
+    let pair = of(Family::Pyramid, 1.0, &[Dof::Yaw]);
+    for (degrees, slips_until) in [(20.0f64, 0.426), (25.0, 0.320), (30.0, 0.2286), (35.0, 0.147)] {
+        let yaw = degrees.to_radians();
+        let found = sticking(&pair, &PoseError { yaw, ..PoseError::default() }).unwrap();
+        let holds_from = (FRAC_PI_4 - yaw).tan() * (2.0 / 3.0f64).sqrt();
+        assert!((found.holds_from.unwrap() - holds_from).abs() < 1e-5, "{degrees}: {found:?} {holds_from}");
+        // Three digits were published, four for 30°.
+        assert!((found.slips_until.unwrap() - slips_until).abs() < 6e-4, "{degrees}: {found:?} {slips_until}");
+    }
+}
+
+/// Motions end where friction holds them and not before.
+#[test]
+fn motions_stick_at_the_thresholds() {
+    let at_friction = |pair: &Pair, error: &PoseError, friction: f64| {
+        outcome(pair, error, &Settings::with_friction(friction).unwrap()).outcome
+    };
+    let facet = of(Family::Pyramid, 0.5, &[Dof::X, Dof::Y]);
+    let turned = of(Family::Pyramid, 1.0, &[Dof::Yaw]);
+    let yaw = PoseError { yaw: 30f64.to_radians(), ..PoseError::default() };
+    for (pair, error, threshold) in
+        [(&facet, at(0.2, 0.0), 1.0), (&facet, at(0.2, 0.2), 0.6124), (&turned, yaw, 0.2286)]
+    {
+        assert_eq!(at_friction(pair, &error, threshold - 2e-3), Outcome::Aligned, "{threshold}");
+        assert_eq!(at_friction(pair, &error, threshold + 2e-3), Outcome::Jammed, "{threshold}");
+    }
+}
+
+#[test]
+fn a_number_that_is_no_friction_is_refused() {
+    for friction in [-0.1, f64::NAN, f64::INFINITY, 11.0] {
+        let refusal = Settings::with_friction(friction).unwrap_err().to_string();
+        assert!(refusal.contains("from 0 to 10"), "{refusal}");
+    }
+}
+
+fn random(count: u64) -> Domain {
+    let stream = Stream::new(15);
+    let half = [0.5, 0.5, FRAC_PI_4, FRAC_PI_4, FRAC_PI_4];
+    let pose = |k: u64| {
+        let number = |j: usize| half[j] * (2.0 * stream.uniform(5 * k + j as u64) - 1.0);
+        PoseError::from_array(std::array::from_fn(number))
+    };
+    Domain::Poses((0..count).map(pose).collect())
+}
+
+/// Half the step changes at most one outcome in a hundred, and threads none.
+#[test]
+fn neither_steps_nor_threads_change_outcomes() {
+    for (family, friction) in [(Family::XFace3d, 0.2), (Family::Pyramid, 0.1)] {
+        let pair = pair(family, |alignment| alignment.free = DofSet::ALL);
+        let settings = Settings::with_friction(friction).unwrap();
+        let outcomes = |settings: &Settings, threads: usize| {
+            let exec = Exec::new().with_threads(threads).unwrap();
+            run(&pair, random(300), settings, &exec).unwrap().0.outcomes
+        };
+        let found = outcomes(&settings, 1);
+        assert_eq!(found, outcomes(&settings, 2));
+        let halved = outcomes(&Settings { step: 0.5 * settings.step, ..settings }, 2);
+        let differ = found.iter().zip(&halved).filter(|(a, b)| a != b).count();
+        assert!(differ <= 3, "{family:?}: {differ} of 300");
+    }
+}
