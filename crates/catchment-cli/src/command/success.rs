@@ -45,7 +45,7 @@ pub(crate) struct SuccessArgs {
     /// The success for which the largest standard deviations are sought
     #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
     required: f64,
-    /// Exact motions of each robot's probability [default: 4000, fewer for round halves]
+    /// Exact motions of each robot's probability [default: 8000, fewer for round halves]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(FEWEST_MOTIONS as i64..=10_000_000))]
     motions: Option<u32>,
     /// Cells per axis of the grid that says where to look; 0 for none [default: by the number of errors]
@@ -140,8 +140,7 @@ impl ExpectedArgs {
             (None, Some(text)) => ("--error-uniform", text, Distribution::uniform),
             (None, None) => return Ok(Vec::new()),
         };
-        let distribution =
-            read(text, design).map_err(|refusal| Failure::of_option(option, text, refusal))?;
+        let distribution = read(text, design).map_err(|refusal| Failure::of_option(option, text, refusal))?;
         Ok(vec![Robot { name: "robot".to_owned(), errors: Spread::of(&distribution)? }])
     }
 }

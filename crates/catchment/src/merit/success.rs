@@ -110,8 +110,7 @@ impl Masks {
                 axis_number(grid, dof)?;
             }
         }
-        let factor =
-            cholesky(covariance).map_err(|row| MeritError::NotACovariance { row: row + 1 })?;
+        let factor = cholesky(covariance).map_err(|row| MeritError::NotACovariance { row: row + 1 })?;
         let mut random = Random(seed);
         let [mut decided, mut inner, mut outer, mut outside] = [0usize; 4];
         for number in 0..samples {

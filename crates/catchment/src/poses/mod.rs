@@ -30,8 +30,8 @@ mod terms;
 mod text;
 mod written;
 
-pub use distribution::{Distribution, parse_sizes};
 pub use covariance::Matrix;
+pub use distribution::{Distribution, parse_sizes};
 pub use offsets::OffsetsAt;
 pub use robots::{MOST_ROBOTS, Moments, NotACovariance, Robot, Spread, read_robots};
 pub use table::{MOST_POSES, PoseTable};

@@ -227,7 +227,9 @@ impl SuccessesReport {
         let many = found.robots.len() > 1;
         for robot in &found.robots {
             let name = if many { format!("{}: ", robot.robot) } else { String::new() };
-            doubts.extend(warnings(robot).into_iter().map(|text| WarningReport::note(&format!("{name}{text}"))));
+            doubts.extend(
+                warnings(robot).into_iter().map(|text| WarningReport::note(&format!("{name}{text}"))),
+            );
         }
         let worst = found.worst();
         let success = Headline {

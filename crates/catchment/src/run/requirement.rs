@@ -244,7 +244,10 @@ fn steps(value: &Value) -> Vec<(Vec<String>, &Value)> {
             .enumerate()
             .map(|(k, next)| {
                 let named = |key: &str| next.get(key).and_then(Value::as_str).map(str::to_owned);
-                (std::iter::once(k.to_string()).chain(named("axis").or_else(|| named("robot"))).collect(), next)
+                (
+                    std::iter::once(k.to_string()).chain(named("axis").or_else(|| named("robot"))).collect(),
+                    next,
+                )
             })
             .collect(),
         _ => Vec::new(),

@@ -38,8 +38,8 @@ use crate::landscape::Grid;
 use crate::method::{DecideError, descent};
 use crate::pose::{Dof, PoseError};
 pub(crate) use interval::{Seen, Whole};
-pub(crate) use schedule::{allot, next};
 use rayon::prelude::*;
+pub(crate) use schedule::{allot, next};
 use serde::{Deserialize, Serialize};
 use strata::Strata;
 

@@ -301,7 +301,11 @@ impl Reader<'_> {
                     _ => None,
                 };
                 let Some(number) = number.filter(|number| number.is_finite()) else {
-                    self.refuse(entry.span(), "it is no finite number", "bare numbers, their units in `units`");
+                    self.refuse(
+                        entry.span(),
+                        "it is no finite number",
+                        "bare numbers, their units in `units`",
+                    );
                     return None;
                 };
                 read.push((number, entry.span()));
@@ -357,7 +361,11 @@ impl Reader<'_> {
         let sigma: [f64; 5] = std::array::from_fn(|k| covariance[k][k].sqrt());
         for dof in dofs.iter().filter(|dof| !(sigma[dof.index()] <= LARGEST)) {
             let message = format!("the standard deviation of {dof} is {:.4}", sigma[dof.index()]);
-            self.refuse(value.span(), message, "is the unit right? Entries are in the units of their row times their column");
+            self.refuse(
+                value.span(),
+                message,
+                "is the unit right? Entries are in the units of their row times their column",
+            );
             return None;
         }
         // Symmetry is judged by what was written, before correlations are cut to what they can be.
@@ -434,7 +442,8 @@ impl Reader<'_> {
                 let (lower, upper) = (correlation[a.index()][b.index()], correlation[b.index()][a.index()]);
                 if !(lower - upper).is_nan() && (lower - upper).abs() > SYMMETRIC_WITHIN {
                     let ((below, at), (above, _)) = (written[i][j].clone(), &written[j][i]);
-                    let message = format!("{a} with {b} is {below}, and {b} with {a} is {above}: it is not symmetric");
+                    let message =
+                        format!("{a} with {b} is {below}, and {b} with {a} is {above}: it is not symmetric");
                     self.refuse(at, message, "both are the same number");
                     return None;
                 }
@@ -450,13 +459,16 @@ impl Reader<'_> {
         let (least, along) = least_eigenvalue(&correlation);
         if least < -SEMIDEFINITE_WITHIN {
             let parts = dofs.iter().filter(|dof| along[dof.index()].abs() > 0.05);
-            let parts: Vec<String> =
-                parts.map(|dof| format!("{:+.2} {dof}", along[dof.index()])).collect();
+            let parts: Vec<String> = parts.map(|dof| format!("{:+.2} {dof}", along[dof.index()])).collect();
             let message = format!(
                 "it is not positive semidefinite: of its correlations an eigenvalue is {least:.4}, along {}",
                 parts.join(" ")
             );
-            self.refuse(span, message, "no errors can spread so; are there correlations beyond what the others leave?");
+            self.refuse(
+                span,
+                message,
+                "no errors can spread so; are there correlations beyond what the others leave?",
+            );
             return None;
         }
         // What rounding left below 0 is lifted to it: every correlation gives way by as little.

@@ -68,7 +68,8 @@ fn all_problems_come_at_once_in_their_places() {
     let found = wrong(text);
     let places: Vec<&str> = found.iter().map(|(place, _)| place.as_str()).collect();
     assert_eq!(places[..5], ["\"\"", "\"-1 mm\"", "ptich", "\"2 mm\"", "1"], "{found:?}");
-    let said = |piece: &str| assert!(found.iter().any(|(_, said)| said.contains(piece)), "{piece}: {found:?}");
+    let said =
+        |piece: &str| assert!(found.iter().any(|(_, said)| said.contains(piece)), "{piece}: {found:?}");
     said("did you mean pitch");
     said("this design locks it");
     said("spread in 2 ways: sigma, uniform");

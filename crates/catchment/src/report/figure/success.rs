@@ -9,6 +9,8 @@ use crate::report::{DockingReport, SuccessesReport};
 
 /// Colour of what is required.
 const REQUIRED: Rgb = [0x5f, 0x6b, 0x7a];
+/// Factors below it say little: nearly all docks.
+const LEAST: f64 = 0.25;
 /// Curves that are drawn: as many as there are colours.
 const MOST: usize = CURVES.len();
 
@@ -20,7 +22,11 @@ pub fn success(report: &SuccessesReport) -> Picture {
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let head = &report.success;
     let [lo, hi] = head.ci95.map(|share| short(100.0 * share));
-    let of = if report.robots.len() > 1 { format!(" of {}, the least of all,", head.robot) } else { String::new() };
+    let of = if report.robots.len() > 1 {
+        format!(" of {}, the least of all,", head.robot)
+    } else {
+        String::new()
+    };
     let story = format!(
         "success{of} {} %, from {lo} to {hi} % with 95 % confidence",
         short(100.0 * head.probability)
@@ -36,7 +42,7 @@ pub fn success(report: &SuccessesReport) -> Picture {
         mark: Some((1.0, "as they are")),
     }
     .draw(&mut svg);
-    legend(&mut svg, &lines, [left, top - 16.0]);
+    legend(&mut svg, &lines, [left, top - 34.0]);
     if let Some(robot) = report.worst() {
         gains(&mut svg, report, robot, bars);
     }
@@ -51,7 +57,12 @@ fn lines(report: &SuccessesReport) -> Vec<Line> {
         points: robot
             .curve
             .iter()
-            .map(|at| Point { x: at.factor, y: percent(at.probability), interval: Some(at.ci95.map(percent)) })
+            .filter(|at| at.factor >= LEAST)
+            .map(|at| Point {
+                x: at.factor,
+                y: percent(at.probability),
+                interval: Some(at.ci95.map(percent)),
+            })
             .collect(),
     };
     let mut lines: Vec<Line> = report.robots.iter().take(MOST).enumerate().map(of).collect();
@@ -69,7 +80,11 @@ fn lines(report: &SuccessesReport) -> Vec<Line> {
 /// A bar for each error, with the interval of its gain; and where all of them are nothing, a line.
 fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &DockingReport, rect: Rect) {
     let units = Units::of(&report.design);
-    let head = if report.robots.len() > 1 { format!("halved, one by one: {}", robot.robot) } else { "halved, one by one".to_owned() };
+    let head = if report.robots.len() > 1 {
+        format!("halved, one by one: {}", robot.robot)
+    } else {
+        "halved, one by one".to_owned()
+    };
     svg.text([rect.x, rect.y - 16.0], LABEL, Anchor::Start, INK, &head);
     let (low, high) = robot.improve.iter().fold((0.0f64, 0.0f64), |(low, high), improve| {
         let [lo, hi] = improve.gain_ci95;
@@ -99,8 +114,8 @@ fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &DockingReport, rect: R
         for end in [lo, hi] {
             svg.line([end, middle - 3.5], [end, middle + 3.5], &whisker);
         }
-        let points = short(100.0 * improve.gain);
-        svg.text([rect.x + rect.w + 10.0, middle + 4.0], LABEL, Anchor::Start, INK, &format!("{points} %"));
+        let points = format!("{:+.2}", 100.0 * improve.gain).replace('-', "−");
+        svg.text([rect.x + rect.w + 10.0, middle + 4.0], LABEL, Anchor::Start, INK, &points);
     }
     let bottom = rect.y + each * count;
     svg.line([px(0.0), rect.y], [px(0.0), bottom], &format!(r#"stroke="{SOFT}" stroke-width="1""#));

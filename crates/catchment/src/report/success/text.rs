@@ -2,7 +2,7 @@
 
 use super::super::table::heading;
 use super::super::text::{grouped, line, percent, row, significant, wrapped};
-use super::{DockingReport, FitReport, SuccessesReport};
+use super::{DockingReport, FirstReport, FitReport, SuccessesReport};
 use crate::pose::{Dof, PoseError};
 use crate::study::success::Factor;
 
@@ -30,7 +30,7 @@ impl SuccessesReport {
 
     fn robot(&self, text: &mut String, robot: &DockingReport) {
         let [lo, hi] = robot.ci95;
-        row(text, "robot", &format!("{}: {}", robot.robot, self.errors(robot)));
+        wrapped(text, &format!("  {:<15}", "robot"), &format!("{}: {}", robot.robot, self.errors(robot)));
         row(
             text,
             "success",
@@ -59,9 +59,8 @@ impl SuccessesReport {
         let errors = &robot.errors;
         let sigma = errors.sigma.to_array();
         let axes = Dof::ALL.into_iter().filter(|dof| sigma[dof.index()] > 0.0);
-        let said: Vec<String> = axes
-            .map(|axis| format!("{} {}", axis.name(), self.length(axis, sigma[axis.index()])))
-            .collect();
+        let said: Vec<String> =
+            axes.map(|axis| format!("{} {}", axis.name(), self.length(axis, sigma[axis.index()]))).collect();
         let correlated = (0..5).any(|i| (0..i).any(|j| errors.correlation[i][j] != 0.0));
         let kind = match (errors.kind, errors.rows) {
             ("measured", Some(rows)) => format!("{} measured errors", grouped(rows)),
@@ -89,7 +88,10 @@ impl SuccessesReport {
         if !fit.rejected {
             let worst = fit.axes.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
             if let (Some(worst), Some(rows)) = (worst, robot.errors.rows) {
-                let said = format!("least normal is {}; {} rows reject what is far from normal only", worst.axis, rows);
+                let said = format!(
+                    "least normal is {}; {} rows reject what is far from normal only",
+                    worst.axis, rows
+                );
                 if rows < FEW {
                     row(text, "", &said);
                 }
@@ -99,19 +101,19 @@ impl SuccessesReport {
 
     fn failures(&self, text: &mut String, robot: &DockingReport) {
         let failures = &robot.failures;
-        if failures.first.is_none() {
+        if failures.share == 0.0 && failures.first.as_ref().is_none_or(|first| first.distance > 0.0) {
             row(text, "failures", "none was met");
+            if let Some(first) = &failures.first {
+                self.first(text, robot, first, "further out");
+            }
             return;
         }
-        let mut kinds: Vec<String> = [
-            ("jammed", failures.jammed),
-            ("missed", failures.missed),
-            ("undecided", failures.undecided),
-        ]
-        .into_iter()
-        .filter(|(_, share)| *share > 0.0)
-        .map(|(name, share)| format!("{:.0} % {name}", 100.0 * share))
-        .collect();
+        let mut kinds: Vec<String> =
+            [("jammed", failures.jammed), ("missed", failures.missed), ("undecided", failures.undecided)]
+                .into_iter()
+                .filter(|(_, share)| *share > 0.0)
+                .map(|(name, share)| format!("{:.0} % {name}", 100.0 * share))
+                .collect();
         if kinds.is_empty() {
             kinds.push("none of the sample".to_owned());
         }
@@ -125,22 +127,25 @@ impl SuccessesReport {
             ))
         });
         row(text, "failures", &format!("{}{}", kinds.join(", "), along.unwrap_or_default()));
-        let Some(first) = &failures.first else { return };
-        if first.distance == 0.0 {
-            row(text, "fails first", &format!("at its mean: {}", first.outcome.name()));
-            return;
+        match &failures.first {
+            Some(first) if first.distance == 0.0 => {
+                row(text, "fails first", &format!("at its mean: {}", first.outcome.name()));
+            }
+            Some(first) => self.first(text, robot, first, "fails first"),
+            None => {}
         }
+    }
+
+    fn first(&self, text: &mut String, robot: &DockingReport, first: &FirstReport, name: &str) {
         let unit = if robot.errors.kind == "uniform" { "of the half-width" } else { "σ" };
-        let said: Vec<String> = failures
+        let said: Vec<String> = robot
+            .failures
             .along
             .iter()
             .map(|along| format!("{} {:+.2}", along.axis.name(), first.sigmas.to_array()[along.axis.index()]))
             .collect();
-        row(
-            text,
-            "fails first",
-            &format!("{} {unit}: {}, at a distance of {:.2}", said.join(", "), first.outcome.name(), first.distance),
-        );
+        let distance = format!("{}, at a distance of {:.2}", first.outcome.name(), first.distance);
+        wrapped(text, &format!("  {name:<15}"), &format!("{} {unit}: {distance}", said.join(", ")));
         row(text, "", &self.place(&first.error, &robot.errors.sigma));
     }
 
@@ -150,7 +155,11 @@ impl SuccessesReport {
             text,
             &format!(
                 "  {:<9}{:>12}{:>22}{:>14}   {:>17}",
-                "improve", "σ", "halved: success", "gain", format!("σ for {required}")
+                "improve",
+                "σ",
+                "halved: success",
+                "gain, points",
+                format!("σ for {required}")
             ),
         );
         for improve in &robot.improve {

@@ -200,10 +200,10 @@ fn plain_motions(probability: f64, [lo, hi]: [f64; 2]) -> f64 {
     let (mut few, mut many) = (0.0f64, 40.0f64);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (few + many);
-        let [l, u] = wilson95(probability, middle.exp());
+        let [l, u] = wilson95(probability, libm::exp(middle));
         if u - l > hi - lo { few = middle } else { many = middle }
     }
-    many.exp()
+    libm::exp(many)
 }
 
 /// What was seen of a stratum, batch by batch.
@@ -370,11 +370,7 @@ impl Sample {
 
     /// By stratum and error: sum of the scores of all errors that were drawn, and of their squares. In blocks, in their order, so that
     /// threads change nothing.
-    fn score_sums(
-        &self,
-        source: &Source<'_>,
-        exec: &Exec,
-    ) -> Result<Vec<[[f64; 2]; 5]>, Cancelled> {
+    fn score_sums(&self, source: &Source<'_>, exec: &Exec) -> Result<Vec<[[f64; 2]; 5]>, Cancelled> {
         let of_block = |(block, labels): (usize, &[u8])| {
             exec.check()?;
             let mut sums = vec![[[0.0; 2]; 5]; STRATA];

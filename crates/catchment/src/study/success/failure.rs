@@ -10,6 +10,8 @@
 //!        ·  ·  ✕         then moves about the nearest of all; each nearer one is bisected again
 //! ```
 //!
+//! Where nothing failed it is looked further out, up to 8 σ (3 half-widths): such an error says how far away failure is, not how likely.
+//!
 //! Not promised: that no failing error lies nearer. Failures thinner than what random errors hit are found by luck.
 
 use super::estimate::{Followed, Sample};
@@ -23,6 +25,9 @@ use rayon::prelude::*;
 
 /// Failures of the sample that are bisected.
 const NEAREST: usize = 64;
+/// Where nothing failed: how far out it is looked, in σ or half-widths.
+const FAR: f64 = 8.0;
+const FAR_UNIFORM: f64 = 3.0;
 /// Relative width to which they are.
 const SHARP: f64 = 1e-3;
 /// Moves at a time, and how many times at most; a round that finds nothing nearer halves their spread.
@@ -108,7 +113,17 @@ fn first(
         .collect();
     candidates.sort_by(|a, b| a.1.total_cmp(&b.1));
     candidates.truncate(NEAREST);
-    let zs: Vec<[f64; 5]> = candidates.into_iter().map(|(z, _)| z).collect();
+    let mut zs: Vec<[f64; 5]> = candidates.into_iter().map(|(z, _)| z).collect();
+    if zs.is_empty() {
+        // Nothing failed: further out along the directions of the sample.
+        let far = if source.is_uniform() { FAR_UNIFORM } else { FAR };
+        let outwards = sample.poses.iter().take(NEAREST).filter_map(|pose| {
+            let z = source.standard(pose.number);
+            let distance = source.distance(&z);
+            (distance > 0.0).then(|| z.map(|part| part * far / distance))
+        });
+        zs = outwards.collect();
+    }
     let (mut best, mut motions) = nearest(problem, source, &zs, exec)?;
     let mut spread = SPREAD;
     for round in 0..ROUNDS {

@@ -147,15 +147,15 @@ impl<'a> Source<'a> {
 
     fn of_row(&self, row: &PoseError) -> [f64; 5] {
         let row = row.to_array();
-        std::array::from_fn(|k| if self.scale[k] > 0.0 { (row[k] - self.mean[k]) / self.scale[k] } else { 0.0 })
+        std::array::from_fn(
+            |k| if self.scale[k] > 0.0 { (row[k] - self.mean[k]) / self.scale[k] } else { 0.0 },
+        )
     }
 
     /// The errors in units of their σ.
     pub(super) fn in_sigmas(&self, z: &[f64; 5]) -> [f64; 5] {
         match self.law {
-            Law::Normal => {
-                std::array::from_fn(|i| (0..=i).map(|k| self.factor[i][k] * z[k]).sum())
-            }
+            Law::Normal => std::array::from_fn(|i| (0..=i).map(|k| self.factor[i][k] * z[k]).sum()),
             _ => *z,
         }
     }
@@ -168,14 +168,11 @@ impl<'a> Source<'a> {
 
     /// How far from the mean, in σ: Mahalanobis' distance; in half-widths where errors are uniform.
     pub(super) fn distance(&self, z: &[f64; 5]) -> f64 {
-        let length = |v: &[f64; 5]| {
-            self.varying().map(|dof| v[dof.index()] * v[dof.index()]).sum::<f64>().sqrt()
-        };
+        let length =
+            |v: &[f64; 5]| self.varying().map(|dof| v[dof.index()] * v[dof.index()]).sum::<f64>().sqrt();
         match self.law {
             Law::Normal => length(z),
-            Law::Uniform | Law::Face(_) => {
-                self.varying().map(|dof| z[dof.index()].abs()).fold(0.0, f64::max)
-            }
+            Law::Uniform | Law::Face(_) => self.varying().map(|dof| z[dof.index()].abs()).fold(0.0, f64::max),
             Law::Rows(_) | Law::AnyRows(_) => length(&solve_lower(&self.factor, z)),
         }
     }
@@ -184,7 +181,8 @@ impl<'a> Source<'a> {
     pub(super) fn has_scores(&self) -> bool {
         /// Smaller than that a correlation leaves nothing of an error's own.
         const OWN: f64 = 1e-4;
-        matches!(self.law, Law::Normal) && self.varying().all(|dof| self.factor[dof.index()][dof.index()] > OWN)
+        matches!(self.law, Law::Normal)
+            && self.varying().all(|dof| self.factor[dof.index()][dof.index()] > OWN)
     }
 
     /// d log(density)/d log σₖ at z, of normal errors: yₖ·(C⁻¹y)ₖ − 1.

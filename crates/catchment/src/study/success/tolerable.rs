@@ -17,6 +17,7 @@ use super::strata::Strata;
 use super::{AtFactor, Factor};
 use crate::exec::{Cancelled, Exec};
 use crate::problem::Problem;
+use std::f64::consts::SQRT_2;
 
 /// Steps of √2 down and up from 1 that are tried at most: from 1/16 to 4.
 const DOWN: i32 = 8;
@@ -80,12 +81,12 @@ impl<'a> Curve<'a> {
 
     /// The largest factor with which the success is at least `required`, and its interval.
     pub(super) fn factor(&mut self, required: f64, exec: &Exec) -> Result<Factor, Cancelled> {
-        let step = |k: i32| 2f64.powf(0.5 * f64::from(k));
         let one = self.look(1.0, exec)?;
         // Down until even the lower end is high enough, up until even the upper end is too low.
         let mut lowest = one;
         for k in 1..=DOWN {
-            if lowest.ci95[0] >= required {
+            // What never fails becomes no surer with smaller errors.
+            if lowest.ci95[0] >= required || lowest.probability >= 1.0 {
                 break;
             }
             lowest = self.look(step(-k), exec)?;
@@ -113,6 +114,12 @@ impl<'a> Curve<'a> {
             is_less: factor == Crossing::Never,
         })
     }
+}
+
+/// √2 to a power; even powers exactly.
+fn step(power: i32) -> f64 {
+    let whole = 2f64.powi(power.div_euclid(2));
+    if power.rem_euclid(2) == 1 { whole * SQRT_2 } else { whole }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,7 +150,7 @@ fn crossing(points: &[AtFactor], required: f64, value: impl Fn(&AtFactor) -> f64
     let (before, after) = (&points[k - 1], &points[k]);
     let (high, low) = (value(before), value(after));
     let part = (high - required) / (high - low);
-    Crossing::At(before.factor * (after.factor / before.factor).powf(part))
+    Crossing::At(before.factor * libm::pow(after.factor / before.factor, part))
 }
 
 #[cfg(test)]
