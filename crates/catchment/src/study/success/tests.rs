@@ -90,6 +90,7 @@ fn of_uniform_offsets_too() {
     assert!((robot.improve[0].sigma - 0.8 / 3f64.sqrt()).abs() < 1e-12);
     // 0.5/0.99 of the half-width.
     assert!(within(robot.tolerable.ci95, 0.5 / 0.99 / 0.8), "{:?}", robot.tolerable);
+    assert!((robot.tolerable.factor * 0.8 * 0.99 / 0.5 - 1.0).abs() < 0.04, "{:?}", robot.tolerable);
 }
 
 /// Correlated and measured errors, against plain motions of the same: both intervals meet.

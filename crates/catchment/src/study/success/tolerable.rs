@@ -3,13 +3,13 @@
 //! ```text
 //!   P ▲──╲_                    P(t): every σ multiplied by t; the same random errors at every t
 //!     │    ╲ ┬                 the factors tried: powers of √2 until P and its interval have crossed what is required,
-//!   R ┼─ ─ ─┼●┼─ ─             then where they cross it, between two of them
+//!   R ┼─ ─ ─┼●┼─ ─             then the middle between the two that it lies between, again and again
 //!     │       ┴╲_              ● the factor; its interval: where the ends of the interval of P cross R
 //!     └──────────────▶ t
 //! ```
 //!
-//! The crossing is the first one from below: with every smaller factor that was tried the success is at least what is required. Between two
-//! factors that were tried, log t is taken to run straight in P.
+//! The crossing is the first one from below: with every smaller factor that was tried the success is at least what is required. Between the last two
+//! factors that were tried around it, some percent apart, log t is taken to run straight in P; the ends of the interval are factors that were tried.
 
 use super::estimate::{Sample, sample};
 use super::source::Source;
@@ -22,8 +22,9 @@ use std::f64::consts::SQRT_2;
 /// Steps of √2 down and up from 1 that are tried at most: from 1/16 to 4.
 const DOWN: i32 = 8;
 const UP: i32 = 4;
-/// Where a crossing is known between two factors, it is looked at once more there; so often.
-const REFINED: usize = 2;
+/// How often the middle is looked at between two factors around the crossing, of the probability and of both ends of its interval: √2 apart
+/// at first, then 4 % and 9 %.
+const HALVINGS: [usize; 3] = [3, 2, 2];
 
 /// The probability at some factors, in ascending order, and how many motions that took.
 pub(super) struct Curve<'a> {
@@ -98,18 +99,24 @@ impl<'a> Curve<'a> {
             }
             highest = self.look(step(k), exec)?;
         }
-        for _ in 0..REFINED {
-            let crossing = crossing(&self.points, required, |point| point.probability);
-            if let Crossing::At(factor) = crossing {
-                self.look(factor, exec)?;
+        let values: [fn(&AtFactor) -> f64; 3] =
+            [|point| point.probability, |point| point.ci95[0], |point| point.ci95[1]];
+        for (value, halvings) in values.into_iter().zip(HALVINGS) {
+            for _ in 0..halvings {
+                if let Some([before, after]) = bracket(&self.points, required, value) {
+                    self.look((before.factor * after.factor).sqrt(), exec)?;
+                }
             }
         }
-        let by = |value: fn(&AtFactor) -> f64| crossing(&self.points, required, value);
-        let factor = by(|point| point.probability);
-        let ends = [by(|point| point.ci95[0]), by(|point| point.ci95[1])];
+        let [middle, low, high] = values;
+        let factor = crossing(&self.points, required, middle);
+        // The ends are the outer ones of what was tried, so that nothing rests on how P runs between.
+        let surely = bracket(&self.points, required, low).map(|[before, _]| before.factor);
+        let at_most = bracket(&self.points, required, high).map(|[_, after]| after.factor);
+        let beyond = |value| crossing(&self.points, required, value).value(&self.points);
         Ok(Factor {
             factor: factor.value(&self.points),
-            ci95: ends.map(|end| end.value(&self.points)),
+            ci95: [surely.unwrap_or_else(|| beyond(low)), at_most.unwrap_or_else(|| beyond(high))],
             is_more: factor == Crossing::Beyond,
             is_less: factor == Crossing::Never,
         })
@@ -139,6 +146,12 @@ impl Crossing {
             Self::Never => 0.0,
         }
     }
+}
+
+/// The two factors between which a value first falls below what is required.
+fn bracket(points: &[AtFactor], required: f64, value: fn(&AtFactor) -> f64) -> Option<[AtFactor; 2]> {
+    let after = points.iter().position(|point| value(point) < required)?;
+    Some([*points.get(after.checked_sub(1)?)?, points[after]])
 }
 
 /// Where a value first falls below what is required.
