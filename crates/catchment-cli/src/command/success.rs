@@ -13,7 +13,7 @@ use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{SuccessesReport, csv, figure};
 use catchment::run::Requirement;
-use catchment::study::success::{FEWEST_MOTIONS, Settings, Success, run as ask};
+use catchment::study::success::{Settings, Success, run as ask};
 use clap::Args;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -46,7 +46,7 @@ pub(crate) struct SuccessArgs {
     #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
     required: f64,
     /// Exact motions of each robot's probability [default: 8000, fewer for round halves]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(FEWEST_MOTIONS as i64..=10_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     motions: Option<u32>,
     /// Cells per axis of the grid that says where to look; 0 for none [default: by the number of errors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
@@ -126,6 +126,7 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
 
 impl ExpectedArgs {
     fn robots(&self, problem: &Problem) -> Result<Vec<Robot>, Failure> {
+        type Read = fn(&str, &Design) -> Result<Distribution, Findings>;
         let design = problem.design();
         if let Some(path) = &self.robots {
             return from_file(path, design);
@@ -134,7 +135,6 @@ impl ExpectedArgs {
             let errors = Spread::measured(read_table(path)?, design)?;
             return Ok(vec![Robot { name: "robot".to_owned(), errors }]);
         }
-        type Read = fn(&str, &Design) -> Result<Distribution, Findings>;
         let (option, text, read): (_, _, Read) = match (&self.error_sigma, &self.error_uniform) {
             (Some(text), _) => ("--error-sigma", text, Distribution::normal),
             (None, Some(text)) => ("--error-uniform", text, Distribution::uniform),

@@ -85,9 +85,9 @@ fn rotate(a: &mut Matrix, v: &mut Matrix, p: usize, q: usize) {
     for row in a.iter_mut() {
         (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
     }
-    for k in 0..5 {
-        (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-    }
+    let (upper, lower) = (a[p], a[q]);
+    a[p] = std::array::from_fn(|k| c * upper[k] - s * lower[k]);
+    a[q] = std::array::from_fn(|k| s * upper[k] + c * lower[k]);
     for row in v.iter_mut() {
         (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
     }
@@ -96,8 +96,8 @@ fn rotate(a: &mut Matrix, v: &mut Matrix, p: usize, q: usize) {
 /// z with L·z = `y`; where a row of L has nothing on its diagonal, 0.
 pub(crate) fn solve_lower(l: &Matrix, y: &[f64; 5]) -> [f64; 5] {
     let mut z = [0.0; 5];
-    for i in 0..5 {
-        let rest = y[i] - (0..i).map(|k| l[i][k] * z[k]).sum::<f64>();
+    for (i, y) in y.iter().enumerate() {
+        let rest = y - (0..i).map(|k| l[i][k] * z[k]).sum::<f64>();
         z[i] = if l[i][i] > 0.0 { rest / l[i][i] } else { 0.0 };
     }
     z

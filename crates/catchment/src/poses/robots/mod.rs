@@ -29,6 +29,7 @@
 //!
 //! Lengths in D, angles in radians.
 
+mod matrix;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -188,7 +189,9 @@ fn of_poses(poses: &[PoseError]) -> Moments {
         let size = poses.first().map_or(0.0, |pose| pose.to_array()[k].abs());
         if covariance[k][k].sqrt() <= 1e-12 * size {
             covariance[k] = [0.0; 5];
-            covariance.iter_mut().for_each(|row| row[k] = 0.0);
+            for row in &mut covariance {
+                row[k] = 0.0;
+            }
         }
     }
     let (sigma, correlation) = parted(&covariance);

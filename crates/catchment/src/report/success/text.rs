@@ -47,7 +47,7 @@ impl SuccessesReport {
         };
         row(text, "", &cost);
         if let Some(fit) = &robot.fit {
-            self.fit(text, robot, fit);
+            told_fit(text, robot, fit);
         }
         self.failures(text, robot);
         text.push('\n');
@@ -73,30 +73,6 @@ impl SuccessesReport {
             String::new()
         };
         format!("{kind}, σ {}{mean}", said.join(", "))
-    }
-
-    fn fit(&self, text: &mut String, robot: &DockingReport, fit: &FitReport) {
-        let verdict = if fit.rejected { "rejected" } else { "not rejected" };
-        let p = if fit.p_value < 0.001 { "p < 0.001".to_owned() } else { format!("p = {:.3}", fit.p_value) };
-        let success = match (fit.probability, fit.ci95) {
-            (Some(probability), Some([lo, hi])) => {
-                format!(": {} by it ({} … {})", chance(probability), chance(lo), chance(hi))
-            }
-            _ => String::new(),
-        };
-        row(text, "normal fit", &format!("{verdict}, {p}{success}"));
-        if !fit.rejected {
-            let worst = fit.axes.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
-            if let (Some(worst), Some(rows)) = (worst, robot.errors.rows) {
-                let said = format!(
-                    "least normal is {}; {} rows reject what is far from normal only",
-                    worst.axis, rows
-                );
-                if rows < FEW {
-                    row(text, "", &said);
-                }
-            }
-        }
     }
 
     fn failures(&self, text: &mut String, robot: &DockingReport) {
@@ -218,6 +194,29 @@ impl SuccessesReport {
             .map(|dof| format!("{} {}", dof.name(), self.length(dof, error[dof.index()])))
             .collect();
         said.join(", ")
+    }
+}
+
+/// The normal fit beside measured errors.
+fn told_fit(text: &mut String, robot: &DockingReport, fit: &FitReport) {
+    let verdict = if fit.rejected { "rejected" } else { "not rejected" };
+    let p = if fit.p_value < 0.001 { "p < 0.001".to_owned() } else { format!("p = {:.3}", fit.p_value) };
+    let success = match (fit.probability, fit.ci95) {
+        (Some(probability), Some([lo, hi])) => {
+            format!(": {} by it ({} … {})", chance(probability), chance(lo), chance(hi))
+        }
+        _ => String::new(),
+    };
+    row(text, "normal fit", &format!("{verdict}, {p}{success}"));
+    if !fit.rejected {
+        let worst = fit.axes.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
+        if let (Some(worst), Some(rows)) = (worst, robot.errors.rows) {
+            let said =
+                format!("least normal is {}; {} rows reject what is far from normal only", worst.axis, rows);
+            if rows < FEW {
+                row(text, "", &said);
+            }
+        }
     }
 }
 

@@ -16,12 +16,13 @@
 //! Slopes have normal intervals; in every stratum the share that docks is drawn towards a half by two poses of either kind, so that one in which nothing
 //! failed still has its doubt.
 
+use super::drawn::Drawn;
 use super::source::{SAME, Source};
-use super::strata::{STRATA, Strata, name};
+use super::strata::{STRATA, Strata};
 use super::{Slope, Stratum};
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
-use crate::method::correction::{Seen, Stop, Whole, Z95, allot, next, wilson95};
+use crate::method::correction::{Stop, Whole, Z95, allot, next};
 use crate::method::descent::{self, Follower};
 use crate::pose::Dof;
 use crate::problem::Problem;
@@ -44,7 +45,8 @@ pub(super) struct Followed {
     pub(super) weight: f64,
     /// What became of it.
     pub(super) outcome: Outcome,
-    stratum: usize,
+    /// Its stratum.
+    pub(super) stratum: usize,
 }
 
 /// What a sample says.
@@ -64,12 +66,12 @@ pub(super) struct Sample {
     /// What was seen of every stratum that has errors.
     pub(super) strata: Vec<Stratum>,
     /// The stratum of every error that was drawn.
-    labels: Vec<u8>,
+    pub(super) labels: Vec<u8>,
     /// Share that docks, by stratum, and the same drawn towards a half.
-    docks: [f64; STRATA],
-    doubted: [f64; STRATA],
+    pub(super) docks: [f64; STRATA],
+    pub(super) doubted: [f64; STRATA],
     /// Poses that would know the share of the stratum as well, if drawn at one go.
-    trials: [f64; STRATA],
+    pub(super) trials: [f64; STRATA],
 }
 
 /// Draws errors, and follows `motions` of them; of rows in their order, all.
@@ -82,194 +84,31 @@ pub(super) fn sample(
     exec: &Exec,
 ) -> Result<Sample, Cancelled> {
     let plain = source.rows().or((!strata.is_some()).then_some(motions));
-    let labels = match plain {
-        Some(count) => vec![0; count],
-        None => {
-            let drawn = (DRAWN_PER_MOTION * motions).clamp(FEWEST_DRAWN, MOST_DRAWN);
-            labels(source, factors, strata, drawn, exec)?
-        }
+    let labels = if let Some(count) = plain {
+        vec![0; count]
+    } else {
+        let drawn = (DRAWN_PER_MOTION * motions).clamp(FEWEST_DRAWN, MOST_DRAWN);
+        labels(source, factors, strata, drawn, exec)?
     };
     let motions = plain.unwrap_or(motions);
-    let drawn = labels.len();
-    let mut members: Vec<Vec<u32>> = vec![Vec::new(); STRATA];
-    for (number, label) in labels.iter().enumerate() {
-        members[usize::from(*label)].push(number as u32);
-    }
-    let present: Vec<usize> = (0..STRATA).filter(|s| !members[*s].is_empty()).collect();
-    let share = |s: usize| members[s].len() as f64 / drawn.max(1) as f64;
-    let mut records: Vec<Record> = present.iter().map(|_| Record::default()).collect();
-    let mut poses = Vec::new();
-    let (mut total, mut sizes) = (0, Vec::new());
-    let rebuilt = |records: &[Record], total: usize, sizes: &[usize]| -> Vec<Seen> {
-        present
-            .iter()
-            .zip(records)
-            .map(|(s, record)| record.seen(share(*s), members[*s].len(), total, sizes))
-            .collect()
-    };
-    let mut seen = rebuilt(&records, 0, &[]);
+    let mut drawn = Drawn::new(labels, plain.is_some());
+    let mut seen = drawn.seen();
     let mut whole = Whole::of(&seen, 0);
-    while let Some(batch) =
-        next(Stop::Samples(motions), total, present.len(), Duration::ZERO, &whole).filter(|_| drawn > 0)
+    while let Some(batch) = next(Stop::Samples(motions), drawn.total(), seen.len(), Duration::ZERO, &whole)
+        .filter(|_| !seen.is_empty())
     {
-        let mut numbered: Vec<(usize, u64)> = Vec::new();
-        for (k, given) in allot(batch.poses, &seen).into_iter().enumerate() {
-            let list = &members[present[k]];
-            let from = records[k].followed();
-            let numbers = list[from.min(list.len())..(from + given).min(list.len())].iter();
-            numbered.extend(numbers.map(|number| (k, u64::from(*number))));
-        }
-        let part = exec.part(
-            [total as f64 / motions as f64, (total + batch.poses) as f64 / motions as f64],
-            "random motions",
-        );
+        let numbered = drawn.batch(&allot(batch.poses, &seen));
+        let span = [drawn.total(), drawn.total() + batch.poses].map(|done| done as f64 / motions as f64);
+        let part = exec.part(span, "random motions");
         let outcomes = follow(problem, source, factors, &numbered, &part)?;
-        records.iter_mut().for_each(Record::begin);
-        for ((k, number), outcome) in numbered.iter().zip(outcomes) {
-            records[*k].push(outcome);
-            poses.push((*k, sizes.len(), *number, outcome));
-        }
-        sizes.push(batch.poses);
-        total += batch.poses;
-        seen = rebuilt(&records, total, &sizes);
-        whole = Whole::of(&seen, total);
+        drawn.take(batch.poses, &numbered, &outcomes);
+        seen = drawn.seen();
+        whole = Whole::of(&seen, drawn.total());
         if batch.last || numbered.is_empty() {
             break;
         }
     }
-    let (mut docks, mut doubted, mut trials) = ([0.0; STRATA], [0.0; STRATA], [0.0; STRATA]);
-    for ((s, record), seen) in present.iter().zip(&records).zip(&seen) {
-        docks[*s] = seen.shares(total)[0];
-        // Two of either kind (Agresti and Coull 1998).
-        doubted[*s] = (record.counts()[0] as f64 + 2.0) / (record.followed() as f64 + 4.0);
-        trials[*s] = record.trials(members[*s].len(), total, &sizes);
-    }
-    let followed: Vec<Followed> = poses
-        .iter()
-        .map(|(k, batch, number, outcome)| {
-            let of_stratum = records[*k].weight(*batch, members[present[*k]].len(), total, &sizes);
-            Followed {
-                number: *number,
-                weight: share(present[*k]) * of_stratum,
-                outcome: *outcome,
-                stratum: present[*k],
-            }
-        })
-        .collect();
-    let probability = whole.fraction;
-    let mut ci95 = whole.ci95;
-    let known_from = if plain.is_some() { None } else { Some(drawn) };
-    for count in known_from.into_iter().chain(source.measurements()) {
-        ci95 = widened(probability, ci95, wilson95(probability, count as f64));
-    }
-    let strata = present.iter().zip(&records).zip(&seen);
-    let strata = strata.map(|((s, record), seen)| Stratum {
-        name: if plain.is_some() { "all errors".to_owned() } else { name(*s) },
-        share: share(*s),
-        motions: record.followed(),
-        docked: record.counts()[0],
-        undecided: record.counts()[1],
-        probability: seen.shares(total)[0],
-    });
-    Ok(Sample {
-        probability,
-        ci95,
-        motions: followed.len(),
-        undecided: records.iter().map(|record| record.counts()[1]).sum(),
-        plain: plain_motions(probability, ci95),
-        strata: strata.collect(),
-        poses: followed,
-        labels,
-        docks,
-        doubted,
-        trials,
-    })
-}
-
-/// Both doubts together, as of independent ones.
-fn widened(middle: f64, [lo, hi]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
-    let down = (middle - lo).hypot(middle - other[0]);
-    let up = (hi - middle).hypot(other[1] - middle);
-    [(middle - down).max(0.0), (middle + up).min(1.0)]
-}
-
-/// Plain motions whose Wilson interval at this probability is as wide as this one.
-fn plain_motions(probability: f64, [lo, hi]: [f64; 2]) -> f64 {
-    /// Halvings of the exponent: far finer than anybody reads.
-    const HALVINGS: usize = 60;
-    let (mut few, mut many) = (0.0f64, 40.0f64);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (few + many);
-        let [l, u] = wilson95(probability, libm::exp(middle));
-        if u - l > hi - lo { few = middle } else { many = middle }
-    }
-    libm::exp(many)
-}
-
-/// What was seen of a stratum, batch by batch.
-#[derive(Debug, Clone, Default)]
-struct Record {
-    /// Followed, docked, undecided.
-    batches: Vec<[usize; 3]>,
-}
-
-impl Record {
-    fn begin(&mut self) {
-        self.batches.push([0; 3]);
-    }
-
-    fn push(&mut self, outcome: Outcome) {
-        if let Some([followed, docked, undecided]) = self.batches.last_mut() {
-            *followed += 1;
-            *docked += usize::from(outcome == Outcome::Aligned);
-            *undecided += usize::from(outcome == Outcome::Undecided);
-        }
-    }
-
-    fn followed(&self) -> usize {
-        self.batches.iter().map(|batch| batch[0]).sum()
-    }
-
-    /// Docked, undecided.
-    fn counts(&self) -> [usize; 2] {
-        [1, 2].map(|k| self.batches.iter().map(|batch| batch[k]).sum())
-    }
-
-    /// Whether batches cannot be weighted by their sizes: all errors of the stratum were followed, each counts alike.
-    fn is_exhausted(&self, members: usize) -> bool {
-        self.followed() >= members
-    }
-
-    fn seen(&self, share: f64, members: usize, total: usize, sizes: &[usize]) -> Seen {
-        let mut seen = Seen::new(share);
-        if self.followed() == 0 {
-            return seen;
-        }
-        if self.is_exhausted(members) {
-            seen.add(total, self.followed(), self.counts());
-        } else {
-            for ([followed, docked, undecided], size) in self.batches.iter().zip(sizes) {
-                seen.add(*size, *followed, [*docked, *undecided]);
-            }
-        }
-        seen
-    }
-
-    /// What a pose of a batch counts, of the stratum.
-    fn weight(&self, batch: usize, members: usize, total: usize, sizes: &[usize]) -> f64 {
-        if self.is_exhausted(members) {
-            return 1.0 / self.followed() as f64;
-        }
-        sizes[batch] as f64 / (self.batches[batch][0] as f64 * total as f64)
-    }
-
-    fn trials(&self, members: usize, total: usize, sizes: &[usize]) -> f64 {
-        let squares = self.batches.iter().enumerate().map(|(k, batch)| {
-            let weight = if batch[0] > 0 { self.weight(k, members, total, sizes) } else { 0.0 };
-            batch[0] as f64 * weight * weight
-        });
-        1.0 / squares.sum::<f64>()
-    }
+    Ok(drawn.sample(&whole, source.measurements()))
 }
 
 /// The strata of as many errors.

@@ -1,6 +1,7 @@
 use super::estimate::{Sample, as_expected};
 use super::source::SAME;
 use super::*;
+use crate::acceptance::Outcome;
 use crate::design::Family;
 use crate::pose::DofSet;
 use crate::poses::covariance::IDENTITY;
