@@ -102,7 +102,11 @@ impl SuccessesReport {
                 along.docked?
             ))
         });
-        row(text, "failures", &format!("{}{}", kinds.join(", "), along.unwrap_or_default()));
+        wrapped(
+            text,
+            &format!("  {:<15}", "failures"),
+            &format!("{}{}", kinds.join(", "), along.unwrap_or_default()),
+        );
         match &failures.first {
             Some(first) if first.distance == 0.0 => {
                 row(text, "fails first", &format!("at its mean: {}", first.outcome.name()));
