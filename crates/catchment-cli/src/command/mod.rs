@@ -19,6 +19,7 @@ mod run;
 mod schema;
 mod slices;
 mod solids;
+mod success;
 mod sweep;
 mod trace;
 mod window;
@@ -41,6 +42,7 @@ pub(crate) enum Command {
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Window(Box<window::WindowArgs>),
+    Success(Box<success::SuccessArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -70,6 +72,7 @@ impl Command {
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Window(args) => window::run(&args),
+            Self::Success(args) => success::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

@@ -26,6 +26,7 @@ mod seat;
 mod solids;
 mod step;
 mod studies;
+mod success;
 mod sweep;
 mod tables;
 mod window;

@@ -20,6 +20,7 @@ use crate::acceptance::{Acceptance, Outcome};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::{Grid, GridAxis};
 use crate::pose::{Dof, PoseError};
+use crate::poses::covariance::cholesky;
 use rayon::prelude::*;
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -109,7 +110,7 @@ impl Masks {
                 axis_number(grid, dof)?;
             }
         }
-        let factor = cholesky(covariance)?;
+        let factor = cholesky(covariance).map_err(|row| MeritError::NotACovariance { row: row + 1 })?;
         let mut random = Random(seed);
         let [mut decided, mut inner, mut outer, mut outside] = [0usize; 4];
         for number in 0..samples {
@@ -208,37 +209,6 @@ fn cell_weights(
         borders.windows(2).map(|w| w[1] - w[0]).collect()
     };
     Ok(grid.axes.iter().map(along).collect())
-}
-
-/// Lower triangular L with L·Lᵀ = covariance; rows of zero variance stay zero.
-fn cholesky(covariance: &[[f64; 5]; 5]) -> Result<[[f64; 5]; 5], MeritError> {
-    let mut l = [[0.0; 5]; 5];
-    for i in 0..5 {
-        let fails = MeritError::NotACovariance { row: i + 1 };
-        // Rounding of a covariance written with a dozen digits, relative to the variances involved.
-        let slack =
-            |j: usize| 1e-12 * (covariance[i][i] * covariance[j][j]).abs().sqrt().max(f64::MIN_POSITIVE);
-        for j in 0..=i {
-            let c = covariance[i][j];
-            if !c.is_finite() || (c - covariance[j][i]).abs() > slack(j) {
-                return Err(fails);
-            }
-            let rest = c - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
-            l[i][j] = if i == j {
-                if rest < -slack(i) {
-                    return Err(fails);
-                }
-                rest.max(0.0).sqrt()
-            } else if l[j][j] > 0.0 {
-                rest / l[j][j]
-            } else if rest.abs() <= slack(j) {
-                0.0
-            } else {
-                return Err(fails);
-            };
-        }
-    }
-    Ok(l)
 }
 
 /// `SplitMix64` (Steele, Lea, Flood, OOPSLA 2014): small, fast, the same on every machine.

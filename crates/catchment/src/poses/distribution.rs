@@ -82,7 +82,8 @@ pub fn parse_sizes(text: &str, design: &Design) -> Result<[Option<f64>; 5], Find
     Ok(values)
 }
 
-fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {
+/// A size of an error, in D or radians.
+pub(super) fn size(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {
     let name = dof.name();
     if !design.alignment.free.contains(dof) {
         let free: Vec<&str> = design.alignment.free.iter().map(Dof::name).collect();

@@ -7,6 +7,9 @@
 //!   A17,   2.5,        10    other columns carried through                              columns carried through
 //!
 //!   x=1 mm,yaw=2 deg         how large errors are expected      Distribution::normal, Distribution::uniform
+//!
+//!   [[robot]] sigma = { … }  robots, and how their errors       read_robots         ──▶ Robot { name, errors: Spread }
+//!                            spread: a TOML file
 //! ```
 //!
 //! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`] says the
@@ -16,17 +19,21 @@
 //! Not promised: that a pose can be reached, or that the halves meet there. Only what the design locks, and what no
 //! sensible unit would give, is refused.
 
+pub(crate) mod covariance;
 mod distribution;
 mod fields;
 mod header;
 mod offsets;
+mod robots;
 mod table;
 mod terms;
 mod text;
 mod written;
 
+pub use covariance::Matrix;
 pub use distribution::{Distribution, parse_sizes};
 pub use offsets::OffsetsAt;
+pub use robots::{MOST_ROBOTS, Moments, NotACovariance, Robot, Spread, read_robots};
 pub use table::{MOST_POSES, PoseTable};
 pub use terms::parse_pose;
 pub use text::{LARGEST_TEXT, TextError, read_text};

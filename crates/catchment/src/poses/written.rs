@@ -62,7 +62,7 @@ pub(super) fn resolve(
 }
 
 /// The error in D or radians, if it is one that may be tried.
-fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {
+pub(super) fn in_range(dof: Dof, quantity: Quantity, design: &Design) -> Result<f64, Fault> {
     let read = if dof.is_rotation() { quantity.angle_rad() } else { quantity.length_d(&design.scale()) };
     let value = read.map_err(|c| Fault { message: format!("{}: {c}", dof.name()), help: c.help() })?;
     let (limit, help) = if dof.is_rotation() {

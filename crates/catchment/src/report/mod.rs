@@ -37,6 +37,7 @@ pub mod schema;
 mod sensitivity;
 mod slices;
 pub mod solids;
+mod success;
 mod sweep;
 mod table;
 pub mod text;
@@ -66,6 +67,10 @@ pub use schema::{Report, RunBody};
 pub use sensitivity::{SensitivityBody, SensitivityReport};
 pub use slices::{SliceReport, SlicesBody, SlicesReport};
 pub use solids::{SolidsBody, SolidsReport};
+pub use success::{
+    AloneReport, DockingReport, ErrorsReport, FailuresReport, FirstReport, FitReport, GridCost, Headline,
+    ImprovementReport, SuccessesBody, SuccessesReport, TolerableReport,
+};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use sweep::Parts;
 pub use sweep::{SweepBody, SweepReport};

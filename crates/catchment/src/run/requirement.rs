@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   PATH OP NUMBER     PATH  keys of the JSON report, joined by dots; lists by number from 0, or by the name of
-//!                            the axis where they have one: tolerances.x.plus, acceptance.sum_ci95.0
+//!                            the axis or robot where they have one: tolerances.x.plus, robots.arm A.probability,
+//!                            acceptance.sum_ci95.0
 //!                      OP    >=  <=  >  <  ==
 //!                      NUMBER  in D and radians as the report has it; at an error also with a unit: window.yaw >= 5 deg
 //! ```
@@ -242,8 +243,11 @@ fn steps(value: &Value) -> Vec<(Vec<String>, &Value)> {
             .iter()
             .enumerate()
             .map(|(k, next)| {
-                let axis = next.get("axis").and_then(Value::as_str).map(str::to_owned);
-                (std::iter::once(k.to_string()).chain(axis).collect(), next)
+                let named = |key: &str| next.get(key).and_then(Value::as_str).map(str::to_owned);
+                (
+                    std::iter::once(k.to_string()).chain(named("axis").or_else(|| named("robot"))).collect(),
+                    next,
+                )
             })
             .collect(),
         _ => Vec::new(),

@@ -6,6 +6,7 @@
 //!   convergence  finer and finer grids until stable               one design, every method
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
 //!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
+//!   success      how likely the errors of a robot are corrected  one design, stratified exact motions
 //!   window       the largest box of errors that all dock         one design, exact motions without a grid
 //!   proposal     all ways in which two parts may dock           two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
@@ -17,6 +18,7 @@ pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;
 pub mod slices;
+pub mod success;
 pub mod sweep;
 pub mod trials;
 pub mod window;

@@ -92,6 +92,11 @@ fn tables_of_poses() {
 }
 
 #[test]
+fn files_of_robots() {
+    replay("robots", targets::robots);
+}
+
+#[test]
 fn lines_that_people_write() {
     replay("lines", targets::line);
 }

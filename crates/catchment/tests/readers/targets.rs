@@ -4,11 +4,13 @@
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
 use catchment::connector::{Connector, FileBytes, Source, stl};
-use catchment::design::{Design, FileSpec, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, Treatment};
+use catchment::design::{
+    Design, FileSpec, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, SourceText, Treatment,
+};
 use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
-use catchment::poses::{Distribution, OffsetsAt, PoseTable, parse_pose};
+use catchment::poses::{Distribution, OffsetsAt, PoseTable, Spread, parse_pose, read_robots};
 use catchment::report::{Report, table};
 use catchment::run::Requirement;
 use std::path::Path;
@@ -143,6 +145,40 @@ pub(crate) fn pose_table(bytes: &[u8]) {
                 for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
                     assert!(text.get(span).is_some(), "an objection is not a piece of the text");
                 }
+            }
+        }
+    }
+}
+
+/// A file of robots: finite moments, correlations of which none is beyond 1, or problems whose places lie in the text.
+pub(crate) fn robots(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let mut table = |name: &str| match name {
+        "no.csv" => Err("cannot read no.csv".to_owned()),
+        name => Ok(SourceText::new(name, "x_mm,yaw_deg\n1,2\n-1,3\n0,0\n")),
+    };
+    match read_robots(&SourceText::new("robots.toml", text.clone()), &design(), &mut table) {
+        Ok(robots) => {
+            assert!(!robots.is_empty());
+            for robot in &robots {
+                let moments = robot.errors.moments();
+                assert!(
+                    moments.mean.to_array().iter().chain(&moments.sigma.to_array()).all(|v| v.is_finite())
+                );
+                assert!(moments.sigma.to_array().iter().all(|sigma| *sigma >= 0.0));
+                if let Spread::Normal { correlation, .. } = &robot.errors {
+                    for (k, row) in correlation.iter().enumerate() {
+                        assert_eq!(row[k], 1.0);
+                        assert!(row.iter().all(|c| c.abs() <= 1.0 + 1e-5), "{correlation:?}");
+                    }
+                }
+            }
+        }
+        Err(findings) => {
+            assert!(!findings.list.is_empty());
+            let source = findings.source.as_ref().expect("a refusal names its text");
+            for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+                assert!(source.text.get(span).is_some(), "an objection is not a piece of the text");
             }
         }
     }

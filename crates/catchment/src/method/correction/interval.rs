@@ -37,15 +37,15 @@ pub fn wilson95(share: f64, trials: f64) -> [f64; 2] {
 
 /// What was seen in a stratum.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Seen {
+pub(crate) struct Seen {
     /// Share of the box, p.
-    pub(super) share: f64,
+    pub(crate) share: f64,
     /// Poses followed.
-    pub(super) descents: usize,
+    pub(crate) descents: usize,
     /// How many aligned.
-    pub(super) aligned: usize,
+    pub(crate) aligned: usize,
     /// How many could not be followed to their end.
-    pub(super) undecided: usize,
+    pub(crate) undecided: usize,
     /// Σ N·k/n over the batches, of the aligned and of the undecided.
     weighted: [f64; 2],
     /// Σ N²/n.
@@ -54,12 +54,12 @@ pub(super) struct Seen {
 
 impl Seen {
     /// A stratum that holds `share` of the box.
-    pub(super) fn new(share: f64) -> Self {
+    pub(crate) fn new(share: f64) -> Self {
         Self { share, ..Self::default() }
     }
 
     /// Adds a batch of `batch` poses, of which `descents` fell to this stratum.
-    pub(super) fn add(&mut self, batch: usize, descents: usize, [aligned, undecided]: [usize; 2]) {
+    pub(crate) fn add(&mut self, batch: usize, descents: usize, [aligned, undecided]: [usize; 2]) {
         let (whole, part) = (batch as f64, descents as f64);
         self.descents += descents;
         self.aligned += aligned;
@@ -70,12 +70,12 @@ impl Seen {
     }
 
     /// The share that aligns, and that which is undecided, after `total` poses in all strata.
-    pub(super) fn shares(&self, total: usize) -> [f64; 2] {
+    pub(crate) fn shares(&self, total: usize) -> [f64; 2] {
         self.weighted.map(|w| if total == 0 { 0.0 } else { w / total as f64 })
     }
 
     /// The same poses, counting those that neither aligned nor are undecided, after `total` poses in all strata.
-    pub(super) fn reversed(&self, total: usize) -> Self {
+    pub(crate) fn reversed(&self, total: usize) -> Self {
         let [aligned, undecided] = self.weighted;
         let decided = self.descents - self.undecided;
         Self {
@@ -92,7 +92,7 @@ impl Seen {
 
     /// How much a pose more in this stratum tells: p·√(a(1 − a)), with a drawn towards a half by two poses of either
     /// kind (Agresti and Coull 1998) so that a stratum which looks pure is looked at again.
-    pub(super) fn doubt(&self) -> f64 {
+    pub(crate) fn doubt(&self) -> f64 {
         const PRIOR: f64 = 2.0;
         let open = self.aligned.min(self.descents - self.aligned) as f64;
         let a = (open + PRIOR) / (self.descents as f64 + 2.0 * PRIOR);
@@ -102,16 +102,16 @@ impl Seen {
 
 /// What all strata together say, as shares of the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Whole {
-    pub(super) fraction: f64,
-    pub(super) ci95: [f64; 2],
+pub(crate) struct Whole {
+    pub(crate) fraction: f64,
+    pub(crate) ci95: [f64; 2],
     /// Poses drawn over the whole box that would have the same variance.
-    pub(super) plain: f64,
+    pub(crate) plain: f64,
 }
 
 impl Whole {
     /// After `total` poses.
-    pub(super) fn of(seen: &[Seen], total: usize) -> Self {
+    pub(crate) fn of(seen: &[Seen], total: usize) -> Self {
         let (mut fraction, mut open, mut variance) = (0.0, 0.0, 0.0);
         let mut squares = [0.0; 2];
         for s in seen {
@@ -135,7 +135,7 @@ impl Whole {
     }
 
     /// Half the width of the interval.
-    pub(super) fn half_width(&self) -> f64 {
+    pub(crate) fn half_width(&self) -> f64 {
         (self.ci95[1] - self.ci95[0]) / 2.0
     }
 }

@@ -37,8 +37,9 @@ use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::Grid;
 use crate::method::{DecideError, descent};
 use crate::pose::{Dof, PoseError};
-use interval::{Seen, Whole};
+pub(crate) use interval::{Seen, Whole};
 use rayon::prelude::*;
+pub(crate) use schedule::{allot, next};
 use serde::{Deserialize, Serialize};
 use strata::Strata;
 

@@ -40,14 +40,14 @@ const MOST: usize = 8192;
 
 /// The next batch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Batch {
-    pub(super) poses: usize,
+pub(crate) struct Batch {
+    pub(crate) poses: usize,
     /// Nothing follows.
-    pub(super) last: bool,
+    pub(crate) last: bool,
 }
 
 /// The batch after `total` poses in `strata` strata that took `elapsed` and gave `whole`; none when it is enough.
-pub(super) fn next(
+pub(crate) fn next(
     stop: Stop,
     total: usize,
     strata: usize,
@@ -89,7 +89,7 @@ pub(super) fn next(
 }
 
 /// How far the sampling is, in [0, 1], after `total` poses.
-pub(super) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &Whole) -> f64 {
+pub(crate) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &Whole) -> f64 {
     if total == 0 {
         return 0.0;
     }
@@ -102,7 +102,7 @@ pub(super) fn progress(stop: Stop, total: usize, elapsed: Duration, whole: &Whol
 
 /// Parts a batch among the strata: one pose each, the others in proportion to the doubt (Neyman, J. R. Stat. Soc. 97
 /// (1934) 558).
-pub(super) fn allot(poses: usize, seen: &[Seen]) -> Vec<usize> {
+pub(crate) fn allot(poses: usize, seen: &[Seen]) -> Vec<usize> {
     let spare = poses.saturating_sub(seen.len());
     let doubt: f64 = seen.iter().map(Seen::doubt).sum();
     let ideal: Vec<f64> = seen.iter().map(|s| spare as f64 * (s.doubt() / doubt)).collect();

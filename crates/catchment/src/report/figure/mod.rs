@@ -9,6 +9,7 @@
 //!   number_maps tables of numbers in colours, side by side
 //!   curves      any curves over a logarithmic scale, side by side
 //!   sensitivity the Sum against rho
+//!   success     the success of robots over the factor of their errors, and what each error gains
 //!   sweep       the Sum of many designs in colours, and what each accepts
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
@@ -56,6 +57,7 @@ mod section;
 mod sensitivity;
 mod slices;
 mod solid;
+mod success;
 mod sweep;
 mod trajectory;
 mod trials;
@@ -82,6 +84,7 @@ pub use section::{Placement, section};
 pub use sensitivity::sensitivity;
 pub use slices::slices;
 pub use solid::{panel as solid_panel, solids};
+pub use success::success;
 pub use sweep::{sweep_map, sweep_outlines};
 pub use trajectory::trajectory;
 pub use trials::trials;

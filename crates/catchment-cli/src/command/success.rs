@@ -1,0 +1,159 @@
+//! `catchment success`: whether a robot's errors are corrected.
+
+use super::run::requirement;
+use crate::args::DesignArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, to_stderr, to_stdout};
+use crate::source::read_table;
+use catchment::design::{Design, Findings, SourceText, load};
+use catchment::poses::{Distribution, Robot, Spread, TextError, read_robots, read_text};
+use catchment::problem::Problem;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{SuccessesReport, csv, figure};
+use catchment::run::Requirement;
+use catchment::study::success::{Settings, Success, run as ask};
+use clap::Args;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Will it dock? How likely a robot's errors are corrected, and which of them to improve first
+///
+/// Random errors as they are expected, or measured ones, some of them followed exactly: most where a grid over them leaves doubt. Prints the
+/// probability with its interval, what fails and what fails first, what it gains to halve each standard deviation, and how large they may be
+/// for a success that is required.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment success design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'\n  \
+    catchment success design.toml --error-measured errors.csv --required 0.999\n  \
+    catchment success design.toml --robots robots.toml -o success.png\n                                                  several robots, covariances; or as .svg, .csv, .json\n  \
+    catchment success design.toml --robots robots.toml --require 'success.probability>=0.95'\n                                                  of the robot that docks most seldom\n  \
+    catchment success design.toml --robots robots.toml --require 'robots.arm A.tolerable.factor>=1'\n  \
+    catchment success design.toml --error-sigma x=0.1 --json | jq '.robots[0].improve'\n\n\
+    A file of robots has a table for each:\n\n  \
+    [[robot]]\n  \
+    name = \"arm A\"\n  \
+    sigma = { x = \"1 mm\", yaw = \"2 deg\" }      # or covariance, uniform, measured\n\n\
+    Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
+pub(crate) struct SuccessArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    #[command(flatten)]
+    errors: ExpectedArgs,
+    /// The success for which the largest standard deviations are sought
+    #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
+    required: f64,
+    /// Exact motions of each robot's probability [default: 8000, fewer for round halves]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    motions: Option<u32>,
+    /// Cells per axis of the grid that says where to look; 0 for none [default: by the number of errors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    cells: Option<u32>,
+    /// Seed of the random errors
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Print JSON, in D and radians
+    #[arg(long)]
+    json: bool,
+    /// End with exit code 1 unless this holds of the JSON report, such as "success.probability>=0.95"; may be repeated
+    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
+    require: Vec<Requirement>,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Which errors to expect: one of these.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct ExpectedArgs {
+    /// A file of robots (TOML), each with its errors
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect")]
+    robots: Option<PathBuf>,
+    /// Normal errors of these standard deviations, such as "x=1 mm,yaw=2 deg"
+    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Errors to expect")]
+    error_sigma: Option<String>,
+    /// Errors uniform within ± these, such as "x=1 mm,yaw=2 deg"
+    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Errors to expect")]
+    error_uniform: Option<String>,
+    /// Errors as they were measured: a table of poses (CSV); - reads stdin
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect")]
+    error_measured: Option<PathBuf>,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["svg", "png", "csv", "json"])?;
+    let problem = args.design.problem()?;
+    let robots = args.errors.robots(&problem)?;
+    let form = SuccessesReport::new(problem.design(), &Success::form(&robots), Vec::new(), None);
+    for requirement in &args.require {
+        let tried = form.verdicts(std::slice::from_ref(requirement));
+        tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
+    }
+    let settings = Settings {
+        motions: args.motions.map(|motions| motions as usize),
+        seed: args.seed,
+        required: args.required,
+        cells: args.cells.map(|cells| cells as usize),
+    };
+    let running = args.exec.start()?;
+    let found = ask(&problem, &robots, &settings, &running.exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = SuccessesReport::new(problem.design(), &found, doubts, Some(timing));
+    match kind {
+        Some("svg") => args.file.write(figure::success(&report).svg().as_bytes())?,
+        Some("png") => args.file.write(&figure::success(&report).png(PNG_SCALE)?)?,
+        Some("csv") => args.file.write(&csv(&report.records())?)?,
+        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
+        None => {}
+    }
+    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
+    let verdicts = report.verdicts(&args.require)?;
+    let unmet: Vec<String> =
+        verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
+    to_stderr(&unmet);
+    Ok(if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+}
+
+impl ExpectedArgs {
+    fn robots(&self, problem: &Problem) -> Result<Vec<Robot>, Failure> {
+        type Read = fn(&str, &Design) -> Result<Distribution, Findings>;
+        let design = problem.design();
+        if let Some(path) = &self.robots {
+            return from_file(path, design);
+        }
+        if let Some(path) = &self.error_measured {
+            let errors = Spread::measured(read_table(path)?, design)?;
+            return Ok(vec![Robot { name: "robot".to_owned(), errors }]);
+        }
+        let (option, text, read): (_, _, Read) = match (&self.error_sigma, &self.error_uniform) {
+            (Some(text), _) => ("--error-sigma", text, Distribution::normal),
+            (None, Some(text)) => ("--error-uniform", text, Distribution::uniform),
+            (None, None) => return Ok(Vec::new()),
+        };
+        let distribution = read(text, design).map_err(|refusal| Failure::of_option(option, text, refusal))?;
+        Ok(vec![Robot { name: "robot".to_owned(), errors: Spread::of(&distribution)? }])
+    }
+}
+
+/// The robots of a file; tables that it names lie beside it.
+fn from_file(path: &Path, design: &Design) -> Result<Vec<Robot>, Failure> {
+    let source = SourceText::new(path, load(path)?);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut table = |name: &str| {
+        let place = folder.join(name);
+        let read = File::open(&place).map_err(TextError::from).and_then(read_text);
+        let told = |error: TextError| format!("cannot read {}: {error}", place.display());
+        read.map(|text| SourceText::new(&place, text)).map_err(told)
+    };
+    Ok(read_robots(&source, design, &mut table)?)
+}
