@@ -211,7 +211,7 @@ fn cell_weights(
 }
 
 /// Lower triangular L with L·Lᵀ = covariance; rows of zero variance stay zero.
-fn cholesky(covariance: &[[f64; 5]; 5]) -> Result<[[f64; 5]; 5], MeritError> {
+pub(crate) fn cholesky(covariance: &[[f64; 5]; 5]) -> Result<[[f64; 5]; 5], MeritError> {
     let mut l = [[0.0; 5]; 5];
     for i in 0..5 {
         let fails = MeritError::NotACovariance { row: i + 1 };

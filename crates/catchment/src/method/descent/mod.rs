@@ -17,6 +17,7 @@ pub(super) mod door;
 mod homing;
 mod motion;
 mod projection;
+mod rest;
 mod rows;
 mod sliding;
 #[cfg(test)]
@@ -25,6 +26,7 @@ mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
+pub use rest::{Rest, settle};
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
@@ -34,6 +36,7 @@ use crate::method::door::Finished;
 use crate::pose::PoseError;
 use motion::{Motion, Until, Unwatched};
 use rayon::prelude::*;
+use rows::WALL_MARGIN;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
