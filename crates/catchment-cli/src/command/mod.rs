@@ -9,6 +9,7 @@ mod completions;
 mod compose;
 mod export;
 mod invert;
+mod jams;
 mod latch;
 mod man;
 mod new;
@@ -41,6 +42,7 @@ pub(crate) enum Command {
     Outcome(Box<outcome::OutcomeArgs>),
     Trace(trace::TraceArgs),
     Window(Box<window::WindowArgs>),
+    Jams(Box<jams::JamsArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -70,6 +72,7 @@ impl Command {
             Self::Outcome(args) => outcome::run(&args),
             Self::Trace(args) => trace::run(&args),
             Self::Window(args) => window::run(&args),
+            Self::Jams(args) => jams::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

@@ -258,6 +258,12 @@ fn count(ends: &[(Outcome, Option<Rested>)]) -> [usize; 4] {
 }
 
 impl Jams {
+    /// With every place that the jams of a problem have, and numbers that mean nothing: what requirements are tried on.
+    pub fn form(settings: &Settings) -> Self {
+        let expected = settings.errors.as_ref().map(|_| [0; 4]);
+        Self { settings: settings.clone(), counts: [0; 4], expected, jams: Vec::new(), pairs: Vec::new() }
+    }
+
     /// How many random poses of the error box were followed.
     pub fn motions(&self) -> usize {
         self.counts.iter().sum()
