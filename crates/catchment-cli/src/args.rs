@@ -26,6 +26,8 @@ use std::path::PathBuf;
         catchment window design.toml --fix 'x=2 mm,y=2 mm'
                                           the largest box of errors that all dock
   \
+        catchment jams design.toml -o jams.png  where it jams instead, and on which features
+  \
         catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
         catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
         catchment sweep design.toml --over aspect_ratio=0.5,1,2 --over cor=-1..1/5\n                                          many designs at once\n  \

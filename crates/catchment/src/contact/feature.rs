@@ -358,7 +358,8 @@ impl Lookup {
             let edges: BTreeSet<u32> =
                 self.spokes.get(&v).into_iter().flatten().map(|(_, feature)| *feature).collect();
             let is_point = || {
-                let apart = |f: &u32, g: &u32| self.normals[*f as usize].dot(self.normals[*g as usize]) < POINTED;
+                let apart =
+                    |f: &u32, g: &u32| self.normals[*f as usize].dot(self.normals[*g as usize]) < POINTED;
                 edges.is_empty() && around.iter().any(|f| around.iter().any(|g| apart(f, g)))
             };
             if edges.len() > 1 || is_point() {

@@ -220,7 +220,10 @@ impl JamReport {
     pub fn words(&self) -> Vec<String> {
         let mut said: Vec<(String, usize)> = Vec::new();
         for contact in &self.contacts {
-            let words = format!("{} of the moving half on {} of the fixed one", contact.moving.name, contact.fixed.name);
+            let words = format!(
+                "{} of the moving half on {} of the fixed one",
+                contact.moving.name, contact.fixed.name
+            );
             match said.iter_mut().find(|(other, _)| *other == words) {
                 Some((_, count)) => *count += 1,
                 None => said.push((words, 1)),
@@ -308,9 +311,10 @@ impl JamsReport {
             0 | 1 => String::new(),
             n => format!(", at {n} places that are images of each other"),
         };
-        let expected = jam.expected.as_ref().map_or_else(String::new, |share| {
-            format!(", {} of the errors expected", percent(share.share))
-        });
+        let expected = jam
+            .expected
+            .as_ref()
+            .map_or_else(String::new, |share| format!(", {} of the errors expected", percent(share.share)));
         let share = format!(
             "{} of the box ({} … {}), {} of jams, {} of failures{expected}{places}",
             percent(jam.of_box.share),
@@ -320,8 +324,13 @@ impl JamsReport {
             percent(jam.of_failures)
         );
         wrapped(text, &format!("  {:<15}", format!("jam {number}")), &share);
-        let said = |text: &mut String, name: &str, words: &str| wrapped(text, &format!("  {name:<15}"), words);
-        said(text, "  rests", &format!("{}, {} above the mated pose", self.place(&jam.pose), self.length(jam.above_mated_d)));
+        let said =
+            |text: &mut String, name: &str, words: &str| wrapped(text, &format!("  {name:<15}"), words);
+        said(
+            text,
+            "  rests",
+            &format!("{}, {} above the mated pose", self.place(&jam.pose), self.length(jam.above_mated_d)),
+        );
         let wide = self.extent(jam);
         if !wide.is_empty() {
             said(text, "  anywhere in", &wide);
@@ -345,9 +354,15 @@ impl JamsReport {
     fn held(&self, examined: &ExaminedReport) -> String {
         let push = self.length(examined.push_d);
         let rise = match (examined.firmness, examined.rise_at_most_d) {
-            (Firmness::Level, Some(rise)) => format!("near-level: pushed {push} one way it rises only {}", self.fine(rise)),
-            (Firmness::Ridge, _) => format!("not at all: pushed {push} one way it falls, it came to rest on a ridge"),
-            (firmness, Some(rise)) => format!("{}: pushed {push} any way it rises {} at least", firmness.name(), self.fine(rise)),
+            (Firmness::Level, Some(rise)) => {
+                format!("near-level: pushed {push} one way it rises by {} only", self.fine(rise))
+            }
+            (Firmness::Ridge, _) => {
+                format!("not at all: pushed {push} one way it falls, it came to rest on a ridge")
+            }
+            (firmness, Some(rise)) => {
+                format!("{}: pushed {push} any way it rises {} at least", firmness.name(), self.fine(rise))
+            }
             (firmness, None) => format!("{}: walls all around", firmness.name()),
         };
         format!("{rise}; {} of {} poses beside it came back", examined.back, examined.pushed)
@@ -371,7 +386,11 @@ impl JamsReport {
         line(text, &format!("  {:>8}{:>12}   what touches where it jams", "of jams", "of failures"));
         for pair in self.features.iter().take(SHOWN) {
             let shares = format!("  {:>8}{:>12}   ", percent(pair.of_jams), percent(pair.of_failures));
-            wrapped(text, &shares, &format!("{} of the moving half on {} of the fixed one", pair.moving.name, pair.fixed.name));
+            wrapped(
+                text,
+                &shares,
+                &format!("{} of the moving half on {} of the fixed one", pair.moving.name, pair.fixed.name),
+            );
         }
         if self.features.len() > SHOWN {
             line(text, &format!("  and {} pairs more", self.features.len() - SHOWN));
@@ -452,7 +471,10 @@ impl JamsReport {
 
     /// A small length, to three digits.
     fn fine(&self, value: f64) -> String {
-        format!("{} {}", super::text::significant(value.max(0.0) * self.scale()), self.unit())
+        /// Below this it is nothing, in D: rounding of heights.
+        const NOTHING: f64 = 1e-8;
+        let value = if value < NOTHING { 0.0 } else { value };
+        format!("{} {}", super::text::significant(value * self.scale()), self.unit())
     }
 
     fn drawn(&self, feature: &FeatureReport) -> String {

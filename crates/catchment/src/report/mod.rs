@@ -23,6 +23,7 @@ mod check;
 pub mod compare;
 mod comparison;
 mod convergence;
+mod ending;
 mod envelope;
 mod export;
 mod faces;
@@ -60,8 +61,8 @@ pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
 pub use jams::{
-    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsReport, PairReport, ShareReport,
-    WayOutReport,
+    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsReport, PairReport,
+    ShareReport, WayOutReport,
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};

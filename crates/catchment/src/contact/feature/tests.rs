@@ -39,7 +39,8 @@ fn a_cone_is_round_and_pointed() {
 
 #[test]
 fn names_say_how_faces_lie() {
-    let lie = |least: f64, most: f64| Lie { least: least.to_radians(), most: most.to_radians(), is_top: false };
+    let lie =
+        |least: f64, most: f64| Lie { least: least.to_radians(), most: most.to_radians(), is_top: false };
     let edge = |faces: Vec<Lie>| Feature { kind: Kind::Edge, surface: 0, faces }.name();
     assert_eq!(edge(vec![lie(0.0, 0.0), lie(90.0, 90.0)]), "edge between flat and wall");
     assert_eq!(edge(vec![lie(45.0, 45.0), lie(45.0, 45.0)]), "edge between two slopes of 45°");

@@ -36,7 +36,6 @@ use crate::method::door::Finished;
 use crate::pose::PoseError;
 use motion::{Motion, Until, Unwatched};
 use rayon::prelude::*;
-use rows::WALL_MARGIN;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 

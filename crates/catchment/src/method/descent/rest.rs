@@ -1,13 +1,14 @@
 //! Where a motion ends, with what carries the half there: for people who ask why it jams.
 
 use super::motion::{Motion, State, Until, Watch};
-use super::{Follower, Pair, Settings, WALL_MARGIN};
+use super::{Follower, Pair, Settings};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting};
 use crate::pose::PoseError;
 
-/// Gaps up to this touch at rest, in D: motions keep a [`WALL_MARGIN`] from walls, and land to a thousandth of it.
-const TOUCHING: f64 = 2.0 * WALL_MARGIN;
+/// Gaps up to this touch at rest, in D: motions keep a hundredth of it clear of walls, and end before flush faces have closed to the last; no
+/// fit is as close.
+const TOUCHING: f64 = 1e-4;
 
 /// The end of a motion.
 #[derive(Debug, Clone, PartialEq)]

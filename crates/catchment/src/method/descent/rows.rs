@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 /// Normals this close to horizontal (slope above 20) belong to walls: the motion keeps clear of them by `WALL_MARGIN`.
 const WALL: f64 = 0.05;
 /// Clearance from walls, in D: above the curvature error of the smallest steps, below any fit that is designed.
-pub(super) const WALL_MARGIN: f64 = 1e-6;
+const WALL_MARGIN: f64 = 1e-6;
 /// Overlap by which a contact counts as touching, in D: rounding of a height on a slope of 10⁶.
 pub(super) const OVERLAP: f64 = 1e-9;
 /// Features that fail to support by more than this angle are not looked for, however long the step: radians.

@@ -23,7 +23,7 @@ const WORDS: f64 = 96.0;
 const SECTION: [f64; 2] = [270.0, 210.0];
 const SPACE: [f64; 2] = [180.0, 190.0];
 /// Above the panels.
-const TOP: f64 = 66.0;
+const TOP: f64 = 76.0;
 
 /// Draws the jams with most of the poses: the halves of `connector` as the report's design places them.
 ///
@@ -45,7 +45,9 @@ pub fn jams(report: &JamsReport, connector: &Connector) -> Result<Picture, Figur
         .map(|(outcome, share)| format!("{} {}", outcome.name(), percent(share.share)))
         .collect();
     let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
+    for (k, line) in broken(&story, columns as f64 * WIDTH - 30.0).iter().enumerate() {
+        svg.text([24.0, 50.0 + 15.0 * k as f64], LABEL, Anchor::Start, SOFT, line);
+    }
     for (k, jam) in report.jams.iter().take(shown).enumerate() {
         let corner = [24.0 + (k % COLUMNS) as f64 * WIDTH, TOP + (k / COLUMNS) as f64 * HEIGHT];
         draw(&mut svg, corner, report, connector, k + 1, jam)?;
@@ -63,7 +65,8 @@ fn draw(
 ) -> Result<(), FigureError> {
     let design = &report.design;
     let placement = Placement { error: jam.pose, height: jam.height_d };
-    let head = format!("{number}   {} of jams, {} of the box", percent(jam.of_jams), percent(jam.of_box.share));
+    let head =
+        format!("jam {number}:  {} of jams, {} of the box", percent(jam.of_jams), percent(jam.of_box.share));
     svg.bold([x, y + 16.0], LABEL + 1.0, Anchor::Start, &head);
     let mut lines: Vec<(&str, String)> = Vec::new();
     for words in jam.words() {
@@ -78,7 +81,8 @@ fn draw(
         }
     }
     let firmness = jam.examined.as_ref().map_or_else(String::new, |examined| {
-        let level = if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
+        let level =
+            if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
         let units = Units::of(design);
         let way = examined.way_out.map_or_else(String::new, |way| {
             let climb = crate::report::text::significant(way.climb_at_most_d.max(0.0) * units.lengths());
@@ -143,7 +147,8 @@ mod tests {
 
     fn drawn(text: &str) -> Result<Picture, FigureError> {
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
-        let found = run(&problem, &Settings { motions: Some(400), ..Settings::default() }, &Exec::new()).unwrap();
+        let found =
+            run(&problem, &Settings { motions: Some(400), ..Settings::default() }, &Exec::new()).unwrap();
         let report = JamsReport::new(problem.design(), &found, Vec::new(), None);
         jams(&report, problem.connector())
     }

@@ -113,7 +113,8 @@ fn direction(patches: &[Patch]) -> Option<f64> {
         vec![mean]
     };
     // Twice the angle of the main axis of the second moments.
-    let (xx, xy) = ways.iter().fold((0.0, 0.0), |(xx, xy), v| (xx + v.x * v.x - v.y * v.y, xy + 2.0 * v.x * v.y));
+    let (xx, xy) =
+        ways.iter().fold((0.0, 0.0), |(xx, xy), v| (xx + v.x * v.x - v.y * v.y, xy + 2.0 * v.x * v.y));
     if xx.hypot(xy) < IN_PLANE * IN_PLANE {
         return Some(0.0);
     }
@@ -127,12 +128,16 @@ mod tests {
     use super::*;
 
     fn patch(points: &[[f64; 3]], normal: [f64; 3]) -> Patch {
-        Patch { points: points.iter().copied().map(DVec3::from_array).collect(), normal: DVec3::from_array(normal) }
+        Patch {
+            points: points.iter().copied().map(DVec3::from_array).collect(),
+            normal: DVec3::from_array(normal),
+        }
     }
 
     #[test]
     fn it_passes_through_what_touches() {
-        let contacts = [patch(&[[0.3, 0.1, 0.0]], [-0.7, 0.0, 0.7]), patch(&[[-0.2, 0.1, 0.0]], [0.7, 0.0, 0.7])];
+        let contacts =
+            [patch(&[[0.3, 0.1, 0.0]], [-0.7, 0.0, 0.7]), patch(&[[-0.2, 0.1, 0.0]], [0.7, 0.0, 0.7])];
         let plane = Plane::through(&pyramid(), &contacts);
         assert_eq!((plane.azimuth, plane.offsets.as_slice()), (0.0, &[0.1][..]));
         assert!(contacts.iter().all(|contact| plane.beside(contact.points[0]) < 1e-12));

@@ -250,7 +250,8 @@ impl<'a> View<'a> {
             // What touches all along an edge is seen at one place as a rule.
             let mut shown: Vec<[f64; 2]> = Vec::new();
             let reach = patch.points.iter().map(|point| (self.turn * *point).y);
-            let (lo, hi) = reach.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| (lo.min(y), hi.max(y)));
+            let (lo, hi) =
+                reach.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| (lo.min(y), hi.max(y)));
             let in_cut = self.plane.offsets.iter().any(|y| (lo - CLOSE..=hi + CLOSE).contains(y));
             for point in &patch.points {
                 let at = self.seen(frame, *point);

@@ -120,10 +120,10 @@ fn near(rests: &[Rested], members: &[usize], images: &Images) -> Vec<Vec<usize>>
 impl Cluster {
     fn of(rests: &[Rested], members: Vec<usize>, held: &Held, images: &Images) -> Self {
         let pose = |k: usize| &rests[k].pose;
-        // Errors of the images of all members that are nearest to the pose of one.
+        // How far the images of all members that are nearest to one are off it.
         let folded = |to: usize| -> Vec<[f64; 5]> {
             let image = |k: &usize| images.nearest(pose(*k), pose(to)).0;
-            members.iter().map(image).map(|image| coordinates(&image)).collect()
+            members.iter().map(image).map(|image| images.off(&image, pose(to), &rests[to].error)).collect()
         };
         let around = folded(members[0]);
         let count = around.len() as f64;
@@ -139,10 +139,9 @@ impl Cluster {
         let middle = members[nearest.unwrap_or_default()];
         let own = rests[middle].error.to_array();
         let mut extent = own.map(|value| [value; 2]);
-        let center = coordinates(pose(middle));
         for errors in folded(middle) {
             for (axis, side) in extent.iter_mut().enumerate() {
-                let value = own[axis] + errors[axis] - center[axis];
+                let value = own[axis] + errors[axis];
                 *side = [side[0].min(value), side[1].max(value)];
             }
         }
@@ -160,10 +159,4 @@ impl Cluster {
         let held = (middle == members[0]).then_some(*held);
         Self { members, middle, extent, places, held }
     }
-}
-
-/// Lateral offset of the COR and the three angles.
-fn coordinates(pose: &CorPose) -> [f64; 5] {
-    let (roll, pitch, yaw) = crate::pose::euler_angles(&pose.rotation);
-    [pose.lateral.x, pose.lateral.y, roll, pitch, yaw]
 }

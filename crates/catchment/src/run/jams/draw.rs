@@ -34,8 +34,15 @@ pub(super) fn poses(
             let variances = PoseError::from_array(std::array::from_fn(|j| covariance[j][j]));
             sizes(&variances, alignment)?;
             let factor = cholesky(covariance).map_err(|_| JamsError::NotACovariance)?;
-            let product = move |row: &[f64; 5], z: &[f64; 5]| row.iter().zip(z).map(|(l, z)| l * z).sum::<f64>();
-            (mean, Box::new(move |k| { let z = normals(k); std::array::from_fn(|j| product(&factor[j], &z)) }))
+            let product =
+                move |row: &[f64; 5], z: &[f64; 5]| row.iter().zip(z).map(|(l, z)| l * z).sum::<f64>();
+            (
+                mean,
+                Box::new(move |k| {
+                    let z = normals(k);
+                    std::array::from_fn(|j| product(&factor[j], &z))
+                }),
+            )
         }
     };
     let mean = mean.to_array();

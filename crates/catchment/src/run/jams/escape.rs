@@ -77,11 +77,14 @@ pub(super) fn way_out(pair: &Pair, rest: &Rested, seed: u64) -> Option<WayOut> {
         search.try_way(&way);
     }
     for k in 0..ways {
+        if search.is_level() {
+            break;
+        }
         let way = search.space.random(stream, k);
         search.try_way(&way);
     }
     for k in 0..ways {
-        let Some(best) = search.best else { break };
+        let Some(best) = search.best.filter(|_| !search.is_level()) else { break };
         // Smaller and smaller moves: from half a radian to a hundredth.
         let share = 0.5 * 0.02f64.powf(k as f64 / ways as f64);
         let way = search.space.moved(&best.way, &search.space.random(stream, ways + k), share);
@@ -91,6 +94,11 @@ pub(super) fn way_out(pair: &Pair, rest: &Rested, seed: u64) -> Option<WayOut> {
 }
 
 impl Search<'_> {
+    /// Whether a way that does not climb is known.
+    fn is_level(&self) -> bool {
+        self.best.is_some_and(|best| best.out.climb < LOWER)
+    }
+
     /// Looks along a way, no higher than the best so far.
     fn try_way(&mut self, way: &[f64; 5]) {
         let most = self.best.map_or(f64::INFINITY, |best| best.out.climb);

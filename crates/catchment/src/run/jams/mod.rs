@@ -32,12 +32,12 @@ pub use firmness::{Firmness, Held};
 
 use crate::acceptance::{Domain, Outcome};
 use crate::connector::Side;
-use crate::contact::{Features, FeatureKind};
+use crate::contact::{FeatureKind, Features};
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
 use crate::method::descent;
-use crate::poses::Distribution;
 use crate::pose::{Dof, PoseError};
+use crate::poses::Distribution;
 use crate::problem::Problem;
 use clusters::Cluster;
 use glam::DVec3;
@@ -45,7 +45,7 @@ use images::Images;
 use rayon::prelude::*;
 use rests::{Follow, Rested};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -139,7 +139,7 @@ pub struct Named {
 pub struct Touching {
     /// Random poses of the error box that end in a jam in which it touches.
     pub count: usize,
-    /// The feature of the fixed half; those that symmetries map onto it count as one.
+    /// The feature of the fixed half, where it was met first; all of its name count as one.
     pub fixed: Named,
     /// The same of the moving half.
     pub moving: Named,
@@ -305,26 +305,24 @@ impl Jam {
     }
 }
 
-/// The pairs of classes of features that touch in rests, by how many do.
+/// The pairs of features that touch in rests, by their names, in the order of how many do: a person changes all features of a name, or none.
 fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<Touching> {
-    let mut counts: BTreeMap<[u32; 2], (usize, usize)> = BTreeMap::new();
-    for (k, rest) in rests.iter().enumerate() {
-        let mut classes = rest.signature.clone();
-        classes.dedup();
-        for class in classes {
-            counts.entry(class).or_insert((0, k)).0 += 1;
+    let mut pairs: BTreeMap<[String; 2], Touching> = BTreeMap::new();
+    for rest in rests {
+        let mut here: BTreeSet<[String; 2]> = BTreeSet::new();
+        for met in &rest.met {
+            let names = rest.names(features, met);
+            if here.insert(names.clone()) {
+                let touching = || {
+                    let Touched { fixed, moving, .. } = rest.name(problem, features, met);
+                    Touching { count: 0, fixed, moving }
+                };
+                pairs.entry(names).or_insert_with(touching).count += 1;
+            }
         }
     }
-    let mut pairs: Vec<Touching> = counts
-        .into_iter()
-        .filter_map(|(class, (count, first))| {
-            let is = |met: &&rests::Met| rests::classes(features, met.features) == class;
-            let met = rests[first].met.iter().find(is)?;
-            let Touched { fixed, moving, .. } = rests[first].name(problem, features, met);
-            Some(Touching { count, fixed, moving })
-        })
-        .collect();
-    // Stable: of equals the one with the lower numbers first.
+    let mut pairs: Vec<Touching> = pairs.into_values().collect();
+    // Stable: of equals the one whose name comes first.
     pairs.sort_by_key(|pair| std::cmp::Reverse(pair.count));
     pairs
 }

@@ -133,6 +133,12 @@ impl Rested {
         self.met.iter().map(|met| self.name(problem, features, met)).collect()
     }
 
+    /// The names of two features that touch.
+    pub(super) fn names(&self, features: &Features, met: &Met) -> [String; 2] {
+        let [fixed, moving] = met.features;
+        [features.get(Side::Fixed, fixed).name(), features.get(Side::Moving, moving).name()]
+    }
+
     /// Two features that touch, named.
     pub(super) fn name(&self, problem: &Problem, features: &Features, met: &Met) -> Touched {
         let face = {
