@@ -470,7 +470,7 @@ impl JamsReport {
     }
 
     /// A small length, to three digits.
-    fn fine(&self, value: f64) -> String {
+    pub(super) fn fine(&self, value: f64) -> String {
         /// Below this it is nothing, in D: rounding of heights.
         const NOTHING: f64 = 1e-8;
         let value = if value < NOTHING { 0.0 } else { value };

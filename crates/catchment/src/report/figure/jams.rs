@@ -1,6 +1,5 @@
 //! Jams: each cut through what touches, and in space, with the features that hold it.
 
-use super::draw::axis::Units;
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::plane::{Patch, Plane};
 use super::section::{Placement, View, describe};
@@ -17,9 +16,9 @@ const SHOWN: usize = 6;
 const COLUMNS: usize = 2;
 /// A panel, in SVG units.
 const WIDTH: f64 = 560.0;
-const HEIGHT: f64 = 366.0;
+const HEIGHT: f64 = 384.0;
 /// Its words above, the section in it, and the view in space beside that.
-const WORDS: f64 = 96.0;
+const WORDS: f64 = 114.0;
 const SECTION: [f64; 2] = [270.0, 210.0];
 const SPACE: [f64; 2] = [180.0, 190.0];
 /// Above the panels.
@@ -80,17 +79,14 @@ fn draw(
             last.push_str(" …");
         }
     }
-    let firmness = jam.examined.as_ref().map_or_else(String::new, |examined| {
-        let level =
-            if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
-        let units = Units::of(design);
+    lines.push((SOFT, describe(design, &placement)));
+    if let Some(examined) = &jam.examined {
+        let level = if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
         let way = examined.way_out.map_or_else(String::new, |way| {
-            let climb = crate::report::text::significant(way.climb_at_most_d.max(0.0) * units.lengths());
-            format!(", lifted by {climb} {} at most it gets out", units.symbol())
+            format!(": lifted by {} at most it gets out", report.fine(way.climb_at_most_d))
         });
-        format!("  ·  {level}{way}")
-    });
-    lines.push((SOFT, format!("{}{firmness}", describe(design, &placement))));
+        lines.push((SOFT, format!("{level}{way}")));
+    }
     for (k, (colour, words)) in lines.iter().enumerate() {
         svg.text([x, y + 33.0 + 15.0 * k as f64], LABEL - 0.5, Anchor::Start, colour, words);
     }
