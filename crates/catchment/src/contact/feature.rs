@@ -99,8 +99,11 @@ impl Lie {
 impl Feature {
     /// The feature in words: `wall`, `edge between top and wall`, `corner of slopes of 45°`.
     pub fn name(&self) -> String {
+        // The flattest first, whichever way the mesh goes round.
+        let mut faces = self.faces.clone();
+        faces.sort_by(|a, b| a.least.total_cmp(&b.least).then(a.most.total_cmp(&b.most)));
         let mut names: Vec<String> = Vec::new();
-        for name in self.faces.iter().map(Lie::name) {
+        for name in faces.iter().map(Lie::name) {
             if !names.contains(&name) {
                 names.push(name);
             }

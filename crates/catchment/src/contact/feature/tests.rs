@@ -47,5 +47,5 @@ fn names_say_how_faces_lie() {
     assert_eq!(lie(0.0, 80.0).name(), "rounded surface");
     assert_eq!(lie(180.0, 180.0).name(), "underside");
     let corner = Feature { kind: Kind::Corner, surface: 0, faces: vec![lie(90.0, 90.0), lie(0.0, 0.0)] };
-    assert_eq!(corner.name(), "corner of wall and flat");
+    assert_eq!(corner.name(), "corner of flat and wall");
 }

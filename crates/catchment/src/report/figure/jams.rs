@@ -81,7 +81,8 @@ fn draw(
     }
     lines.push((SOFT, describe(design, &placement)));
     if let Some(examined) = &jam.examined {
-        let level = if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
+        let level =
+            if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
         let way = examined.way_out.map_or_else(String::new, |way| {
             format!(": lifted by {} at most it gets out", report.fine(way.climb_at_most_d))
         });

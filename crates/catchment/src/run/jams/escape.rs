@@ -130,13 +130,13 @@ impl Search<'_> {
     }
 
     fn found(&mut self, way: &[f64; 5], length: f64, climb: f64, to: Outcome) {
-        let over = self.space.error(&self.space.displaced(self.rest, way, length));
+        let over = self.space.error(self.rest, way, length);
         self.best = Some(Way { way: *way, length, out: WayOut { climb, to, over } });
     }
 
     /// Where motion leads from a place on a way, if that is lower than the rest.
     fn leads_out(&mut self, way: &[f64; 5], length: f64) -> Option<Outcome> {
-        let end = self.follower.settle(&self.space.error(&self.space.displaced(self.rest, way, length)));
+        let end = self.follower.settle(&self.space.error(self.rest, way, length));
         let is_lower = end.height.is_some_and(|height| height < self.rest.height - LOWER);
         match end.outcome {
             Outcome::Aligned | Outcome::Missed => Some(end.outcome),

@@ -157,13 +157,17 @@ impl Space {
         CorPose { lateral, rotation }
     }
 
-    /// The pose error of a pose; what is locked stays exactly 0.
-    pub(super) fn error(&self, pose: &CorPose) -> PoseError {
-        let mut error = pose.to_error(self.cor).to_array();
-        for dof in Dof::ALL.into_iter().filter(|dof| dof.is_rotation() && !self.free.contains(dof)) {
-            error[dof.index()] = 0.0;
+    /// The pose error there. Of angles that are not all free it is their sum, also beyond 90° of pitch; what is locked stays exactly 0.
+    pub(super) fn error(&self, rest: &Rested, way: &[f64; 5], length: f64) -> PoseError {
+        let pose = self.displaced(rest, way, length);
+        let error = pose.to_error(self.cor);
+        if self.spherical {
+            return error;
         }
-        PoseError::from_array(error)
+        let PoseError { roll, pitch, yaw, .. } = rest.error;
+        let [roll, pitch, yaw] =
+            [(roll, 2), (pitch, 3), (yaw, 4)].map(|(angle, k)| angle + way[k] * length / self.rho);
+        PoseError { roll, pitch, yaw, ..error }
     }
 
     /// A direction as errors: D and radians.

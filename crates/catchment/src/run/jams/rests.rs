@@ -112,7 +112,7 @@ impl Follow<'_> {
         let rho = pair.alignment.rotation_length;
         let back = (0..pushed).filter(|k| {
             let way = space.random(stream, *k as u64);
-            let end = follower.settle(&space.error(&space.displaced(rest, &way, OFF)));
+            let end = follower.settle(&space.error(rest, &way, OFF));
             let pose =
                 CorPose::from_error(&end.error, pair.alignment.center_of_rotation, pair.alignment.free);
             let off = step_length(
