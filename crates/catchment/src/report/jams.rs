@@ -375,7 +375,17 @@ impl JamsReport {
             Outcome::Missed => "and it slides off",
             Outcome::Jammed | Outcome::Undecided => "and it comes to a lower rest",
         };
-        format!("lifted by {} at most, {to}", self.fine(way.climb_at_most_d))
+        let lifted = self.lifted(way.climb_at_most_d);
+        format!("{lifted}, {to}")
+    }
+
+    /// How far a half must be lifted, in words.
+    pub(super) fn lifted(&self, climb: f64) -> String {
+        if climb < NOTHING {
+            "not lifted at all".to_owned()
+        } else {
+            format!("lifted by {} at most", self.fine(climb))
+        }
     }
 
     fn pair_lines(&self, text: &mut String) {
@@ -470,9 +480,7 @@ impl JamsReport {
     }
 
     /// A small length, to three digits.
-    pub(super) fn fine(&self, value: f64) -> String {
-        /// Below this it is nothing, in D: rounding of heights.
-        const NOTHING: f64 = 1e-8;
+    fn fine(&self, value: f64) -> String {
         let value = if value < NOTHING { 0.0 } else { value };
         format!("{} {}", super::text::significant(value * self.scale()), self.unit())
     }
@@ -524,6 +532,8 @@ fn by_name_or_null<S: Serializer>(
     }
 }
 
+/// Heights below this are nothing, in D: rounding.
+const NOTHING: f64 = 1e-8;
 /// Jams and pairs of features that are told.
 const SHOWN: usize = 6;
 /// Contacts whose places are told.

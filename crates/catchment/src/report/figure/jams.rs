@@ -83,9 +83,9 @@ fn draw(
     if let Some(examined) = &jam.examined {
         let level =
             if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
-        let way = examined.way_out.map_or_else(String::new, |way| {
-            format!(": lifted by {} at most it gets out", report.fine(way.climb_at_most_d))
-        });
+        let way = examined
+            .way_out
+            .map_or_else(String::new, |way| format!(": {} it gets out", report.lifted(way.climb_at_most_d)));
         lines.push((SOFT, format!("{level}{way}")));
     }
     for (k, (colour, words)) in lines.iter().enumerate() {

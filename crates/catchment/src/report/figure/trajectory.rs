@@ -6,6 +6,7 @@ use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polylin
 use super::plane::{Patch, Plane};
 use super::section::{Placement, View, approach_axis, describe};
 use super::{FigureError, Picture};
+use crate::acceptance::Outcome;
 use crate::connector::Connector;
 use crate::design::Design;
 use crate::method::descent::{Trajectory, Waypoint};
@@ -14,7 +15,7 @@ use crate::pose::Dof;
 /// Ghosts of the moving half, the first and the last pose included.
 const GHOSTS: usize = 7;
 
-/// Draws a trajectory: left the section through what touches at its end, with the moving half ghosted along its path, right its errors over the path
+/// Draws a trajectory: left the section, of one that jams through what touches at its end, with the moving half ghosted along its path, right its errors over the path
 /// length (in the ρ-metric, D).
 ///
 /// # Errors
@@ -25,7 +26,8 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     };
     let ghosts = ghosts(&path.waypoints);
     let placements: Vec<Placement> = ghosts.iter().map(|w| placed(w)).collect();
-    let patches = patches(last);
+    // What docks is shown in the usual cut: its contacts lie all around.
+    let patches = if path.outcome == Outcome::Jammed { patches(last) } else { Vec::new() };
     let view = View::along(design, connector, &placements, Plane::through(connector, &patches))?;
     let (left, height) = (430.0, 400.0);
     let mut svg = Svg::new(960.0, height + 130.0);
