@@ -75,11 +75,8 @@ impl SettingArgs {
         let changes = self.changes();
         Method::all()
             .map(|method| {
-                let own: Vec<Change> = changes
-                    .iter()
-                    .filter(|change| method.has(change.setting))
-                    .cloned()
-                    .collect();
+                let own: Vec<Change> =
+                    changes.iter().filter(|change| method.has(change.setting)).cloned().collect();
                 with_changes(&method, &own)
             })
             .collect()

@@ -9,6 +9,7 @@ mod completions;
 mod compose;
 mod export;
 mod invert;
+mod jams;
 mod latch;
 mod man;
 mod new;
@@ -43,6 +44,7 @@ pub(crate) enum Command {
     Trace(trace::TraceArgs),
     Window(Box<window::WindowArgs>),
     Success(Box<success::SuccessArgs>),
+    Jams(Box<jams::JamsArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -73,6 +75,7 @@ impl Command {
             Self::Trace(args) => trace::run(&args),
             Self::Window(args) => window::run(&args),
             Self::Success(args) => success::run(&args),
+            Self::Jams(args) => jams::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

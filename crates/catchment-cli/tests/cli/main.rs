@@ -13,6 +13,7 @@ mod door;
 mod files;
 mod hostile;
 mod invert;
+mod jams;
 mod kills;
 mod latch;
 mod limits;

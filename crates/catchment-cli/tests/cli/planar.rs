@@ -128,7 +128,9 @@ fn a_layer_on_the_wrong_one_is_crossed() {
     );
     let rows: Vec<&str> = told.lines().filter(|line| line.starts_with("0.3,")).collect();
     assert!(
-        told.contains(",final_yaw,reason\n") && rows[1].contains("jammed") && rows[1].ends_with(",crossed")
+        told.contains(",final_yaw,final_height,contacts,reason\n")
+            && rows[1].contains("jammed")
+            && rows[1].ends_with(",crossed")
     );
     assert!(rows[0].contains("aligned") && rows[0].ends_with(','), "{told}");
     assert!(rows[2].contains("missed") && rows[2].ends_with(','), "{told}");

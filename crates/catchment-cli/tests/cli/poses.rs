@@ -40,7 +40,16 @@ fn poses_with_units_come_back_with_their_outcomes() {
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     assert!(stderr.starts_with("4 poses: "), "{stderr}");
     let table = cells(&output.stdout);
-    let added = ["outcome", "final_x_mm", "final_y_in", "final_roll", "final_pitch_deg", "final_yaw"];
+    let added = [
+        "outcome",
+        "final_x_mm",
+        "final_y_in",
+        "final_roll",
+        "final_pitch_deg",
+        "final_yaw",
+        "final_height",
+        "contacts",
+    ];
     assert_eq!(table[0][..4], ["part", "pitch_deg", "x_mm", "y_in"]);
     assert_eq!(table[0][4..], added);
     assert_eq!(table[3][0], "A3, bent");
@@ -48,6 +57,10 @@ fn poses_with_units_come_back_with_their_outcomes() {
     assert_eq!([outcomes[0], outcomes[1], outcomes[3]], ["aligned", "aligned", "missed"]);
     // Aligned means within 0.02 D = 1 mm.
     assert!(table[2][5].parse::<f64>().unwrap().abs() < 1.0);
+    // The COR of an aligned pyramid is D/2 below the middle of its face, which lies on all four sides; what is missed lies on nothing.
+    assert!((table[2][10].parse::<f64>().unwrap() + 0.5).abs() < 0.01, "{table:?}");
+    assert_eq!(table[2][11], "slope of 45° on slope of 45°");
+    assert_eq!(table[4][10..], ["", ""]);
     // What never meets stays where it was.
     assert!((table[4][5].parse::<f64>().unwrap() - 90.0).abs() < 1e-9);
 }

@@ -104,6 +104,15 @@ impl Origin {
     /// Halves that were drawn in their frames.
     pub const HERE: Self =
         Self { fixed: DAffine3::IDENTITY, moving: DAffine3::IDENTITY, apart: None, settled: None };
+
+    /// A point of a half, given in its frame, in the coordinates in which the half was drawn; those in D, whatever the unit of its file.
+    pub fn drawn(&self, side: Side, point: DVec3) -> DVec3 {
+        let from_file = match side {
+            Side::Fixed => self.fixed,
+            Side::Moving => self.moving,
+        };
+        from_file.inverse().transform_point3(point) * from_file.matrix3.determinant().abs().cbrt()
+    }
 }
 
 impl Connector {

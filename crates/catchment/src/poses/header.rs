@@ -32,6 +32,8 @@ const UNITS: [(&str, Unit); 8] = [
 const DECORATIONS: [&str; 9] = ["d", "delta", "δ", "e", "err", "error", "off", "offset", "misalignment"];
 /// Other names of the errors, in the order of [`Dof::ALL`].
 const SYNONYMS: [&str; 5] = ["tx", "ty", "rx", "ry", "rz"];
+/// Columns that the answer adds, beside the final errors.
+const ADDED: [&str; 3] = ["outcome", "final_height", "contacts"];
 /// Longest name of a column, in bytes: it is repeated with every row of some answers.
 const LONGEST_NAME: usize = 200;
 
@@ -48,7 +50,7 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Unit)>,
         let message = format!("`{}…` is a name of {} bytes", shortened(name), name.len());
         return Err(Fault::new(message, format!("the name of a column has at most {LONGEST_NAME}")));
     }
-    if name == "outcome" || name.strip_prefix("final_").is_some_and(|rest| split(rest).is_some()) {
+    if ADDED.contains(&name) || name.strip_prefix("final_").is_some_and(|rest| split(rest).is_some()) {
         return Err(Fault::new(format!("`{name}` is a column that the answer adds"), "rename it"));
     }
     let Some((dof, symbol)) = split(name) else {
@@ -210,7 +212,7 @@ mod tests {
         {
             assert!(read(name).unwrap_err().message.contains(said), "{name}");
         }
-        for name in ["outcome", "final_x", "final_x [mm]", "final_yaw_deg"] {
+        for name in ["outcome", "final_height", "contacts", "final_x", "final_x [mm]", "final_yaw_deg"] {
             assert!(read(name).unwrap_err().message.contains("the answer adds"), "{name}");
         }
     }

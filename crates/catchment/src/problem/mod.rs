@@ -26,12 +26,13 @@ mod tests;
 pub use draft::Draft;
 pub(crate) use places::findings;
 
-use crate::connector::Connector;
+use crate::connector::{Connector, Side};
 use crate::contact::mated::MatedProblem;
 use crate::contact::{Mirror, Pair};
 use crate::design::{Alignment, ConnectorSpec, Design, FamilySpec, Findings, LoadError, SourceText, hex};
 use crate::exec::Exec;
 use crate::pose::Dof;
+use glam::DVec3;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -144,6 +145,16 @@ impl Problem {
         let out_of_plane = [Dof::Y, Dof::Roll, Dof::Yaw];
         self.design().family_spec().is_some_and(FamilySpec::is_layered)
             && out_of_plane.into_iter().any(|dof| self.alignment().free.contains(dof))
+    }
+
+    /// A point of a half, given in its frame (of the moving half from its face centre, mounted), in the half's own coordinates, in D: those in
+    /// which it was drawn, or, for a family, from the face centre of a half that faces up.
+    pub fn drawn(&self, side: Side, point: DVec3) -> DVec3 {
+        match (&self.design().connector, side) {
+            (ConnectorSpec::Own(_), _) => self.connector().origin.drawn(side, point),
+            (ConnectorSpec::Family(_), Side::Fixed) => point,
+            (ConnectorSpec::Family(_), Side::Moving) => self.alignment().mount.apply(point),
+        }
     }
 
     /// This problem, refused for a reason that another room found, at the key it is about.

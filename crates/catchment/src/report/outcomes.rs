@@ -1,5 +1,6 @@
 //! What became of listed pose errors: the table as it came with what was found out, or JSON.
 
+use super::ending::{EndContact, Endings, words};
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use super::text::number as number_in_table;
@@ -41,6 +42,7 @@ pub struct OutcomeRows<'a> {
     problem: &'a Problem,
     table: &'a PoseTable<'a>,
     rows: Box<dyn Iterator<Item = (usize, Vec<String>)> + Send + 'a>,
+    endings: Endings<'a>,
     /// The first row that has not come.
     next: usize,
     /// Decided, but some before them are not.
@@ -51,10 +53,11 @@ impl<'a> OutcomeRows<'a> {
     /// Of a table whose poses are decided for a problem.
     pub fn new(problem: &'a Problem, table: &'a PoseTable<'a>) -> Self {
         let rows = Box::new(table.rows().enumerate());
-        Self { problem, table, rows, next: 0, waiting: BTreeMap::new() }
+        Self { problem, table, rows, endings: Endings::new(problem), next: 0, waiting: BTreeMap::new() }
     }
 
-    /// The names of the columns: those of the table, `outcome`, the final errors, and `reason` where there is something to tell.
+    /// The names of the columns: those of the table, `outcome`, the final errors, the height of the COR there in D, what touches there in
+    /// words, and `reason` where there is something to tell.
     ///
     /// # Errors
     /// As for [`OutcomesReport::to_csv`].
@@ -62,6 +65,7 @@ impl<'a> OutcomeRows<'a> {
         let mut header = self.table.header();
         header.push("outcome".to_owned());
         header.extend(self.table.names().map(|name| format!("final_{name}")));
+        header.extend(["final_height".to_owned(), "contacts".to_owned()]);
         if self.problem.may_cross() {
             header.push("reason".to_owned());
         }
@@ -96,6 +100,9 @@ impl<'a> OutcomeRows<'a> {
         let Some((_, mut row)) = self.rows.find(|(k, _)| *k == number) else { return Ok(String::new()) };
         row.push(end.outcome.name().to_owned());
         row.extend(self.table.in_units(&end.error).map(number_in_table));
+        let (height, contacts) = self.endings.of(end).unzip();
+        row.push(height.map_or_else(String::new, number_in_table));
+        row.push(contacts.map_or_else(String::new, |contacts| words(&contacts)));
         if self.problem.may_cross() {
             let reason = Reason::of(self.problem, end.outcome, &end.error);
             row.push(reason.map_or("", Reason::name).to_owned());
@@ -147,6 +154,10 @@ struct Row {
     reason: Option<Reason>,
     #[serde(rename = "final")]
     last: PoseError,
+    /// z of the COR at first contact there, in D; null where nothing carries the half.
+    final_height_d: Option<f64>,
+    /// What touches there.
+    contacts: Vec<EndContact>,
     /// Columns that were carried through.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     carried: BTreeMap<String, String>,
@@ -198,10 +209,10 @@ impl<'a> OutcomesReport<'a> {
     /// Bytes of memory that telling a table takes, as JSON or as CSV, at most. Every row of the JSON repeats the names of the
     /// columns that are carried through.
     pub fn bytes(table: &PoseTable<'_>, json: bool) -> u64 {
-        /// A row of CSV: outcome and final errors, and the same again while the text is checked.
-        const CSV_ROW: u64 = 500;
-        /// A row of JSON: two poses before and as text.
-        const JSON_ROW: u64 = 1400;
+        /// A row of CSV: outcome, final errors and contacts, and the same again while the text is checked.
+        const CSV_ROW: u64 = 900;
+        /// A row of JSON: two poses and contacts before and as text.
+        const JSON_ROW: u64 = 2400;
         /// A cell of a carried column: its place in a map, and the quotes and spaces around it.
         const CELL: u64 = 250;
         /// Copies of the name of a column, and of the table's text.
@@ -217,7 +228,7 @@ impl<'a> OutcomesReport<'a> {
         self.reasons.as_ref()?.get(pose).copied().flatten()
     }
 
-    /// The table as it came, with the outcome and the final errors in the units of their columns; where reasons can be told, with a
+    /// The table as it came, with the outcome, the final errors in the units of their columns, height and contacts there; where reasons can be told, with a
     /// column of them: what [`OutcomeRows`] gives row by row.
     ///
     /// # Errors
@@ -241,15 +252,21 @@ impl<'a> OutcomesReport<'a> {
         let at = self.table.offsets_at();
         let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
         let mut told = self.told().peekable();
+        let mut endings = Endings::new(self.problem);
         let poses = self.table.rows().zip(self.table.errors()).enumerate();
         let poses = poses.filter(|(number, _)| told.next_if_eq(number).is_some()).zip(self.ends);
-        let poses = poses.enumerate().map(|(k, ((number, (row, error)), end))| Row {
-            number: self.finished.map(|_| number),
-            error: measured(error),
-            outcome: end.outcome,
-            reason: self.reason(k),
-            last: measured(&end.error),
-            carried: carried.iter().map(|(k, name)| (name.clone(), row[*k].clone())).collect(),
+        let poses = poses.enumerate().map(|(k, ((number, (row, error)), end))| {
+            let (height, contacts) = endings.of(end).unzip();
+            Row {
+                number: self.finished.map(|_| number),
+                error: measured(error),
+                outcome: end.outcome,
+                reason: self.reason(k),
+                last: measured(&end.error),
+                final_height_d: height,
+                contacts: contacts.unwrap_or_default(),
+                carried: carried.iter().map(|(k, name)| (name.clone(), row[*k].clone())).collect(),
+            }
         });
         let counts = Outcome::ALL.iter().map(|outcome| outcome.name()).zip(self.acceptance.counts());
         let answer = Answer {

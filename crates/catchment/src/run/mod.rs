@@ -21,6 +21,7 @@
 
 mod answer;
 mod follow;
+pub mod jams;
 pub mod part;
 mod plan;
 mod requirement;

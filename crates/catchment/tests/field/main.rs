@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
+mod jams;
 mod solids;
 
 use catchment::prelude::*;

@@ -141,7 +141,12 @@ impl Coulomb {
     }
 
     /// Whether some force within the cones holds the half against the push, with all contacts touching.
-    pub(super) fn may_stick(&mut self, projection: &mut Projection, push: &Vector, contacts: Contacts<'_>) -> bool {
+    pub(super) fn may_stick(
+        &mut self,
+        projection: &mut Projection,
+        push: &Vector,
+        contacts: Contacts<'_>,
+    ) -> bool {
         self.slips.clear();
         self.slips.resize(contacts.rows.len(), 0.0);
         self.settle(projection, push, contacts, |_| 0.0, 1.0, false).is_some_and(|u| is_still(&u))

@@ -12,12 +12,8 @@ use crate::method::door::{
 use crate::problem::Problem;
 use serde_json::{Value, json};
 
-const INFO: Info = Info {
-    name: "descent",
-    summary: "exact motion of every cell's centre",
-    on_grids: true,
-    departs: false,
-};
+const INFO: Info =
+    Info { name: "descent", summary: "exact motion of every cell's centre", on_grids: true, departs: false };
 
 /// Its line in the registry.
 pub(in crate::method) const ENTRY: Entry = Entry::of::<Settings>(&INFO);

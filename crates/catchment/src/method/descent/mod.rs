@@ -21,6 +21,7 @@ pub(super) mod door;
 mod homing;
 mod motion;
 mod projection;
+mod rest;
 mod rows;
 mod sliding;
 mod sticking;
@@ -32,6 +33,7 @@ mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
+pub use rest::{Rest, settle};
 pub use sticking::{Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
@@ -41,10 +43,10 @@ use crate::exec::{Cancelled, Exec};
 use crate::method::door::Finished;
 use crate::pose::PoseError;
 use motion::{Motion, Until, Unwatched};
-use sticking::Doubting;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use sticking::Doubting;
 
 /// What may change the answer of [`run`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -10,8 +10,8 @@
 //! of the same contacts halfway along a step ([`Motion::look_ahead`]), and of what was met without being announced
 //! ([`Motion::cut`], [`Motion::meet`]).
 
-use super::motion::{Motion, State};
 use super::coulomb::{Contacts, Tangents};
+use super::motion::{Motion, State};
 use super::projection::{MAX_COORDINATES, Vector, dot};
 use crate::contact::Contact;
 use crate::pose::{Dof, ROTATIONS, euler_axes};

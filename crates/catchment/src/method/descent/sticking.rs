@@ -12,11 +12,11 @@
 //!
 //! Not promised: that a half which comes to a place where it slips did not stick before. What happens at each friction, motions say.
 
-use super::{MOST_FRICTION as MOST, Settings};
 use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
 use super::motion::{Motion, State, Watch};
 use super::projection::{MAX_COORDINATES, Projection, Vector};
 use super::rows::OVERLAP;
+use super::{MOST_FRICTION as MOST, Settings};
 use crate::acceptance::Outcome;
 use crate::contact::Pair;
 use crate::pose::PoseError;

@@ -61,7 +61,10 @@ fn a_turned_pyramid_has_both_thresholds() {
         let holds_from = (FRAC_PI_4 - yaw).tan() * (2.0 / 3.0f64).sqrt();
         assert!((found.holds_from.unwrap() - holds_from).abs() < 1e-5, "{degrees}: {found:?} {holds_from}");
         // Three digits were published, four for 30°.
-        assert!((found.slips_until.unwrap() - slips_until).abs() < 6e-4, "{degrees}: {found:?} {slips_until}");
+        assert!(
+            (found.slips_until.unwrap() - slips_until).abs() < 6e-4,
+            "{degrees}: {found:?} {slips_until}"
+        );
     }
 }
 

@@ -6,7 +6,7 @@ use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
 use crate::method::descent;
-use crate::method::door::{Cost, MOTIONS, Decide, DecideError, Decided, Doubts, Entry, Info, grid_of};
+use crate::method::door::{Cost, Decide, DecideError, Decided, Doubts, Entry, Info, MOTIONS, grid_of};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

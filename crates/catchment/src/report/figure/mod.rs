@@ -18,6 +18,7 @@
 //!   lever       the first contact with its lever arms and angles, as the kinematic method sees it
 //!   faces       designs side by side, mated and at the largest offset that still slides home
 //!   bodies      convex pieces of the halves, what they sweep, and where they overlap
+//!   jams        where halves rest that do not dock, cut through what touches, and in space
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   trials      the exact region beside the outcomes of single trials
@@ -43,6 +44,7 @@ mod difference;
 pub mod draw;
 mod faces;
 mod heights;
+mod jams;
 mod lever;
 mod map;
 mod matrix;
@@ -51,6 +53,7 @@ mod number_map;
 mod overview;
 mod pair;
 mod partition;
+mod plane;
 mod raster;
 mod region;
 mod section;
@@ -72,6 +75,7 @@ pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;
 pub use faces::{Face, faces};
 pub use heights::heights;
+pub use jams::jams;
 pub use lever::lever;
 pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};

@@ -1,11 +1,12 @@
-//! Both halves cut by a plane along the approach axis, y = constant in the world frame.
+//! Both halves cut by a plane along the approach axis: y = constant in the world frame, or through what touches ([`super::plane`]).
 //!
-//! The cut runs through y = 0, unless facets lie in that plane or nothing meets it (a connector in two layers): then one cut through the
+//! The usual cut runs through y = 0, unless facets lie in that plane or nothing meets it (a connector in two layers): then one cut through the
 //! middle of either side is drawn, the farther one paler behind the nearer one.
 
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{Frame, Scale, Units, short};
 use super::draw::colour::{self, Rgb, hex, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
+use super::plane::{Patch, Plane};
 use super::{FigureError, Picture};
 use crate::connector::{Connector, Half, Surface};
 use crate::design::Design;
@@ -35,6 +36,13 @@ impl Placement {
         (rotation, DVec3::new(self.error.x, self.error.y, self.height + face.z))
     }
 }
+
+/// The colour of contacts.
+const CONTACT: &str = "#c0262d";
+/// Contacts this near to the cut are in it, in D.
+const CLOSE: f64 = 5e-3;
+/// Contacts seen nearer to each other than this are one, in SVG units.
+const APART: f64 = 3.0;
 
 /// Draws the two halves in section at a pose.
 ///
@@ -77,8 +85,10 @@ pub(super) struct View<'a> {
     design: &'a Design,
     connector: &'a Connector,
     units: Units,
-    /// Cuts from far to near.
-    cuts: Vec<f64>,
+    /// Where it is cut.
+    plane: Plane,
+    /// Turns the world so that the cuts are at constant y.
+    turn: DMat3,
     lo: [f64; 2],
     hi: [f64; 2],
 }
@@ -90,7 +100,17 @@ impl<'a> View<'a> {
         connector: &'a Connector,
         placements: &[Placement],
     ) -> Result<Self, FigureError> {
-        let cuts = cuts(connector);
+        Self::along(design, connector, placements, Plane::across(connector))
+    }
+
+    /// The same, cut along a plane of one's own.
+    pub(super) fn along(
+        design: &'a Design,
+        connector: &'a Connector,
+        placements: &[Placement],
+        plane: Plane,
+    ) -> Result<Self, FigureError> {
+        let turn = plane.turn();
         let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let mut grow = |loops: Vec<Vec<[f64; 2]>>| {
             for point in loops.into_iter().flatten() {
@@ -100,11 +120,11 @@ impl<'a> View<'a> {
                 }
             }
         };
-        for y in &cuts {
-            grow(cut(&connector.fixed, DMat3::IDENTITY, DVec3::ZERO, *y));
+        for y in &plane.offsets {
+            grow(cut(&connector.fixed, turn, DVec3::ZERO, *y));
             for placement in placements {
                 let (rotation, face) = placement.of(design);
-                grow(cut(&connector.moving, rotation, face, *y));
+                grow(cut(&connector.moving, turn * rotation, turn * face, *y));
             }
         }
         if lo[0] > hi[0] {
@@ -115,7 +135,8 @@ impl<'a> View<'a> {
             design,
             connector,
             units: Units::of(design),
-            cuts,
+            plane,
+            turn,
             lo: lo.map(|v| v - margin),
             hi: hi.map(|v| v + margin),
         })
@@ -162,7 +183,7 @@ impl<'a> View<'a> {
         let [mx, mz] = [0, 1].map(|k| 0.5 * (self.lo[k] + self.hi[k]));
         let [rx, rz] = [0.5 * rect.w / scale, 0.5 * rect.h / scale];
         let axis = |name: &str, lo: f64, hi: f64| -> Scale { self.units.length(name, lo, hi) };
-        Frame { rect, x: axis("x", mx - rx, mx + rx), y: axis("z", mz - rz, mz + rz) }
+        Frame { rect, x: axis(&self.plane.name(), mx - rx, mx + rx), y: axis("z", mz - rz, mz + rz) }
     }
 
     /// Both halves, the moving one at `placement`, with its face centre and centre of rotation.
@@ -198,8 +219,10 @@ impl<'a> View<'a> {
         (r, face): (DMat3, DVec3),
         [fill, edge]: [Rgb; 2],
     ) {
-        for (k, y) in self.cuts.iter().enumerate() {
-            let pale = 0.62 * (self.cuts.len() - 1 - k) as f64;
+        let cuts = &self.plane.offsets;
+        let (r, face) = (self.turn * r, self.turn * face);
+        for (k, y) in cuts.iter().enumerate() {
+            let pale = 0.62 * (cuts.len() - 1 - k) as f64;
             let [fill, edge] = [fill, edge].map(|c| hex(mix(c, [255; 3], pale)));
             let data: String = cut(half, r, face, *y)
                 .into_iter()
@@ -211,15 +234,55 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Where a point of the world is seen.
+    pub(super) fn seen(&self, frame: &Frame, point: DVec3) -> [f64; 2] {
+        let point = self.turn * point;
+        self.place(frame, [point.x, point.z])
+    }
+
     pub(super) fn place(&self, frame: &Frame, [x, z]: [f64; 2]) -> [f64; 2] {
         frame.at([x * self.units.lengths(), z * self.units.lengths()])
+    }
+
+    /// Where the halves touch: full in the plane of the cut, hollow where that is seen through to.
+    pub(super) fn contacts(&self, svg: &mut Svg, frame: &Frame, patches: &[Patch]) {
+        for patch in patches {
+            // What touches all along an edge is seen at one place as a rule.
+            let mut shown: Vec<[f64; 2]> = Vec::new();
+            let reach = patch.points.iter().map(|point| (self.turn * *point).y);
+            let (lo, hi) =
+                reach.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| (lo.min(y), hi.max(y)));
+            let in_cut = self.plane.offsets.iter().any(|y| (lo - CLOSE..=hi + CLOSE).contains(y));
+            for point in &patch.points {
+                let at = self.seen(frame, *point);
+                if shown.iter().any(|other| (other[0] - at[0]).hypot(other[1] - at[1]) < APART) {
+                    continue;
+                }
+                shown.push(at);
+                let full = in_cut || self.plane.beside(*point) < CLOSE;
+                let fill = if full { CONTACT } else { "none" };
+                svg.circle(at, 5.4, r##"fill="none" stroke="#ffffff" stroke-width="3""##);
+                svg.circle(at, 4.4, &format!(r#"fill="{fill}" stroke="{CONTACT}" stroke-width="1.6""#));
+            }
+        }
+    }
+
+    /// Where it is cut, in words, if that is not the usual place.
+    pub(super) fn words(&self) -> Option<String> {
+        let [offset] = self.plane.offsets[..] else { return None };
+        self.plane.through_contacts.then(|| {
+            let beside = short(offset * self.units.lengths());
+            let way = self.plane.name();
+            let way = if way == "x" || way == "y" { format!("along {way}") } else { way };
+            format!("cut through the contacts: {way}, {beside} {} beside the axis", self.units.symbol())
+        })
     }
 
     /// ● the face centre, ⊕ the centre of rotation, of the moving half.
     fn marks(&self, svg: &mut Svg, frame: &Frame, placement: &Placement) {
         let (rotation, face) = placement.of(self.design);
         let cor = face - face_from_cor(&rotation, self.design.alignment.center_of_rotation);
-        let [at_face, at_cor] = [face, cor].map(|p| self.place(frame, [p.x, p.z]));
+        let [at_face, at_cor] = [face, cor].map(|p| self.seen(frame, p));
         if (face - cor).length() > 1e-9 {
             svg.line(
                 at_face,
@@ -248,7 +311,7 @@ pub(super) fn approach_axis(svg: &mut Svg, frame: &Frame) {
 }
 
 /// Where to cut: y = 0, or either side of it if a half has facets there or nothing at all. From far (+y) to near.
-fn cuts(connector: &Connector) -> Vec<f64> {
+pub(super) fn cuts(connector: &Connector) -> Vec<f64> {
     const IN_PLANE: f64 = 1e-9;
     let lies_in = |s: &Surface| {
         s.facets.iter().any(|f| f.corners.iter().all(|i| s.vertices[*i as usize].y.abs() < IN_PLANE))

@@ -3,8 +3,10 @@
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
+use super::plane::{Patch, Plane};
 use super::section::{Placement, View, approach_axis, describe};
 use super::{FigureError, Picture};
+use crate::acceptance::Outcome;
 use crate::connector::Connector;
 use crate::design::Design;
 use crate::method::descent::{Trajectory, Waypoint};
@@ -13,7 +15,7 @@ use crate::pose::Dof;
 /// Ghosts of the moving half, the first and the last pose included.
 const GHOSTS: usize = 7;
 
-/// Draws a trajectory: left the section with the moving half ghosted along its path, right its errors over the path
+/// Draws a trajectory: left the section, of one that jams through what touches at its end, with the moving half ghosted along its path, right its errors over the path
 /// length (in the ρ-metric, D).
 ///
 /// # Errors
@@ -24,7 +26,9 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     };
     let ghosts = ghosts(&path.waypoints);
     let placements: Vec<Placement> = ghosts.iter().map(|w| placed(w)).collect();
-    let view = View::new(design, connector, &placements)?;
+    // What docks is shown in the usual cut: its contacts lie all around.
+    let patches = if path.outcome == Outcome::Jammed { patches(last) } else { Vec::new() };
+    let view = View::along(design, connector, &placements, Plane::through(connector, &patches))?;
     let (left, height) = (430.0, 400.0);
     let mut svg = Svg::new(960.0, height + 130.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
@@ -43,21 +47,39 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     }
     let trace = path.waypoints.iter().map(|w| {
         let (_, face) = placed(w).of(design);
-        view.place(&frame, [face.x, face.z])
+        view.seen(&frame, face)
     });
     svg.path(&polyline(trace, false), &format!(r#"fill="none" stroke="{INK}" stroke-width="1.6" {JOIN}"#));
     for (w, radius) in [(first, 2.6), (last, 3.6)] {
         let (_, face) = placed(w).of(design);
-        svg.circle(view.place(&frame, [face.x, face.z]), radius, &format!(r#"fill="{INK}""#));
+        svg.circle(view.seen(&frame, face), radius, &format!(r#"fill="{INK}""#));
     }
+    view.contacts(&mut svg, &frame, &patches);
     svg.end();
     frame.draw(&mut svg);
+    if let Some(words) = view.words() {
+        svg.text([72.0, height + 120.0], LABEL - 1.0, Anchor::Start, SOFT, &words);
+    }
     errors(&mut svg, design, &path.waypoints, Rect { x: 590.0, y: 74.0, w: 340.0, h: height });
     Ok(Picture::of(svg))
 }
 
 const fn placed(w: &Waypoint) -> Placement {
     Placement { error: w.error, height: w.height }
+}
+
+/// What touches at the end: points with the same normal are of one face or edge.
+fn patches(last: &Waypoint) -> Vec<Patch> {
+    /// Cosine of a fiftieth of a degree.
+    const SAME: f64 = 1.0 - 1e-7;
+    let mut patches: Vec<Patch> = Vec::new();
+    for touch in &last.touches {
+        match patches.iter_mut().find(|patch| patch.normal.dot(touch.normal) > SAME) {
+            Some(patch) => patch.points.push(touch.point),
+            None => patches.push(Patch { points: vec![touch.point], normal: touch.normal }),
+        }
+    }
+    patches
 }
 
 /// Waypoints evenly spaced along the path.

@@ -213,7 +213,10 @@ impl Motion<'_> {
         }
         let contacts = Contacts { rows: &rows, tangents: &tangents, friction: self.settings.friction };
         let touching = |_| 0.0;
-        let u = self.coulomb.displacement(&mut self.projection, &DOWN, contacts, touching, 1.0).unwrap_or_default();
+        let u = self
+            .coulomb
+            .displacement(&mut self.projection, &DOWN, contacts, touching, 1.0)
+            .unwrap_or_default();
         (self.sliding.rows, self.sliding.tangents) = (rows, tangents);
         self.sliding.carrying.clear();
         self.sliding.carrying.extend_from_slice(self.coulomb.pressed());

@@ -1,0 +1,107 @@
+//! `catchment jams`: why it jams.
+
+use super::run::requirement;
+use crate::args::DesignArgs;
+use crate::error_args::ErrorArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, to_stderr, to_stdout};
+use catchment::problem::Problem;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{JamsReport, csv, figure};
+use catchment::run::Requirement;
+use catchment::run::jams::{Jams, Settings, run as find};
+use clap::Args;
+use std::time::Instant;
+
+/// Why it jams: where motions come to rest that do not dock, and the features that hold them there
+///
+/// Follows random poses of the error box by exact motion. Places of rest on the same features are one jam, up to the symmetries of the
+/// halves; the jams are ranked by how many poses end there. Of each: what touches, where on either half as it was drawn, how firmly it
+/// holds, and how far it must be lifted at most to get out.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment jams design.toml\n  \
+    catchment jams design.toml -o jams.png          each jam cut through its contacts, and in space\n  \
+    catchment jams design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'\n                                                  shares of the errors that your robot makes, too\n  \
+    catchment jams design.toml --require 'outcomes.jammed.share<=0.01'\n  \
+    catchment jams design.toml --json | jq '.features[0]'\n\n\
+    -o writes .png and .svg (pictures), .csv (a line per contact of every jam) and .json. Lengths are in D and angles in \
+    radians in CSV and JSON.")]
+pub(crate) struct JamsArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Random poses of the error box [default: 4000, fewer for round halves]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    motions: Option<u32>,
+    /// Seed of the random poses and of all searches
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// How many jams are examined: how firmly they hold, and the way out
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    examine: u32,
+    #[command(flatten)]
+    errors: ErrorArgs,
+    /// Print JSON, in D and radians
+    #[arg(long)]
+    json: bool,
+    /// End with exit code 1 unless this holds of the JSON report, such as "outcomes.jammed.share<=0.01"; may be repeated
+    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
+    require: Vec<Requirement>,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
+    let problem = args.design.problem()?;
+    let settings = args.settings(&problem)?;
+    let form = JamsReport::new(problem.design(), &Jams::form(&settings), Vec::new(), None);
+    for requirement in &args.require {
+        let tried = form.verdicts(std::slice::from_ref(requirement));
+        tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
+    }
+    let running = args.exec.start()?;
+    let found = find(&problem, &settings, &running.exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = JamsReport::new(problem.design(), &found, doubts, Some(timing));
+    match kind {
+        Some("csv") => args.file.write(&csv(&report.records())?)?,
+        Some("json") => args.file.write(report.to_json()?.as_bytes())?,
+        Some(kind) => {
+            let picture = figure::jams(&report, problem.connector())?;
+            if kind == "png" {
+                args.file.write(&picture.png(PNG_SCALE)?)?;
+            } else {
+                args.file.write(picture.svg().as_bytes())?;
+            }
+        }
+        None => {}
+    }
+    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
+    let verdicts = report.verdicts(&args.require)?;
+    let unmet: Vec<String> =
+        verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
+    to_stderr(&unmet);
+    Ok(if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+}
+
+impl JamsArgs {
+    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
+        Ok(Settings {
+            motions: self.motions.map(|motions| motions as usize),
+            seed: self.seed,
+            errors: self.errors.distribution(problem.design())?,
+            examined: self.examine as usize,
+        })
+    }
+}

@@ -1,0 +1,69 @@
+//! Jams, through the real binary.
+
+use super::{catchment, json, run};
+use serde_json::Value;
+use std::fs;
+
+/// A V-Face of 50 mm whose tip may come to lie on its side in the notch.
+fn home() -> tempfile::TempDir {
+    let home = tempfile::tempdir().unwrap();
+    let text =
+        "[connector]\nfamily = \"v-face\"\nwidth = 50.0\nunit = \"mm\"\n[alignment]\nrotation_length = 1.0\n";
+    fs::write(home.path().join("v.toml"), text).unwrap();
+    home
+}
+
+#[test]
+fn two_mirrored_rests_are_one_jam_and_shares_add_up() {
+    let home = home();
+    let report =
+        json(home.path(), &["jams", "v.toml", "--motions", "1000", "--error-sigma", "x=10 mm", "--json"]);
+    let share = |report: &Value| report["share"].as_f64().unwrap();
+    for outcomes in ["outcomes", "expected"] {
+        let outcomes = report[outcomes].as_object().unwrap();
+        assert!((outcomes.values().map(share).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+    let jams = report["jams"].as_array().unwrap();
+    let in_jams: f64 = jams.iter().map(|jam| share(&jam["of_box"])).sum();
+    assert!((in_jams - share(&report["outcomes"]["jammed"])).abs() < 1e-12);
+    assert_eq!(jams[0]["places"], 2);
+    let told = run(home.path(), &["jams", "v.toml", "--motions", "1000"]);
+    assert!(
+        told.starts_with("exit 0\n") && told.contains("at 2 places that are images of each other"),
+        "{told}"
+    );
+    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+}
+
+#[test]
+fn threads_change_nothing_and_files_are_whole() {
+    let home = home();
+    let with = |threads: &str| {
+        let args = ["jams", "v.toml", "--motions", "400", "--json", "--threads", threads];
+        let mut report = json(home.path(), &args);
+        report["timing"] = Value::Null;
+        report
+    };
+    assert_eq!(with("1"), with("2"));
+    assert_eq!(with("1"), with("4"));
+    for (file, begins) in [("j.svg", "<svg"), ("j.csv", "jam,count,share,"), ("j.json", "{\n")] {
+        let told = run(home.path(), &["jams", "v.toml", "--motions", "200", "-o", file]);
+        assert!(told.starts_with("exit 0\n"), "{told}");
+        assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
+    }
+    let csv = fs::read_to_string(home.path().join("j.csv")).unwrap();
+    let columns = csv.lines().next().unwrap().split(',').count();
+    let mut table = csv::Reader::from_reader(csv.as_bytes());
+    assert!(table.records().all(|record| record.unwrap().len() == columns));
+}
+
+#[test]
+fn a_requirement_decides_the_exit_code() {
+    let home = home();
+    let code = |require: &str| {
+        let args = ["jams", "v.toml", "--motions", "300", "--require", require];
+        catchment(home.path()).args(args).output().unwrap().status.code()
+    };
+    assert_eq!(code("outcomes.jammed.share<=0.3"), Some(0));
+    assert_eq!(code("outcomes.jammed.share<=0.01"), Some(1));
+}

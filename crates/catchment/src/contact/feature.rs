@@ -1,0 +1,418 @@
+//! The features of a half that a person would change: faces, edges and corners as a designer has them, not as a mesh does.
+//!
+//! ```text
+//!   face     facets that meet at less than 30°                           the wall of a hole, a ball, a floor cut into triangles
+//!   edge     convex edges, end to end, between the same two faces        the rim of a hole
+//!   corner   where different edges meet, and points without any          the tip of a cone
+//! ```
+//!
+//! A contact is between two of them, one of each half. It is told of the largest that touch there: what lies flush is face on face, also
+//! where corners carry it, and an edge that lies on a face is no pair of corners.
+//!
+//! Features that a turn or a reflection of their own half about the approach axis maps onto each other are of one class.
+//!
+//! Not promised: one name for a face that several surfaces make up (pieces of a notch, parts that overlap), and anything about rounds that
+//! are meshed with twelve sides and fewer, which are corners and edges. Lengths in D, angles in radians.
+
+use super::element::Features as Elements;
+use super::{Contact, Meeting, Pair};
+use crate::connector::{Half, Side, Surface};
+use glam::{DMat3, DVec3};
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::FRAC_PI_2;
+
+mod classes;
+pub(crate) use classes::Turns;
+
+/// Cosine of 30°: facets that meet at less are one face. A round of thirteen sides is one, a chamfer of 45° is another.
+const BEND: f64 = 0.866;
+/// Cosine of 60°: facets around a corner that spread wider make it a point, also where no two neighbours meet at an edge.
+const POINTED: f64 = 0.5;
+/// Sine of half a degree: what lies nearer than that to a plane lies in it. Motions come to rest far nearer.
+const IN_PLANE: f64 = 0.009;
+/// Inclinations that differ by less are one, radians: 2°.
+const EVEN: f64 = 0.035;
+/// Heights that differ by less are one, in D.
+const LEVEL: f64 = 1e-6;
+
+/// What a feature is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Part of the surface without an edge in it.
+    Face,
+    /// Where two faces meet, convex.
+    Edge,
+    /// A point.
+    Corner,
+}
+
+impl Kind {
+    /// The lower-case name used in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Face => "face",
+            Self::Edge => "edge",
+            Self::Corner => "corner",
+        }
+    }
+}
+
+/// How a face lies, seen on its own half that faces up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lie {
+    /// Least angle between an outward normal and the way the half faces, in [0, π].
+    pub least: f64,
+    /// Greatest.
+    pub most: f64,
+    /// Whether it is a flat at the very top of its half.
+    pub is_top: bool,
+}
+
+/// A face, an edge or a corner of a half.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Feature {
+    /// What it is.
+    pub kind: Kind,
+    /// The number of its surface in the half.
+    pub surface: usize,
+    /// How the faces lie that it is, or that meet in it.
+    pub faces: Vec<Lie>,
+}
+
+impl Lie {
+    /// `top`, `flat`, `wall`, `slope of 45°`, `rounded surface`.
+    pub fn name(&self) -> String {
+        if self.most <= EVEN / 2.0 {
+            if self.is_top { "top" } else { "flat" }.to_owned()
+        } else if self.least >= FRAC_PI_2 - EVEN / 2.0 && self.most <= FRAC_PI_2 + EVEN / 2.0 {
+            "wall".to_owned()
+        } else if self.least > FRAC_PI_2 + EVEN / 2.0 {
+            "underside".to_owned()
+        } else if self.most - self.least <= EVEN {
+            format!("slope of {:.0}°", f64::midpoint(self.least, self.most).to_degrees())
+        } else {
+            "rounded surface".to_owned()
+        }
+    }
+}
+
+impl Feature {
+    /// The feature in words: `wall`, `edge between top and wall`, `corner of slopes of 45°`.
+    pub fn name(&self) -> String {
+        // The flattest first, whichever way the mesh goes round.
+        let mut faces = self.faces.clone();
+        faces.sort_by(|a, b| a.least.total_cmp(&b.least).then(a.most.total_cmp(&b.most)));
+        let mut names: Vec<String> = Vec::new();
+        for name in faces.iter().map(Lie::name) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        match (self.kind, names.as_slice()) {
+            (Kind::Face, [name, ..]) => name.clone(),
+            (Kind::Edge, [one]) => format!("edge between two {}", plural(one)),
+            (Kind::Edge, [one, other, ..]) => format!("edge between {one} and {other}"),
+            (Kind::Corner, [first, .., last]) => {
+                let others = &names[1..names.len() - 1];
+                let middle: String = others.iter().map(|name| format!(", {name}")).collect();
+                format!("corner of {first}{middle} and {last}")
+            }
+            (Kind::Corner, [one]) => format!("corner of {}", plural(one)),
+            (kind, []) => kind.name().to_owned(),
+        }
+    }
+}
+
+/// Several of a kind: `walls`, `slopes of 45°`.
+fn plural(name: &str) -> String {
+    name.strip_prefix("slope of ").map_or_else(|| format!("{name}s"), |rest| format!("slopes of {rest}"))
+}
+
+/// The features of a pair.
+#[derive(Debug, Clone)]
+pub struct Features {
+    halves: [Anatomy; 2],
+}
+
+/// The features of one half.
+#[derive(Debug, Clone)]
+struct Anatomy {
+    features: Vec<Feature>,
+    classes: Vec<u32>,
+    turns: Turns,
+    surfaces: Vec<Lookup>,
+}
+
+/// Which feature the elements of a surface belong to.
+#[derive(Debug, Clone)]
+struct Lookup {
+    vertices: Vec<DVec3>,
+    /// Outward normals of the facets.
+    normals: Vec<DVec3>,
+    /// Of every facet.
+    faces: Vec<u32>,
+    /// Of every edge at which faces meet, by its ends in order, with its two facets.
+    edges: BTreeMap<(u32, u32), (u32, [u32; 2])>,
+    /// Of every corner.
+    corners: BTreeMap<u32, u32>,
+    /// The facets around every vertex.
+    around: Vec<Vec<u32>>,
+    /// The edges at a vertex: the other end, and the feature.
+    spokes: BTreeMap<u32, Vec<(u32, u32)>>,
+}
+
+/// An element of a surface that touches.
+#[derive(Debug, Clone, Copy)]
+enum Touching {
+    Facet(u32),
+    Edge([u32; 2]),
+    Vertex(u32),
+}
+
+const fn index(side: Side) -> usize {
+    match side {
+        Side::Fixed => 0,
+        Side::Moving => 1,
+    }
+}
+
+impl Features {
+    /// The features of the two halves of a pair.
+    pub fn of(pair: &Pair) -> Self {
+        Self { halves: [Anatomy::of(&pair.fixed, DVec3::Z), Anatomy::of(&pair.moving, DVec3::NEG_Z)] }
+    }
+
+    /// A feature by its number.
+    ///
+    /// # Panics
+    /// When the half has no such feature.
+    pub fn get(&self, side: Side, number: u32) -> &Feature {
+        &self.halves[index(side)].features[number as usize]
+    }
+
+    /// The class of a feature: the least number of those that symmetries of its half map onto it.
+    ///
+    /// # Panics
+    /// When the half has no such feature.
+    pub fn class(&self, side: Side, number: u32) -> u32 {
+        self.halves[index(side)].classes[number as usize]
+    }
+
+    /// The turns and reflections about the approach axis that map a half onto itself.
+    pub(crate) fn turns(&self, side: Side) -> &Turns {
+        &self.halves[index(side)].turns
+    }
+
+    /// The numbers of the two features, of the fixed and of the moving half, that meet in a contact at a rotation.
+    pub fn meeting(&self, contact: &Contact, meeting: &Meeting, rotation: &DMat3) -> [u32; 2] {
+        let (fixed, moving) = match meeting.features {
+            Elements::FacetCorner { facet, vertex } => (Touching::Facet(facet), Touching::Vertex(vertex)),
+            Elements::CornerFacet { vertex, facet } => (Touching::Vertex(vertex), Touching::Facet(facet)),
+            Elements::EdgeEdge { fixed, moving } => (Touching::Edge(fixed), Touching::Edge(moving)),
+        };
+        let seen = rotation.transpose() * -contact.normal;
+        let [first, second] = meeting.shapes.map(|shape| shape as usize);
+        [self.halves[0].touched(first, fixed, contact.normal), self.halves[1].touched(second, moving, seen)]
+    }
+}
+
+impl Anatomy {
+    fn of(half: &Half, facing: DVec3) -> Self {
+        let vertices = half.surfaces.iter().flat_map(|surface| &surface.vertices);
+        let top = vertices.map(|v| v.dot(facing)).fold(f64::NEG_INFINITY, f64::max);
+        let (mut features, mut surfaces) = (Vec::new(), Vec::new());
+        for (number, surface) in half.surfaces.iter().enumerate() {
+            surfaces.push(Lookup::of(surface, number, facing, top, &mut features));
+        }
+        let turns = Turns::of(half);
+        let classes = classes::of(half, &surfaces, features.len(), &turns);
+        Self { features, classes, turns, surfaces }
+    }
+
+    /// The largest feature of a surface that touches along the outward direction `normal` at an element.
+    fn touched(&self, surface: usize, element: Touching, normal: DVec3) -> u32 {
+        let lookup = &self.surfaces[surface];
+        let flush = |facet: &u32| lookup.is_flush(*facet, normal);
+        match element {
+            Touching::Facet(facet) => lookup.faces[facet as usize],
+            Touching::Edge([a, b]) => {
+                let both = |v: u32| lookup.around[v as usize].iter();
+                let shared = both(a).filter(|facet| both(b).any(|other| other == *facet));
+                let found = shared.clone().find(|facet| flush(facet)).map(|f| lookup.faces[*f as usize]);
+                let edge = lookup.edges.get(&(a.min(b), a.max(b))).map(|(feature, _)| *feature);
+                let seam = || shared.clone().next().map(|facet| lookup.faces[*facet as usize]);
+                found.or(edge).or_else(seam).unwrap_or_default()
+            }
+            Touching::Vertex(v) => {
+                let around = &lookup.around[v as usize];
+                let face = |facet: &u32| lookup.faces[*facet as usize];
+                let spokes = lookup.spokes.get(&v).map_or(&[][..], Vec::as_slice);
+                let along = |(other, _): &&(u32, u32)| lookup.lies_in(v, *other, normal);
+                let flush = around.iter().find(|facet| flush(facet)).map(face);
+                let edge = || spokes.iter().find(along).map(|(_, feature)| *feature);
+                let corner = || lookup.corners.get(&v).copied();
+                let any_edge = || spokes.first().map(|(_, feature)| *feature);
+                let seam = || around.first().map(face);
+                flush.or_else(edge).or_else(corner).or_else(any_edge).or_else(seam).unwrap_or_default()
+            }
+        }
+    }
+}
+
+impl Lookup {
+    /// Finds the features of a surface, and adds them to those of its half.
+    fn of(surface: &Surface, number: usize, facing: DVec3, top: f64, features: &mut Vec<Feature>) -> Self {
+        let normals: Vec<DVec3> = surface.facets.iter().map(|facet| facet.normal).collect();
+        let mut around = vec![Vec::new(); surface.vertices.len()];
+        let mut sides: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
+        for (facet, corners) in (0u32..).zip(surface.facets.iter().map(|facet| &facet.corners)) {
+            for (k, a) in corners.iter().enumerate() {
+                let b = corners[(k + 1) % corners.len()];
+                around[*a as usize].push(facet);
+                sides.entry(((*a).min(b), (*a).max(b))).or_default().push(facet);
+            }
+        }
+        let mut sets = Sets::new(surface.facets.len());
+        for facets in sides.values() {
+            if let [f, g] = facets[..]
+                && normals[f as usize].dot(normals[g as usize]) >= BEND
+            {
+                sets.join(f, g);
+            }
+        }
+        let mut lookup = Self {
+            vertices: surface.vertices.clone(),
+            normals,
+            faces: Vec::new(),
+            edges: BTreeMap::new(),
+            corners: BTreeMap::new(),
+            around,
+            spokes: BTreeMap::new(),
+        };
+        lookup.name_faces(surface, number, facing, top, &mut sets, features);
+        lookup.name_edges(surface, number, features);
+        lookup.name_corners(number, features);
+        lookup
+    }
+
+    fn name_faces(
+        &mut self,
+        surface: &Surface,
+        number: usize,
+        facing: DVec3,
+        top: f64,
+        sets: &mut Sets,
+        features: &mut Vec<Feature>,
+    ) {
+        let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
+        for (facet, normal) in (0u32..).zip(&self.normals) {
+            let set = sets.find(facet);
+            let feature = *numbers.entry(set).or_insert_with(|| {
+                let none = Lie { least: f64::INFINITY, most: 0.0, is_top: true };
+                features.push(Feature { kind: Kind::Face, surface: number, faces: vec![none] });
+                features.len() as u32 - 1
+            });
+            let lie = &mut features[feature as usize].faces[0];
+            let inclination = normal.dot(facing).clamp(-1.0, 1.0).acos();
+            (lie.least, lie.most) = (lie.least.min(inclination), lie.most.max(inclination));
+            let corners = &surface.facets[facet as usize].corners;
+            lie.is_top &= corners.iter().all(|v| self.vertices[*v as usize].dot(facing) >= top - LEVEL);
+            self.faces.push(feature);
+        }
+    }
+
+    fn name_edges(&mut self, surface: &Surface, number: usize, features: &mut Vec<Feature>) {
+        // Between the same two faces, those that share an end are one.
+        let mut between: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+        for (k, edge) in surface.edges.iter().enumerate() {
+            let mut faces = edge.facets.map(|facet| self.faces[facet as usize]);
+            faces.sort_unstable();
+            if faces[0] != faces[1] {
+                between.entry(faces).or_default().push(k);
+            }
+        }
+        for (faces, edges) in between {
+            let mut sets = Sets::new(edges.len());
+            let mut met: BTreeMap<u32, u32> = BTreeMap::new();
+            for (k, edge) in (0u32..).zip(&edges) {
+                for end in surface.edges[*edge].ends {
+                    let first = *met.entry(end).or_insert(k);
+                    sets.join(first, k);
+                }
+            }
+            let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
+            for (k, edge) in (0u32..).zip(&edges) {
+                let feature = *numbers.entry(sets.find(k)).or_insert_with(|| {
+                    let lies = faces.map(|face| features[face as usize].faces[0]).to_vec();
+                    features.push(Feature { kind: Kind::Edge, surface: number, faces: lies });
+                    features.len() as u32 - 1
+                });
+                let [a, b] = surface.edges[*edge].ends;
+                self.edges.insert((a.min(b), a.max(b)), (feature, surface.edges[*edge].facets));
+                self.spokes.entry(a).or_default().push((b, feature));
+                self.spokes.entry(b).or_default().push((a, feature));
+            }
+        }
+    }
+
+    fn name_corners(&mut self, number: usize, features: &mut Vec<Feature>) {
+        for v in 0..self.vertices.len() as u32 {
+            let around = &self.around[v as usize];
+            let edges: BTreeSet<u32> =
+                self.spokes.get(&v).into_iter().flatten().map(|(_, feature)| *feature).collect();
+            let is_point = || {
+                let apart =
+                    |f: &u32, g: &u32| self.normals[*f as usize].dot(self.normals[*g as usize]) < POINTED;
+                edges.is_empty() && around.iter().any(|f| around.iter().any(|g| apart(f, g)))
+            };
+            if edges.len() > 1 || is_point() {
+                let faces: BTreeSet<u32> = around.iter().map(|facet| self.faces[*facet as usize]).collect();
+                let lies = faces.iter().map(|face| features[*face as usize].faces[0]).collect();
+                features.push(Feature { kind: Kind::Corner, surface: number, faces: lies });
+                self.corners.insert(v, features.len() as u32 - 1);
+            }
+        }
+    }
+
+    /// Whether a facet lies in the plane of a contact.
+    fn is_flush(&self, facet: u32, normal: DVec3) -> bool {
+        let own = self.normals[facet as usize];
+        own.dot(normal) > 0.0 && own.cross(normal).length() <= IN_PLANE
+    }
+
+    /// Whether an edge lies in the plane of a contact at its first end.
+    fn lies_in(&self, v: u32, other: u32, normal: DVec3) -> bool {
+        let along = (self.vertices[other as usize] - self.vertices[v as usize]).normalize_or_zero();
+        along.dot(normal).abs() <= IN_PLANE
+    }
+}
+
+/// Sets that are joined: each has the least of its members as its name.
+#[derive(Debug, Clone)]
+pub(crate) struct Sets(Vec<u32>);
+
+impl Sets {
+    /// So many, each by itself.
+    pub(crate) fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    /// The name of the set of a member.
+    pub(crate) fn find(&mut self, member: u32) -> u32 {
+        let mut root = member;
+        while self.0[root as usize] != root {
+            self.0[root as usize] = self.0[self.0[root as usize] as usize];
+            root = self.0[root as usize];
+        }
+        root
+    }
+
+    /// Makes the sets of two members one.
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,168 @@
+//! Jams: each cut through what touches, and in space, with the features that hold it.
+
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::plane::{Patch, Plane};
+use super::section::{Placement, View, describe};
+use super::solid::panel;
+use super::{FigureError, Picture};
+use crate::connector::Connector;
+use crate::report::{ContactReport, JamReport, JamsReport};
+use crate::run::jams::Firmness;
+use glam::DVec3;
+
+/// Jams that are drawn.
+const SHOWN: usize = 6;
+/// How many beside each other.
+const COLUMNS: usize = 2;
+/// A panel, in SVG units.
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 384.0;
+/// Its words above, the section in it, and the view in space beside that.
+const WORDS: f64 = 114.0;
+const SECTION: [f64; 2] = [270.0, 210.0];
+const SPACE: [f64; 2] = [180.0, 190.0];
+/// Above the panels.
+const TOP: f64 = 76.0;
+
+/// Draws the jams with most of the poses: the halves of `connector` as the report's design places them.
+///
+/// # Errors
+/// If nothing jams.
+pub fn jams(report: &JamsReport, connector: &Connector) -> Result<Picture, FigureError> {
+    let shown = report.jams.len().min(SHOWN);
+    if shown == 0 {
+        return Err(FigureError::Empty { what: "none of the poses jams" });
+    }
+    let rows = shown.div_ceil(COLUMNS);
+    let columns = shown.min(COLUMNS);
+    let mut svg = Svg::new(24.0 + columns as f64 * WIDTH, TOP + rows as f64 * HEIGHT + 10.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
+    let all: Vec<String> = report
+        .outcomes
+        .iter()
+        .filter(|(_, share)| share.count > 0)
+        .map(|(outcome, share)| format!("{} {}", outcome.name(), percent(share.share)))
+        .collect();
+    let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
+    for (k, line) in broken(&story, columns as f64 * WIDTH - 30.0).iter().enumerate() {
+        svg.text([24.0, 50.0 + 15.0 * k as f64], LABEL, Anchor::Start, SOFT, line);
+    }
+    for (k, jam) in report.jams.iter().take(shown).enumerate() {
+        let corner = [24.0 + (k % COLUMNS) as f64 * WIDTH, TOP + (k / COLUMNS) as f64 * HEIGHT];
+        draw(&mut svg, corner, report, connector, k + 1, jam)?;
+    }
+    Ok(Picture::of(svg))
+}
+
+fn draw(
+    svg: &mut Svg,
+    [x, y]: [f64; 2],
+    report: &JamsReport,
+    connector: &Connector,
+    number: usize,
+    jam: &JamReport,
+) -> Result<(), FigureError> {
+    let design = &report.design;
+    let placement = Placement { error: jam.pose, height: jam.height_d };
+    let head =
+        format!("jam {number}:  {} of jams, {} of the box", percent(jam.of_jams), percent(jam.of_box.share));
+    svg.bold([x, y + 16.0], LABEL + 1.0, Anchor::Start, &head);
+    let mut lines: Vec<(&str, String)> = Vec::new();
+    for words in jam.words() {
+        lines.extend(broken(&words, WIDTH - 40.0).into_iter().map(|line| (INK, line)));
+    }
+    /// Lines of words that a panel holds beside the last.
+    const MOST_LINES: usize = 3;
+    if lines.len() > MOST_LINES {
+        lines.truncate(MOST_LINES);
+        if let Some((_, last)) = lines.last_mut() {
+            last.push_str(" …");
+        }
+    }
+    lines.push((SOFT, describe(design, &placement)));
+    if let Some(examined) = &jam.examined {
+        let level =
+            if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
+        let way = examined
+            .way_out
+            .map_or_else(String::new, |way| format!(": {} it gets out", report.lifted(way.climb_at_most_d)));
+        lines.push((SOFT, format!("{level}{way}")));
+    }
+    for (k, (colour, words)) in lines.iter().enumerate() {
+        svg.text([x, y + 33.0 + 15.0 * k as f64], LABEL - 0.5, Anchor::Start, colour, words);
+    }
+    let patches: Vec<Patch> = jam.contacts.iter().map(patch).collect();
+    let plane = Plane::through(connector, &patches);
+    let view = View::along(design, connector, std::slice::from_ref(&placement), plane)?;
+    let rect = Rect { x: x + 52.0, y: y + WORDS, w: SECTION[0], h: SECTION[1] };
+    let frame = view.frame(rect);
+    view.halves(svg, &frame, &placement);
+    svg.begin_clip(frame.rect);
+    view.contacts(svg, &frame, &patches);
+    svg.end();
+    frame.draw(svg);
+    if let Some(words) = view.words() {
+        svg.text([x + 52.0, y + WORDS + SECTION[1] + 48.0], LABEL - 2.0, Anchor::Start, SOFT, &words);
+    }
+    let space = Rect { x: x + SECTION[0] + 70.0, y: y + WORDS, w: SPACE[0], h: SPACE[1] };
+    panel(svg, space, design, connector, &placement)
+}
+
+fn patch(contact: &ContactReport) -> Patch {
+    let points = contact.points_d.iter().copied().map(DVec3::from_array).collect();
+    Patch { points, normal: DVec3::from_array(contact.normal) }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// Words in lines no wider than this, in SVG units.
+fn broken(words: &str, width: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in words.split_whitespace() {
+        let last = lines.len() - 1;
+        let longer = if lines[last].is_empty() { word.to_owned() } else { format!("{} {word}", lines[last]) };
+        if width_of(&longer, LABEL - 0.5) > width && !lines[last].is_empty() {
+            lines.push(word.to_owned());
+        } else {
+            lines[last] = longer;
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::design::read;
+    use crate::exec::Exec;
+    use crate::problem::Problem;
+    use crate::run::jams::{Settings, run};
+    use std::path::Path;
+
+    fn drawn(text: &str) -> Result<Picture, FigureError> {
+        let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
+        let found =
+            run(&problem, &Settings { motions: Some(400), ..Settings::default() }, &Exec::new()).unwrap();
+        let report = JamsReport::new(problem.design(), &found, Vec::new(), None);
+        jams(&report, problem.connector())
+    }
+
+    #[test]
+    fn every_jam_is_drawn_with_what_touches() {
+        let text = "[connector]\nfamily = \"v-face\"\nwidth = 50\nunit = \"mm\"\n[alignment]\nrotation_length = 1.0\n";
+        let picture = drawn(text).unwrap();
+        look("jams", &picture);
+        assert!(picture.svg().contains("of the fixed one"));
+        let text = "[connector]\nfamily = \"pyramid\"\nwidth = 50\nunit = \"mm\"\naspect_ratio = 0.5\n";
+        look("jams-pyramid", &drawn(text).unwrap());
+    }
+
+    #[test]
+    fn where_nothing_jams_there_is_nothing_to_draw() {
+        let text = "[connector]\nfamily = \"pyramid\"\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.1\ny = 0.1\n";
+        assert!(matches!(drawn(text), Err(FigureError::Empty { .. })));
+    }
+}

@@ -1,0 +1,162 @@
+//! Rests that are one jam: on the same features, and near each other up to the symmetries of the halves.
+//!
+//! Of rests on the same classes of features those nearer than [`NEAR`] to a chain of others are one jam. Level ones, which lie anywhere on
+//! what carries them, are one jam whatever the gaps that chance leaves between them; so are those at more than [`MOST_PLACES`] places. Rests at one place
+//! are one jam also where what touches is told differently.
+
+use super::firmness::{self, Firmness, Held};
+use super::images::Images;
+use super::rests::Rested;
+use crate::contact::Sets;
+use crate::exec::{Cancelled, Exec};
+use crate::pose::CorPose;
+use crate::problem::Problem;
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+/// Rests nearer than this are at one place, in the metric of the motion, in D: far above where motions end, far below a part's features.
+const SAME: f64 = 0.01;
+/// Places nearer than this belong together.
+const NEAR: f64 = 0.1;
+/// More places on the same features than this lie all over.
+const MOST_PLACES: usize = 48;
+
+/// Rests that are one jam.
+#[derive(Debug, Clone)]
+pub(super) struct Cluster {
+    /// Their numbers, ascending.
+    pub(super) members: Vec<usize>,
+    /// The one in the middle.
+    pub(super) middle: usize,
+    /// From where to where they lie, images laid upon each other.
+    pub(super) extent: [[f64; 2]; 5],
+    /// At how many places that are images of each other they lie.
+    pub(super) places: usize,
+    /// How firmly the middle one holds, where it was asked.
+    pub(super) held: Option<Held>,
+}
+
+/// Gathers rests into jams, the largest first.
+pub(super) fn gather(
+    problem: &Problem,
+    rests: &[Rested],
+    images: &Images,
+    seed: u64,
+    exec: &Exec,
+) -> Result<Vec<Cluster>, Cancelled> {
+    let mut alike: BTreeMap<&[[u32; 2]], Vec<usize>> = BTreeMap::new();
+    for (k, rest) in rests.iter().enumerate() {
+        alike.entry(&rest.signature).or_default().push(k);
+    }
+    // Groups of rests on the same features, with a leader for each.
+    let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
+    for (features, members) in alike.values().enumerate() {
+        exec.check()?;
+        groups.extend(near(rests, members, images).into_iter().map(|group| (features, group)));
+    }
+    let leader = |group: &(usize, Vec<usize>)| &rests[group.1[0]];
+    // How firmly each holds: level ones on the same features are one.
+    let held: Vec<Held> = groups
+        .iter()
+        .map(|group| {
+            exec.check()?;
+            Ok(firmness::held(problem.pair(), leader(group), seed))
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let mut sets = Sets::new(groups.len());
+    for j in 0..groups.len() {
+        for k in 0..j {
+            let both_level = [j, k].iter().all(|g| held[*g].firmness == Firmness::Level);
+            let (a, b) = (&leader(&groups[j]).pose, &leader(&groups[k]).pose);
+            let at_one_place = || images.may_be_near(a, b, SAME) && images.nearest(a, b).1 <= SAME;
+            if both_level && groups[j].0 == groups[k].0 || at_one_place() {
+                sets.join(j as u32, k as u32);
+            }
+        }
+    }
+    let mut joined: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (k, group) in groups.iter().enumerate() {
+        joined.entry(sets.find(k as u32)).or_default().extend(&group.1);
+    }
+    let mut clusters: Vec<Cluster> = Vec::new();
+    for (set, mut members) in joined {
+        exec.check()?;
+        members.sort_unstable();
+        clusters.push(Cluster::of(rests, members, &held[set as usize], images));
+    }
+    clusters.sort_by_key(|cluster| (Reverse(cluster.members.len()), cluster.members[0]));
+    Ok(clusters)
+}
+
+/// Parts rests on the same features into those that lie near each other.
+fn near(rests: &[Rested], members: &[usize], images: &Images) -> Vec<Vec<usize>> {
+    let mut places: Vec<Vec<usize>> = Vec::new();
+    let pose = |k: usize| &rests[k].pose;
+    let within = |a: &CorPose, b: &CorPose, most: f64| {
+        images.may_be_near(a, b, most) && images.nearest(a, b).1 <= most
+    };
+    for member in members {
+        match places.iter().position(|place| within(pose(*member), pose(place[0]), SAME)) {
+            Some(place) => places[place].push(*member),
+            None if places.len() == MOST_PLACES => return vec![members.to_vec()],
+            None => places.push(vec![*member]),
+        }
+    }
+    let mut sets = Sets::new(places.len());
+    for j in 0..places.len() {
+        for k in 0..j {
+            if within(pose(places[j][0]), pose(places[k][0]), NEAR) {
+                sets.join(j as u32, k as u32);
+            }
+        }
+    }
+    let mut groups: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (k, place) in places.into_iter().enumerate() {
+        groups.entry(sets.find(k as u32)).or_default().extend(place);
+    }
+    groups.into_values().collect()
+}
+
+impl Cluster {
+    fn of(rests: &[Rested], members: Vec<usize>, held: &Held, images: &Images) -> Self {
+        let pose = |k: usize| &rests[k].pose;
+        // How far the images of all members that are nearest to one are off it.
+        let folded = |to: usize| -> Vec<[f64; 5]> {
+            let image = |k: &usize| images.nearest(pose(*k), pose(to)).0;
+            members.iter().map(image).map(|image| images.off(&image, pose(to), &rests[to].error)).collect()
+        };
+        let around = folded(members[0]);
+        let count = around.len() as f64;
+        let mean: [f64; 5] = std::array::from_fn(|axis| around.iter().map(|e| e[axis]).sum::<f64>() / count);
+        let off = |errors: &[f64; 5]| -> f64 {
+            let parts = errors.iter().zip(mean).enumerate().map(|(axis, (value, mean))| {
+                let scale = if axis < 2 { 1.0 } else { images.rho() };
+                (scale * (value - mean)).powi(2)
+            });
+            parts.sum()
+        };
+        let nearest = (0..members.len()).min_by(|a, b| off(&around[*a]).total_cmp(&off(&around[*b])));
+        let middle = members[nearest.unwrap_or_default()];
+        let own = rests[middle].error.to_array();
+        let mut extent = own.map(|value| [value; 2]);
+        for errors in folded(middle) {
+            for (axis, side) in extent.iter_mut().enumerate() {
+                let value = own[axis] + errors[axis];
+                *side = [side[0].min(value), side[1].max(value)];
+            }
+        }
+        // Places that are images of each other: members that no other place is near, unfolded.
+        let mut places: Vec<usize> = Vec::new();
+        for member in &members {
+            let far = |place: &usize| images.distance(pose(*place), pose(*member)) > NEAR;
+            if places.len() <= MOST_PLACES && places.iter().all(far) {
+                places.push(*member);
+            }
+        }
+        let is_image = |place: &usize| images.nearest(pose(*place), pose(middle)).1 <= SAME;
+        let are_images = held.firmness != Firmness::Level && places.iter().all(is_image);
+        let places = if are_images { places.len() } else { 1 };
+        let held = (middle == members[0]).then_some(*held);
+        Self { members, middle, extent, places, held }
+    }
+}

@@ -1,0 +1,75 @@
+//! Poses drawn from the errors that a robot makes: pose k depends on the seed and k alone.
+
+use super::JamsError;
+use super::firmness::normal;
+use crate::acceptance::Stream;
+use crate::design::Alignment;
+use crate::pose::{Dof, PoseError};
+use crate::poses::Distribution;
+use crate::poses::covariance::cholesky;
+
+/// Numbers that a pose takes.
+const EACH: u64 = 10;
+
+/// So many poses of a distribution.
+pub(super) fn poses(
+    errors: &Distribution,
+    alignment: &Alignment,
+    count: usize,
+    seed: u64,
+) -> Result<Vec<PoseError>, JamsError> {
+    let stream = Stream::new(seed);
+    let normals = |k: u64| -> [f64; 5] { std::array::from_fn(|j| normal(stream, EACH * k + 2 * j as u64)) };
+    let (mean, draw): (&PoseError, Box<dyn Fn(u64) -> [f64; 5]>) = match errors {
+        Distribution::Normal { mean, sigma } => {
+            let sigma = sizes(sigma, alignment)?;
+            (mean, Box::new(move |k| std::array::from_fn(|j| sigma[j] * normals(k)[j])))
+        }
+        Distribution::Uniform { mean, half_width } => {
+            let half_width = sizes(half_width, alignment)?;
+            let number = move |k: u64, j: usize| 2.0 * stream.uniform(EACH * k + 2 * j as u64) - 1.0;
+            (mean, Box::new(move |k| std::array::from_fn(|j| half_width[j] * number(k, j))))
+        }
+        Distribution::Correlated { mean, covariance, .. } => {
+            let variances = PoseError::from_array(std::array::from_fn(|j| covariance[j][j]));
+            sizes(&variances, alignment)?;
+            let factor = cholesky(covariance).map_err(|_| JamsError::NotACovariance)?;
+            let product =
+                move |row: &[f64; 5], z: &[f64; 5]| row.iter().zip(z).map(|(l, z)| l * z).sum::<f64>();
+            (
+                mean,
+                Box::new(move |k| {
+                    let z = normals(k);
+                    std::array::from_fn(|j| product(&factor[j], &z))
+                }),
+            )
+        }
+    };
+    let mean = mean.to_array();
+    check(&mean, alignment, f64::is_finite)?;
+    let pose = |k: usize| {
+        let off = draw(k as u64);
+        PoseError::from_array(std::array::from_fn(|j| mean[j] + off[j]))
+    };
+    Ok((0..count).map(pose).collect())
+}
+
+/// Sizes of errors, of those alone that occur.
+fn sizes(sizes: &PoseError, alignment: &Alignment) -> Result<[f64; 5], JamsError> {
+    let sizes = sizes.to_array();
+    check(&sizes, alignment, |value| value.is_finite() && value >= 0.0)?;
+    Ok(sizes)
+}
+
+fn check(values: &[f64; 5], alignment: &Alignment, is_one: impl Fn(f64) -> bool) -> Result<(), JamsError> {
+    for axis in Dof::ALL {
+        let value = values[axis.index()];
+        if !is_one(value) {
+            return Err(JamsError::NoSize { axis, value });
+        }
+        if value != 0.0 && !alignment.free.contains(axis) {
+            return Err(JamsError::Locked { axis });
+        }
+    }
+    Ok(())
+}

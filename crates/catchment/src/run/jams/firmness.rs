@@ -1,0 +1,252 @@
+//! How firmly a half rests: by how much it rises when it is pushed aside.
+//!
+//! ```text
+//!   sharp      ╲  ╱     it rises in proportion to the push           held by contacts on all sides
+//!   rounded    ╰──╯     with the square of the push                  held by curvature: turning lifts it
+//!   level     ──────    hardly at all                                nothing but friction holds it
+//!   ridge      ╱  ╲     it falls                                     motion ended there by chance
+//! ```
+//!
+//! The least rise over all directions is searched for: random directions, then moves about the best of them. The true least may be lower.
+
+use super::PUSH;
+use super::rests::Rested;
+use crate::acceptance::Stream;
+use crate::contact::{FLUSH, Nearby, Pair};
+use crate::pose::{CorPose, Dof, PoseError, rotation};
+use glam::{DMat3, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// A slope below this is level: 0.06°, less than any friction.
+const LEVEL: f64 = 1e-3;
+/// Of a tenth of the push a rounded rest rises by a hundredth, a sharp one by a tenth: the border in between.
+const TENTH: f64 = 0.1;
+const ROUNDED: f64 = 0.03;
+/// A fall of so much is one, in D: rounding of heights aside.
+const FALL: f64 = 1e-7;
+
+/// Random directions that are tried, per free error, and moves about the best.
+const TRIES: usize = 16;
+const MOVES: u64 = 64;
+
+/// How a half rests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Firmness {
+    /// It rises in proportion to the push, whichever way.
+    Sharp,
+    /// Some way it rises with the square of the push.
+    Rounded,
+    /// Some way it hardly rises.
+    Level,
+    /// Some way it falls.
+    Ridge,
+}
+
+impl Firmness {
+    /// The lower-case name used in files and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sharp => "sharp",
+            Self::Rounded => "rounded",
+            Self::Level => "level",
+            Self::Ridge => "ridge",
+        }
+    }
+}
+
+/// How firmly a half rests.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Held {
+    /// In a word.
+    pub firmness: Firmness,
+    /// Least rise found of the COR when pushed by [`PUSH`], in D; none where walls stop it all around.
+    pub rise: Option<f64>,
+    /// The direction of that push: offset of the COR in D and turns in radians, per error; 0 where walls stop it.
+    pub weakest: PoseError,
+}
+
+/// What becomes of the height aside of a rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ground {
+    /// z of the COR, in D.
+    At(f64),
+    /// A wall is in the way.
+    Blocked,
+    /// Nothing carries it.
+    Gone,
+}
+
+/// Directions in the errors that are free, unit in the metric of the motion.
+pub(super) struct Space {
+    free: Vec<Dof>,
+    rho: f64,
+    cor: f64,
+    spherical: bool,
+}
+
+impl Space {
+    pub(super) fn of(pair: &Pair) -> Self {
+        let alignment = &pair.alignment;
+        Self {
+            free: alignment.free.iter().collect(),
+            rho: alignment.rotation_length,
+            cor: alignment.center_of_rotation,
+            spherical: alignment.free.rotations() == 3,
+        }
+    }
+
+    /// How many errors are free.
+    pub(super) const fn count(&self) -> usize {
+        self.free.len()
+    }
+
+    /// Along one error alone, either way.
+    pub(super) fn axes(&self) -> Vec<[f64; 5]> {
+        let along = |dof: &Dof| {
+            [1.0, -1.0].map(|sign| {
+                let mut way = [0.0; 5];
+                way[dof.index()] = sign;
+                way
+            })
+        };
+        self.free.iter().flat_map(along).collect()
+    }
+
+    /// Direction number k of a stream.
+    pub(super) fn random(&self, stream: Stream, k: u64) -> [f64; 5] {
+        /// Numbers that a direction takes.
+        const EACH: u64 = 10;
+        let mut way = [0.0; 5];
+        for dof in &self.free {
+            let j = EACH * k + 2 * dof.index() as u64;
+            way[dof.index()] = normal(stream, j);
+        }
+        unit(way)
+    }
+
+    /// A direction moved by another.
+    pub(super) fn moved(&self, way: &[f64; 5], by: &[f64; 5], share: f64) -> [f64; 5] {
+        unit(std::array::from_fn(|k| way[k] + share * by[k]))
+    }
+
+    /// From a rest towards another pose error, and how far that is; none where it is the same.
+    pub(super) fn towards(&self, rest: &Rested, to: &PoseError) -> Option<[f64; 5]> {
+        let (from, to) = (rest.error.to_array(), to.to_array());
+        let mut way = [0.0; 5];
+        for dof in &self.free {
+            let scale = if dof.is_rotation() { self.rho } else { 1.0 };
+            way[dof.index()] = scale * (to[dof.index()] - from[dof.index()]);
+        }
+        way.iter().any(|part| part.abs() > FALL).then(|| unit(way))
+    }
+
+    /// Where a push by `length` in a direction leads from a rest.
+    pub(super) fn displaced(&self, rest: &Rested, way: &[f64; 5], length: f64) -> CorPose {
+        let lateral = rest.pose.lateral + DVec2::new(way[0], way[1]) * length;
+        let turn = [way[2], way[3], way[4]].map(|part| part * length / self.rho);
+        let rotation = if self.spherical {
+            let by = DVec3::from_array(turn);
+            let angle = by.length();
+            let by = by.try_normalize().map_or(DMat3::IDENTITY, |axis| DMat3::from_axis_angle(axis, angle));
+            by * rest.pose.rotation
+        } else {
+            let PoseError { roll, pitch, yaw, .. } = rest.error;
+            rotation(roll + turn[0], pitch + turn[1], yaw + turn[2])
+        };
+        CorPose { lateral, rotation }
+    }
+
+    /// The pose error there. Of angles that are not all free it is their sum, also beyond 90° of pitch; what is locked stays exactly 0.
+    pub(super) fn error(&self, rest: &Rested, way: &[f64; 5], length: f64) -> PoseError {
+        let pose = self.displaced(rest, way, length);
+        let error = pose.to_error(self.cor);
+        if self.spherical {
+            return error;
+        }
+        let PoseError { roll, pitch, yaw, .. } = rest.error;
+        let [roll, pitch, yaw] =
+            [(roll, 2), (pitch, 3), (yaw, 4)].map(|(angle, k)| angle + way[k] * length / self.rho);
+        PoseError { roll, pitch, yaw, ..error }
+    }
+
+    /// A direction as errors: D and radians.
+    fn as_error(&self, way: &[f64; 5]) -> PoseError {
+        let part = |k: usize| if k < 2 { way[k] } else { way[k] / self.rho };
+        PoseError::from_array(std::array::from_fn(part))
+    }
+}
+
+fn unit(way: [f64; 5]) -> [f64; 5] {
+    let length = way.iter().map(|part| part * part).sum::<f64>().sqrt();
+    if length > 0.0 { way.map(|part| part / length) } else { way }
+}
+
+/// A standard normal number from two of a stream (Box and Muller, 1958).
+pub(super) fn normal(stream: Stream, j: u64) -> f64 {
+    // In (0, 1]: its logarithm is finite.
+    let radius = (-2.0 * libm::log(1.0 - stream.uniform(j))).sqrt();
+    radius * libm::cos(std::f64::consts::TAU * stream.uniform(j + 1))
+}
+
+/// The height at a pose that is reached from no higher than `ceiling`.
+pub(super) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f64) -> Ground {
+    nearby.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
+    let (below, covered) = nearby.height_below(pose.lateral, ceiling);
+    match below {
+        Some(z) if covered && nearby.is_pierced(pose.lateral.extend(z)) => Ground::Blocked,
+        Some(z) => Ground::At(z),
+        None if covered => Ground::Blocked,
+        None => Ground::Gone,
+    }
+}
+
+/// Rises that count as climbing and not as a wall, per length: a slope of 87°.
+pub(super) const STEEPEST: f64 = 20.0;
+
+/// How firmly a half rests.
+pub(super) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
+    let space = Space::of(pair);
+    let mut nearby = pair.about(2.0 * PUSH);
+    let mut rise = |way: &[f64; 5], push: f64| {
+        let pose = space.displaced(rest, way, push);
+        match ground(&mut nearby, &pose, rest.height + STEEPEST * push) {
+            Ground::At(z) => z - rest.height,
+            Ground::Blocked => f64::INFINITY,
+            Ground::Gone => f64::NEG_INFINITY,
+        }
+    };
+    let stream = Stream::new(seed).branch(PUSH.to_bits());
+    let tries = (TRIES * space.count()) as u64;
+    let ways = space.axes().into_iter().chain((0..tries).map(|k| space.random(stream, k)));
+    let mut best = ([0.0; 5], f64::INFINITY);
+    for way in ways {
+        let found = rise(&way, PUSH);
+        if found < best.1 {
+            best = (way, found);
+        }
+    }
+    if best.1 == f64::INFINITY {
+        return Held { firmness: Firmness::Sharp, rise: None, weakest: PoseError::default() };
+    }
+    for k in 0..MOVES {
+        // Smaller and smaller moves: from a radian to a hundredth.
+        let share = 0.01f64.powf(k as f64 / MOVES as f64);
+        let way = space.moved(&best.0, &space.random(stream, tries + k), share);
+        let found = rise(&way, PUSH);
+        if found < best.1 {
+            best = (way, found);
+        }
+    }
+    let (way, least) = best;
+    let firmness = if least < -FALL {
+        Firmness::Ridge
+    } else if least < LEVEL * PUSH {
+        Firmness::Level
+    } else if rise(&way, TENTH * PUSH) < ROUNDED * least {
+        Firmness::Rounded
+    } else {
+        Firmness::Sharp
+    };
+    Held { firmness, rise: least.is_finite().then_some(least), weakest: space.as_error(&way) }
+}

@@ -1,0 +1,102 @@
+//! Poses that are images of each other: the halves' own symmetries, each by itself.
+//!
+//! A fixed half that is itself after a turn or reflection A about the approach axis, and a moving one that is itself after B, make
+//! a pose (v, R) of the COR the image of (A v, A R B⁻¹), if both are turns or both are reflections. What is locked must stay where it is.
+
+use crate::connector::Side;
+use crate::contact::Features;
+use crate::design::Alignment;
+use crate::pose::{CorPose, Dof, DofSet, PoseError, ROTATIONS, angle_between, euler_axes, step_length};
+use glam::{DMat3, DQuat, DVec2, DVec3};
+
+/// What is locked may move by less than this, in D or radians: rounding.
+const LOCKED: f64 = 1e-6;
+/// Pairs of symmetries that are looked at, at most: those of two rounds.
+const MOST: usize = 600;
+
+/// The symmetries of a pair.
+pub(super) struct Images {
+    pairs: Vec<[DMat3; 2]>,
+    free: DofSet,
+    rho: f64,
+}
+
+impl Images {
+    pub(super) fn of(features: &Features, alignment: &Alignment) -> Self {
+        let [fixed, moving] = [Side::Fixed, Side::Moving].map(|side| &features.turns(side).0);
+        let like = |a: &DMat3, b: &DMat3| (a.determinant() > 0.0) == (b.determinant() > 0.0);
+        let pairs =
+            fixed.iter().flat_map(|a| moving.iter().filter(move |b| like(a, b)).map(move |b| [*a, *b]));
+        Self { pairs: pairs.take(MOST).collect(), free: alignment.free, rho: alignment.rotation_length }
+    }
+
+    /// The images of a pose, itself first.
+    fn each<'a>(&'a self, pose: &'a CorPose) -> impl Iterator<Item = CorPose> + 'a {
+        let image = |[a, b]: &[DMat3; 2]| {
+            let lateral = (*a * pose.lateral.extend(0.0)).truncate();
+            CorPose { lateral, rotation: *a * pose.rotation * b.transpose() }
+        };
+        self.pairs.iter().map(image).filter(|image| self.keeps_locks(image))
+    }
+
+    /// Whether what is locked is where it was. Told by the axes of the half and not by angles, which say nothing at a pitch of 90°.
+    fn keeps_locks(&self, pose: &CorPose) -> bool {
+        let DVec2 { x, y } = pose.lateral;
+        let DMat3 { x_axis, y_axis, z_axis } = pose.rotation;
+        let is = |dof: Dof| self.free.contains(dof);
+        let off = match (is(Dof::Roll), is(Dof::Pitch), is(Dof::Yaw)) {
+            (true, true, true) => 0.0,
+            (false, false, false) => (x_axis - DVec3::X).length().max((y_axis - DVec3::Y).length()),
+            (true, false, false) => (x_axis - DVec3::X).length(),
+            (false, true, false) => (y_axis - DVec3::Y).length(),
+            (false, false, true) => (z_axis - DVec3::Z).length(),
+            // R = Ry·Rx has no y in its x-axis, Rz·Rx no z; Rz·Ry no z in its y-axis.
+            (true, true, false) => x_axis.y.abs(),
+            (true, false, true) => x_axis.z.abs(),
+            (false, true, true) => y_axis.z.abs(),
+        };
+        off < LOCKED && (is(Dof::X) || x.abs() < LOCKED) && (is(Dof::Y) || y.abs() < LOCKED)
+    }
+
+    /// Distance of two poses in the metric of the motion, in D.
+    pub(super) fn distance(&self, a: &CorPose, b: &CorPose) -> f64 {
+        step_length(a.lateral - b.lateral, angle_between(&a.rotation, &b.rotation), self.rho)
+    }
+
+    /// The image of `pose` that is nearest to `to`, and how near that is.
+    pub(super) fn nearest(&self, pose: &CorPose, to: &CorPose) -> (CorPose, f64) {
+        let mut best = (*pose, self.distance(pose, to));
+        for image in self.each(pose) {
+            let distance = self.distance(&image, to);
+            if distance < best.1 {
+                best = (image, distance);
+            }
+        }
+        best
+    }
+
+    /// How far a pose is off another one, whose error is given: lateral offset of the COR, and the turns of the Euler angles that lead there
+    /// to first order, about their own axes; in D and radians. Exact for one rotation.
+    pub(super) fn off(&self, pose: &CorPose, from: &CorPose, error: &PoseError) -> [f64; 5] {
+        let lateral = pose.lateral - from.lateral;
+        let turn = DQuat::from_mat3(&(pose.rotation * from.rotation.transpose())).to_scaled_axis();
+        let axes = euler_axes(error.pitch, error.yaw);
+        let mut off = [lateral.x, lateral.y, 0.0, 0.0, 0.0];
+        for (k, (dof, axis)) in ROTATIONS.into_iter().zip(axes).enumerate() {
+            off[2 + k] = if self.free.contains(dof) { turn.dot(axis) } else { 0.0 };
+        }
+        off
+    }
+
+    /// The rotation length, in D.
+    pub(super) const fn rho(&self) -> f64 {
+        self.rho
+    }
+
+    /// Whether an image of `pose` may be as near to `to` as this: what no symmetry changes is compared.
+    pub(super) fn may_be_near(&self, pose: &CorPose, to: &CorPose, near: f64) -> bool {
+        let tilt = |pose: &CorPose| pose.rotation.z_axis.z.clamp(-1.0, 1.0).acos();
+        (pose.lateral.length() - to.lateral.length()).abs() <= near
+            && (tilt(pose) - tilt(to)).abs() * self.rho <= near
+    }
+}

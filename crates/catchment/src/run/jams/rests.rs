@@ -1,0 +1,163 @@
+//! Poses followed to where they rest, with the features that touch there.
+
+use super::firmness::Space;
+use super::{Cluster, Examined, Named, Touched, escape, firmness, part_of};
+use crate::acceptance::{Outcome, Stream};
+use crate::connector::Side;
+use crate::contact::{Contact, Features};
+use crate::exec::{Cancelled, Exec};
+use crate::method::descent::{self, Follower, Rest};
+use crate::pose::{CorPose, PoseError, angle_between, face_from_cor, step_length};
+use crate::problem::Problem;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Places of a contact nearer than this are one, in D.
+const SAME_PLACE: f64 = 1e-4;
+/// Descents between two reports of progress.
+const BETWEEN: usize = 64;
+/// How far off rests are pushed to see whether they come back, in the metric of the motion, in D.
+const OFF: f64 = 5e-3;
+/// Pushes per free error.
+const PUSHES: usize = 4;
+
+/// What follows poses.
+pub(super) struct Follow<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) features: &'a Features,
+}
+
+/// Where a motion came to rest that did not dock.
+#[derive(Debug, Clone)]
+pub(super) struct Rested {
+    pub(super) error: PoseError,
+    pub(super) pose: CorPose,
+    pub(super) height: f64,
+    /// What touches, by pairs of features in their order.
+    pub(super) met: Vec<Met>,
+    /// The classes of these pairs, sorted.
+    pub(super) signature: Vec<[u32; 2]>,
+}
+
+/// Two features that touch.
+#[derive(Debug, Clone)]
+pub(super) struct Met {
+    pub(super) features: [u32; 2],
+    pub(super) contacts: Vec<Contact>,
+}
+
+/// The classes of two features.
+pub(super) fn classes(features: &Features, [fixed, moving]: [u32; 2]) -> [u32; 2] {
+    [features.class(Side::Fixed, fixed), features.class(Side::Moving, moving)]
+}
+
+impl Follow<'_> {
+    /// Follows every pose; where it rests if it jams.
+    pub(super) fn all(
+        &self,
+        poses: &[PoseError],
+        exec: &Exec,
+    ) -> Result<Vec<(Outcome, Option<Rested>)>, Cancelled> {
+        let (done, settings) = (AtomicUsize::new(0), descent::Settings::default());
+        exec.install(|| {
+            poses
+                .par_iter()
+                .map_init(
+                    || Follower::new(self.problem.pair(), &settings),
+                    |follower, pose| {
+                        exec.check()?;
+                        let rest = follower.settle(pose);
+                        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                        if done.is_multiple_of(BETWEEN) {
+                            exec.report(done as f64 / poses.len() as f64, "motions");
+                        }
+                        Ok((rest.outcome, self.rested(&rest)))
+                    },
+                )
+                .collect()
+        })
+    }
+
+    fn rested(&self, rest: &Rest) -> Option<Rested> {
+        let height = rest.height.filter(|_| rest.outcome == Outcome::Jammed)?;
+        let alignment = self.problem.alignment();
+        let pose = CorPose::from_error(&rest.error, alignment.center_of_rotation, alignment.free);
+        let mut by_pair: BTreeMap<[u32; 2], Vec<Contact>> = BTreeMap::new();
+        for (contact, meeting) in &rest.contacts {
+            let pair = self.features.meeting(contact, meeting, &pose.rotation);
+            let contacts = by_pair.entry(pair).or_default();
+            if contacts.iter().all(|other| other.point.distance(contact.point) > SAME_PLACE) {
+                contacts.push(*contact);
+            }
+        }
+        let met: Vec<Met> =
+            by_pair.into_iter().map(|(features, contacts)| Met { features, contacts }).collect();
+        let mut signature: Vec<[u32; 2]> =
+            met.iter().map(|met| classes(self.features, met.features)).collect();
+        signature.sort_unstable();
+        Some(Rested { error: rest.error, pose, height, met, signature })
+    }
+
+    /// How firmly a rest holds, which way leads out, and whether it comes back when it is pushed.
+    pub(super) fn examine(&self, rest: &Rested, cluster: &Cluster, seed: u64) -> Examined {
+        let pair = self.problem.pair();
+        let space = Space::of(pair);
+        let held = cluster.held.unwrap_or_else(|| firmness::held(pair, rest, seed));
+        let settings = descent::Settings::default();
+        let mut follower = Follower::new(pair, &settings);
+        let stream = Stream::new(seed).branch(OFF.to_bits());
+        let pushed = PUSHES * space.count();
+        let rho = pair.alignment.rotation_length;
+        let back = (0..pushed).filter(|k| {
+            let way = space.random(stream, *k as u64);
+            let end = follower.settle(&space.error(rest, &way, OFF));
+            let pose =
+                CorPose::from_error(&end.error, pair.alignment.center_of_rotation, pair.alignment.free);
+            let off = step_length(
+                pose.lateral - rest.pose.lateral,
+                angle_between(&pose.rotation, &rest.pose.rotation),
+                rho,
+            );
+            end.outcome == Outcome::Jammed && off <= 2.0 * OFF
+        });
+        let back = back.count();
+        Examined { held, way_out: escape::way_out(pair, rest, seed), pushed, back }
+    }
+}
+
+impl Rested {
+    /// Everything that touches, named.
+    pub(super) fn touched(&self, problem: &Problem, features: &Features) -> Vec<Touched> {
+        self.met.iter().map(|met| self.name(problem, features, met)).collect()
+    }
+
+    /// The names of two features that touch.
+    pub(super) fn names(&self, features: &Features, met: &Met) -> [String; 2] {
+        let [fixed, moving] = met.features;
+        [features.get(Side::Fixed, fixed).name(), features.get(Side::Moving, moving).name()]
+    }
+
+    /// Two features that touch, named.
+    pub(super) fn name(&self, problem: &Problem, features: &Features, met: &Met) -> Touched {
+        let face = {
+            let cor = self.pose.lateral.extend(self.height);
+            cor + face_from_cor(&self.pose.rotation, problem.alignment().center_of_rotation)
+        };
+        let points: Vec<DVec3> = met.contacts.iter().map(|contact| contact.point).collect();
+        let first = points.first().copied().unwrap_or_default();
+        let named = |side, number: u32, in_frame: DVec3| {
+            let feature = features.get(side, number);
+            let part = part_of(problem, side, feature.surface);
+            Named { kind: feature.kind, name: feature.name(), part, drawn: problem.drawn(side, in_frame) }
+        };
+        let [fixed, moving] = met.features;
+        Touched {
+            normal: met.contacts.first().map_or(DVec3::Z, |contact| contact.normal),
+            fixed: named(Side::Fixed, fixed, first),
+            moving: named(Side::Moving, moving, self.pose.rotation.transpose() * (first - face)),
+            points,
+        }
+    }
+}

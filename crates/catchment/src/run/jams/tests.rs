@@ -1,0 +1,134 @@
+//! Jams of pairs whose jams are known.
+
+use super::*;
+use crate::design::read;
+use crate::pose::DofSet;
+use std::f64::consts::PI;
+use std::path::Path;
+
+fn problem(text: &str) -> Problem {
+    Problem::of(read(text, Path::new("")).unwrap().design).unwrap()
+}
+
+/// Aspect ratio 1, COR 0: the tip's flank is √5/2 D long.
+fn v_face() -> Problem {
+    problem("[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n")
+}
+
+fn found(problem: &Problem, motions: usize) -> Jams {
+    run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
+}
+
+#[test]
+fn every_pose_is_in_one_outcome_and_every_jammed_one_in_one_jam() {
+    let errors = Distribution::Normal {
+        mean: PoseError::default(),
+        sigma: PoseError { x: 0.3, pitch: 0.6, ..PoseError::default() },
+    };
+    let settings = Settings { motions: Some(1500), errors: Some(errors), ..Settings::default() };
+    let found = run(&v_face(), &settings, &Exec::new()).unwrap();
+    assert_eq!(found.counts.iter().sum::<usize>(), 1500);
+    assert_eq!(found.jammed(), found.counts[1]);
+    let expected = found.expected.unwrap();
+    assert_eq!(expected.iter().sum::<usize>(), 1500);
+    assert_eq!(found.jams.iter().map(|jam| jam.expected.unwrap()).sum::<usize>(), expected[1]);
+    assert!(found.jams.is_sorted_by_key(|jam| { std::cmp::Reverse(jam.count + jam.expected.unwrap()) }));
+}
+
+/// The tip lies on its side in the notch, to either side: images of each other, both found, one jam.
+#[test]
+fn a_tip_on_its_side_is_one_jam_at_two_places() {
+    let problem = v_face();
+    let found = found(&problem, 2000);
+    let jam = &found.jams[0];
+    assert_eq!(jam.places, 2, "{jam:#?}");
+    assert!(jam.count * 10 > found.jammed() * 9, "{found:#?}");
+    // Laid upon each other they are one place: pitches of opposite sign do not add up to an extent.
+    assert!(jam.extent.iter().all(|[from, to]| to - from < 0.05), "{:?}", jam.extent);
+    // Its base lies flush on a flank of slope 2: turned by a right angle and what is left of one. The motion ends within a step's rounding.
+    assert!((jam.pose.pitch.abs() - (PI - 2f64.atan())).abs() < 1e-3 && jam.above > 0.1, "{jam:#?}");
+    let examined = jam.examined.unwrap();
+    assert_eq!(examined.back, examined.pushed, "{examined:?}");
+    assert!(matches!(examined.held.firmness, Firmness::Sharp | Firmness::Rounded));
+    // Out of a rest it is a climb, and no farther than over the rim of the notch.
+    let way = examined.way_out.unwrap();
+    assert!(way.climb > 0.0 && way.climb < 1.0, "{way:?}");
+}
+
+/// Pushed a little and followed again, a half comes back to where it was, and a trial by rigid bodies that starts there stays there.
+#[cfg(feature = "drop")]
+#[test]
+fn a_rigid_body_stays_where_it_jams() {
+    let problem = v_face();
+    let found = found(&problem, 500);
+    let drop = "drop".parse().unwrap();
+    let (_, ends) = problem.follow_by(&drop, &[found.jams[0].pose], &Exec::new()).unwrap();
+    assert_eq!(ends[0].outcome, Outcome::Jammed);
+    // The engine's contacts give way by about a thousandth of D.
+    let (a, b) = (ends[0].error, found.jams[0].pose);
+    assert!((a.x - b.x).abs() < 0.02 && (a.pitch - b.pitch).abs() < 0.04, "{a:?} {b:?}");
+}
+
+#[test]
+fn a_peg_beside_its_hole_rests_on_level_ground() {
+    let text = "[connector]\nfamily = \"pin-hole\"\npins = 1\ncircle_radius = 0\npin_radius = 0.1\nclearance = 0.01\n\
+                chamfer = 0.06\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.3\ny = 0.3\n";
+    let found = found(&problem(text), 300);
+    let jam = &found.jams[0];
+    assert_eq!((found.jams.len(), jam.count), (1, found.counts[1]));
+    let [contact] = jam.contacts.as_slice() else { panic!("{jam:#?}") };
+    assert_eq!((contact.fixed.name.as_str(), contact.moving.name.as_str()), ("top", "top"));
+    let examined = jam.examined.unwrap();
+    assert_eq!(examined.held.firmness, Firmness::Level);
+    // It slides into its hole without being lifted.
+    let way = examined.way_out.unwrap();
+    assert!(way.climb < 1e-6, "{way:?}");
+    assert_eq!(found.pairs.len(), 1);
+}
+
+#[test]
+fn threads_change_nothing() {
+    let problem = v_face();
+    let settings = Settings { motions: Some(300), ..Settings::default() };
+    let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
+    let one = with(1);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(4));
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused() {
+    let problem = v_face();
+    let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
+    assert_eq!(refused(Settings { motions: Some(0), ..Settings::default() }), JamsError::Nothing);
+    let normal = |sigma: PoseError| {
+        let errors = Some(Distribution::Normal { mean: PoseError::default(), sigma });
+        refused(Settings { motions: Some(10), errors, ..Settings::default() })
+    };
+    let sigma = PoseError { yaw: 0.1, ..PoseError::default() };
+    assert_eq!(normal(sigma), JamsError::Locked { axis: Dof::Yaw });
+    let sigma = PoseError { x: -0.1, ..PoseError::default() };
+    assert_eq!(normal(sigma), JamsError::NoSize { axis: Dof::X, value: -0.1 });
+    let exec = Exec::new();
+    exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    assert!(matches!(run(&problem, &Settings::default(), &exec), Err(JamsError::Cancelled(_))));
+}
+
+#[test]
+fn errors_are_drawn_as_they_are_distributed() {
+    const COUNT: usize = 4000;
+    let problem = problem("[connector]\nfamily = \"pyramid\"\n");
+    let drawn = |errors: &Distribution| draw::poses(errors, problem.alignment(), COUNT, 5).unwrap();
+    let sigma = PoseError { x: 0.2, yaw: 0.1, ..PoseError::default() };
+    let mean = PoseError { x: 0.05, ..PoseError::default() };
+    let poses = drawn(&Distribution::Normal { mean, sigma });
+    let average = |of: &dyn Fn(&PoseError) -> f64| poses.iter().map(of).sum::<f64>() / COUNT as f64;
+    // Five standard errors of the mean and of the variance.
+    assert!((average(&|e| e.x) - 0.05).abs() < 5.0 * 0.2 / (COUNT as f64).sqrt());
+    assert!((average(&|e| (e.x - 0.05).powi(2)) - 0.04).abs() < 5.0 * 0.04 * (2.0 / COUNT as f64).sqrt());
+    assert!(poses.iter().all(|e| e.y == 0.0 && e.roll == 0.0));
+    let half_width = PoseError { y: 0.3, ..PoseError::default() };
+    let poses = drawn(&Distribution::Uniform { mean: PoseError::default(), half_width });
+    assert!(poses.iter().all(|e| e.y.abs() <= 0.3) && poses.iter().any(|e| e.y > 0.28));
+    assert!(problem.alignment().free == DofSet::ALL);
+}

@@ -1,0 +1,74 @@
+//! Why real-shaped docks jam: the features that a person would name from the drawing.
+
+use catchment::prelude::*;
+use catchment::run::jams::{Firmness, Jams, Settings, run};
+use std::path::Path;
+
+fn found(problem: &Problem, motions: usize) -> Jams {
+    run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
+}
+
+/// The pair of features that touches in most of the jams, the moving half's first, and in which share of them it does.
+fn foremost(found: &Jams) -> (String, f64) {
+    let pair = &found.pairs[0];
+    let names = format!("{} on {}", pair.moving.name, pair.fixed.name);
+    (names, pair.count as f64 / found.jammed() as f64)
+}
+
+fn written(text: &str) -> Problem {
+    Problem::of(catchment::design::read(text, Path::new("")).unwrap().design).unwrap()
+}
+
+/// A chamfered peg lands with its end on the plate beside the hole: everywhere there, level.
+#[test]
+fn a_peg_stands_on_the_plate() {
+    let text = "[connector]\nfamily = \"pin-hole\"\nwidth = 50.0\nunit = \"mm\"\npins = 1\ncircle_radius = 0\n\
+                pin_radius = \"5 mm\"\nclearance = \"0.5 mm\"\nchamfer = \"3 mm\"\n[alignment]\n\
+                free = [\"x\", \"y\", \"roll\", \"pitch\"]\n[errors]\nx = \"12 mm\"\ny = \"12 mm\"\nroll = \"20 deg\"\npitch = \"20 deg\"\n";
+    let found = found(&written(text), 200);
+    let (names, share) = foremost(&found);
+    assert_eq!(names, "top on top");
+    assert!(share > 0.8, "{share}");
+    assert_eq!(found.jams[0].examined.unwrap().held.firmness, Firmness::Level);
+}
+
+/// Three balls in three grooves: a ball that misses its groove lies on the top of a block.
+#[test]
+fn a_ball_lies_on_a_block() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/kelvin-balls.toml");
+    let problem = Problem::open(path).unwrap();
+    let mut design = problem.design().clone();
+    design.alignment.free = [Dof::X, Dof::Y].into_iter().collect();
+    let problem = problem.with(design).unwrap();
+    let found = found(&problem, 80);
+    let (names, share) = foremost(&found);
+    assert_eq!(names, "rounded surface on top");
+    assert!(share > 0.5, "{share}");
+    // Parts are named by their numbers in the file: a block and a ball.
+    let jam = found.jams.iter().find(|jam| jam.contacts[0].moving.name == "rounded surface").unwrap();
+    let contact = &jam.contacts[0];
+    assert!(contact.fixed.part.is_some_and(|part| (1..=3).contains(&part)), "{contact:?}");
+    assert!(contact.moving.part.is_some_and(|part| (1..=3).contains(&part)), "{contact:?}");
+    // The block's top is at z = 0 in the drawing, 1 mm the smallest length that it has.
+    assert!(contact.fixed.drawn.z.abs() < 1e-6, "{contact:?}");
+}
+
+/// The plate of a tool changer with two pointed pins: their tips stand on the other plate.
+#[test]
+fn pointed_pins_stand_on_the_plate() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/pin-hole.toml");
+    let problem = Problem::open(path).unwrap();
+    let mut design = problem.design().clone();
+    design.alignment.free = [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect();
+    let problem = problem.with(design).unwrap();
+    let found = found(&problem, 100);
+    let named = |fixed: &str, moving: &str| {
+        found.pairs.iter().any(|pair| pair.fixed.name == fixed && pair.moving.name == moving)
+    };
+    assert!(
+        named("flat", "corner of slopes of 45°") || named("corner of slopes of 45°", "flat"),
+        "{:#?}",
+        found.pairs
+    );
+    assert!(found.jams.iter().all(|jam| jam.above > 0.0));
+}
