@@ -187,3 +187,36 @@ fn drop_tests_agree_with_descent() {
         assert!(same * 100 >= poses.len() * 95, "{}: {same} of {}", trials.name, poses.len());
     }
 }
+
+/// The same with friction: Coulomb's cones step by step, and the engine's own.
+#[cfg(feature = "drop")]
+#[test]
+fn drop_tests_agree_with_friction() {
+    use catchment::method::drop;
+    use catchment::problem::{Draft, Problem};
+    use std::f64::consts::FRAC_PI_4;
+    const POSES: u32 = 100;
+    // Above 0.25 the pyramid wedges, and soft contacts let go where rigid ones do not.
+    for (family, aspect_ratio, friction) in
+        [("pyramid", 1.0, 0.1), ("pyramid", 1.0, 0.2), ("x-face-3d", 0.577_350_269_189_625_8, 0.2)]
+    {
+        let text = format!("[connector]\nfamily = \"{family}\"\naspect_ratio = {aspect_ratio}\n");
+        let source = catchment::design::SourceText::new("f.toml", text.as_str());
+        let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
+        let half = [0.5, 0.5, FRAC_PI_4, FRAC_PI_4, FRAC_PI_4];
+        // Evenly over the box (Roberts 2018: powers of the root of x⁶ = x + 1).
+        let shares = [0.889_1f64, 0.790_6, 0.702_9, 0.625_0, 0.555_7];
+        let pose = |k: u32| {
+            let number = |j: usize| half[j] * (2.0 * (f64::from(k + 1) * shares[j]).fract() - 1.0);
+            PoseError::from_array(std::array::from_fn(number))
+        };
+        let poses = || Domain::Poses((0..POSES).map(pose).collect());
+        let by_motion = Settings::with_friction(friction).unwrap();
+        let by_drop = drop::Settings { friction, ..drop::Settings::default() };
+        let (descents, _) = descent::run(problem.pair(), poses(), &by_motion, &Exec::new()).unwrap();
+        let (drops, _) = drop::run(problem.pair(), poses(), &by_drop, &Exec::new()).unwrap();
+        let same = descents.accepted().zip(drops.accepted()).filter(|(a, b)| a == b).count();
+        println!("{family}, friction {friction}: {same} of {POSES}");
+        assert!(same >= 97, "{family}, friction {friction}: {same} of {POSES}");
+    }
+}

@@ -90,13 +90,13 @@ fn a_setting_of_another_method_is_named_with_its_owner() {
     for (args, owner) in [
         (["--method", "transport", "--slices", "4"], "partition"),
         (["--method", "descent", "--depth-tolerance", "0.1"], "flood"),
-        (["--method", "flood", "--friction", "0.1"], "drop"),
+        (["--method", "flood", "--friction", "0.1"], "confluence"),
     ] {
         let said = run(home.path(), &[&["run", "v.toml"], &args[..]].concat());
         assert!(said.starts_with("exit 2") && said.contains(&format!("--method {owner}")), "{said}");
     }
-    let said = run(home.path(), &["outcome", "v.toml", "--poses", "-", "--friction", "0.1"]);
-    assert!(said.contains("--friction is a setting of drop; descent has none"), "{said}");
+    let said = run(home.path(), &["outcome", "v.toml", "--poses", "-", "--restitution", "0.1"]);
+    assert!(said.contains("--restitution is a setting of drop; descent has none"), "{said}");
 }
 
 #[test]

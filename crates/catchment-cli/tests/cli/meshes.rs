@@ -123,7 +123,7 @@ fn finals(folder: &Path, design: &Path) -> Vec<(String, Vec<f64>)> {
         .records()
         .map(|record| {
             let record = record.unwrap();
-            (record[5].to_owned(), record.iter().skip(6).map(|cell| cell.parse().unwrap()).collect())
+            (record[5].to_owned(), record.iter().skip(6).take(5).map(|cell| cell.parse().unwrap()).collect())
         })
         .collect()
 }

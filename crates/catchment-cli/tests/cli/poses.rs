@@ -177,7 +177,10 @@ fn drop_tests_decide_poses_and_friction_counts() {
 
 #[test]
 fn settings_of_drop_tests_that_cannot_be() {
-    insta::assert_snapshot!(run(&designs(), &["run", "pyramid.toml", "--friction", "0.1"]));
+    insta::assert_snapshot!(run(
+        &designs(),
+        &["run", "pyramid.toml", "--method", "flood", "--friction", "0.1"]
+    ));
     insta::assert_snapshot!(run(
         &designs(),
         &["slices", "pyramid.toml", "--method", "drop", "--trials", "2"]

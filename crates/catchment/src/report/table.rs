@@ -20,6 +20,11 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     heading(&mut text, &report.design);
     let method = format!("{}, {}", report.method, tried(report));
     row(&mut text, "method", &method);
+    let friction =
+        report.settings.get("friction").or_else(|| report.settings.get("descent")?.get("friction"));
+    if let Some(friction) = friction.and_then(serde_json::Value::as_f64).filter(|friction| *friction > 0.0) {
+        row(&mut text, "friction", &format!("{friction} between the halves (Coulomb)"));
+    }
     if let ConnectorSpec::Own(own) = &report.design.connector {
         for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
             if let Some(told) = half.meshing_told(&report.design) {

@@ -134,6 +134,9 @@ impl WindowReport {
         let mut text = String::new();
         heading(&mut text, &self.design);
         row(&mut text, "method", &format!("descent, {} motions, no grid", grouped(self.motions)));
+        if self.settings.friction > 0.0 {
+            row(&mut text, "friction", &format!("{} between the halves (Coulomb)", self.settings.friction));
+        }
         text.push('\n');
         line(&mut text, "  window         all at once, all dock      one alone      one, the others in it");
         for side in &self.sides {

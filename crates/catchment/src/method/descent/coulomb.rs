@@ -172,10 +172,14 @@ impl Coulomb {
         self.missing.clear();
         let mut boldness = 1.0;
         let mut u = *push;
-        for round in 0..self.rounds {
+        // Where slips are given all planes are kept, and few rounds do.
+        let rounds = if free { self.rounds } else { ROUNDS };
+        for round in 0..rounds {
             let gaps = self.owners.iter().map(|&k| gap(k) + self.slips[k]);
             u = projection.closest_allowed(push, &self.planes, gaps, scale)?;
-            self.keep_pressed(projection);
+            if free {
+                self.keep_pressed(projection);
+            }
             std::mem::swap(&mut self.before, &mut self.missing);
             self.missing.clear();
             let mut worst = 0.0f64;
