@@ -44,8 +44,8 @@ fn robots_of_a_file_are_asked_one_by_one_and_the_worst_stands_first() {
         [[robot]]\nname = \"bad\"\ncovariance = { axes = [\"x\", \"pitch\"], units = [\"mm\", \"deg\"], \
         matrix = [[225, 120], [120, 100]] }\n[[robot]]\nname = \"known\"\nmeasured = \"m.csv\"\n";
     fs::write(home.path().join("r.toml"), text).unwrap();
-    let rows: String = (0..40).map(|k| format!("{},{}\n", k % 7 - 3, (k * 3) % 11 - 5)).collect();
-    fs::write(home.path().join("m.csv"), format!("x_mm,pitch_deg\n{rows}")).unwrap();
+    let rows: Vec<String> = (0..40).map(|k| format!("{},{}", k % 7 - 3, (k * 3) % 11 - 5)).collect();
+    fs::write(home.path().join("m.csv"), format!("x_mm,pitch_deg\n{}\n", rows.join("\n"))).unwrap();
     let threads = |n: &str| {
         let mut report = asked(home.path(), &["--robots", "r.toml", "--threads", n]);
         report["timing"] = Value::Null;

@@ -112,12 +112,8 @@ impl Feature {
             (Kind::Face, [name, ..]) => name.clone(),
             (Kind::Edge, [one]) => format!("edge between two {}", plural(one)),
             (Kind::Edge, [one, other, ..]) => format!("edge between {one} and {other}"),
-            (Kind::Corner, [first, .., last]) => {
-                let others = &names[1..names.len() - 1];
-                let middle: String = others.iter().map(|name| format!(", {name}")).collect();
-                format!("corner of {first}{middle} and {last}")
-            }
             (Kind::Corner, [one]) => format!("corner of {}", plural(one)),
+            (Kind::Corner, [others @ .., last]) => format!("corner of {} and {last}", others.join(", ")),
             (kind, []) => kind.name().to_owned(),
         }
     }

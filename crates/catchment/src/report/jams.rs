@@ -178,7 +178,7 @@ impl From<&Named> for FeatureReport {
 
 impl From<&Touched> for ContactReport {
     fn from(touched: &Touched) -> Self {
-        let points = touched.points.iter().map(|point| point.to_array()).collect();
+        let points = touched.points.iter().map(glam::DVec3::to_array).collect();
         let Touched { normal, fixed, moving, .. } = touched;
         Self { points_d: points, normal: normal.to_array(), fixed: fixed.into(), moving: moving.into() }
     }
@@ -361,7 +361,11 @@ impl JamsReport {
                 format!("not at all: pushed {push} one way it falls, it came to rest on a ridge")
             }
             (firmness, Some(rise)) => {
-                format!("{}: pushed {push} any way it rises {} at least", firmness.name(), self.fine(rise))
+                format!(
+                    "{}: pushed {push} the weakest way found it rises by {}",
+                    firmness.name(),
+                    self.fine(rise)
+                )
             }
             (firmness, None) => format!("{}: walls all around", firmness.name()),
         };
@@ -522,10 +526,9 @@ fn by_name<S: Serializer>(shares: &[(Outcome, ShareReport)], serializer: S) -> R
     serializer.collect_map(shares.iter().map(|(outcome, share)| (outcome.name(), share)))
 }
 
-fn by_name_or_null<S: Serializer>(
-    shares: &Option<Vec<(Outcome, ShareReport)>>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
+type OfErrors = Option<Vec<(Outcome, ShareReport)>>;
+
+fn by_name_or_null<S: Serializer>(shares: &OfErrors, serializer: S) -> Result<S::Ok, S::Error> {
     match shares {
         Some(shares) => by_name(shares, serializer),
         None => serializer.serialize_none(),

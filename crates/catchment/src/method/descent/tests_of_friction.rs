@@ -1,7 +1,7 @@
 //! Closed forms of friction. Agreement with independent engines: `tests/trials.rs`, and `tests/mujoco_agrees.py` of the repository.
 
 use super::tests::{at, pair};
-use super::{Settings, outcome, run, sticking};
+use super::{Follower, Settings, outcome, run, sticking};
 use crate::acceptance::{Domain, Outcome, Stream};
 use crate::contact::Pair;
 use crate::design::Family;
@@ -59,7 +59,8 @@ fn a_turned_pyramid_has_both_thresholds() {
         let yaw = degrees.to_radians();
         let found = sticking(&pair, &PoseError { yaw, ..PoseError::default() }).unwrap();
         let holds_from = (FRAC_PI_4 - yaw).tan() * (2.0 / 3.0f64).sqrt();
-        assert!((found.holds_from.unwrap() - holds_from).abs() < 1e-5, "{degrees}: {found:?} {holds_from}");
+        // Twelve forces for two directions: the planes of the cones nearly depend on each other, which costs some digits.
+        assert!((found.holds_from.unwrap() - holds_from).abs() < 5e-5, "{degrees}: {found:?} {holds_from}");
         // Three digits were published, four for 30°.
         assert!(
             (found.slips_until.unwrap() - slips_until).abs() < 6e-4,
@@ -82,6 +83,19 @@ fn motions_stick_at_the_thresholds() {
     {
         assert_eq!(at_friction(pair, &error, threshold - 2e-3), Outcome::Aligned, "{threshold}");
         assert_eq!(at_friction(pair, &error, threshold + 2e-3), Outcome::Jammed, "{threshold}");
+    }
+}
+
+/// Between the thresholds of a valley a half slips and might stick; below both it slips, above both it sticks: no doubt.
+#[test]
+fn between_the_thresholds_a_motion_is_in_doubt() {
+    let pair = of(Family::Pyramid, 0.5, &[Dof::X, Dof::Y]);
+    for (friction, outcome, may_stick) in
+        [(0.57, Outcome::Aligned, false), (0.59, Outcome::Aligned, true), (0.62, Outcome::Jammed, false)]
+    {
+        let settings = Settings::with_friction(friction).unwrap();
+        let (end, doubt) = Follower::new(&pair, &settings).follow_doubting(&at(0.2, 0.2));
+        assert_eq!((end.outcome, doubt), (outcome, may_stick), "{friction}");
     }
 }
 

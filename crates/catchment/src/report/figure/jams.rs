@@ -15,6 +15,9 @@ const SHOWN: usize = 6;
 /// How many beside each other.
 const COLUMNS: usize = 2;
 /// A panel, in SVG units.
+/// Lines of words that a panel holds beside the last.
+const MOST_LINES: usize = 3;
+
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 384.0;
 /// Its words above, the section in it, and the view in space beside that.
@@ -71,8 +74,6 @@ fn draw(
     for words in jam.words() {
         lines.extend(broken(&words, WIDTH - 40.0).into_iter().map(|line| (INK, line)));
     }
-    /// Lines of words that a panel holds beside the last.
-    const MOST_LINES: usize = 3;
     if lines.len() > MOST_LINES {
         lines.truncate(MOST_LINES);
         if let Some((_, last)) = lines.last_mut() {

@@ -11,6 +11,9 @@ use crate::poses::covariance::cholesky;
 /// Numbers that a pose takes.
 const EACH: u64 = 10;
 
+/// The numbered deviations from the mean.
+type Draw<'a> = Box<dyn Fn(u64) -> [f64; 5] + 'a>;
+
 /// So many poses of a distribution.
 pub(super) fn poses(
     errors: &Distribution,
@@ -20,7 +23,7 @@ pub(super) fn poses(
 ) -> Result<Vec<PoseError>, JamsError> {
     let stream = Stream::new(seed);
     let normals = |k: u64| -> [f64; 5] { std::array::from_fn(|j| normal(stream, EACH * k + 2 * j as u64)) };
-    let (mean, draw): (&PoseError, Box<dyn Fn(u64) -> [f64; 5]>) = match errors {
+    let (mean, draw): (&PoseError, Draw<'_>) = match errors {
         Distribution::Normal { mean, sigma } => {
             let sigma = sizes(sigma, alignment)?;
             (mean, Box::new(move |k| std::array::from_fn(|j| sigma[j] * normals(k)[j])))

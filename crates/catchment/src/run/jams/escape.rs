@@ -10,7 +10,7 @@
 //! Ways are straight in position and turn: along every error, towards the mated pose, at random, and then about the best. Each is looked at
 //! every [`STEP`]; the best is looked at [`FINER`] times as closely. The climb is that of a way that exists, so the lowest way out of all climbs no more.
 
-use super::firmness::{Ground, STEEPEST, Space, ground};
+use super::firmness::{Ground, STEEPEST, Space, ground, moved};
 use super::rests::Rested;
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::{Nearby, Pair};
@@ -44,7 +44,7 @@ pub struct WayOut {
 /// One way, as far as it leads out.
 #[derive(Debug, Clone, Copy)]
 struct Way {
-    way: [f64; 5],
+    along: [f64; 5],
     /// How far along the half is out.
     length: f64,
     out: WayOut,
@@ -87,7 +87,7 @@ pub(super) fn way_out(pair: &Pair, rest: &Rested, seed: u64) -> Option<WayOut> {
         let Some(best) = search.best.filter(|_| !search.is_level()) else { break };
         // Smaller and smaller moves: from half a radian to a hundredth.
         let share = 0.5 * 0.02f64.powf(k as f64 / ways as f64);
-        let way = search.space.moved(&best.way, &search.space.random(stream, ways + k), share);
+        let way = moved(&best.along, &search.space.random(stream, ways + k), share);
         search.try_way(&way);
     }
     search.best.map(|best| search.finer(&best))
@@ -131,7 +131,7 @@ impl Search<'_> {
 
     fn found(&mut self, way: &[f64; 5], length: f64, climb: f64, to: Outcome) {
         let over = self.space.error(self.rest, way, length);
-        self.best = Some(Way { way: *way, length, out: WayOut { climb, to, over } });
+        self.best = Some(Way { along: *way, length, out: WayOut { climb, to, over } });
     }
 
     /// Where motion leads from a place on a way, if that is lower than the rest.
@@ -150,7 +150,7 @@ impl Search<'_> {
         let steps = (best.length / STEP * FINER as f64).round() as usize;
         let (mut top, mut last) = (best.out.climb, self.rest.height);
         for k in 1..steps {
-            let pose = self.space.displaced(self.rest, &best.way, k as f64 * STEP / FINER as f64);
+            let pose = self.space.displaced(self.rest, &best.along, k as f64 * STEP / FINER as f64);
             if let Ground::At(z) = ground(&mut self.nearby, &pose, last + STEEPEST * STEP) {
                 top = top.max(z - self.rest.height);
                 last = z;

@@ -125,11 +125,6 @@ impl Space {
         unit(way)
     }
 
-    /// A direction moved by another.
-    pub(super) fn moved(&self, way: &[f64; 5], by: &[f64; 5], share: f64) -> [f64; 5] {
-        unit(std::array::from_fn(|k| way[k] + share * by[k]))
-    }
-
     /// From a rest towards another pose error, and how far that is; none where it is the same.
     pub(super) fn towards(&self, rest: &Rested, to: &PoseError) -> Option<[f64; 5]> {
         let (from, to) = (rest.error.to_array(), to.to_array());
@@ -175,6 +170,11 @@ impl Space {
         let part = |k: usize| if k < 2 { way[k] } else { way[k] / self.rho };
         PoseError::from_array(std::array::from_fn(part))
     }
+}
+
+/// A direction moved by another.
+pub(super) fn moved(way: &[f64; 5], by: &[f64; 5], share: f64) -> [f64; 5] {
+    unit(std::array::from_fn(|k| way[k] + share * by[k]))
 }
 
 fn unit(way: [f64; 5]) -> [f64; 5] {
@@ -232,7 +232,7 @@ pub(super) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
     for k in 0..MOVES {
         // Smaller and smaller moves: from a radian to a hundredth.
         let share = 0.01f64.powf(k as f64 / MOVES as f64);
-        let way = space.moved(&best.0, &space.random(stream, tries + k), share);
+        let way = moved(&best.0, &space.random(stream, tries + k), share);
         let found = rise(&way, PUSH);
         if found < best.1 {
             best = (way, found);

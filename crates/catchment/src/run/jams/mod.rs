@@ -311,7 +311,7 @@ fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<Tou
     for rest in rests {
         let mut here: BTreeSet<[String; 2]> = BTreeSet::new();
         for met in &rest.met {
-            let names = rest.names(features, met);
+            let names = Rested::names(features, met);
             if here.insert(names.clone()) {
                 let touching = || {
                     let Touched { fixed, moving, .. } = rest.name(problem, features, met);

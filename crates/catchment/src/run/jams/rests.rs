@@ -134,7 +134,7 @@ impl Rested {
     }
 
     /// The names of two features that touch.
-    pub(super) fn names(&self, features: &Features, met: &Met) -> [String; 2] {
+    pub(super) fn names(features: &Features, met: &Met) -> [String; 2] {
         let [fixed, moving] = met.features;
         [features.get(Side::Fixed, fixed).name(), features.get(Side::Moving, moving).name()]
     }

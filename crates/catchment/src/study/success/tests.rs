@@ -23,7 +23,9 @@ fn of(x: f64, angle: f64, angles: &[Dof], also_y: bool) -> Spread {
     let mut sigma = [0.0; 5];
     sigma[0] = x;
     sigma[1] = if also_y { x } else { 0.0 };
-    angles.iter().for_each(|dof| sigma[dof.index()] = angle);
+    for dof in angles {
+        sigma[dof.index()] = angle;
+    }
     Spread::normal(PoseError::from_array(sigma))
 }
 
