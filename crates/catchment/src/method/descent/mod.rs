@@ -124,7 +124,7 @@ impl<'a> Follower<'a> {
     pub fn follow_doubting(&mut self, error: &PoseError) -> (End, bool) {
         let mut doubting = Doubting::default();
         let (outcome, last) = self.0.follow(error, Until::Known, &mut doubting);
-        (End { outcome, error: last }, doubting.may_stick && outcome != Outcome::Jammed)
+        (End { outcome, error: last }, doubting.may_stick)
     }
 
     /// The same, but no further than to where `known` tells what becomes of a pose error on the way.

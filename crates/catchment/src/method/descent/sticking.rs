@@ -137,14 +137,17 @@ impl Touching {
 #[derive(Debug, Default)]
 pub(super) struct Doubting {
     touching: Touching,
+    /// Whether it may stick where it was seen last: it does not count where that is its end.
+    here: bool,
     pub(super) may_stick: bool,
 }
 
 impl Watch for Doubting {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
+        self.may_stick |= self.here;
         if !self.may_stick {
             self.touching.see(motion, state);
-            self.may_stick = !self.touching.rows.is_empty() && self.touching.holds(motion.settings.friction);
+            self.here = !self.touching.rows.is_empty() && self.touching.holds(motion.settings.friction);
         }
         None
     }
