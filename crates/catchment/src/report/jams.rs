@@ -413,7 +413,10 @@ impl JamsReport {
 
     /// From where to where rests lie where that is more than a place.
     fn extent(&self, jam: &JamReport) -> String {
-        let wide = jam.extent.iter().filter(|side| side.to - side.from > ONE_PLACE);
+        // On its side roll and yaw are turns about one axis: only their sum, or difference, means anything.
+        let on_its_side = jam.pose.pitch.cos().abs() < ON_ITS_SIDE;
+        let is_told = |axis: Dof| !(on_its_side && matches!(axis, Dof::Roll | Dof::Yaw));
+        let wide = jam.extent.iter().filter(|side| is_told(side.axis) && side.to - side.from > ONE_PLACE);
         let said: Vec<String> = wide
             .map(|side| {
                 if side.axis.is_rotation() {
@@ -474,9 +477,7 @@ impl JamsReport {
     }
 
     fn plain(&self, value: f64) -> String {
-        // No minus before what is nothing.
-        let value = value * self.scale();
-        format!("{:.3}", if value.abs() < 5e-4 { 0.0 } else { value })
+        super::text::length(value * self.scale(), self.scale())
     }
 
     fn length(&self, value: f64) -> String {
@@ -535,6 +536,8 @@ fn by_name_or_null<S: Serializer>(shares: &OfErrors, serializer: S) -> Result<S:
     }
 }
 
+/// Cosine of a pitch at which roll and yaw can no longer be told apart: 89°.
+const ON_ITS_SIDE: f64 = 0.0175;
 /// Heights below this are nothing, in D: rounding.
 const NOTHING: f64 = 1e-8;
 /// Jams and pairs of features that are told.

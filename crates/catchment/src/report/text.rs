@@ -7,6 +7,22 @@ pub const COLUMNS: usize = 80;
 /// Width of the column of names.
 const NAMES: usize = 17;
 
+/// A length in the design's unit, `width` being D in it: to a thousandth of D, of parts in metres too; without a minus before what is nothing.
+pub fn length(value: f64, width: f64) -> String {
+    let decimals = decimals(width);
+    let nothing = 0.5 * 0.1f64.powi(decimals as i32);
+    format!("{:.decimals$}", if value.abs() < nothing { 0.0 } else { value })
+}
+
+/// Decimals that show a thousandth of D, at least three.
+pub fn decimals(width: f64) -> usize {
+    /// As many as numbers in double precision have.
+    const MOST: f64 = 15.0;
+    (LEAST_DECIMALS - width.log10().floor()).clamp(LEAST_DECIMALS, MOST) as usize
+}
+
+const LEAST_DECIMALS: f64 = 3.0;
+
 /// The text with a question mark for every character that could steer a terminal: controls, and the marks that
 /// change the direction of writing. Names come from files, and files from anywhere.
 pub fn printable(text: &str) -> String {
@@ -123,6 +139,14 @@ pub fn csv(records: &[Vec<String>]) -> Result<Vec<u8>, csv::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A peg of 8 mm whose file is in metres, a part in millimetres, and one in D.
+    #[test]
+    fn lengths_show_a_thousandth_of_the_width_in_any_unit() {
+        assert_eq!(length(0.006_612, 0.007_964), "0.006612");
+        assert_eq!([length(12.3456, 50.0), length(0.1, 1.0)], ["12.346", "0.100"]);
+        assert_eq!([length(-1e-9, 0.007_964), length(-1e-4, 50.0)], ["0.000000", "0.000"]);
+    }
 
     #[test]
     fn numbers_keep_four_digits() {

@@ -3,7 +3,7 @@
 use super::envelope::{Body, Envelope};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
-use super::text::{grouped, line, number, row, wrapped};
+use super::text::{self, grouped, line, number, row, wrapped};
 use super::trajectory::TouchReport;
 use crate::acceptance::Outcome;
 use crate::design::Design;
@@ -235,9 +235,7 @@ impl WindowReport {
 
     fn length(&self, value: f64) -> String {
         let scale = if self.design.unit.is_some() { self.design.width } else { 1.0 };
-        // No minus before what is nothing.
-        let value = value * scale;
-        format!("{:.3}", if value.abs() < 5e-4 { 0.0 } else { value })
+        text::length(value * scale, scale)
     }
 
     /// `±0.402 mm` or `±12.3°`, rounded towards zero.
@@ -247,7 +245,11 @@ impl WindowReport {
             return format!("±{:.2}°", down(value.to_degrees(), 100.0));
         }
         match self.design.unit {
-            Some(unit) => format!("±{:.3} {}", down(value * self.design.width, 1000.0), unit.symbol()),
+            Some(unit) => {
+                let decimals = text::decimals(self.design.width);
+                let value = down(value * self.design.width, 10f64.powi(decimals as i32));
+                format!("±{value:.decimals$} {}", unit.symbol())
+            }
             None => format!("±{:.4} D", down(value, 10_000.0)),
         }
     }
