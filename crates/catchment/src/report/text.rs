@@ -10,7 +10,7 @@ const NAMES: usize = 17;
 /// A length in the design's unit, `width` being D in it: to a thousandth of D, of parts in metres too; without a minus before what is nothing.
 pub fn length(value: f64, width: f64) -> String {
     let decimals = decimals(width);
-    let nothing = 0.5 * 0.1f64.powi(decimals as i32);
+    let nothing = 0.5 * 0.1f64.powf(decimals as f64);
     format!("{:.decimals$}", if value.abs() < nothing { 0.0 } else { value })
 }
 

@@ -247,7 +247,7 @@ impl WindowReport {
         match self.design.unit {
             Some(unit) => {
                 let decimals = text::decimals(self.design.width);
-                let value = down(value * self.design.width, 10f64.powi(decimals as i32));
+                let value = down(value * self.design.width, 10f64.powf(decimals as f64));
                 format!("±{value:.decimals$} {}", unit.symbol())
             }
             None => format!("±{:.4} D", down(value, 10_000.0)),
