@@ -34,9 +34,10 @@ const ROUNDS: usize = 100;
 const PATIENT: usize = 20_000;
 /// Rounds before slips are extrapolated: directions settle first.
 const SETTLED: usize = 4;
-/// A round goes on by at most so many times what was missing, and leaves a slip that falls at least this share of what the round says: where it
-/// falls to nothing the half sticks, and nothing makes it slip again.
+/// A round goes on by at most so many times what was missing and at least by so much of it, where rounds overshoot: halves that wedge make them. It
+/// leaves a slip that falls at least this share of what the round says: where it falls to nothing the half sticks, and nothing makes it slip again.
 const BOLDEST: f64 = 20.0;
+const SHYEST: f64 = 0.05;
 const LEFT: f64 = 0.5;
 /// What moves less than this share of what the push alone would make stays.
 const STILL: f64 = 1e-7;
@@ -213,7 +214,7 @@ impl Coulomb {
                     along += before * (now - before);
                     size += (now - before) * (now - before);
                 }
-                boldness = if size > 0.0 { (-boldness * along / size).clamp(1.0, BOLDEST) } else { 1.0 };
+                boldness = if size > 0.0 { (-boldness * along / size).clamp(SHYEST, BOLDEST) } else { 1.0 };
             }
             for (slip, missing) in self.slips.iter_mut().zip(&self.missing) {
                 *slip = (*slip + boldness * missing).max(LEFT * (*slip + missing));
