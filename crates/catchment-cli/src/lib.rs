@@ -5,6 +5,7 @@
 
 mod advice;
 mod args;
+mod asked;
 mod bug;
 mod command;
 mod drop_args;

@@ -49,7 +49,7 @@ pub(crate) struct ChainArgs {
     #[arg(long)]
     json: bool,
     /// End with exit code 1 unless this holds of the JSON report, such as "probability>=0.99"; may be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
+    #[arg(long, value_name = "PATH OP NUMBER", value_parser = crate::asked::requirement)]
     require: Vec<Requirement>,
     #[command(flatten)]
     file: FileArgs,
@@ -67,10 +67,6 @@ struct Modules(Vec<usize>);
 /// Angles in radians.
 #[derive(Debug, Clone)]
 struct Angles(Vec<f64>);
-
-fn requirement(text: &str) -> Result<Requirement, String> {
-    text.parse::<Requirement>().map_err(|error| error.to_string())
-}
 
 fn modules(text: &str) -> Result<Modules, String> {
     let most = MOST_MODULES as usize;

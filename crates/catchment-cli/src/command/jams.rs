@@ -1,16 +1,15 @@
 //! `catchment jams`: why it jams.
 
-use super::run::requirement;
 use crate::args::DesignArgs;
+use crate::asked::AskedArgs;
 use crate::error_args::ErrorArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stderr, to_stdout};
+use crate::output::FileArgs;
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{JamsReport, csv, figure};
-use catchment::run::Requirement;
 use catchment::run::jams::{Jams, Settings, run as find};
 use clap::Args;
 use std::time::Instant;
@@ -43,12 +42,8 @@ pub(crate) struct JamsArgs {
     examine: u32,
     #[command(flatten)]
     errors: ErrorArgs,
-    /// Print JSON, in D and radians
-    #[arg(long)]
-    json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "outcomes.jammed.share<=0.01"; may be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
-    require: Vec<Requirement>,
+    #[command(flatten)]
+    asked: AskedArgs,
     #[command(flatten)]
     file: FileArgs,
     #[command(flatten)]
@@ -64,10 +59,7 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let settings = args.settings(&problem)?;
     let form = JamsReport::new(problem.design(), &Jams::form(&settings), Vec::new(), None);
-    for requirement in &args.require {
-        let tried = form.verdicts(std::slice::from_ref(requirement));
-        tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
-    }
+    args.asked.check(&form)?;
     let running = args.exec.start()?;
     let found = find(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
@@ -87,12 +79,7 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
         }
         None => {}
     }
-    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
-    let verdicts = report.verdicts(&args.require)?;
-    let unmet: Vec<String> =
-        verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
-    to_stderr(&unmet);
-    Ok(if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+    args.asked.tell(&report, JamsReport::table)
 }
 
 impl JamsArgs {

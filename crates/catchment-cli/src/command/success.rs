@@ -1,18 +1,17 @@
 //! `catchment success`: whether a robot's errors are corrected.
 
-use super::run::requirement;
 use crate::args::DesignArgs;
+use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stderr, to_stdout};
+use crate::output::FileArgs;
 use crate::source::read_table;
 use catchment::design::{Design, Findings, SourceText, load};
 use catchment::poses::{Distribution, Robot, Spread, TextError, read_robots, read_text};
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{SuccessesReport, csv, figure};
-use catchment::run::Requirement;
 use catchment::study::success::{Settings, Success, run as ask};
 use clap::Args;
 use std::fs::File;
@@ -54,12 +53,8 @@ pub(crate) struct SuccessArgs {
     /// Seed of the random errors
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Print JSON, in D and radians
-    #[arg(long)]
-    json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "success.probability>=0.95"; may be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
-    require: Vec<Requirement>,
+    #[command(flatten)]
+    asked: AskedArgs,
     #[command(flatten)]
     file: FileArgs,
     #[command(flatten)]
@@ -93,10 +88,7 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let robots = args.errors.robots(&problem)?;
     let form = SuccessesReport::new(problem.design(), &Success::form(&robots), Vec::new(), None);
-    for requirement in &args.require {
-        let tried = form.verdicts(std::slice::from_ref(requirement));
-        tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
-    }
+    args.asked.check(&form)?;
     let settings = Settings {
         motions: args.motions.map(|motions| motions as usize),
         seed: args.seed,
@@ -116,12 +108,7 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
         Some(_) => args.file.write(report.to_json()?.as_bytes())?,
         None => {}
     }
-    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
-    let verdicts = report.verdicts(&args.require)?;
-    let unmet: Vec<String> =
-        verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
-    to_stderr(&unmet);
-    Ok(if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+    args.asked.tell(&report, SuccessesReport::table)
 }
 
 impl ExpectedArgs {

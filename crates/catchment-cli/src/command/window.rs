@@ -1,17 +1,16 @@
 //! `catchment window`: the largest box of pose errors that all dock.
 
-use super::run::requirement;
 use crate::args::DesignArgs;
+use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stderr, to_stdout};
+use crate::output::FileArgs;
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{WindowReport, csv};
-use catchment::run::Requirement;
 use catchment::study::window::{Settings, Window, WindowError, run as find};
 use clap::Args;
 use std::time::Instant;
@@ -49,12 +48,8 @@ pub(crate) struct WindowArgs {
     /// Coefficient of friction between the halves
     #[arg(long, value_name = "MU", default_value_t = 0.0)]
     friction: f64,
-    /// Print JSON, in D and radians
-    #[arg(long)]
-    json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "window.yaw>=5 deg"; may be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
-    require: Vec<Requirement>,
+    #[command(flatten)]
+    asked: AskedArgs,
     #[command(flatten)]
     file: FileArgs,
     #[command(flatten)]
@@ -67,10 +62,7 @@ pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let settings = args.settings(&problem)?;
     let form = WindowReport::new(problem.design(), &Window::form(&problem), Vec::new(), None);
-    for requirement in &args.require {
-        let tried = form.verdicts(std::slice::from_ref(requirement));
-        tried.map_err(|error| Failure::with_help(format!("--require '{requirement}': {error}"), None))?;
-    }
+    args.asked.check(&form)?;
     let running = args.exec.start()?;
     let found = find(&problem, &settings, &running.exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
@@ -83,12 +75,7 @@ pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
         Some(_) => args.file.write(report.to_json()?.as_bytes())?,
         None => {}
     }
-    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
-    let verdicts = report.verdicts(&args.require)?;
-    let unmet: Vec<String> =
-        verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect();
-    to_stderr(&unmet);
-    Ok(if unmet.is_empty() { ExitStatus::Done } else { ExitStatus::RequirementNotMet })
+    args.asked.tell(&report, WindowReport::table)
 }
 
 impl WindowArgs {

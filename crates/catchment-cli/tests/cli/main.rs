@@ -11,6 +11,7 @@ mod compare;
 mod compose;
 mod door;
 mod files;
+mod friction;
 mod hostile;
 mod invert;
 mod jams;

@@ -164,7 +164,7 @@ fn share_of(count: usize, all: usize) -> f64 {
 }
 
 impl ShareReport {
-    fn of(count: usize, all: usize) -> Self {
+    pub(super) fn of(count: usize, all: usize) -> Self {
         Self { count, share: share_of(count, all), ci95: wilson95(count, all) }
     }
 }

@@ -59,7 +59,7 @@ pub(crate) struct RunArgs {
     json: bool,
     /// End with exit code 1 unless this holds of the JSON report, such as "onaa.edge>=0.3" or "tolerances.x.plus>=2 mm"; may
     /// be repeated
-    #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
+    #[arg(long, value_name = "PATH OP NUMBER", value_parser = crate::asked::requirement)]
     require: Vec<Requirement>,
     #[command(flatten)]
     exec: ExecArgs,
@@ -68,11 +68,6 @@ pub(crate) struct RunArgs {
 /// Reads a resolution.
 pub(super) fn resolution(text: &str) -> Result<Resolution, String> {
     text.parse::<Resolution>().map_err(|error| error.to_string())
-}
-
-/// Reads a requirement.
-pub(super) fn requirement(text: &str) -> Result<Requirement, String> {
-    text.parse::<Requirement>().map_err(|error| error.to_string())
 }
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {

@@ -46,7 +46,7 @@ use motion::{Motion, Until, Unwatched};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use sticking::Doubting;
+use sticking::{Doubting, Holding};
 
 /// What may change the answer of [`run`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -125,6 +125,15 @@ impl<'a> Follower<'a> {
         let mut doubting = Doubting::default();
         let (outcome, last) = self.0.follow(error, Until::Known, &mut doubting);
         (End { outcome, error: last }, doubting.may_stick)
+    }
+
+    /// The same; and the least friction, up to `most`, at which some force would hold it somewhere on this way: `most` where none would.
+    ///
+    /// With friction it goes another way: this says what holds where motion without it (or with the friction of the settings) comes by, and no more.
+    pub fn follow_holding(&mut self, error: &PoseError, most: f64) -> (End, f64) {
+        let mut holding = Holding::up_to(most);
+        let (outcome, last) = self.0.follow(error, Until::Known, &mut holding);
+        (End { outcome, error: last }, holding.least())
     }
 
     /// The same, but no further than to where `known` tells what becomes of a pose error on the way.

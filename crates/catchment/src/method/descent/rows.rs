@@ -123,10 +123,13 @@ impl Motion<'_> {
 
     /// How a displacement makes a contact slip along its tangents; `None` without friction.
     pub(super) fn tangents(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Option<Tangents> {
-        (self.settings.friction > 0.0).then(|| {
-            let (side, across) = contact.normal.any_orthonormal_pair();
-            [side, across].map(|tangent| self.row_along(tangent, contact, state, axes))
-        })
+        (self.settings.friction > 0.0).then(|| self.slips(contact, state, axes))
+    }
+
+    /// How a displacement makes a contact slip along its tangents.
+    pub(super) fn slips(&self, contact: &Contact, state: &State, axes: &[DVec3; 3]) -> Tangents {
+        let (side, across) = contact.normal.any_orthonormal_pair();
+        [side, across].map(|tangent| self.row_along(tangent, contact, state, axes))
     }
 
     /// How far a displacement moves the touching point of the moving half along a direction.

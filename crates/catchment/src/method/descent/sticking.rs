@@ -73,13 +73,25 @@ impl Touching {
         self.tangents.clear();
         for (contact, _) in motion.contacts.iter().filter(|(contact, _)| contact.gap <= OVERLAP) {
             self.rows.push(motion.row(contact, state, &axes));
-            self.tangents.extend(motion.tangents(contact, state, &axes));
+            self.tangents.push(motion.slips(contact, state, &axes));
         }
     }
 
     fn holds(&mut self, friction: f64) -> bool {
         let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
         self.coulomb.may_stick(&mut self.projection, &DOWN, contacts)
+    }
+
+    /// From which friction on it holds, if from one up to `most` on.
+    fn holds_from(&mut self, most: f64, to: f64) -> Option<f64> {
+        self.holds(most).then(|| {
+            let [mut slips, mut holds] = [0.0, most];
+            while holds - slips > to {
+                let middle = f64::midpoint(slips, holds);
+                if self.holds(middle) { holds = middle } else { slips = middle }
+            }
+            holds
+        })
     }
 
     /// How it slips at a friction, from a slip at less; `None` where it sticks.
@@ -93,14 +105,7 @@ impl Touching {
 
     fn thresholds(&mut self) -> Sticking {
         self.coulomb = Coulomb::patient();
-        let holds_from = self.holds(MOST).then(|| {
-            let [mut slips, mut holds] = [0.0, MOST];
-            while holds - slips > HOLDS_TO {
-                let middle = f64::midpoint(slips, holds);
-                if self.holds(middle) { holds = middle } else { slips = middle }
-            }
-            holds
-        });
+        let holds_from = self.holds_from(MOST, HOLDS_TO);
         let slips_until = holds_from.and_then(|holds| self.slips_until(holds));
         Sticking { holds_from, slips_until }
     }
@@ -149,6 +154,39 @@ impl Watch for Doubting {
             self.touching.see(motion, state);
             self.here = !self.touching.rows.is_empty() && self.touching.holds(motion.settings.friction);
         }
+        None
+    }
+}
+
+/// The least friction at which some force would hold it somewhere on the way, the end left out.
+#[derive(Debug)]
+pub(super) struct Holding {
+    touching: Touching,
+    /// At the place that was seen last.
+    here: f64,
+    least: f64,
+}
+
+/// To so much it is found.
+const WAY_HOLDS_TO: f64 = 1e-4;
+
+impl Holding {
+    pub(super) fn up_to(most: f64) -> Self {
+        Self { touching: Touching::default(), here: most, least: most }
+    }
+
+    pub(super) const fn least(&self) -> f64 {
+        self.least
+    }
+}
+
+impl Watch for Holding {
+    fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
+        self.least = self.least.min(self.here);
+        self.touching.see(motion, state);
+        let holds =
+            (!self.touching.rows.is_empty()).then(|| self.touching.holds_from(self.least, WAY_HOLDS_TO));
+        self.here = holds.flatten().unwrap_or(self.least);
         None
     }
 }

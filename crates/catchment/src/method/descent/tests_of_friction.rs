@@ -120,8 +120,8 @@ fn random(count: u64) -> Domain {
 /// Half the step changes at most one outcome in a hundred, and threads none.
 #[test]
 fn neither_steps_nor_threads_change_outcomes() {
-    let [face, pyramid] =
-        [Family::XFace3d, Family::Pyramid].map(|family| pair(family, |alignment| alignment.free = DofSet::ALL));
+    let [face, pyramid] = [Family::XFace3d, Family::Pyramid]
+        .map(|family| pair(family, |alignment| alignment.free = DofSet::ALL));
     // Flat enough to wedge.
     let flat = of(Family::Pyramid, 0.5, &Dof::ALL);
     for (name, pair, friction) in

@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, Line, Point, legend};
+use super::draw::chart::{Chart, Line, Point, Spacing, legend};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::design::Design;
@@ -46,6 +46,7 @@ pub fn convergence(design: &Design, found: &Convergence) -> Picture {
         let chart = Chart {
             rect: Rect { x, y, w: size[0], h: size[1] },
             x_label: if k % 2 == 0 { "cells per axis" } else { "time [s]" },
+            spacing: Spacing::Logarithmic,
             y_label: if k < 2 { &sum_label } else { "ONAA edge" },
             lines: &lines(across, up),
             mark: None,

@@ -1,7 +1,7 @@
 //! Curves over a logarithmic scale, in charts side by side.
 
 use super::Picture;
-use super::draw::chart::{Chart, Line, Point, legend};
+use super::draw::chart::{Chart, Line, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 
@@ -52,8 +52,15 @@ pub fn curves(title: &str, story: &str, charts: &[CurveChart]) -> Picture {
     for (k, chart) in charts.iter().enumerate() {
         let rect = Rect { x: left + step * k as f64, y: top, w: size[0], h: size[1] };
         let lines = lines(&chart.curves);
-        Chart { rect, x_label: chart.x_label, y_label: chart.y_label, lines: &lines, mark: None }
-            .draw(&mut svg);
+        Chart {
+            rect,
+            x_label: chart.x_label,
+            spacing: Spacing::Logarithmic,
+            y_label: chart.y_label,
+            lines: &lines,
+            mark: None,
+        }
+        .draw(&mut svg);
         names.get_or_insert(lines);
     }
     legend(&mut svg, &names.unwrap_or_default(), [left, top - 16.0]);

@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, Line, Point};
+use super::draw::chart::{Chart, Line, Point, Spacing};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::design::Design;
@@ -31,6 +31,7 @@ pub fn sensitivity(design: &Design, found: &Sensitivity) -> Picture {
     let chart = Chart {
         rect: Rect { x: 78.0, y: 76.0, w: 510.0, h: 300.0 },
         x_label: "ρ, rotation length [D]",
+        spacing: Spacing::Logarithmic,
         y_label: &format!("Sum [{}]", found.unit),
         lines: &[line],
         mark: Some((design.alignment.rotation_length, "this design")),

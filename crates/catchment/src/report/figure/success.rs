@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::draw::axis::{Units, short};
-use super::draw::chart::{Chart, Line, Point, legend};
+use super::draw::chart::{Chart, Line, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use crate::report::{DockingReport, SuccessesReport};
@@ -37,6 +37,7 @@ pub fn success(report: &SuccessesReport) -> Picture {
     Chart {
         rect,
         x_label: "all standard deviations times",
+        spacing: Spacing::Logarithmic,
         y_label: "success [%]",
         lines: &lines,
         mark: Some((1.0, "as they are")),

@@ -305,6 +305,25 @@ impl Jam {
     }
 }
 
+/// The features that touch where poses stick, each followed at a friction of its own; how many of them stick there.
+pub(crate) fn what_sticks(
+    problem: &Problem,
+    poses: &[(PoseError, f64)],
+    exec: &Exec,
+) -> Result<(usize, Vec<Touching>), Cancelled> {
+    let features = Features::of(problem.pair());
+    let follow = Follow { problem, features: &features };
+    let rest = |(pose, friction): &(PoseError, f64)| {
+        exec.check()?;
+        let settings = descent::Settings { friction: *friction, ..descent::Settings::default() };
+        Ok(follow.rested(&descent::settle(problem.pair(), pose, &settings)))
+    };
+    let rests: Vec<Option<Rested>> =
+        exec.install(|| poses.par_iter().map(rest).collect::<Result<_, Cancelled>>())?;
+    let rests: Vec<Rested> = rests.into_iter().flatten().collect();
+    Ok((rests.len(), touching(problem, &features, &rests)))
+}
+
 /// The pairs of features that touch in rests, by their names, in the order of how many do: a person changes all features of a name, or none.
 fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<Touching> {
     let mut pairs: BTreeMap<[String; 2], Touching> = BTreeMap::new();

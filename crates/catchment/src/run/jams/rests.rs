@@ -80,7 +80,7 @@ impl Follow<'_> {
         })
     }
 
-    fn rested(&self, rest: &Rest) -> Option<Rested> {
+    pub(super) fn rested(&self, rest: &Rest) -> Option<Rested> {
         let height = rest.height.filter(|_| rest.outcome == Outcome::Jammed)?;
         let alignment = self.problem.alignment();
         let pose = CorPose::from_error(&rest.error, alignment.center_of_rotation, alignment.free);

@@ -1,4 +1,4 @@
-//! Lines over a logarithmic scale, each with its interval as a band.
+//! Lines over a logarithmic or an even scale, each with its interval as a band.
 
 use super::axis::{Frame, Scale, tick_label};
 use super::colour::{Rgb, hex};
@@ -17,7 +17,7 @@ pub struct Line {
 /// One point of a line, with the interval of its value where it has one.
 #[derive(Debug, Clone, Copy)]
 pub struct Point {
-    /// Along the logarithmic scale.
+    /// Along the scale.
     pub x: f64,
     /// Its value.
     pub y: f64,
@@ -25,12 +25,42 @@ pub struct Point {
     pub interval: Option<[f64; 2]>,
 }
 
-/// A chart over a logarithmic x scale.
+/// How a scale is spaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spacing {
+    /// By ratios: points whose x is not positive are left out.
+    Logarithmic,
+    /// By differences.
+    Even,
+}
+
+impl Spacing {
+    /// Where a value lies along the scale.
+    fn at(self, x: f64) -> f64 {
+        if self == Self::Logarithmic { x.log10() } else { x }
+    }
+
+    fn shows(self, x: f64) -> bool {
+        self == Self::Even || x > 0.0
+    }
+
+    /// Round numbers on a scale of this width.
+    fn ticks(self, scale: &Scale, width: f64) -> Vec<f64> {
+        match self {
+            Self::Logarithmic => decades(scale.lo, scale.hi, width),
+            Self::Even => scale.ticks((width / 60.0) as usize),
+        }
+    }
+}
+
+/// A chart of lines.
 pub struct Chart<'a> {
     /// Where it lies in the picture.
     pub rect: Rect,
     /// What the x scale measures.
     pub x_label: &'a str,
+    /// How it is spaced.
+    pub spacing: Spacing,
     /// What the y scale measures.
     pub y_label: &'a str,
     /// The lines.
@@ -40,7 +70,7 @@ pub struct Chart<'a> {
 }
 
 impl Chart<'_> {
-    /// Draws the chart; needs about 56 to the left and 38 below. Points whose x is not positive are left out.
+    /// Draws the chart; needs about 56 to the left and 38 below.
     pub fn draw(&self, svg: &mut Svg) {
         let Some(frame) = self.frame() else { return };
         let r = self.rect;
@@ -48,8 +78,8 @@ impl Chart<'_> {
         for y in frame.y.ticks((r.h / 40.0) as usize) {
             svg.line([r.x, frame.py(y)], [r.x + r.w, frame.py(y)], &grid);
         }
-        for x in decades(frame.x.lo, frame.x.hi, r.w) {
-            let px = frame.px(x.log10());
+        for x in self.spacing.ticks(&frame.x, r.w) {
+            let px = frame.px(self.spacing.at(x));
             svg.line([px, r.y], [px, r.y + r.h], &grid);
             svg.line(
                 [px, r.y + r.h],
@@ -61,16 +91,16 @@ impl Chart<'_> {
         svg.text([r.x + 0.5 * r.w, r.y + r.h + 32.0], LABEL, Anchor::Middle, INK, self.x_label);
         svg.begin_clip(r);
         if let Some((x, words)) = self.mark {
-            let px = frame.px(x.log10());
+            let px = frame.px(self.spacing.at(x));
             let dashed = format!(r#"stroke="{INK}" stroke-width="1" stroke-dasharray="4 3""#);
             svg.line([px, r.y], [px, r.y + r.h], &dashed);
             svg.text([px + 5.0, r.y + 14.0], TICK, Anchor::Start, INK, words);
         }
         for line in self.lines {
-            line.band(svg, &frame);
+            line.band(svg, &frame, self.spacing);
         }
         for line in self.lines {
-            line.curve(svg, &frame);
+            line.curve(svg, &frame, self.spacing);
         }
         svg.end();
         frame.beside(svg);
@@ -81,14 +111,15 @@ impl Chart<'_> {
     fn frame(&self) -> Option<Frame> {
         /// Room beside the outermost points, as a share of the extent.
         const MARGIN: f64 = 0.06;
-        let points = || self.lines.iter().flat_map(Line::shown);
+        let points = || self.lines.iter().flat_map(|line| line.shown(self.spacing));
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
         };
         let (left, right) =
-            range(&mut points().map(|p| p.x.log10()).chain(self.mark.map(|(x, _)| x.log10())));
+            range(&mut points().map(|p| p.x).chain(self.mark.map(|(x, _)| x)).map(|x| self.spacing.at(x)));
         // Wide intervals of coarse beginnings would leave no room for the values: they run out of the frame.
-        let ends = self.lines.iter().filter_map(|line| line.shown().last()).filter_map(|p| p.interval);
+        let ends =
+            self.lines.iter().filter_map(|line| line.shown(self.spacing).last()).filter_map(|p| p.interval);
         let (low, high) = range(&mut points().map(|p| p.y).chain(ends.flatten()));
         if !(left <= right && low <= high) {
             return None;
@@ -109,13 +140,15 @@ impl Chart<'_> {
 }
 
 impl Line {
-    fn shown(&self) -> impl Iterator<Item = &Point> {
-        self.points.iter().filter(|p| p.x > 0.0 && p.y.is_finite())
+    fn shown(&self, spacing: Spacing) -> impl Iterator<Item = &Point> {
+        self.points.iter().filter(move |p| spacing.shows(p.x) && p.y.is_finite())
     }
 
-    fn band(&self, svg: &mut Svg, frame: &Frame) {
-        let ends =
-            |k: usize| self.shown().filter_map(move |p| p.interval.map(|i| frame.at([p.x.log10(), i[k]])));
+    fn band(&self, svg: &mut Svg, frame: &Frame, spacing: Spacing) {
+        let ends = |k: usize| {
+            let end = move |p: &Point| p.interval.map(|i| frame.at([spacing.at(p.x), i[k]]));
+            self.shown(spacing).filter_map(end)
+        };
         let mut outline: Vec<[f64; 2]> = ends(1).collect();
         let mut lower: Vec<[f64; 2]> = ends(0).collect();
         // A band that turns back, as over times that do not grow, encloses nothing that means anything.
@@ -128,17 +161,17 @@ impl Line {
         }
         // A band is thin at its ends and nothing at a single point: whiskers show every interval.
         let whisker = format!(r#"stroke="{}" stroke-opacity="0.7" stroke-width="1.2""#, hex(self.colour));
-        for p in self.shown() {
+        for p in self.shown(spacing) {
             if let Some([lo, hi]) = p.interval {
-                let [x, bottom] = frame.at([p.x.log10(), lo]);
+                let [x, bottom] = frame.at([spacing.at(p.x), lo]);
                 svg.line([x, bottom], [x, frame.py(hi)], &whisker);
             }
         }
     }
 
-    fn curve(&self, svg: &mut Svg, frame: &Frame) {
+    fn curve(&self, svg: &mut Svg, frame: &Frame, spacing: Spacing) {
         let colour = hex(self.colour);
-        let places: Vec<[f64; 2]> = self.shown().map(|p| frame.at([p.x.log10(), p.y])).collect();
+        let places: Vec<[f64; 2]> = self.shown(spacing).map(|p| frame.at([spacing.at(p.x), p.y])).collect();
         let style = format!(r#"fill="none" stroke="{colour}" stroke-width="2" {JOIN}"#);
         svg.path(&polyline(places.iter().copied(), false), &style);
         for place in places {

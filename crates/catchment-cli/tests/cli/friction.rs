@@ -1,0 +1,54 @@
+//! What friction takes, through the real binary.
+
+use super::{catchment, json, run};
+use serde_json::Value;
+use std::fs;
+
+/// A V-Face whose facets have a slope of 0.2.
+fn home() -> tempfile::TempDir {
+    let home = tempfile::tempdir().unwrap();
+    let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
+    fs::write(home.path().join("v.toml"), text).unwrap();
+    home
+}
+
+#[test]
+fn a_facet_holds_everything_from_its_slope_on() {
+    let home = home();
+    let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.1,0.3"]);
+    assert!(
+        told.starts_with("exit 0\n")
+            && told.contains("95 % docks      up to a friction of 0.199  (0.199 … 0.199)"),
+        "{told}"
+    );
+    assert!(told.contains("what sticks first, in the first 20 poses that are lost"), "{told}");
+    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+}
+
+#[test]
+fn threads_change_nothing_and_files_are_whole() {
+    let home = home();
+    let with = |threads: &str| {
+        let args = ["friction", "v.toml", "--motions", "100", "--json", "--threads", threads];
+        let mut report = json(home.path(), &args);
+        report["timing"] = Value::Null;
+        report
+    };
+    assert_eq!(with("1"), with("2"));
+    for (file, begins) in [("f.svg", "<svg"), ("f.csv", "friction,motions,aligned,"), ("f.json", "{\n")] {
+        let told = run(home.path(), &["friction", "v.toml", "--motions", "50", "-o", file]);
+        assert!(told.starts_with("exit 0\n"), "{told}");
+        assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
+    }
+}
+
+#[test]
+fn a_requirement_decides_the_exit_code() {
+    let home = home();
+    let code = |require: &str| {
+        let args = ["friction", "v.toml", "--motions", "100", "--require", require];
+        catchment(home.path()).args(args).output().unwrap().status.code()
+    };
+    assert_eq!(code("kept.p95.friction>=0.19"), Some(0));
+    assert_eq!(code("kept.p95.friction>=0.21"), Some(1));
+}

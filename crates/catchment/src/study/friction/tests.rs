@@ -1,0 +1,91 @@
+use super::super::testing::problem;
+use super::*;
+use crate::design::Family;
+use crate::pose::{Dof, DofSet};
+
+/// Rotations locked, the critical friction of a facet is its slope: of every pose, and so of every share of them.
+#[test]
+fn on_facets_every_pose_is_lost_at_their_slope() {
+    for (family, ratio, slope) in [(Family::VFace, 0.1, 0.2), (Family::XFace, 0.3, 0.3)] {
+        let text = format!(
+            "[connector]\nfamily = \"{}\"\naspect_ratio = {ratio}\n[alignment]\nfree = [\"x\"]\n",
+            family.name()
+        );
+        let problem = Problem::of(crate::design::read(&text, ".".as_ref()).unwrap().design).unwrap();
+        let settings = Settings { frictions: vec![0.1, 0.15, 0.4], motions: Some(200), seed: 2 };
+        let found = run(&problem, &settings, &Exec::new()).unwrap();
+        let docked = found.rungs[0].tally.counts[0];
+        assert!(docked > 50);
+        for kept in &found.kept {
+            assert!((kept.friction - slope).abs() <= EXACT, "{family:?} {kept:?}");
+            assert!(kept.ci95[0] <= kept.friction && kept.friction <= kept.ci95[1]);
+            assert!(!kept.is_top);
+        }
+        let last = found.rungs[3].tally;
+        assert_eq!((last.lost, last.counts[0], last.gained, found.come_back), (docked, 0, 0, 0));
+        // Nothing bends the way here: the static test is right.
+        assert!(found.rungs.iter().all(|rung| rung.tally.static_wrong == 0), "{:?}", found.rungs);
+        assert_eq!(found.first.0, AT_LEAST);
+        assert_eq!(found.first.1[0].count, AT_LEAST);
+    }
+}
+
+#[test]
+fn tallies_add_up_and_threads_change_nothing() {
+    let problem = problem(Family::XFace3d, DofSet::ALL);
+    let settings = Settings { frictions: vec![0.3, 0.1, 0.3, 0.0], motions: Some(120), seed: 3 };
+    let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
+    let found = with(1);
+    assert_eq!(found, with(2));
+    assert_eq!(found.settings.frictions, [0.1, 0.3]);
+    let docked = found.rungs[0].tally.counts[0];
+    for Rung { friction, tally } in &found.rungs {
+        assert_eq!(tally.counts.iter().sum::<usize>(), 120);
+        assert_eq!(tally.counts[0] + tally.lost, docked + tally.gained, "{friction}");
+        assert!(tally.may_stick <= tally.counts[0] && tally.static_docks <= docked);
+    }
+    let direct = |friction: f64| {
+        let Domain::Poses(poses) = Domain::random(problem.alignment(), 120, 3) else { unreachable!() };
+        let settings = descent::Settings::with_friction(friction).unwrap();
+        poses
+            .iter()
+            .filter(|pose| descent::outcome(problem.pair(), pose, &settings).outcome == Outcome::Aligned)
+            .count()
+    };
+    assert_eq!(
+        found.rungs.iter().map(|rung| rung.tally.counts[0]).collect::<Vec<_>>(),
+        [0.0, 0.1, 0.3].map(direct)
+    );
+}
+
+#[test]
+fn the_interval_of_a_quantile_holds_it() {
+    let way = |critical: f64| Way {
+        without: Outcome::Aligned,
+        at: Vec::new(),
+        holds: 0.0,
+        critical: (critical < 0.5).then_some([critical, critical + EXACT]),
+    };
+    // Critical frictions all over [0, 1), of which the ladder sees those below 0.5: 90 % are kept up to 0.1.
+    let of = |seed: u64| {
+        let stream = crate::acceptance::Stream::new(seed);
+        let ways: Vec<Way> = (0..400).map(|k| way(stream.uniform(k))).collect();
+        kept(&ways, 0.5)
+    };
+    let hold = |share: usize, truth: f64| {
+        (0..400).filter(|seed| (of(*seed)[share].ci95[0]..=of(*seed)[share].ci95[1]).contains(&truth)).count()
+    };
+    assert!(hold(2, 0.1) >= 376 && hold(1, 0.05) >= 376, "{} {}", hold(2, 0.1), hold(1, 0.05));
+    let half = of(1)[3];
+    assert!(half.friction > 0.44 && half.ci95[1] == 0.5, "{half:?}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused() {
+    let problem = problem(Family::VFace, [Dof::X].into_iter().collect());
+    let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
+    let base = Settings { motions: Some(10), ..Settings::default() };
+    assert_eq!(refused(Settings { motions: Some(0), ..base.clone() }), FrictionError::NoMotions);
+    assert_eq!(refused(Settings { frictions: vec![0.0], ..base.clone() }), FrictionError::NoFrictions);
+    assert!(matches!(refused(Settings { frictions: vec![-0.1], ..base }), FrictionError::Friction(_)));
+}
