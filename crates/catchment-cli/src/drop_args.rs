@@ -38,6 +38,9 @@ pub(crate) struct DropArgs {
     /// Coefficient of friction between the halves, in exact motions and in drop tests [default: 0]
     #[arg(long, value_name = "MU")]
     friction: Option<f64>,
+    /// Exact motions end where the height falls by no more than this per length (rho-metric), a rule of thumb for friction [default: 0]
+    #[arg(long, value_name = "SLOPE")]
+    slope_threshold: Option<f64>,
     /// Share of the approach speed that a bounce gives back [default: 0]
     #[arg(long, value_name = "SHARE", help_heading = DROP)]
     restitution: Option<f64>,
@@ -97,6 +100,7 @@ impl DropArgs {
         let turning = self.angular_damping.or(self.damping);
         add("--angular-damping", "angular_damping", turning.map(Value::from));
         add("--friction", "friction", self.friction.map(Value::from));
+        add("--slope-threshold", "slope_threshold", self.slope_threshold.map(Value::from));
         add("--restitution", "restitution", self.restitution.map(Value::from));
         add("--ground", "ground", self.ground.map(Value::from));
         add("--drop-height", "drop_height", self.drop_height.map(Value::from));

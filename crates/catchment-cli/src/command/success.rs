@@ -53,6 +53,9 @@ pub(crate) struct SuccessArgs {
     /// Seed of the random errors
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
+    /// Coefficient of friction between the halves
+    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    friction: f64,
     #[command(flatten)]
     asked: AskedArgs,
     #[command(flatten)]
@@ -94,6 +97,7 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
         seed: args.seed,
         required: args.required,
         cells: args.cells.map(|cells| cells as usize),
+        friction: args.friction,
     };
     let running = args.exec.start()?;
     let found = ask(&problem, &robots, &settings, &running.exec)?;

@@ -166,20 +166,18 @@ impl FrictionReport {
         let motions = format!("descent, {} random poses at every friction", grouped(self.motions));
         row(&mut text, "method", &motions);
         text.push('\n');
-        line(&mut text, "  friction   docks                       lost  gained  may stick    static test");
+        line(&mut text, "  friction docks                    lost  gained  may stick   static  wrong");
         for rung in &self.curve {
-            let [lo, hi] = rung.aligned.ci95.map(percent);
+            let [lo, hi] = rung.aligned.ci95.map(|share| format!("{:.1}", 100.0 * share));
             let docks = format!("{} ({lo} … {hi})", percent(rung.aligned.share));
-            let says = if rung.friction == 0.0 {
+            let against = if rung.friction == 0.0 {
                 String::new()
             } else {
                 let share = percent(rung.static_docks as f64 / self.motions.max(1) as f64);
-                format!(
-                    "{:>8}{:>8}{:>11}    {share}, {} wrong",
-                    rung.lost, rung.gained, rung.may_stick, rung.static_wrong
-                )
+                let RungReport { lost, gained, may_stick, static_wrong, .. } = rung;
+                format!("{lost:>6}{gained:>8}{may_stick:>11}{share:>9}{static_wrong:>7}")
             };
-            line(&mut text, &format!("  {:<11}{docks:<24}{says}", rung.friction));
+            line(&mut text, &format!("  {:<9}{docks:<23}{against}", rung.friction));
         }
         text.push('\n');
         self.kept_lines(&mut text);
@@ -205,13 +203,17 @@ impl FrictionReport {
         line(text, "  of what docks without friction");
         for kept in &self.kept {
             let [lo, hi] = kept.ci95;
+            let top = self.curve.last().map_or(0.0, |rung| rung.friction);
+            let to = |friction: f64| {
+                if friction >= top { format!("beyond {top}") } else { format!("{friction:.3}") }
+            };
             let friction = if kept.is_top {
-                format!("beyond {}, the largest that was tried", kept.friction)
+                format!("beyond {top}, the largest that was tried")
             } else {
-                format!("{:.3}  ({lo:.3} … {hi:.3})", kept.friction)
+                format!("up to a friction of {:.3}  ({lo:.3} … {})", kept.friction, to(hi))
             };
             let share = format!("{:.0} % docks", 100.0 * kept.share);
-            line(text, &format!("  {share:<15}up to a friction of {friction}"));
+            line(text, &format!("  {share:<15}{friction}"));
         }
     }
 

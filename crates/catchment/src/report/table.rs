@@ -20,10 +20,15 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     heading(&mut text, &report.design);
     let method = format!("{}, {}", report.method, tried(report));
     row(&mut text, "method", &method);
-    let friction =
-        report.settings.get("friction").or_else(|| report.settings.get("descent")?.get("friction"));
-    if let Some(friction) = friction.and_then(serde_json::Value::as_f64).filter(|friction| *friction > 0.0) {
+    let of_motions = |name: &str| {
+        let found = report.settings.get(name).or_else(|| report.settings.get("descent")?.get(name));
+        found.and_then(serde_json::Value::as_f64).filter(|value| *value > 0.0)
+    };
+    if let Some(friction) = of_motions("friction") {
         row(&mut text, "friction", &format!("{friction} between the halves (Coulomb)"));
+    }
+    if let Some(slope) = of_motions("slope_threshold") {
+        row(&mut text, "slope threshold", &format!("{slope}: motion ends where the height falls less"));
     }
     if let ConnectorSpec::Own(own) = &report.design.connector {
         for (name, half) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {

@@ -117,7 +117,7 @@ impl River<'_> {
     ) -> (Label, bool) {
         let centre = self.relief.grid.pose(self.whole(cell));
         // Friction bends the way, and may end it.
-        if self.settings.descent.friction == 0.0 {
+        if !self.settings.descent.may_hold() {
             let ahead = around.ahead(&centre, &self.velocity(cell));
             if let Some(label) = around.agreed(&ahead, labels, 1) {
                 return (label, false);

@@ -34,8 +34,8 @@ const ROUNDS: usize = 100;
 const PATIENT: usize = 20_000;
 /// Rounds before slips are extrapolated: directions settle first.
 const SETTLED: usize = 4;
-/// A round goes on by at most so many times what was missing and at least by so much of it, where rounds overshoot: halves that wedge make them. It
-/// leaves a slip that falls at least this share of what the round says: where it falls to nothing the half sticks, and nothing makes it slip again.
+/// A round goes on by at most so many times what was missing, and where the last one overshot, as it does in halves that wedge, by at least so much of
+/// it. It leaves a slip that falls at least this share of what the round says: where it falls to nothing the half sticks, and nothing makes it slip again.
 const BOLDEST: f64 = 20.0;
 const SHYEST: f64 = 0.05;
 const LEFT: f64 = 0.5;
@@ -209,12 +209,14 @@ impl Coulomb {
             }
             // Aitken's step: as far as the last two rounds say that it will go.
             if round > SETTLED {
-                let (mut along, mut size) = (0.0, 0.0);
+                let (mut along, mut size, mut both) = (0.0, 0.0, 0.0);
                 for (before, now) in self.before.iter().zip(&self.missing) {
                     along += before * (now - before);
                     size += (now - before) * (now - before);
+                    both += before * now;
                 }
-                boldness = if size > 0.0 { (-boldness * along / size).clamp(SHYEST, BOLDEST) } else { 1.0 };
+                let least = if both < 0.0 { SHYEST } else { 1.0 };
+                boldness = if size > 0.0 { (-boldness * along / size).clamp(least, BOLDEST) } else { 1.0 };
             }
             for (slip, missing) in self.slips.iter_mut().zip(&self.missing) {
                 *slip = (*slip + boldness * missing).max(LEFT * (*slip + missing));

@@ -58,7 +58,8 @@ impl Decide for Settings {
     }
 
     fn check(&self) -> Result<(), DecideError> {
-        Settings::with_friction(self.friction).map(|_| ()).map_err(DecideError::method)
+        Settings::with_friction(self.friction).map_err(DecideError::method)?;
+        Settings::with_slope_threshold(self.slope_threshold).map(|_| ()).map_err(DecideError::method)
     }
 
     fn motions(&self) -> Self {

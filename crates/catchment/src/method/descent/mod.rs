@@ -61,11 +61,14 @@ pub struct Settings {
     pub max_steps: usize,
     /// Coefficient of friction between the halves, at least 0.
     pub friction: f64,
+    /// Motion ends where the height falls by no more than this per length in the ρ-metric: the simple variant of friction (dissertation, 7.2). Of
+    /// offsets alone on one facet it is friction; where halves turn it is a rule of thumb, and derived from no coefficient.
+    pub slope_threshold: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { step: 0.02, surprise: 0.05, max_steps: 20_000, friction: 0.0 }
+        Self { step: 0.02, surprise: 0.05, max_steps: 20_000, friction: 0.0, slope_threshold: 0.0 }
     }
 }
 
@@ -80,7 +83,32 @@ pub struct FrictionOutOfRange {
     pub friction: f64,
 }
 
+/// A number that is no slope.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{slope} is no slope at which motion ends: that is a finite number from 0 on, such as 0.2")]
+pub struct SlopeOutOfRange {
+    /// What was given.
+    pub slope: f64,
+}
+
 impl Settings {
+    /// Whether something may hold a half on its way.
+    pub(in crate::method) fn may_hold(&self) -> bool {
+        self.friction > 0.0 || self.slope_threshold > 0.0
+    }
+
+    /// The defaults, with motion that ends where the slope is no more than this.
+    ///
+    /// # Errors
+    /// A slope is finite, and at least 0.
+    pub fn with_slope_threshold(slope: f64) -> Result<Self, SlopeOutOfRange> {
+        if slope.is_finite() && slope >= 0.0 {
+            Ok(Self { slope_threshold: slope, ..Self::default() })
+        } else {
+            Err(SlopeOutOfRange { slope })
+        }
+    }
+
     /// The defaults with friction between the halves.
     ///
     /// # Errors

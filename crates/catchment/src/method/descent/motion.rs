@@ -175,7 +175,7 @@ impl<'a> Motion<'a> {
 
     /// Calls motions before they have come to rest also where all motion near the mated pose leads to it, which friction may end.
     pub(super) fn homing(mut self) -> Self {
-        self.homing = self.settings.friction == 0.0 && homing::all_dock(self.pair);
+        self.homing = !self.settings.may_hold() && homing::all_dock(self.pair);
         self
     }
 
@@ -272,6 +272,12 @@ impl<'a> Motion<'a> {
         (if docked { Outcome::Aligned } else { outcome }, error)
     }
 
+    /// Whether a displacement whose lateral part has this length falls too little to go on.
+    pub(super) fn is_too_gentle(&self, u: &Vector, length: f64) -> bool {
+        let least = self.settings.slope_threshold;
+        least > 0.0 && -u[2] <= least * length
+    }
+
     /// One step from `state`, whose contacts have been gathered: halved until the height agrees with it.
     pub(super) fn advance(&mut self, state: &State, pace: &mut Pace) -> Advance {
         let longest = self.settings.step;
@@ -281,6 +287,9 @@ impl<'a> Motion<'a> {
         let mut bend = 0.0;
         loop {
             if length <= REST * pace.step && pace.reach >= self.most_reach() {
+                return Advance::Ended(Outcome::Jammed, *state);
+            }
+            if self.is_too_gentle(&u, length) {
                 return Advance::Ended(Outcome::Jammed, *state);
             }
             let mut halve = false;

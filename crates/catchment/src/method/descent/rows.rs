@@ -242,6 +242,6 @@ pub(super) fn horizon(step: f64, radius: f64, rotation_length: f64) -> (f64, f64
 }
 
 /// Clearance to keep from a contact: from walls only.
-fn margin(contact: &Contact) -> f64 {
+pub(super) fn margin(contact: &Contact) -> f64 {
     if contact.normal.z < WALL { WALL_MARGIN } else { 0.0 }
 }

@@ -15,10 +15,10 @@
 use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
 use super::motion::{Motion, State, Watch};
 use super::projection::{MAX_COORDINATES, Projection, Vector};
-use super::rows::OVERLAP;
+use super::rows::{OVERLAP, margin};
 use super::{MOST_FRICTION as MOST, Settings};
 use crate::acceptance::Outcome;
-use crate::contact::Pair;
+use crate::contact::{Contact, Pair};
 use crate::pose::PoseError;
 
 /// The friction from which on a half sticks where it touches.
@@ -71,7 +71,10 @@ impl Touching {
         let axes = motion.axes(state);
         self.rows.clear();
         self.tangents.clear();
-        for (contact, _) in motion.contacts.iter().filter(|(contact, _)| contact.gap <= OVERLAP) {
+        // Plain motion keeps clear of walls, and what tight fits keep are contacts that touch.
+        let touches =
+            |contact: &Contact| motion.pair.is_tight() || contact.gap <= OVERLAP + 2.0 * margin(contact);
+        for (contact, _) in motion.contacts.iter().filter(|(contact, _)| touches(contact)) {
             self.rows.push(motion.row(contact, state, &axes));
             self.tangents.push(motion.slips(contact, state, &axes));
         }

@@ -86,6 +86,80 @@ fn motions_stick_at_the_thresholds() {
     }
 }
 
+/// Of offsets alone the threshold of the slope is friction on a facet; the diagonal of two facets is steeper than neither.
+#[test]
+fn a_slope_threshold_ends_motion_on_gentler_slopes() {
+    let at_slope = |pair: &Pair, error: &PoseError, slope: f64| {
+        outcome(pair, error, &Settings::with_slope_threshold(slope).unwrap()).outcome
+    };
+    let lateral = [Dof::X, Dof::Y];
+    for (family, aspect_ratio, error, slope) in [
+        (Family::VFace, 0.7, at(0.2, 0.0), 1.4),
+        (Family::Pyramid, 0.5, at(0.2, 0.1), 1.0),
+        // Down the valley between two facets, by 1 in √2.
+        (Family::Pyramid, 0.5, at(0.2, 0.2), 1.0 / SQRT_2),
+        (Family::XFace3d, 0.3, at(0.2, 0.1), 0.3),
+    ] {
+        let pair = of(family, aspect_ratio, &lateral[..if family == Family::VFace { 1 } else { 2 }]);
+        assert_eq!(at_slope(&pair, &error, slope - 1e-6), Outcome::Aligned, "{family:?}");
+        assert_eq!(at_slope(&pair, &error, slope + 1e-6), Outcome::Jammed, "{family:?}");
+    }
+    let refusal = Settings::with_slope_threshold(f64::NAN).unwrap_err().to_string();
+    assert!(refusal.contains("NaN is no slope"), "{refusal}");
+}
+
+/// A peg of width d in a hole, askew: its tip on one wall, the rim on its side, `depth` apart along the hole. Whitney's diagram (*Quasi-static assembly of
+/// compliantly supported rigid parts*, 1982): pushed `off` its axis it jams from a friction of depth/(2·off) on, and from depth/d on it
+/// wedges, however it is pushed.
+#[test]
+fn a_peg_jams_and_wedges_as_whitney_says() {
+    const WIDTH: f64 = 1.0;
+    const CLEARANCE: f64 = 2e-3;
+    for off in [0.0, 0.3, 0.75, 1.5] {
+        for depth in [0.3, 0.6, 1.0] {
+            let (pair, error) = peg(WIDTH, CLEARANCE, off, depth);
+            let found = sticking(&pair, &error).unwrap();
+            let expected = depth / f64::max(2.0 * off, WIDTH);
+            let holds_from = found.holds_from.unwrap();
+            // The peg leans by clearance/depth at most, and the cone of its side with it.
+            assert!((holds_from / expected - 1.0).abs() < 0.02, "{off} {depth}: {found:?}, {expected}");
+        }
+    }
+}
+
+/// A planar peg and its hole, drawn so that the push goes `off` the axis of both, and the pose error at which it stands in two points.
+fn peg(width: f64, clearance: f64, off: f64, depth: f64) -> (Pair, PoseError) {
+    /// From the collar that rests on the rim to the tip.
+    const LONG: f64 = 2.0;
+    /// What is left to the wall: less than motions keep.
+    const LEFT: f64 = 1e-7;
+    let (half, hole) = (0.5 * width, 0.5 * (width + clearance));
+    let block = |[x0, x1]: [f64; 2], [z0, z1]: [f64; 2]| {
+        format!("{{ box = [{}, 1.0, {}], at = [{}, 0.0, {z0}] }}", x1 - x0, z1 - z0, f64::midpoint(x0, x1))
+    };
+    let walls = [[off - 3.0, off - hole], [off + hole, off + 3.0]].map(|x| block(x, [-LONG - 0.5, 0.0]));
+    let peg = [block([off - half, off + half], [-LONG, 0.25]), block([off - 1.0, off + 1.0], [0.0, 0.5])];
+    let text = format!(
+        "[connector]\ndrawn = \"assembled\"\nface_center = [0, 0, 0]\nfixed.parts = [{}]\nmoving.parts = [{}]\n\
+         [alignment]\nfree = [\"x\", \"pitch\"]\ncenter_of_rotation = 0.0\nrotation_length = 0.5\n",
+        walls.join(", "),
+        peg.join(", ")
+    );
+    let source = crate::design::SourceText::new("peg.toml", text.as_str());
+    let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
+    // It leans to the right by this: the rim lies on its right side.
+    let across = |lean: f64| (2.0 * hole - LEFT) * lean.cos() - depth * lean.sin() - width;
+    let [mut less, mut more] = [0.0, 0.5];
+    while more - less > 1e-15 {
+        let middle = f64::midpoint(less, more);
+        if across(middle) > 0.0 { less = middle } else { more = middle }
+    }
+    let lean = less;
+    let tip = (off - half) * lean.cos() - LONG * lean.sin();
+    let error = PoseError { x: off - hole + LEFT - tip, pitch: lean, ..PoseError::default() };
+    (problem.pair().clone(), error)
+}
+
 /// Between the thresholds of a valley a half slips and might stick; below both it slips, above both it sticks: no doubt.
 #[test]
 fn between_the_thresholds_a_motion_is_in_doubt() {

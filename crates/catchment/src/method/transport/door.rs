@@ -26,9 +26,11 @@ impl Decide for Settings {
     }
 
     fn settings(&self) -> Value {
-        // Along the frictionless direction of descent there is no friction to be set.
+        // Along the frictionless direction of descent nothing that holds a half can be set.
         let mut settings = json!(self);
-        settings.get_mut(MOTIONS).and_then(Value::as_object_mut).map(|motions| motions.remove("friction"));
+        if let Some(motions) = settings.get_mut(MOTIONS).and_then(Value::as_object_mut) {
+            motions.retain(|name, _| name != "friction" && name != "slope_threshold");
+        }
         settings
     }
 

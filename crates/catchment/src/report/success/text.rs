@@ -12,6 +12,9 @@ impl SuccessesReport {
         let mut text = String::new();
         heading(&mut text, &self.design);
         row(&mut text, "method", &format!("descent, {} motions", grouped(self.motions)));
+        if self.settings.friction > 0.0 {
+            row(&mut text, "friction", &format!("{} between the halves (Coulomb)", self.settings.friction));
+        }
         for robot in &self.robots {
             text.push('\n');
             self.robot(&mut text, robot);

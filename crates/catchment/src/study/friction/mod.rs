@@ -158,9 +158,10 @@ struct Way {
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
 /// let settings = Settings { frictions: vec![0.1, 0.3], motions: Some(100), seed: 1 };
 /// let found = friction::run(&problem, &settings, &Exec::new())?;
-/// // The facets of this V-Face have a slope of 0.2: half of the box docks below it, and nothing above.
+/// // The facets of this V-Face have a slope of 0.2: half of the box docks below it, and nothing above
 /// assert_eq!(found.rungs[1].tally.lost, 0);
-/// assert_eq!(found.rungs[2].tally.counts[0], 0);
+/// // but what starts within the depth of the seat.
+/// assert!(found.rungs[2].tally.counts[0] < 10);
 /// # Ok(())
 /// # }
 /// ```

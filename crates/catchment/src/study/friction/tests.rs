@@ -22,7 +22,9 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
             assert!(!kept.is_top);
         }
         let last = found.rungs[3].tally;
-        assert_eq!((last.lost, last.counts[0], last.gained, found.come_back), (docked, 0, 0, 0));
+        // What starts within the depth of the seat is docked as it is.
+        assert_eq!((last.lost + last.counts[0], last.gained, found.come_back), (docked, 0, 0));
+        assert!(last.counts[0] < docked / 10, "{last:?}");
         // Nothing bends the way here: the static test is right.
         assert!(found.rungs.iter().all(|rung| rung.tally.static_wrong == 0), "{:?}", found.rungs);
         assert_eq!(found.first.0, AT_LEAST);

@@ -23,7 +23,7 @@ use super::{Slope, Stratum};
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::method::correction::{Stop, Whole, Z95, allot, next};
-use crate::method::descent::{self, Follower};
+use crate::method::descent::Follower;
 use crate::pose::Dof;
 use crate::problem::Problem;
 use rayon::prelude::*;
@@ -141,7 +141,6 @@ fn follow(
     numbered: &[(usize, u64)],
     exec: &Exec,
 ) -> Result<Vec<Outcome>, Cancelled> {
-    let (pair, settings) = (problem.pair(), descent::Settings::default());
     let done = std::sync::atomic::AtomicUsize::new(0);
     exec.install(|| {
         let outcome = |follower: &mut Follower<'_>, (_, number): &(usize, u64)| {
@@ -151,7 +150,7 @@ fn follow(
             exec.report(done as f64 / numbered.len() as f64, "random motions");
             Ok(found)
         };
-        numbered.par_iter().map_init(|| Follower::new(pair, &settings), outcome).collect()
+        numbered.par_iter().map_init(|| Follower::new(problem.pair(), &source.motions), outcome).collect()
     })
 }
 

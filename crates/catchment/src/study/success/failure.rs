@@ -99,7 +99,7 @@ fn first(
     sample: &Sample,
     exec: &Exec,
 ) -> Result<(Option<First>, usize), Cancelled> {
-    let mean = problem.follow(&source.mean()).outcome;
+    let mean = descent::outcome(problem.pair(), &source.mean(), &source.motions).outcome;
     if mean != Outcome::Aligned {
         let failing = Failing { z: [0.0; 5], distance: 0.0, outcome: mean };
         return Ok((Some(told(problem, source, failing)), 1));
@@ -166,7 +166,6 @@ fn nearest(
     zs: &[[f64; 5]],
     exec: &Exec,
 ) -> Result<(Option<Failing>, usize), Cancelled> {
-    let (pair, settings) = (problem.pair(), descent::Settings::default());
     let look = |follower: &mut Follower<'_>, z: &[f64; 5]| {
         exec.check()?;
         let mut motions = 0;
@@ -193,7 +192,9 @@ fn nearest(
         Ok((Some(Failing { z, distance: source.distance(&z), outcome: fails }), motions))
     };
     let found: Vec<(Option<Failing>, usize)> = exec.install(|| {
-        zs.par_iter().map_init(|| Follower::new(pair, &settings), look).collect::<Result<_, Cancelled>>()
+        zs.par_iter()
+            .map_init(|| Follower::new(problem.pair(), &source.motions), look)
+            .collect::<Result<_, Cancelled>>()
     })?;
     let motions = found.iter().map(|(_, motions)| motions).sum();
     let failing = found.into_iter().filter_map(|(failing, _)| failing);
@@ -202,7 +203,7 @@ fn nearest(
 
 fn told(problem: &Problem, source: &Source<'_>, failing: Failing) -> First {
     let error = source.pose(&failing.z, &SAME);
-    let path = problem.trace(&error);
+    let path = descent::trace(problem.pair(), &error, &source.motions);
     let last = path.waypoints.last();
     First {
         error,

@@ -34,7 +34,7 @@ mod tests;
 mod tolerable;
 
 use crate::exec::{Cancelled, Exec};
-use crate::method::descent;
+use crate::method::descent::{self, FrictionOutOfRange};
 use crate::method::{Decide, DecideError};
 use crate::pose::{Dof, PoseError};
 use crate::poses::{Moments, Robot, Spread};
@@ -61,17 +61,22 @@ pub struct Settings {
     pub required: f64,
     /// Cells per axis of the grid that says where to look; 0 for none, by the number of errors where nothing is said.
     pub cells: Option<usize>,
+    /// Coefficient of friction between the halves. The grid that says where to look knows none.
+    pub friction: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { motions: None, seed: 1, required: 0.99, cells: None }
+        Self { motions: None, seed: 1, required: 0.99, cells: None, friction: 0.0 }
     }
 }
 
 /// Why there is no probability.
 #[derive(Debug, thiserror::Error)]
 pub enum SuccessError {
+    /// No coefficient of friction.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
     /// No robot.
     #[error("there is no robot to ask about")]
     NoRobot,
@@ -208,7 +213,8 @@ fn of_robot(
     exec: &Exec,
 ) -> Result<(Docking, usize), SuccessError> {
     let part = |k: usize| exec.part([PARTS[k], PARTS[k + 1]], STAGE);
-    let source = Source::of(&robot.errors, motions, settings.seed);
+    let followed_by = descent::Settings::with_friction(settings.friction)?;
+    let source = Source::of(&robot.errors, motions, settings.seed).followed_by(&followed_by);
     // Rows that are all followed need no grid.
     let cells = if source.rows().is_some() { Some(0) } else { settings.cells };
     let strata = Strata::decide(problem, &source, cells, &part(0))?;
@@ -244,7 +250,7 @@ fn of_robot(
     if let Some(fit) = &mut fit {
         let Moments { mean, sigma, correlation } = fit.moments;
         let spread = Spread::Normal { mean, sigma, correlation };
-        let source = Source::of(&spread, 0, settings.seed);
+        let source = Source::of(&spread, 0, settings.seed).followed_by(&followed_by);
         let strata = Strata::decide(problem, &source, settings.cells, &fit_part)?;
         let found = estimate::as_expected(problem, &source, &strata, motions.div_ceil(2), &fit_part)?;
         followed += found.motions;

@@ -9,6 +9,7 @@
 //! With other factors the same number gives the same z: common random errors, whose differences are known better than they are.
 
 use crate::acceptance::Stream;
+use crate::method::descent;
 use crate::pose::{Dof, PoseError};
 use crate::poses::covariance::{Matrix, cholesky, solve_lower, solve_upper};
 use crate::poses::{Moments, Spread};
@@ -27,6 +28,8 @@ pub(super) struct Source<'a> {
     /// L of the correlations of errors in units of `scale`.
     factor: Matrix,
     random: Stream,
+    /// How they are followed.
+    pub(super) motions: descent::Settings,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -60,7 +63,13 @@ impl<'a> Source<'a> {
         };
         // Correlations of rows are semidefinite, but for rounding: without them distances are by each error alone.
         let factor = cholesky(&correlation).unwrap_or(crate::poses::covariance::IDENTITY);
-        Self { law, mean: mean.to_array(), scale, factor, random: Stream::new(seed) }
+        let motions = descent::Settings::default();
+        Self { law, mean: mean.to_array(), scale, factor, random: Stream::new(seed), motions }
+    }
+
+    /// The same, followed by these motions.
+    pub(super) fn followed_by(self, motions: &descent::Settings) -> Self {
+        Self { motions: motions.clone(), ..self }
     }
 
     /// The faces of the box of a uniform spread across one error.

@@ -305,3 +305,23 @@ fn study_of_coverage() {
         }
     }
 }
+
+/// Offsets alone on facets of a slope of 0.2: with less friction as without any, with more nothing docks but what starts in the seat.
+#[test]
+fn friction_above_the_slope_leaves_what_starts_in_the_seat() {
+    let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
+    let problem = Problem::of(crate::design::read(text, ".".as_ref()).unwrap().design).unwrap();
+    let errors = Spread::normal(PoseError { x: 0.25, ..PoseError::default() });
+    let robots = [Robot { name: "arm".to_owned(), errors }];
+    let of = |friction: f64| {
+        let settings = Settings { motions: Some(400), friction, ..Settings::default() };
+        run(&problem, &robots, &settings, &Exec::new()).unwrap().robots.remove(0)
+    };
+    assert_eq!(of(0.1).probability, of(0.0).probability);
+    let [lo, hi] = of(0.3).ci95;
+    // |x| up to 0.025 is within the depth of the seat, a tenth of sigma: erf(0.1/√2).
+    assert!(lo < 0.0797 && 0.0797 < hi && hi < 0.2, "{lo} {hi}");
+    let refused =
+        run(&problem, &robots, &Settings { friction: f64::NAN, ..Settings::default() }, &Exec::new());
+    assert!(matches!(refused, Err(SuccessError::Friction(_))));
+}

@@ -111,7 +111,9 @@ impl Motion<'_> {
             if self.contacts.is_empty() {
                 return self.drop_down(&state);
             }
-            let Some(start) = self.direction(&state) else { return Advance::Ended(Outcome::Jammed, state) };
+            let Some(start) = self.direction(&state).filter(|u| !self.is_too_gentle(u, lateral(u))) else {
+                return Advance::Ended(Outcome::Jammed, state);
+            };
             let carrying = std::mem::take(&mut self.sliding.carrying);
             state = self.corrected(&state, &carrying, SETTLED).unwrap_or(state);
             self.sliding.carrying = carrying;
