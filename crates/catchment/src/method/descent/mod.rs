@@ -160,7 +160,10 @@ impl<'a> Follower<'a> {
     /// With friction it goes another way: this says what holds where motion without it (or with the friction of the settings) comes by, and no more.
     pub fn follow_holding(&mut self, error: &PoseError, most: f64) -> (End, f64) {
         let mut holding = Holding::up_to(most);
+        // All the way, also where it is known before that it docks.
+        let homing = std::mem::take(&mut self.0.homing);
         let (outcome, last) = self.0.follow(error, Until::Known, &mut holding);
+        self.0.homing = homing;
         (End { outcome, error: last }, holding.least())
     }
 

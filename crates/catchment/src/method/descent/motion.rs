@@ -122,7 +122,7 @@ pub(super) struct Motion<'a> {
     pub(super) settings: &'a Settings,
     seat: Seat<'a>,
     /// Whether all motion near the mated pose leads to it: [`super::homing`].
-    homing: bool,
+    pub(super) homing: bool,
     pub(super) nearby: Nearby<'a>,
     pub(super) contacts: Vec<(Contact, Meeting)>,
     /// Scratch for [`Motion::cut`] and [`Motion::meet`].
