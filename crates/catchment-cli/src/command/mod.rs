@@ -8,6 +8,7 @@ mod compare;
 mod completions;
 mod compose;
 mod export;
+mod hold;
 mod invert;
 mod jams;
 mod latch;
@@ -45,6 +46,7 @@ pub(crate) enum Command {
     Window(Box<window::WindowArgs>),
     Success(Box<success::SuccessArgs>),
     Jams(Box<jams::JamsArgs>),
+    Hold(Box<hold::HoldArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -76,6 +78,7 @@ impl Command {
             Self::Window(args) => window::run(&args),
             Self::Success(args) => success::run(&args),
             Self::Jams(args) => jams::run(&args),
+            Self::Hold(args) => hold::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

@@ -7,7 +7,7 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · jams · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · jams · hold · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -30,6 +30,7 @@ mod faces;
 #[cfg(feature = "figure")]
 pub mod figure;
 pub mod folder;
+mod hold;
 mod jams;
 mod lever;
 mod outcomes;
@@ -61,6 +62,7 @@ pub use convergence::{ConvergenceBody, ConvergenceReport};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
+pub use hold::{HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport};
 pub use jams::{
     ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsReport, PairReport,
     ShareReport, WayOutReport,

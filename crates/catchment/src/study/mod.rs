@@ -7,6 +7,7 @@
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
 //!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
 //!   success      how likely the errors of a robot are corrected  one design, stratified exact motions
+//!   hold         what a docked half withstands, sideways and twisted one design, contact forces alone
 //!   window       the largest box of errors that all dock         one design, exact motions without a grid
 //!   proposal     all ways in which two parts may dock           two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
@@ -14,6 +15,7 @@
 
 pub mod agreement;
 pub mod convergence;
+pub mod hold;
 pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;

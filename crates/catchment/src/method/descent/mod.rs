@@ -18,6 +18,7 @@
 mod coulomb;
 mod dependence;
 pub(super) mod door;
+mod holding;
 mod homing;
 mod motion;
 mod projection;
@@ -29,10 +30,13 @@ mod sticking;
 mod tests;
 #[cfg(test)]
 mod tests_of_friction;
+#[cfg(test)]
+mod tests_of_holding;
 mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
+pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
 pub use rest::{Rest, settle};
 pub use sticking::{Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};

@@ -8,7 +8,7 @@ use crate::pose::PoseError;
 
 /// Gaps up to this touch at rest, in D: motions keep a hundredth of it clear of walls, and end before flush faces have closed to the last; no
 /// fit is as close.
-const TOUCHING: f64 = 1e-4;
+pub const TOUCHING: f64 = 1e-4;
 
 /// The end of a motion.
 #[derive(Debug, Clone, PartialEq)]

@@ -40,7 +40,7 @@ const SHARE: f64 = 0.7;
 const NEAR: f64 = 2e-3;
 
 /// Where the force pushes.
-const DOWN: Vector = {
+pub(super) const DOWN: Vector = {
     let mut down = [0.0; MAX_COORDINATES];
     down[2] = -1.0;
     down
@@ -58,23 +58,38 @@ pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
 }
 
 /// What touches, as rows.
-#[derive(Debug, Default)]
-struct Touching {
-    rows: Vec<Vector>,
-    tangents: Vec<Tangents>,
+#[derive(Debug, Clone, Default)]
+pub(super) struct Touching {
+    pub(super) rows: Vec<Vector>,
+    pub(super) tangents: Vec<Tangents>,
     coulomb: Coulomb,
     projection: Projection,
 }
 
 impl Touching {
     fn see(&mut self, motion: &Motion, state: &State) {
+        self.see_within(OVERLAP, motion, state);
+    }
+
+    /// What is no farther apart than `near` counts as touching.
+    pub(super) fn see_within(&mut self, near: f64, motion: &Motion, state: &State) {
         let axes = motion.axes(state);
         self.rows.clear();
         self.tangents.clear();
-        for (contact, _) in motion.contacts.iter().filter(|(contact, _)| contact.gap <= OVERLAP) {
+        for (contact, _) in motion.contacts.iter().filter(|(contact, _)| contact.gap <= near) {
             self.rows.push(motion.row(contact, state, &axes));
             self.tangents.extend(motion.tangents(contact, state, &axes));
         }
+    }
+
+    /// What the contacts do not take of a push: the push less the nearest one that they hold.
+    pub(super) fn unheld(&mut self, push: &Vector, friction: f64) -> Option<Vector> {
+        if friction == 0.0 {
+            let touching = self.rows.iter().map(|_| 0.0);
+            return self.projection.closest_allowed(push, &self.rows, touching, 1.0);
+        }
+        let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
+        self.coulomb.unheld(&mut self.projection, push, contacts)
     }
 
     fn holds(&mut self, friction: f64) -> bool {

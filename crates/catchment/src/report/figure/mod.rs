@@ -18,6 +18,7 @@
 //!   lever       the first contact with its lever arms and angles, as the kinematic method sees it
 //!   faces       designs side by side, mated and at the largest offset that still slides home
 //!   bodies      convex pieces of the halves, what they sweep, and where they overlap
+//!   hold        how hard a docked half may be pushed, over the direction, and twisted
 //!   jams        where halves rest that do not dock, cut through what touches, and in space
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
@@ -44,6 +45,7 @@ mod difference;
 pub mod draw;
 mod faces;
 mod heights;
+mod hold;
 mod jams;
 mod lever;
 mod map;
@@ -75,6 +77,7 @@ pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;
 pub use faces::{Face, faces};
 pub use heights::heights;
+pub use hold::hold;
 pub use jams::jams;
 pub use lever::lever;
 pub use matrix::slice_matrix;
