@@ -13,6 +13,7 @@ mod door;
 mod files;
 mod hostile;
 mod invert;
+mod hold;
 mod jams;
 mod kills;
 mod latch;

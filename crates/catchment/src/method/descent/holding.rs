@@ -50,6 +50,9 @@ pub enum Guide {
 /// What is no farther apart counts as touching where nothing else is said, in D: what motions leave where they end, below any fit that is designed.
 pub use super::rest::TOUCHING;
 
+/// A foot counts as on its feature up to this far beyond the border, in D: so that the facets on both sides of a valley are found together.
+const BORDER: f64 = 1e-8;
+
 /// Loads beyond so many preloads are not told apart from any: a slope of 89.9999°.
 pub const MOST_LOAD: f64 = 1e6;
 /// The largest load is found to this share of itself, or of the preload.
@@ -77,6 +80,10 @@ impl Holding {
         let settings = Settings { friction: 1.0, ..Settings::default() };
         let mut motion = Motion::new(pair, &settings);
         let state = motion.lower(error)?;
+        let lateral = state.cor.truncate();
+        motion.turn(&state.rotation, lateral, motion.settings.step.max(near));
+        motion.nearby.contacts_within(state.cor, near, BORDER, &mut motion.contacts);
+        motion.contacts.retain(|(contact, _)| contact.gap >= -TOUCHING);
         let mut touching = Touching::default();
         touching.see_within(near, &motion, &state);
         if touching.rows.is_empty() {
