@@ -248,8 +248,10 @@ impl HoldReport {
     fn head(&self, text: &mut String, name: &str, what: &str) {
         let rough = self.settings.friction > 0.0;
         let friction = format!("friction {}", self.settings.friction);
-        let over = if rough { format!("{:>14}{:>28}", "no friction", friction) } else { String::new() };
-        line(text, &format!("  {name:<15}{what:<22}{over}"));
+        line(text, &format!("  {name:<15}{what}"));
+        if rough {
+            line(text, &format!("  {:<15}{:>28}{friction:>28}", "", "no friction"));
+        }
         let guided = format!("{:>14}{:>14}", "guided", "free");
         line(text, &format!("  {:<15}{guided}{}", "", if rough { guided.as_str() } else { "" }));
     }

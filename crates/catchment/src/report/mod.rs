@@ -7,7 +7,7 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · jams · hold · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · jams · rests · hold · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -34,6 +34,8 @@ mod hold;
 mod jams;
 mod lever;
 mod outcomes;
+mod rests;
+mod resting;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
 pub mod schema;
@@ -71,6 +73,7 @@ pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
+pub use rests::{HeldReport, RestReport, RestsBody, RestsReport};
 pub use schema::{Report, RunBody};
 pub use sensitivity::{SensitivityBody, SensitivityReport};
 pub use slices::{SliceReport, SlicesBody, SlicesReport};

@@ -25,8 +25,8 @@ use super::projection::{MAX_COORDINATES, Vector, dot};
 use super::sticking::{DOWN, Touching};
 use super::{Pair, Settings};
 use crate::contact::{Contact, Meeting};
-use crate::pose::PoseError;
-use glam::{DMat3, DVec3};
+use crate::pose::{CorPose, PoseError};
+use glam::{DMat3, DQuat, DVec3};
 
 /// A force on the moving half and its moment about the centre of rotation, world axes; in preloads, and preloads times D.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -80,20 +80,39 @@ impl Holding {
         let settings = Settings { friction: 1.0, ..Settings::default() };
         let mut motion = Motion::new(pair, &settings);
         let state = motion.lower(error)?;
-        let lateral = state.cor.truncate();
-        motion.turn(&state.rotation, lateral, motion.settings.step.max(near));
-        motion.nearby.contacts_within(state.cor, near, BORDER, &mut motion.contacts);
+        Self::seen(&mut motion, &state, near)
+    }
+
+    /// What touches where a half rests at a pose error, its centre of rotation at `height`; also beneath what it could not be lowered through.
+    pub fn at_rest(pair: &Pair, error: &PoseError, height: f64, near: f64) -> Option<Self> {
+        let settings = Settings { friction: 1.0, ..Settings::default() };
+        let mut motion = Motion::new(pair, &settings);
+        let alignment = &pair.alignment;
+        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        let state = State {
+            cor: pose.lateral.extend(height),
+            rotation: pose.rotation,
+            spin: DQuat::from_mat3(&pose.rotation),
+            angles: [error.roll, error.pitch, error.yaw],
+        };
+        Self::seen(&mut motion, &state, near)
+    }
+
+    fn seen(motion: &mut Motion<'_>, state: &State, near: f64) -> Option<Self> {
+        motion.turn(&state.rotation, state.cor.truncate(), motion.settings.step.max(near));
+        // Play that is taken for used also shifts feet along their features.
+        let border = if near > TOUCHING { near } else { BORDER };
+        motion.nearby.contacts_within(state.cor, near, border, &mut motion.contacts);
         motion.contacts.retain(|(contact, _)| contact.gap >= -TOUCHING);
         let mut touching = Touching::default();
-        touching.see_within(near, &motion, &state);
+        touching.see_within(near, motion, state);
         if touching.rows.is_empty() {
             return None;
         }
         let contacts = motion.contacts.iter().filter(|(contact, _)| contact.gap <= near).copied();
-        let contacts: Vec<(Contact, Meeting)> = contacts.collect();
-        let axes = motion.axes(&state);
-        let State { cor, rotation, .. } = state;
-        Some(Self { touching, axes, rho: pair.alignment.rotation_length, cor, rotation, contacts })
+        let (contacts, axes) = (contacts.collect(), motion.axes(state));
+        let State { cor, rotation, .. } = *state;
+        Some(Self { touching, axes, rho: motion.pair.alignment.rotation_length, cor, rotation, contacts })
     }
 
     /// The centre of rotation, in the world frame, in D.
@@ -131,7 +150,7 @@ impl Holding {
         self.largest(&along, friction)
     }
 
-    fn largest(&mut self, load: &Vector, friction: f64) -> Option<f64> {
+    pub(super) fn largest(&mut self, load: &Vector, friction: f64) -> Option<f64> {
         let preload = self.preload(friction)?;
         if self.holds(load, friction) {
             return Some(f64::INFINITY);
@@ -152,7 +171,7 @@ impl Holding {
     }
 
     /// The preload, less what the gentle slope on which a motion ends does not hold of it; `None` if that is more.
-    fn preload(&mut self, friction: f64) -> Option<Vector> {
+    pub(super) fn preload(&mut self, friction: f64) -> Option<Vector> {
         let left = self.touching.unheld(&DOWN, friction)?;
         let size = dot(&left, &left).sqrt();
         if size <= STILL {
@@ -161,12 +180,37 @@ impl Holding {
         (size <= OWN).then(|| std::array::from_fn(|k| DOWN[k] - left[k]))
     }
 
-    fn holds(&mut self, push: &Vector, friction: f64) -> bool {
+    /// Whether forces of the contacts hold a push.
+    pub(super) fn holds(&mut self, push: &Vector, friction: f64) -> bool {
         let size = dot(push, push).sqrt();
         let unit = push.map(|part| if size > 0.0 { part / size } else { 0.0 });
         self.touching
             .unheld(&unit, friction)
             .is_some_and(|left| left.iter().all(|part| part.abs() <= STILL))
+    }
+
+    /// What displacements do to the gaps of the contacts.
+    pub(super) fn rows(&self) -> &[Vector] {
+        &self.touching.rows
+    }
+
+    /// Some of the contacts alone.
+    pub(super) fn some(&self, which: &[usize]) -> Self {
+        let mut some = self.clone();
+        some.touching.rows = which.iter().map(|k| self.touching.rows[*k]).collect();
+        some.touching.tangents = which.iter().map(|k| self.touching.tangents[*k]).collect();
+        some.contacts = which.iter().map(|k| self.contacts[*k]).collect();
+        some
+    }
+
+    /// Other rows for the contacts.
+    pub(super) fn replace_rows(&mut self, rows: Vec<Vector>) {
+        self.touching.rows = rows;
+    }
+
+    /// Forces along the normals that hold a push, by contacts.
+    pub(super) fn forces(&mut self, push: &Vector) -> Vec<(usize, f64)> {
+        self.touching.forces(push)
     }
 
     /// A load in the coordinates of displacements.

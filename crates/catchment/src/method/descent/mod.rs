@@ -20,6 +20,7 @@ mod dependence;
 pub(super) mod door;
 mod holding;
 mod homing;
+mod immobility;
 mod motion;
 mod projection;
 mod rest;
@@ -32,10 +33,13 @@ mod tests;
 mod tests_of_friction;
 #[cfg(test)]
 mod tests_of_holding;
+#[cfg(test)]
+mod tests_of_immobility;
 mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
+pub use immobility::{Immobility, Order, immobility};
 pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
 pub use rest::{Rest, settle};
 pub use sticking::{Sticking, sticking};

@@ -92,6 +92,14 @@ impl Touching {
         self.coulomb.unheld(&mut self.projection, push, contacts)
     }
 
+    /// The forces along normals that hold a push without friction, by rows; those of the nearest push that is held.
+    pub(super) fn forces(&mut self, push: &Vector) -> Vec<(usize, f64)> {
+        match self.unheld(push, 0.0) {
+            Some(_) => self.projection.forces().collect(),
+            None => Vec::new(),
+        }
+    }
+
     fn holds(&mut self, friction: f64) -> bool {
         let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
         self.coulomb.may_stick(&mut self.projection, &DOWN, contacts)

@@ -19,7 +19,7 @@
 //!   faces       designs side by side, mated and at the largest offset that still slides home
 //!   bodies      convex pieces of the halves, what they sweep, and where they overlap
 //!   hold        how hard a docked half may be pushed, over the direction, and twisted
-//!   jams        where halves rest that do not dock, cut through what touches, and in space
+//!   jams        where halves rest that do not dock, cut through what touches, and in space; rests likewise
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   trials      the exact region beside the outcomes of single trials
@@ -78,7 +78,7 @@ pub use difference::difference;
 pub use faces::{Face, faces};
 pub use heights::heights;
 pub use hold::hold;
-pub use jams::jams;
+pub use jams::{jams, rests};
 pub use lever::lever;
 pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};

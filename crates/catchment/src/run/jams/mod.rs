@@ -18,12 +18,12 @@
 //! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out: with it
 //! there are more rests. Lengths in D, angles in radians.
 
-mod clusters;
+pub(super) mod clusters;
 mod draw;
-mod escape;
+pub(super) mod escape;
 mod firmness;
-mod images;
-mod rests;
+pub(super) mod images;
+pub(super) mod rests;
 #[cfg(test)]
 mod tests;
 
@@ -43,7 +43,7 @@ use clusters::Cluster;
 use glam::DVec3;
 use images::Images;
 use rayon::prelude::*;
-use rests::{Follow, Rested};
+use rests::{Follow, Rested, Which};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -104,7 +104,7 @@ pub struct Jam {
     pub places: usize,
     /// What touches.
     pub contacts: Vec<Touched>,
-    /// What was found out about it; none of jams beyond those that are examined.
+    /// What was found out about it; none of those beyond those that are examined.
     pub examined: Option<Examined>,
 }
 
@@ -218,7 +218,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, 
     }
     let settings = Settings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
-    let follow = Follow { problem, features: &features };
+    let follow = Follow { problem, features: &features, which: Which::Jams };
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
         return Err(JamsError::Nothing);
     };
@@ -281,7 +281,7 @@ impl Jams {
 }
 
 impl Jam {
-    fn of(
+    pub(super) fn of(
         problem: &Problem,
         features: &Features,
         rests: &[Rested],

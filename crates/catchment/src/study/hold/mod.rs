@@ -182,17 +182,21 @@ pub enum HoldError {
 pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Hold, HoldError> {
     let motion = settings.check()?;
     let pair = problem.pair();
-    let (pose, outcome) = match &settings.pose {
-        None => (PoseError::default(), Outcome::Aligned),
+    let (pose, outcome, height) = match &settings.pose {
+        None => (PoseError::default(), Outcome::Aligned, None),
         Some(pose) => {
-            let end = Follower::new(pair, &motion).rest(pose);
-            (end.error, end.outcome)
+            let end = Follower::new(pair, &motion).come_to_rest(pose);
+            (end.error, end.outcome, end.height)
         }
     };
     if matches!(outcome, Outcome::Missed | Outcome::Undecided) {
         return Err(HoldError::NoRest { outcome });
     }
-    let Some(mut holding) = Holding::at(pair, &pose, settings.play) else {
+    let holding = match height {
+        Some(height) => Holding::at_rest(pair, &pose, height, settings.play),
+        None => Holding::at(pair, &pose, settings.play),
+    };
+    let Some(mut holding) = holding else {
         return Err(HoldError::NoRest { outcome: Outcome::Missed });
     };
     let frictions = [0.0, settings.friction].map(|friction| holding.is_held(friction).then_some(friction));
@@ -363,8 +367,8 @@ impl Tried {
     }
 }
 
-/// Numbers nearer than this share are equal: a load that is held is told from one that is not to 10⁻⁷.
-const ROUNDING: f64 = 1e-6;
+/// A direction is weaker than those that were tried only by more than this share: along a straight side of what is withstood rounding decides.
+const ROUNDING: f64 = 1e-4;
 
 /// Components of a direction along an axis are exact.
 fn snapped(part: f64) -> f64 {
