@@ -30,6 +30,9 @@ use std::path::PathBuf;
   \
         catchment jams design.toml -o jams.png  where it jams instead, and on which features
   \
+        catchment rests design.toml -o rests.png
+                                          every place where it rests, and what it takes to leave
+  \
         catchment hold design.toml --friction 0.2
                                           how hard it may be pushed and twisted once docked
   \

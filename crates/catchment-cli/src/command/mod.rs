@@ -17,6 +17,7 @@ mod new;
 mod outcome;
 mod place;
 mod reproduce;
+mod rests;
 mod run;
 mod schema;
 mod slices;
@@ -46,6 +47,7 @@ pub(crate) enum Command {
     Window(Box<window::WindowArgs>),
     Success(Box<success::SuccessArgs>),
     Jams(Box<jams::JamsArgs>),
+    Rests(Box<rests::RestsArgs>),
     Hold(Box<hold::HoldArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
@@ -78,6 +80,7 @@ impl Command {
             Self::Window(args) => window::run(&args),
             Self::Success(args) => success::run(&args),
             Self::Jams(args) => jams::run(&args),
+            Self::Rests(args) => rests::run(&args),
             Self::Hold(args) => hold::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),

@@ -172,11 +172,6 @@ fn leads_to(problem: &Problem, images: &Images, middles: &[CorPose], way: &WayOu
 }
 
 impl Rests {
-    /// With every place that the rests of a problem have, and numbers that mean nothing: what requirements are tried on.
-    pub fn form(settings: &Settings) -> Self {
-        Self { settings: settings.clone(), counts: [0; 4], rests: Vec::new() }
-    }
-
     /// How many random poses of the error box were followed.
     pub fn motions(&self) -> usize {
         self.counts.iter().sum()
