@@ -137,7 +137,9 @@ fn newtons(text: &str) -> Result<f64, String> {
 /// Why nothing can be said, with what helps.
 fn refused(error: HoldError) -> Failure {
     let help = match &error {
-        HoldError::NoRest { .. } => Some("catchment trace --pose shows its way; start from a pose that comes to rest"),
+        HoldError::NoRest { .. } => {
+            Some("catchment trace --pose shows its way; start from a pose that comes to rest")
+        }
         HoldError::NotHeld => Some(
             "catchment check says whether the aligned pose is a mated one; --play takes what is farther apart for touching",
         ),

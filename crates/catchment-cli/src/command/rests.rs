@@ -1,11 +1,12 @@
 //! `catchment rests`: where a half rests under its load.
 
-use super::run::requirement;
+use super::run::{requirement, resolution};
 use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, to_stderr, to_stdout};
+use catchment::landscape::Resolution;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{RestsReport, csv, figure};
 use catchment::run::Requirement;
@@ -38,6 +39,9 @@ pub(crate) struct RestsArgs {
     /// How many rests are examined: by which order they are held, and the way out
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
     examine: u32,
+    /// A grid over the error box whose merge tree says depths, too, such as 200 or x=100,pitch=50
+    #[arg(long, value_name = "CELLS", value_parser = resolution)]
+    resolution: Option<Resolution>,
     /// Print JSON, in D and radians
     #[arg(long)]
     json: bool,
@@ -61,6 +65,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
         motions: args.motions.map(|motions| motions as usize),
         seed: args.seed,
         examined: args.examine as usize,
+        resolution: args.resolution.clone(),
     };
     let running = args.exec.start()?;
     let found: Rests = find(&problem, &settings, &running.exec)?;

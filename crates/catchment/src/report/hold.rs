@@ -130,12 +130,7 @@ impl From<&Torque> for TorqueReport {
 type Columns = [Option<Option<f64>>; 4];
 
 fn columns(smooth: Option<WithstoodReport>, rough: Option<WithstoodReport>) -> Columns {
-    [
-        smooth.map(|of| of.guided),
-        smooth.map(|of| of.free),
-        rough.map(|of| of.guided),
-        rough.map(|of| of.free),
-    ]
+    [smooth.map(|of| of.guided), smooth.map(|of| of.free), rough.map(|of| of.guided), rough.map(|of| of.free)]
 }
 
 /// The column that decides: free, with friction where it was asked for.
@@ -165,10 +160,10 @@ impl HoldReport {
         let forces = sideways.iter().copied().chain(refined);
         let least_force = least(forces.map(|side| columns(side.smooth, side.rough)));
         let least_torque = least(torques.iter().map(|torque| columns(torque.smooth, torque.rough)));
-        let contacts = found.contacts.iter().map(|[point, normal]| PointReport {
-            point_d: point.to_array(),
-            normal: normal.to_array(),
-        });
+        let contacts = found
+            .contacts
+            .iter()
+            .map(|[point, normal]| PointReport { point_d: point.to_array(), normal: normal.to_array() });
         let body = HoldBody {
             design: design.clone(),
             settings: found.settings.clone(),
@@ -192,7 +187,8 @@ impl HoldReport {
         heading(&mut text, &self.design);
         let preload = self.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
         row(&mut text, "preload", &format!("{preload} along -z, through the centre of rotation"));
-        let rest = if self.settings.pose.is_none() { "the mated pose".to_owned() } else { self.place(&self.pose) };
+        let rest =
+            if self.settings.pose.is_none() { "the mated pose".to_owned() } else { self.place(&self.pose) };
         let docked = if self.outcome == Outcome::Aligned { "" } else { ", not docked" };
         row(&mut text, "rests", &format!("{rest}{docked}, touching in {} points", self.contacts.len()));
         if self.settings.friction > 0.0 {
@@ -278,7 +274,8 @@ impl HoldReport {
                 Some(side) => columns(side.smooth, side.rough)[k],
                 None => asked.then_some(None),
             };
-            let told = side.as_ref().map_or_else(String::new, |side| format!("at {}", degrees(side.direction_rad)));
+            let told =
+                side.as_ref().map_or_else(String::new, |side| format!("at {}", degrees(side.direction_rad)));
             at.push(format!("{told:>14}"));
         }
         self.numbers(text, "weakest", &values, self.force_scale());

@@ -216,7 +216,6 @@ impl JamReport {
             examined: jam.examined.as_ref().map(ExaminedReport::from),
         }
     }
-
 }
 
 impl JamsReport {
@@ -393,7 +392,6 @@ impl JamsReport {
         }
         records
     }
-
 }
 
 /// A share of 1 with one decimal.

@@ -34,8 +34,8 @@ mod hold;
 mod jams;
 mod lever;
 mod outcomes;
-mod rests;
 mod resting;
+mod rests;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
 pub mod schema;
@@ -64,16 +64,18 @@ pub use convergence::{ConvergenceBody, ConvergenceReport};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
-pub use hold::{HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport};
+pub use hold::{
+    HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
+};
 pub use jams::{
     ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsReport, PairReport,
     ShareReport, WayOutReport,
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
+pub use rests::{HeldReport, RestReport, RestsBody, RestsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
-pub use rests::{HeldReport, RestReport, RestsBody, RestsReport};
 pub use schema::{Report, RunBody};
 pub use sensitivity::{SensitivityBody, SensitivityReport};
 pub use slices::{SliceReport, SlicesBody, SlicesReport};

@@ -15,10 +15,8 @@ pub(super) fn said(text: &mut String, name: &str, words: &str) {
 pub(super) fn words(contacts: &[ContactReport]) -> Vec<String> {
     let mut said: Vec<(String, usize)> = Vec::new();
     for contact in contacts {
-        let words = format!(
-            "{} of the moving half on {} of the fixed one",
-            contact.moving.name, contact.fixed.name
-        );
+        let words =
+            format!("{} of the moving half on {} of the fixed one", contact.moving.name, contact.fixed.name);
         match said.iter_mut().find(|(other, _)| *other == words) {
             Some((_, count)) => *count += 1,
             None => said.push((words, 1)),

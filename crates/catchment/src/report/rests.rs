@@ -51,6 +51,8 @@ pub struct RestReport {
     pub above_mated_d: f64,
     /// At most so far it must be lifted to leave, in D; null where no way out was found, or it was not examined.
     pub depth_at_most_d: Option<f64>,
+    /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
+    pub depth_on_grid_d: Option<f64>,
     /// The rest to which that way leads, from 0 in this list; null where it leads off.
     pub leads_to: Option<usize>,
     /// What touches.
@@ -104,6 +106,7 @@ impl RestReport {
             height_d: found.height,
             above_mated_d: found.above,
             depth_at_most_d: way.map(|way| way.climb),
+            depth_on_grid_d: place.depth_on_grid,
             leads_to: place.leads_to,
             contacts: found.contacts.iter().map(ContactReport::from).collect(),
             examined: found.examined.as_ref().map(ExaminedReport::from),
@@ -222,6 +225,9 @@ impl RestsReport {
             said(text, "  held", &told.held(examined));
             said(text, "  depth", &self.out(rest));
         }
+        if let Some(depth) = rest.depth_on_grid_d {
+            said(text, "", &format!("{} by the merge tree of the grid", told.fine(depth)));
+        }
         told.contact_lines(text, &rest.contacts);
     }
 
@@ -244,7 +250,7 @@ impl RestsReport {
     /// Rests as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = "rest count share share_lo share_hi docked x y roll pitch yaw height above_mated order slope_lo slope_hi free curvature \
-                    firmness depth_at_most leads_to touching";
+                    firmness depth_at_most depth_on_grid leads_to touching";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         let or_nothing = |value: Option<f64>| value.map_or_else(String::new, number);
         for (k, rest) in self.rests.iter().enumerate() {
@@ -260,6 +266,7 @@ impl RestsReport {
             record.push(or_nothing(held.and_then(|held| held.curvature_per_d)));
             record.push(rest.examined.map_or("", |examined| examined.firmness.name()).to_owned());
             record.push(or_nothing(rest.depth_at_most_d));
+            record.push(or_nothing(rest.depth_on_grid_d));
             record.push(rest.leads_to.map_or_else(String::new, |to| (to + 1).to_string()));
             record.push(super::resting::words(&rest.contacts).join("; "));
             records.push(record);

@@ -184,9 +184,7 @@ impl Holding {
     pub(super) fn holds(&mut self, push: &Vector, friction: f64) -> bool {
         let size = dot(push, push).sqrt();
         let unit = push.map(|part| if size > 0.0 { part / size } else { 0.0 });
-        self.touching
-            .unheld(&unit, friction)
-            .is_some_and(|left| left.iter().all(|part| part.abs() <= STILL))
+        self.touching.unheld(&unit, friction).is_some_and(|left| left.iter().all(|part| part.abs() <= STILL))
     }
 
     /// What displacements do to the gaps of the contacts.

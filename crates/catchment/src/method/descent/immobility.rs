@@ -96,7 +96,13 @@ pub fn immobility(pair: &Pair, holding: &Holding, error: &PoseError, seed: u64) 
     let mut rest = At::new(pair, holding, error)?;
     if rest.is_inside() {
         let slope = rest.slope();
-        return Some(Immobility { order: Order::First, slope, free: 0, curvature: None, weakest: PoseError::default() });
+        return Some(Immobility {
+            order: Order::First,
+            slope,
+            free: 0,
+            curvature: None,
+            weakest: PoseError::default(),
+        });
     }
     rest.keep_carrying();
     let free = rest.free_directions();
@@ -133,7 +139,8 @@ impl<'a> At<'a> {
     fn new(pair: &'a Pair, holding: &Holding, error: &PoseError) -> Option<Self> {
         let mut holding = holding.clone();
         let preload = holding.preload(0.0)?;
-        let axes = pair.alignment.free.iter().map(|dof| if dof.index() < 2 { dof.index() } else { dof.index() + 1 });
+        let axes =
+            pair.alignment.free.iter().map(|dof| if dof.index() < 2 { dof.index() } else { dof.index() + 1 });
         let carrying = (0..holding.rows().len()).collect();
         Some(Self { pair, holding, error: *error, axes: axes.collect(), preload, carrying })
     }
@@ -230,7 +237,8 @@ impl<'a> At<'a> {
             unit(&way, SAME)
         };
         let count = free.len();
-        let axis = |k: usize, sign: f64| (0..count).map(|j| if j == k { sign } else { 0.0 }).collect::<Vec<_>>();
+        let axis =
+            |k: usize, sign: f64| (0..count).map(|j| if j == k { sign } else { 0.0 }).collect::<Vec<_>>();
         let mut tried: Vec<Vec<f64>> = (0..count).flat_map(|k| [axis(k, 1.0), axis(k, -1.0)]).collect();
         if count > 1 {
             tried.extend((0..TRIES * count as u64).map(|k| random(stream, k, count)));
@@ -316,7 +324,8 @@ impl<'a> At<'a> {
         let turn = [way[3], way[4], way[5]].map(|part| part * push / self.pair.alignment.rotation_length);
         let turned = if self.pair.alignment.free.rotations() == 3 {
             let by = DVec3::from_array(turn);
-            let spun = by.try_normalize().map_or(DMat3::IDENTITY, |axis| DMat3::from_axis_angle(axis, by.length()));
+            let spun =
+                by.try_normalize().map_or(DMat3::IDENTITY, |axis| DMat3::from_axis_angle(axis, by.length()));
             spun * *self.holding.rotation()
         } else {
             let PoseError { roll, pitch, yaw, .. } = self.error;

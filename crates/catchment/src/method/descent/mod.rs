@@ -39,8 +39,8 @@ mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
-pub use immobility::{Immobility, Order, immobility};
 pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
+pub use immobility::{Immobility, Order, immobility};
 pub use rest::{Rest, settle};
 pub use sticking::{Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};

@@ -110,11 +110,14 @@ fn the_least_lift_of_all_motions_is_what_it_withstands() {
     const TRIED: u64 = 200_000;
     let pair = pair("family = \"v-face\"\naspect_ratio = 0.5", PLANE);
     let mut held = mated(&pair);
-    let rows: Vec<[f64; 3]> =
-        held.contacts().iter().map(|(contact, _)| {
+    let rows: Vec<[f64; 3]> = held
+        .contacts()
+        .iter()
+        .map(|(contact, _)| {
             let turn = (contact.point - held.cor()).cross(contact.normal).y / 0.5;
             [contact.normal.x, contact.normal.z, turn]
-        }).collect();
+        })
+        .collect();
     let stream = Stream::new(3);
     for (force, moment) in [([1.0, 0.0], 0.0), ([0.0, 0.0], 0.4), ([1.0, 0.0], -0.3)] {
         let load = Load { force: DVec3::new(force[0], 0.0, 0.0), moment: DVec3::Y * moment };
@@ -127,7 +130,8 @@ fn the_least_lift_of_all_motions_is_what_it_withstands() {
             if way <= 1e-3 {
                 continue;
             }
-            let lift = rows.iter().map(|[nx, nz, nt]| -(nx * x + nt * turn) / nz).fold(f64::NEG_INFINITY, f64::max);
+            let lift =
+                rows.iter().map(|[nx, nz, nt]| -(nx * x + nt * turn) / nz).fold(f64::NEG_INFINITY, f64::max);
             least = least.min(lift / way);
         }
         assert!(most <= least + EXACT, "{load:?}: {most} {least}");

@@ -18,8 +18,10 @@ fn prism(profile: &[[f64; 2]]) -> Vec<[f64; 3]> {
 fn pair(fixed: Vec<Vec<[f64; 3]>>, moving: Vec<Vec<[f64; 3]>>, free: &[Dof], cor: f64) -> Pair {
     let own = OwnSpec::new(1.0, HalfSpec::Pieces(fixed), HalfSpec::Pieces(moving));
     let free: DofSet = free.iter().copied().collect();
-    let alignment = Alignment { center_of_rotation: cor, rotation_length: RHO, ..Alignment::new(free, Mount::Y) };
-    let design = Design { name: "test".into(), connector: ConnectorSpec::Own(own), width: 1.0, unit: None, alignment };
+    let alignment =
+        Alignment { center_of_rotation: cor, rotation_length: RHO, ..Alignment::new(free, Mount::Y) };
+    let design =
+        Design { name: "test".into(), connector: ConnectorSpec::Own(own), width: 1.0, unit: None, alignment };
     Pair::new(&Connector::build(&design).unwrap(), &design.alignment)
 }
 
@@ -75,9 +77,12 @@ fn a_wedge_between_two_fingers_stands_below_four_radii() {
     let (below, radius) = (a / beta.tan(), a / (2.0 * beta).sin());
     let wedge = prism(&[[0.0, 1.0 + below], [beta.tan(), below], [-beta.tan(), below]]);
     let spike = |x: f64| prism(&[[x, 1.0], [x + 0.02, 0.0], [x - 0.02, 0.0]]);
-    for (share, order) in [(2.0, Order::Second), (3.5, Order::Second), (4.0, Order::Neutral), (5.0, Order::Unstable)] {
+    for (share, order) in
+        [(2.0, Order::Second), (3.5, Order::Second), (4.0, Order::Neutral), (5.0, Order::Unstable)]
+    {
         let weight = share * radius;
-        let pair = pair(vec![spike(a), spike(-a)], vec![wedge.clone()], &[Dof::X, Dof::Pitch], below - weight);
+        let pair =
+            pair(vec![spike(a), spike(-a)], vec![wedge.clone()], &[Dof::X, Dof::Pitch], below - weight);
         let found = mated(&pair);
         let expected = (4.0 * radius - weight) / ((2.0 * radius - weight).powi(2) + RHO * RHO);
         assert_eq!((found.order, found.free), (order, 1), "{share}: {found:?} {expected}");

@@ -101,7 +101,8 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
         svg.text([cx, cy], LABEL, Anchor::Middle, SOFT, "x and y are locked");
         return;
     }
-    let finite = sides.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two).flatten()));
+    let finite =
+        sides.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two).flatten()));
     let rim = rim(finite);
     let at = |direction: f64, value: f64| {
         let r = RADIUS * (value / rim).min(1.0);
@@ -122,9 +123,7 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
     for column in &COLUMNS {
         let values: Vec<(f64, f64)> = sides
             .iter()
-            .filter_map(|(direction, two)| {
-                Some((*direction, (column.of)(two)?.unwrap_or(f64::INFINITY)))
-            })
+            .filter_map(|(direction, two)| Some((*direction, (column.of)(two)?.unwrap_or(f64::INFINITY))))
             .collect();
         beyond |= values.iter().any(|(_, value)| *value > rim * (1.0 + NOTHING));
         if sides.len() > 2 {
@@ -156,7 +155,8 @@ fn weakest(svg: &mut Svg, report: &HoldReport, at: impl Fn(f64, f64) -> [f64; 2]
     let place = at(side.direction_rad, force);
     svg.circle(place, 5.0, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="2""##));
     let unit = if report.preload_n.is_some() { "N" } else { "F" };
-    let told = if force < NOTHING { "0".to_owned() } else { significant(force * report.preload_n.unwrap_or(1.0)) };
+    let told =
+        if force < NOTHING { "0".to_owned() } else { significant(force * report.preload_n.unwrap_or(1.0)) };
     let words = format!("○ weakest: {told} {unit} at {:.1}°", side.direction_rad.to_degrees());
     svg.text([MIDDLE[0], MIDDLE[1] + RADIUS + 46.0], LABEL, Anchor::Middle, INK, &words);
 }
@@ -164,7 +164,10 @@ fn weakest(svg: &mut Svg, report: &HoldReport, at: impl Fn(f64, f64) -> [f64; 2]
 /// Between two rings.
 fn ring(rim: f64) -> f64 {
     let unit = 10f64.powf((rim / RINGS).log10().floor());
-    let step = [1.0, 2.0, 2.5, 5.0, 10.0].map(|k| k * unit).into_iter().find(|step| RINGS * step >= rim * (1.0 - NOTHING));
+    let step = [1.0, 2.0, 2.5, 5.0, 10.0]
+        .map(|k| k * unit)
+        .into_iter()
+        .find(|step| RINGS * step >= rim * (1.0 - NOTHING));
     step.unwrap_or(10.0 * unit)
 }
 
@@ -198,7 +201,8 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
             (format!("{sign}{}", torque.axis.name()), [torque.smooth, torque.rough])
         })
         .collect();
-    let finite = torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two).flatten()));
+    let finite =
+        torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two).flatten()));
     let most = rim(finite);
     let asked = |column: &&Column| torques.iter().any(|(_, two)| (column.of)(two).is_some());
     let columns: Vec<&Column> = COLUMNS.iter().filter(asked).collect();
@@ -219,12 +223,24 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
                 Some(value) if value < NOTHING => "0".to_owned(),
                 Some(value) => significant(value * scale),
             };
-            svg.text([x + length + 6.0, bar.y + 0.8 * thick], TICK.min(thick + 1.0), Anchor::Start, INK, &told);
+            svg.text(
+                [x + length + 6.0, bar.y + 0.8 * thick],
+                TICK.min(thick + 1.0),
+                Anchor::Start,
+                INK,
+                &told,
+            );
         }
     }
     let bottom = y + each * torques.len() as f64;
     svg.line([x, y - 6.0], [x, bottom], &format!(r#"stroke="{SOFT}" stroke-width="1""#));
-    svg.text([x, bottom + 18.0], TICK, Anchor::Start, SOFT, "about the centre of rotation; guided in pale colour");
+    svg.text(
+        [x, bottom + 18.0],
+        TICK,
+        Anchor::Start,
+        SOFT,
+        "about the centre of rotation; guided in pale colour",
+    );
 }
 
 #[cfg(test)]
@@ -255,7 +271,8 @@ mod tests {
         assert!(rough.svg().contains("[N mm]") && rough.svg().contains("free, friction"));
         let planar = "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n";
         look("hold-planar", &drawn(planar, 0.3, None));
-        let locked = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"pitch\"]\nrotation_length = 1.0\n";
+        let locked =
+            "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"pitch\"]\nrotation_length = 1.0\n";
         assert!(drawn(locked, 0.0, None).svg().contains("x and y are locked"));
     }
 }

@@ -9,8 +9,8 @@ use crate::acceptance::Outcome;
 use crate::connector::Connector;
 use crate::design::Design;
 use crate::report::resting::{Told, words};
-use crate::report::{ContactReport, JamReport, JamsReport, RestReport, RestsReport};
 use crate::report::text::grouped;
+use crate::report::{ContactReport, JamReport, JamsReport, RestReport, RestsReport};
 use crate::run::jams::Firmness;
 use glam::DVec3;
 

@@ -81,12 +81,7 @@ struct Search<'a> {
 }
 
 /// The lowest way out that is found; none where all that are tried climb on, or end at walls.
-pub(in crate::run) fn way_out(
-    pair: &Pair,
-    rest: &Rested,
-    leaving: Leaving,
-    seed: u64,
-) -> Option<WayOut> {
+pub(in crate::run) fn way_out(pair: &Pair, rest: &Rested, leaving: Leaving, seed: u64) -> Option<WayOut> {
     let settings = descent::Settings::default();
     let space = Space::of(pair);
     let stream = Stream::new(seed).branch(FARTHEST.to_bits());

@@ -14,11 +14,12 @@
 //!
 //! - **Immobility**: [`crate::method::descent::immobility()`], to first or second order.
 //! - **Depth**: the climb of the lowest way out that was found, to a lower rest, to another one, or off: at most so much is needed. A half whose rest nothing
-//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. Rests that are shallower than a cage's energy do not hold it.
+//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. With a resolution the merge tree of a grid says a depth, too (`grid`). Rests that are shallower than a cage's energy do not hold it.
 //!
 //! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out. Lengths in D, angles
 //! in radians.
 
+mod grid;
 #[cfg(test)]
 mod tests;
 
@@ -29,8 +30,10 @@ use super::jams::{Examined, Jam, WayOut};
 use crate::acceptance::{Domain, Outcome};
 use crate::contact::Features;
 use crate::exec::{Cancelled, Exec};
+use crate::landscape::{Resolution, ResolutionError};
 use crate::method::Decide;
 use crate::method::descent::{self, Holding, Immobility, TOUCHING, immobility};
+use crate::method::flood::FloodError;
 use crate::pose::CorPose;
 use crate::problem::Problem;
 use rayon::prelude::*;
@@ -46,11 +49,13 @@ pub struct Settings {
     pub seed: u64,
     /// How many rests are examined, those with most of the poses.
     pub examined: usize,
+    /// A grid whose merge tree says depths, too; none where nothing is said.
+    pub resolution: Option<Resolution>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { motions: None, seed: 1, examined: 6 }
+        Self { motions: None, seed: 1, examined: 6, resolution: None }
     }
 }
 
@@ -76,6 +81,8 @@ pub struct Place {
     pub immobility: Option<Immobility>,
     /// The rest to which the way out leads, from 0; none where it leads off, or nowhere known.
     pub leads_to: Option<usize>,
+    /// The depth that the merge tree of a grid says, in D; none where none was asked for or none is known.
+    pub depth_on_grid: Option<f64>,
 }
 
 /// Why no rests can be told.
@@ -84,6 +91,12 @@ pub enum RestsError {
     /// Nothing was asked.
     #[error("no motions, no rests: follow one random pose at least")]
     Nothing,
+    /// The grid is none.
+    #[error(transparent)]
+    Resolution(#[from] ResolutionError),
+    /// The grid has no merge tree.
+    #[error(transparent)]
+    Flood(#[from] FloodError),
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -136,7 +149,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
             let found = Jam::of(problem, &features, &rests, rests.len(), false, cluster);
             let is_docked = |member: &&usize| rests[**member].outcome == Outcome::Aligned;
             let docked = cluster.members.iter().filter(is_docked).count();
-            Place { found, docked, immobility: None, leads_to: None }
+            Place { found, docked, immobility: None, leads_to: None, depth_on_grid: None }
         })
         .collect();
     let examine = |(k, cluster): (usize, &Cluster)| {
@@ -149,13 +162,21 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
     };
     let looked: Vec<(usize, &Cluster)> = clusters.iter().enumerate().take(settings.examined).collect();
     let seen = exec.install(|| {
-        looked.into_par_iter().map(examine).collect::<Result<Vec<(Examined, Option<Immobility>)>, Cancelled>>()
+        looked
+            .into_par_iter()
+            .map(examine)
+            .collect::<Result<Vec<(Examined, Option<Immobility>)>, Cancelled>>()
     })?;
     let middles: Vec<CorPose> = clusters.iter().map(|cluster| rests[cluster.middle].pose).collect();
     for (place, (examined, immobility)) in places.iter_mut().zip(seen) {
         place.leads_to = examined.way_out.and_then(|way| leads_to(problem, &images, &middles, &way));
         place.found.examined = Some(examined);
         place.immobility = immobility;
+    }
+    if let Some(resolution) = &settings.resolution {
+        let at: Vec<_> = places.iter().map(|place| (place.found.pose, place.found.height)).collect();
+        let depths = grid::depths(problem, resolution, &at, exec)?;
+        places.iter_mut().zip(depths).for_each(|(place, depth)| place.depth_on_grid = depth);
     }
     Ok(Rests { settings, counts, rests: places })
 }

@@ -52,7 +52,8 @@ fn columns_are_in_order_and_sides_alike() {
     let problem = problem("family = \"pyramid\"\naspect_ratio = 0.5", "center_of_rotation = 0.3\n");
     let settings = Settings { friction: 0.2, directions: 24, ..Settings::default() };
     let found = found(&problem, &settings);
-    let all = found.sideways.iter().map(|side| side.withstood).chain(found.torques.iter().map(|t| t.withstood));
+    let all =
+        found.sideways.iter().map(|side| side.withstood).chain(found.torques.iter().map(|t| t.withstood));
     for withstood in all {
         let value = |column| withstood.column(column).unwrap_or(f64::INFINITY);
         for (less, more) in [(1, 0), (3, 2), (0, 2), (1, 3)] {
@@ -76,7 +77,8 @@ fn columns_are_in_order_and_sides_alike() {
 fn a_long_lever_tips_it() {
     let text = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nbox = [2.0, 2.0, 0.5]\n[[connector.moving.parts]]\n\
                 box = [1.0, 1.0, 0.5]\n[alignment]\nrotation_length = 0.5\ndont_care = [\"x\", \"y\", \"yaw\"]\nfree = [\"x\", \"roll\", \"pitch\"]\n";
-    let text = text.replace("dont_care = [\"x\", \"y\", \"yaw\"]\n", "") + "[docked]\nx = 1.0\n[errors]\nx = 0.1\n";
+    let text =
+        text.replace("dont_care = [\"x\", \"y\", \"yaw\"]\n", "") + "[docked]\nx = 1.0\n[errors]\nx = 0.1\n";
     let problem = Problem::of(read(&text, Path::new("")).unwrap().design).unwrap();
     let at = |lever: f64| {
         let settings = Settings { lever, friction: 0.4, ..Settings::default() };
@@ -114,8 +116,14 @@ fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
     let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
     let default = Settings::default;
     assert!(matches!(refused(Settings { friction: -0.1, ..default() }), HoldError::Friction(_)));
-    assert!(matches!(refused(Settings { directions: 3, ..default() }), HoldError::Directions { directions: 3 }));
-    assert!(matches!(refused(Settings { lever: f64::NAN, ..default() }), HoldError::Length { what: "lever", .. }));
+    assert!(matches!(
+        refused(Settings { directions: 3, ..default() }),
+        HoldError::Directions { directions: 3 }
+    ));
+    assert!(matches!(
+        refused(Settings { lever: f64::NAN, ..default() }),
+        HoldError::Length { what: "lever", .. }
+    ));
     assert!(matches!(refused(Settings { play: 0.0, ..default() }), HoldError::Length { what: "play", .. }));
     let exec = Exec::new();
     exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
