@@ -126,16 +126,22 @@ impl From<&Torque> for TorqueReport {
     }
 }
 
-/// A number of each column: without friction guided and free, with it guided and free. Outer `None`: it was not asked.
-type Columns = [Option<Option<f64>>; 4];
+/// A number of each column: without friction guided and free, with it guided and free; infinite for any, `None` where it was not asked.
+type Columns = [Option<f64>; 4];
 
 fn columns(smooth: Option<WithstoodReport>, rough: Option<WithstoodReport>) -> Columns {
-    [smooth.map(|of| of.guided), smooth.map(|of| of.free), rough.map(|of| of.guided), rough.map(|of| of.free)]
+    let any = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
+    [
+        smooth.map(|of| any(of.guided)),
+        smooth.map(|of| any(of.free)),
+        rough.map(|of| any(of.guided)),
+        rough.map(|of| any(of.free)),
+    ]
 }
 
 /// The column that decides: free, with friction where it was asked for.
 fn decides(columns: &Columns) -> Option<f64> {
-    columns[3].or(columns[1]).map(|value| value.unwrap_or(ANY))
+    columns[3].or(columns[1]).map(|value| value.min(ANY))
 }
 
 fn least(all: impl Iterator<Item = Columns>) -> Option<f64> {
@@ -205,7 +211,7 @@ impl HoldReport {
             let step = self.sideways.len().div_ceil(SHOWN);
             let is_shown = |k: usize| self.sideways.len() <= SHOWN || k.is_multiple_of(step);
             for (_, side) in self.sideways.iter().enumerate().filter(|(k, _)| is_shown(*k)) {
-                let name = format!("{}", degrees(side.direction_rad));
+                let name = degrees(side.direction_rad);
                 self.numbers(&mut text, &name, &columns(side.smooth, side.rough), self.force_scale());
             }
             self.weakest_lines(&mut text);
@@ -253,13 +259,13 @@ impl HoldReport {
     }
 
     fn numbers(&self, text: &mut String, name: &str, columns: &Columns, scale: f64) {
-        let told = |value: &Option<Option<f64>>| match value {
-            None => String::new(),
-            Some(None) => "any".to_owned(),
-            Some(Some(value)) if *value < NOTHING => "0".to_owned(),
-            Some(Some(value)) => significant(value * scale),
+        let told = |value: f64| match value {
+            f64::INFINITY => "any".to_owned(),
+            value if value < NOTHING => "0".to_owned(),
+            value => significant(value * scale),
         };
-        let cells: Vec<String> = columns.iter().map(|value| format!("{:>14}", told(value))).collect();
+        let cells: Vec<String> =
+            columns.iter().map(|value| format!("{:>14}", value.map_or_else(String::new, told))).collect();
         line(text, &format!("  {name:<15}{}", cells.concat()));
     }
 
@@ -272,7 +278,7 @@ impl HoldReport {
             let asked = k < 2 || self.settings.friction > 0.0;
             values[k] = match side {
                 Some(side) => columns(side.smooth, side.rough)[k],
-                None => asked.then_some(None),
+                None => asked.then_some(f64::INFINITY),
             };
             let told =
                 side.as_ref().map_or_else(String::new, |side| format!("at {}", degrees(side.direction_rad)));
@@ -327,8 +333,7 @@ impl HoldReport {
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         let mut add = |name: &str, direction: String, sign: String, columns: Columns| {
             let mut record = vec![name.to_owned(), direction, sign];
-            let told = |value: Option<f64>| number(value.unwrap_or(f64::INFINITY));
-            record.extend(columns.map(|value| value.map_or_else(String::new, told)));
+            record.extend(columns.map(|value| value.map_or_else(String::new, number)));
             records.push(record);
         };
         for side in &self.sideways {

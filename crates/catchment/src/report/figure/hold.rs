@@ -21,7 +21,8 @@ const NOTHING: f64 = 1e-6;
 /// A column of the report: its name, the values over directions and over torques, colour and stroke.
 struct Column {
     name: &'static str,
-    of: fn(&Two) -> Option<Option<f64>>,
+    /// Infinite for any; `None` where it was not asked.
+    of: fn(&Two) -> Option<f64>,
     colour: usize,
     dashed: bool,
 }
@@ -30,11 +31,16 @@ struct Column {
 type Two = [Option<WithstoodReport>; 2];
 
 const COLUMNS: [Column; 4] = [
-    Column { name: "guided", of: |two| two[0].map(|of| of.guided), colour: 0, dashed: true },
-    Column { name: "free", of: |two| two[0].map(|of| of.free), colour: 0, dashed: false },
-    Column { name: "guided, friction", of: |two| two[1].map(|of| of.guided), colour: 1, dashed: true },
-    Column { name: "free, friction", of: |two| two[1].map(|of| of.free), colour: 1, dashed: false },
+    Column { name: "guided", of: |two| two[0].map(|of| any(of.guided)), colour: 0, dashed: true },
+    Column { name: "free", of: |two| two[0].map(|of| any(of.free)), colour: 0, dashed: false },
+    Column { name: "guided, friction", of: |two| two[1].map(|of| any(of.guided)), colour: 1, dashed: true },
+    Column { name: "free, friction", of: |two| two[1].map(|of| any(of.free)), colour: 1, dashed: false },
 ];
+
+/// A number for what is withstood.
+fn any(value: Option<f64>) -> f64 {
+    value.unwrap_or(f64::INFINITY)
+}
 
 /// Draws what a half withstands over the direction of the force, and torques beside it.
 ///
@@ -74,7 +80,7 @@ fn legend(svg: &mut Svg, rough: bool) {
 
 /// What is drawn at the rim of a chart: a round number above all that is finite and not far beyond the others.
 fn rim(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.filter(|value| *value > NOTHING).collect();
+    let mut values: Vec<f64> = values.filter(|value| *value > NOTHING && value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let Some(median) = values.get(values.len() / 2) else { return 1.0 };
     let most = values.iter().copied().filter(|value| *value <= BEYOND * median).fold(0.0, f64::max);
@@ -101,30 +107,27 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
         svg.text([cx, cy], LABEL, Anchor::Middle, SOFT, "x and y are locked");
         return;
     }
-    let finite =
-        sides.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two).flatten()));
+    let finite = sides.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two)));
     let rim = rim(finite);
     let at = |direction: f64, value: f64| {
         let r = RADIUS * (value / rim).min(1.0);
         [cx + r * direction.cos(), cy - r * direction.sin()]
     };
-    let grid = format!(r##"fill="none" stroke="#d5dbe2" stroke-width="1""##);
+    let grid = r##"fill="none" stroke="#d5dbe2" stroke-width="1""##;
     let rings = (1..).map(|k| k as f64 * ring(rim)).take_while(|ring| *ring <= rim * (1.0 + NOTHING));
     for value in rings {
-        svg.circle(MIDDLE, RADIUS * value / rim, &grid);
+        svg.circle(MIDDLE, RADIUS * value / rim, grid);
         let place = [cx + 4.0, cy - RADIUS * value / rim - 3.0];
         svg.haloed(place, TICK - 1.0, Anchor::Start, SOFT, &significant_short(value * scale));
     }
-    svg.line([cx - RADIUS, cy], [cx + RADIUS, cy], &grid);
-    svg.line([cx, cy - RADIUS], [cx, cy + RADIUS], &grid);
+    svg.line([cx - RADIUS, cy], [cx + RADIUS, cy], grid);
+    svg.line([cx, cy - RADIUS], [cx, cy + RADIUS], grid);
     svg.text([cx + RADIUS + 8.0, cy + 4.0], LABEL, Anchor::Start, INK, "x");
     svg.text([cx, cy - RADIUS - 10.0], LABEL, Anchor::Middle, INK, "y");
     let mut beyond = false;
     for column in &COLUMNS {
-        let values: Vec<(f64, f64)> = sides
-            .iter()
-            .filter_map(|(direction, two)| Some((*direction, (column.of)(two)?.unwrap_or(f64::INFINITY))))
-            .collect();
+        let values: Vec<(f64, f64)> =
+            sides.iter().filter_map(|(direction, two)| Some((*direction, (column.of)(two)?))).collect();
         beyond |= values.iter().any(|(_, value)| *value > rim * (1.0 + NOTHING));
         if sides.len() > 2 {
             let points = values.iter().map(|(direction, value)| at(*direction, *value));
@@ -201,8 +204,7 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
             (format!("{sign}{}", torque.axis.name()), [torque.smooth, torque.rough])
         })
         .collect();
-    let finite =
-        torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two).flatten()));
+    let finite = torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two)));
     let most = rim(finite);
     let asked = |column: &&Column| torques.iter().any(|(_, two)| (column.of)(two).is_some());
     let columns: Vec<&Column> = COLUMNS.iter().filter(asked).collect();
@@ -213,15 +215,15 @@ fn bars(svg: &mut Svg, report: &HoldReport) {
         svg.text([x - 8.0, top + 0.5 * thick * columns.len() as f64 + 4.0], LABEL, Anchor::End, INK, name);
         for (j, column) in columns.iter().enumerate() {
             let Some(value) = (column.of)(two) else { continue };
-            let length = w * value.map_or(1.0, |value| (value / most).min(1.0));
+            let length = w * (value / most).min(1.0);
             let colour = hex(CURVES[column.colour % CURVES.len()]);
             let opacity = if column.dashed { 0.35 } else { 0.85 };
             let bar = Rect { x, y: top + thick * j as f64, w: length.max(0.5), h: 0.8 * thick };
             svg.rect(bar, &format!(r#"fill="{colour}" fill-opacity="{opacity}" stroke="none""#));
             let told = match value {
-                None => "any".to_owned(),
-                Some(value) if value < NOTHING => "0".to_owned(),
-                Some(value) => significant(value * scale),
+                f64::INFINITY => "any".to_owned(),
+                value if value < NOTHING => "0".to_owned(),
+                value => significant(value * scale),
             };
             svg.text(
                 [x + length + 6.0, bar.y + 0.8 * thick],

@@ -127,6 +127,7 @@ impl Search<'_> {
     fn try_way(&mut self, way: &[f64; 5]) {
         let most = self.best.map_or(f64::INFINITY, |best| best.out.climb);
         let (mut top, mut last, mut climbing) = (0.0f64, self.rest.height, false);
+        let mut asked = 0.0;
         for k in 1..=(FARTHEST / STEP) as usize {
             let length = k as f64 * STEP;
             let pose = self.space.displaced(self.rest, way, length);
@@ -143,8 +144,13 @@ impl Search<'_> {
                 return;
             }
             let falls = z < last - LOWER * STEP;
-            if z < self.rest.height - LOWER || falls && climbing {
-                climbing = false;
+            // Level ground beyond is another rest as soon as it is far enough.
+            let is_level = self.leaving != Leaving::Jam
+                && top > LOWER
+                && z <= last + LOWER * STEP
+                && (climbing || length - asked > ELSEWHERE);
+            if z < self.rest.height - LOWER || falls && climbing || is_level {
+                (climbing, asked) = (false, length);
                 if let Some(to) = self.leads_out(way, length) {
                     return self.found(way, length, top, to);
                 }

@@ -243,6 +243,10 @@ pub(in crate::run) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
         // Smaller and smaller moves: from a radian to a hundredth.
         let share = 0.01f64.powf(k as f64 / MOVES as f64);
         let way = moved(&best.0, &space.random(stream, tries + k), share);
+        if way == [0.0; 5] {
+            // Of one free error a move may lead back to where it is.
+            continue;
+        }
         let found = rise(&way, PUSH);
         if found < best.1 {
             best = (way, found);
