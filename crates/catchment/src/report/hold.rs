@@ -212,7 +212,7 @@ impl HoldReport {
             let is_shown = |k: usize| self.sideways.len() <= SHOWN || k.is_multiple_of(step);
             for (_, side) in self.sideways.iter().enumerate().filter(|(k, _)| is_shown(*k)) {
                 let name = degrees(side.direction_rad);
-                self.numbers(&mut text, &name, &columns(side.smooth, side.rough), self.force_scale());
+                numbers(&mut text, &name, &columns(side.smooth, side.rough), self.force_scale());
             }
             self.weakest_lines(&mut text);
         }
@@ -222,7 +222,7 @@ impl HoldReport {
             for torque in &self.torques {
                 let sign = if torque.sign > 0.0 { '+' } else { '-' };
                 let name = format!("{sign}{}", torque.axis.name());
-                self.numbers(&mut text, &name, &columns(torque.smooth, torque.rough), self.torque_scale());
+                numbers(&mut text, &name, &columns(torque.smooth, torque.rough), self.torque_scale());
             }
         }
         text.push('\n');
@@ -258,17 +258,6 @@ impl HoldReport {
         line(text, &format!("  {:<15}{guided}{}", "", if rough { guided.as_str() } else { "" }));
     }
 
-    fn numbers(&self, text: &mut String, name: &str, columns: &Columns, scale: f64) {
-        let told = |value: f64| match value {
-            f64::INFINITY => "any".to_owned(),
-            value if value < NOTHING => "0".to_owned(),
-            value => significant(value * scale),
-        };
-        let cells: Vec<String> =
-            columns.iter().map(|value| format!("{:>14}", value.map_or_else(String::new, told))).collect();
-        line(text, &format!("  {name:<15}{}", cells.concat()));
-    }
-
     fn weakest_lines(&self, text: &mut String) {
         let WeakestReport { smooth_guided, smooth_free, rough_guided, rough_free } = self.weakest;
         let found = [smooth_guided, smooth_free, rough_guided, rough_free];
@@ -284,8 +273,10 @@ impl HoldReport {
                 side.as_ref().map_or_else(String::new, |side| format!("at {}", degrees(side.direction_rad)));
             at.push(format!("{told:>14}"));
         }
-        self.numbers(text, "weakest", &values, self.force_scale());
-        line(text, &format!("  {:<15}{}", "", at.concat()));
+        numbers(text, "weakest", &values, self.force_scale());
+        if found.iter().any(Option::is_some) {
+            line(text, &format!("  {:<15}{}", "", at.concat()));
+        }
     }
 
     /// What sideways forces are told in.
@@ -345,6 +336,18 @@ impl HoldReport {
         }
         records
     }
+}
+
+/// A line of numbers, one of each column.
+fn numbers(text: &mut String, name: &str, columns: &Columns, scale: f64) {
+    let told = |value: f64| match value {
+        f64::INFINITY => "any".to_owned(),
+        value if value < NOTHING => "0".to_owned(),
+        value => significant(value * scale),
+    };
+    let cells: Vec<String> =
+        columns.iter().map(|value| format!("{:>14}", value.map_or_else(String::new, told))).collect();
+    line(text, &format!("  {name:<15}{}", cells.concat()));
 }
 
 /// Directions that are told.

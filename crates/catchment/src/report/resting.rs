@@ -43,7 +43,7 @@ impl<'a> Told<'a> {
     }
 
     /// How firmly it is held, in words.
-    pub(super) fn held(&self, examined: &ExaminedReport) -> String {
+    pub(super) fn held(self, examined: &ExaminedReport) -> String {
         let push = self.length(examined.push_d);
         let rise = match (examined.firmness, examined.rise_at_most_d) {
             (Firmness::Level, Some(rise)) => {
@@ -65,7 +65,7 @@ impl<'a> Told<'a> {
     }
 
     /// How far a half must be lifted, in words.
-    pub(super) fn lifted(&self, climb: f64) -> String {
+    pub(super) fn lifted(self, climb: f64) -> String {
         if climb < NOTHING {
             "not lifted at all".to_owned()
         } else {
@@ -74,7 +74,7 @@ impl<'a> Told<'a> {
     }
 
     /// What touches, and where on either half.
-    pub(super) fn contact_lines(&self, text: &mut String, contacts: &[ContactReport]) {
+    pub(super) fn contact_lines(self, text: &mut String, contacts: &[ContactReport]) {
         for (k, words) in words(contacts).iter().enumerate() {
             said(text, if k == 0 { "  touching" } else { "" }, words);
         }
@@ -88,7 +88,7 @@ impl<'a> Told<'a> {
     }
 
     /// From where to where rests lie where that is more than a place.
-    pub(super) fn extent(&self, pose: &PoseError, extent: &[ExtentReport]) -> String {
+    pub(super) fn extent(self, pose: &PoseError, extent: &[ExtentReport]) -> String {
         // On its side roll and yaw are turns about one axis: only their sum, or difference, means anything.
         let on_its_side = pose.pitch.cos().abs() < ON_ITS_SIDE;
         let is_told = |axis: Dof| !(on_its_side && matches!(axis, Dof::Roll | Dof::Yaw));
@@ -107,37 +107,37 @@ impl<'a> Told<'a> {
         said.join(", ")
     }
 
-    fn unit(&self) -> &'static str {
+    fn unit(self) -> &'static str {
         self.design.unit.map_or("D", |unit| unit.symbol())
     }
 
-    fn scale(&self) -> f64 {
+    fn scale(self) -> f64 {
         if self.design.unit.is_some() { self.design.width } else { 1.0 }
     }
 
-    fn plain(&self, value: f64) -> String {
+    fn plain(self, value: f64) -> String {
         super::text::length(value * self.scale(), self.scale())
     }
 
     /// A length with its unit.
-    pub(super) fn length(&self, value: f64) -> String {
+    pub(super) fn length(self, value: f64) -> String {
         format!("{} {}", self.plain(value), self.unit())
     }
 
     /// A small length, to three digits.
-    pub(super) fn fine(&self, value: f64) -> String {
+    pub(super) fn fine(self, value: f64) -> String {
         let value = if value < NOTHING { 0.0 } else { value };
         format!("{} {}", super::text::significant(value * self.scale()), self.unit())
     }
 
-    fn drawn(&self, feature: &FeatureReport) -> String {
+    fn drawn(self, feature: &FeatureReport) -> String {
         let [x, y, z] = feature.drawn_d.map(|part| self.plain(part));
         let part = feature.part.map_or_else(String::new, |part| format!(" on part {part}"));
         format!("({x}, {y}, {z}) {}{part}", self.unit())
     }
 
     /// A pose error in words.
-    pub(super) fn place(&self, error: &PoseError) -> String {
+    pub(super) fn place(self, error: &PoseError) -> String {
         let free = self.design.alignment.free.iter();
         let said: Vec<String> = free
             .map(|axis| {

@@ -237,14 +237,14 @@ impl RestsReport {
         let lifted = Told::of(&self.design).lifted(depth);
         let way = rest.examined.and_then(|examined| examined.way_out);
         let to = match (way.map(|way| way.to), rest.leads_to) {
-            (Some(Outcome::Missed), _) => "off".to_owned(),
+            (Some(Outcome::Missed), _) => "slides off".to_owned(),
             (_, Some(k)) if self.rests.get(k).is_some_and(|to| std::ptr::eq(to, rest)) => {
-                "to an image of itself".to_owned()
+                "comes to an image of this place".to_owned()
             }
-            (_, Some(k)) => format!("to rest {}", k + 1),
-            _ => "to another rest".to_owned(),
+            (_, Some(k)) => format!("comes to rest {}", k + 1),
+            _ => "comes to another place".to_owned(),
         };
-        format!("{lifted} it leaves, {to}")
+        format!("{lifted}, and it {to}")
     }
 
     /// Rests as records for programs, the names of the columns first; D and radians.

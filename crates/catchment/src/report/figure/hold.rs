@@ -114,7 +114,8 @@ fn polar(svg: &mut Svg, report: &HoldReport) {
         [cx + r * direction.cos(), cy - r * direction.sin()]
     };
     let grid = r##"fill="none" stroke="#d5dbe2" stroke-width="1""##;
-    let rings = (1..).map(|k| k as f64 * ring(rim)).take_while(|ring| *ring <= rim * (1.0 + NOTHING));
+    let rings =
+        (1..).map(|k: u32| f64::from(k) * ring(rim)).take_while(|ring| *ring <= rim * (1.0 + NOTHING));
     for value in rings {
         svg.circle(MIDDLE, RADIUS * value / rim, grid);
         let place = [cx + 4.0, cy - RADIUS * value / rim - 3.0];

@@ -25,7 +25,7 @@ fn free(of: &Both) -> f64 {
     of.smooth.unwrap().free.unwrap()
 }
 
-/// AR·F_z along x and y, AR/√2 at 45° the weakest; a twist AR/2·F_z·D.
+/// AR times the preload along x and y, AR/√2 at 45° the weakest; a twist AR/2 of it times D.
 #[test]
 fn the_spatial_x_face_at_thirty_degrees() {
     let ratio = 3f64.sqrt().recip();
