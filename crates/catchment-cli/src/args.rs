@@ -32,6 +32,12 @@ use std::path::PathBuf;
   \
         catchment friction design.toml          what friction takes of it, and what sticks first
   \
+        catchment rests design.toml -o rests.png
+                                          every place where it rests, and what it takes to leave
+  \
+        catchment hold design.toml --friction 0.2
+                                          how hard it may be pushed and twisted once docked
+  \
         catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
         catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
         catchment sweep design.toml --over aspect_ratio=0.5,1,2 --over cor=-1..1/5\n                                          many designs at once\n  \
@@ -127,7 +133,7 @@ fn dofs(text: &str) -> Result<DofSet, String> {
     parse_dofs(text).map_err(|complaint| with_advice(&complaint))
 }
 
-fn quantity(text: &str) -> Result<Quantity, String> {
+pub(crate) fn quantity(text: &str) -> Result<Quantity, String> {
     text.parse().map_err(|complaint| with_advice(&complaint))
 }
 

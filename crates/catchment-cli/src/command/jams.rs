@@ -40,6 +40,9 @@ pub(crate) struct JamsArgs {
     /// How many jams are examined: how firmly they hold, and the way out
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
     examine: u32,
+    /// Coefficient of friction between the halves
+    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    friction: f64,
     #[command(flatten)]
     errors: ErrorArgs,
     #[command(flatten)]
@@ -89,6 +92,7 @@ impl JamsArgs {
             seed: self.seed,
             errors: self.errors.distribution(problem.design())?,
             examined: self.examine as usize,
+            friction: self.friction,
         })
     }
 }

@@ -9,6 +9,7 @@ mod completions;
 mod compose;
 mod export;
 mod friction;
+mod hold;
 mod invert;
 mod jams;
 mod latch;
@@ -17,6 +18,7 @@ mod new;
 mod outcome;
 mod place;
 mod reproduce;
+mod rests;
 mod run;
 mod schema;
 mod slices;
@@ -47,6 +49,8 @@ pub(crate) enum Command {
     Success(Box<success::SuccessArgs>),
     Jams(Box<jams::JamsArgs>),
     Friction(friction::FrictionArgs),
+    Rests(Box<rests::RestsArgs>),
+    Hold(Box<hold::HoldArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -79,6 +83,8 @@ impl Command {
             Self::Success(args) => success::run(&args),
             Self::Jams(args) => jams::run(&args),
             Self::Friction(args) => friction::run(&args),
+            Self::Rests(args) => rests::run(&args),
+            Self::Hold(args) => hold::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

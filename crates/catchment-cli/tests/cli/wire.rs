@@ -30,7 +30,7 @@ fn every_json_has_one_head_and_its_fields() {
     let run = ["run", "v.toml", "--resolution", "8", "--samples", "50", "--json"];
     let kinematic = ["trace", "x.toml", "--cor=-0.5", "--pose", "x=0.2,pitch=0.2", "--method", "kinematic"];
     std::fs::copy(super::designs().join("x-face.toml"), home.path().join("x.toml")).unwrap();
-    let calls: [(&str, &[&str]); 19] = [
+    let calls: [(&str, &[&str]); 21] = [
         ("run", &[&run[..], &["--method", "flood", "--error-sigma", "x=0.1"]].concat()),
         ("check", &["check", "v.toml", "--json"]),
         ("outcome", &["outcome", "v.toml", "--poses", "poses.csv", "--json"]),
@@ -42,6 +42,8 @@ fn every_json_has_one_head_and_its_fields() {
         ("success", &["success", "v.toml", "--error-sigma", "x=0.3", "--motions", "100", "--json"]),
         ("jams", &["jams", "v.toml", "--motions", "100", "--error-sigma", "x=0.1", "--json"]),
         ("friction", &["friction", "v.toml", "--frictions", "0.1", "--motions", "100", "--json"]),
+        ("rests", &["rests", "v.toml", "--motions", "100", "--json"]),
+        ("hold", &["hold", "v.toml", "--friction", "0.2", "--preload", "40", "--json"]),
         ("slices", &["slices", "v.toml", "--resolution", "8", "--json"]),
         ("convergence", &["run", "v.toml", "--converge", "--time-limit", "0.001 ms", "--json"]),
         ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "50", "--json"]),

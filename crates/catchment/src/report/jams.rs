@@ -1,6 +1,7 @@
 //! Jams: as versioned JSON, as text, as records for programs.
 
 use super::envelope::{Body, Envelope};
+use super::resting::{Told, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
 use super::text::{grouped, line, number, row, wrapped};
@@ -215,27 +216,6 @@ impl JamReport {
             examined: jam.examined.as_ref().map(ExaminedReport::from),
         }
     }
-
-    /// What touches, in words, the same pairs said once: `rim on wall, twice`.
-    pub fn words(&self) -> Vec<String> {
-        let mut said: Vec<(String, usize)> = Vec::new();
-        for contact in &self.contacts {
-            let words = format!(
-                "{} of the moving half on {} of the fixed one",
-                contact.moving.name, contact.fixed.name
-            );
-            match said.iter_mut().find(|(other, _)| *other == words) {
-                Some((_, count)) => *count += 1,
-                None => said.push((words, 1)),
-            }
-        }
-        let times = |count: usize| match count {
-            1 => String::new(),
-            2 => ", twice".to_owned(),
-            n => format!(", {n} times"),
-        };
-        said.into_iter().map(|(words, count)| words + &times(count)).collect()
-    }
 }
 
 impl JamsReport {
@@ -276,6 +256,9 @@ impl JamsReport {
         heading(&mut text, &self.design);
         let motions = format!("descent, {} random poses, no grid", grouped(self.motions));
         row(&mut text, "method", &motions);
+        if self.settings.friction > 0.0 {
+            row(&mut text, "friction", &format!("{} between the halves (Coulomb)", self.settings.friction));
+        }
         text.push('\n');
         self.outcome_lines(&mut text);
         for (number, jam) in self.jams.iter().take(SHOWN).enumerate() {
@@ -324,52 +307,21 @@ impl JamsReport {
             percent(jam.of_failures)
         );
         wrapped(text, &format!("  {:<15}", format!("jam {number}")), &share);
-        let said =
-            |text: &mut String, name: &str, words: &str| wrapped(text, &format!("  {name:<15}"), words);
+        let told = self.told();
         said(
             text,
             "  rests",
-            &format!("{}, {} above the mated pose", self.place(&jam.pose), self.length(jam.above_mated_d)),
+            &format!("{}, {} above the mated pose", told.place(&jam.pose), told.length(jam.above_mated_d)),
         );
-        let wide = self.extent(jam);
+        let wide = told.extent(&jam.pose, &jam.extent);
         if !wide.is_empty() {
             said(text, "  anywhere in", &wide);
         }
         if let Some(examined) = &jam.examined {
-            said(text, "  held", &self.held(examined));
+            said(text, "  held", &told.held(examined));
             said(text, "  out", &self.out(examined));
         }
-        for (k, words) in jam.words().iter().enumerate() {
-            said(text, if k == 0 { "  touching" } else { "" }, words);
-        }
-        for contact in jam.contacts.iter().take(MOST_CONTACTS) {
-            let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
-            said(text, "", &format!("at {fixed} of the fixed, {moving} of the moving half as drawn"));
-        }
-        if jam.contacts.len() > MOST_CONTACTS {
-            said(text, "", &format!("and at {} more", jam.contacts.len() - MOST_CONTACTS));
-        }
-    }
-
-    fn held(&self, examined: &ExaminedReport) -> String {
-        let push = self.length(examined.push_d);
-        let rise = match (examined.firmness, examined.rise_at_most_d) {
-            (Firmness::Level, Some(rise)) => {
-                format!("near-level: pushed {push} one way it rises by {} only", self.fine(rise))
-            }
-            (Firmness::Ridge, _) => {
-                format!("not at all: pushed {push} one way it falls, it came to rest on a ridge")
-            }
-            (firmness, Some(rise)) => {
-                format!(
-                    "{}: pushed {push} the weakest way found it rises by {}",
-                    firmness.name(),
-                    self.fine(rise)
-                )
-            }
-            (firmness, None) => format!("{}: walls all around", firmness.name()),
-        };
-        format!("{rise}; {} of {} poses beside it came back", examined.back, examined.pushed)
+        told.contact_lines(text, &jam.contacts);
     }
 
     fn out(&self, examined: &ExaminedReport) -> String {
@@ -379,17 +331,13 @@ impl JamsReport {
             Outcome::Missed => "and it slides off",
             Outcome::Jammed | Outcome::Undecided => "and it comes to a lower rest",
         };
-        let lifted = self.lifted(way.climb_at_most_d);
+        let lifted = self.told().lifted(way.climb_at_most_d);
         format!("{lifted}, {to}")
     }
 
-    /// How far a half must be lifted, in words.
-    pub(super) fn lifted(&self, climb: f64) -> String {
-        if climb < NOTHING {
-            "not lifted at all".to_owned()
-        } else {
-            format!("lifted by {} at most", self.fine(climb))
-        }
+    /// Tells places of rest.
+    pub(super) fn told(&self) -> Told<'_> {
+        Told::of(&self.design)
     }
 
     fn pair_lines(&self, text: &mut String) {
@@ -409,26 +357,6 @@ impl JamsReport {
         if self.features.len() > SHOWN {
             line(text, &format!("  and {} pairs more", self.features.len() - SHOWN));
         }
-    }
-
-    /// From where to where rests lie where that is more than a place.
-    fn extent(&self, jam: &JamReport) -> String {
-        // On its side roll and yaw are turns about one axis: only their sum, or difference, means anything.
-        let on_its_side = jam.pose.pitch.cos().abs() < ON_ITS_SIDE;
-        let is_told = |axis: Dof| !(on_its_side && matches!(axis, Dof::Roll | Dof::Yaw));
-        let wide = jam.extent.iter().filter(|side| is_told(side.axis) && side.to - side.from > ONE_PLACE);
-        let said: Vec<String> = wide
-            .map(|side| {
-                if side.axis.is_rotation() {
-                    let [from, to] = [side.from, side.to].map(|value| value.to_degrees() + 0.0);
-                    format!("{} {from:.1} … {to:.1}°", side.axis.name())
-                } else {
-                    let [from, to] = [side.from, side.to].map(|value| self.plain(value));
-                    format!("{} {from} … {to} {}", side.axis.name(), self.unit())
-                }
-            })
-            .collect();
-        said.join(", ")
     }
 
     /// Jams and what touches in each as records for programs, the names of the columns first; D and radians.
@@ -467,51 +395,6 @@ impl JamsReport {
         }
         records
     }
-
-    fn unit(&self) -> &'static str {
-        self.design.unit.map_or("D", |unit| unit.symbol())
-    }
-
-    fn scale(&self) -> f64 {
-        if self.design.unit.is_some() { self.design.width } else { 1.0 }
-    }
-
-    fn plain(&self, value: f64) -> String {
-        super::text::length(value * self.scale(), self.scale())
-    }
-
-    fn length(&self, value: f64) -> String {
-        format!("{} {}", self.plain(value), self.unit())
-    }
-
-    /// A small length, to three digits.
-    fn fine(&self, value: f64) -> String {
-        let value = if value < NOTHING { 0.0 } else { value };
-        format!("{} {}", super::text::significant(value * self.scale()), self.unit())
-    }
-
-    fn drawn(&self, feature: &FeatureReport) -> String {
-        let [x, y, z] = feature.drawn_d.map(|part| self.plain(part));
-        let part = feature.part.map_or_else(String::new, |part| format!(" on part {part}"));
-        format!("({x}, {y}, {z}) {}{part}", self.unit())
-    }
-
-    /// A pose error in words.
-    pub fn place(&self, error: &PoseError) -> String {
-        let free = self.design.alignment.free.iter();
-        let said: Vec<String> = free
-            .map(|axis| {
-                let value = error.to_array()[axis.index()];
-                if axis.is_rotation() {
-                    let degrees = value.to_degrees();
-                    format!("{} {:.2}°", axis.name(), if degrees.abs() < 5e-3 { 0.0 } else { degrees })
-                } else {
-                    format!("{} {}", axis.name(), self.length(value))
-                }
-            })
-            .collect();
-        said.join(", ")
-    }
 }
 
 /// A share of 1 with one decimal.
@@ -536,13 +419,5 @@ fn by_name_or_null<S: Serializer>(shares: &OfErrors, serializer: S) -> Result<S:
     }
 }
 
-/// Cosine of a pitch at which roll and yaw can no longer be told apart: 89°.
-const ON_ITS_SIDE: f64 = 0.0175;
-/// Heights below this are nothing, in D: rounding.
-const NOTHING: f64 = 1e-8;
 /// Jams and pairs of features that are told.
 const SHOWN: usize = 6;
-/// Contacts whose places are told.
-const MOST_CONTACTS: usize = 4;
-/// Rests within this are at one place, in D or radians.
-const ONE_PLACE: f64 = 0.01;

@@ -7,7 +7,7 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · jams · friction · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · jams · rests · hold · friction · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -31,9 +31,12 @@ mod faces;
 pub mod figure;
 pub mod folder;
 mod friction;
+mod hold;
 mod jams;
 mod lever;
 mod outcomes;
+mod resting;
+mod rests;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
 pub mod schema;
@@ -63,12 +66,16 @@ pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
 pub use friction::{FrictionBody, FrictionReport, KeptReport, RungReport, StickingReport, SticksReport};
+pub use hold::{
+    HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
+};
 pub use jams::{
     ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsReport, PairReport,
     ShareReport, WayOutReport,
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
+pub use rests::{HeldReport, RestReport, RestsBody, RestsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
 pub use schema::{Report, RunBody};

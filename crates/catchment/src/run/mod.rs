@@ -25,6 +25,7 @@ pub mod jams;
 pub mod part;
 mod plan;
 mod requirement;
+pub mod rests;
 mod seat;
 mod stages;
 pub(crate) use stages::correct;

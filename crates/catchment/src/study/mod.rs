@@ -8,6 +8,7 @@
 //!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
 //!   success      how likely the errors of a robot are corrected  one design, stratified exact motions
 //!   friction     what docks at each friction, and what sticks first  one design, the same poses at every friction
+//!   hold         what a docked half withstands, sideways and twisted one design, contact forces alone
 //!   window       the largest box of errors that all dock         one design, exact motions without a grid
 //!   proposal     all ways in which two parts may dock           two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
@@ -16,6 +17,7 @@
 pub mod agreement;
 pub mod convergence;
 pub mod friction;
+pub mod hold;
 pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;

@@ -148,9 +148,19 @@ impl Coulomb {
         push: &Vector,
         contacts: Contacts<'_>,
     ) -> bool {
+        self.unheld(projection, push, contacts).is_some_and(|u| is_still(&u))
+    }
+
+    /// What no force within the cones takes of the push, with all contacts touching: the push less the nearest one that they hold.
+    pub(super) fn unheld(
+        &mut self,
+        projection: &mut Projection,
+        push: &Vector,
+        contacts: Contacts<'_>,
+    ) -> Option<Vector> {
         self.slips.clear();
         self.slips.resize(contacts.rows.len(), 0.0);
-        self.settle(projection, push, contacts, |_| 0.0, 1.0, false).is_some_and(|u| is_still(&u))
+        self.settle(projection, push, contacts, |_| 0.0, 1.0, false)
     }
 
     /// The contacts that carry in the last displacement.

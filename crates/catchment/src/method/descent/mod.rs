@@ -18,7 +18,9 @@
 mod coulomb;
 mod dependence;
 pub(super) mod door;
+mod holding;
 mod homing;
+mod immobility;
 mod motion;
 mod projection;
 mod rest;
@@ -29,10 +31,16 @@ mod sticking;
 mod tests;
 #[cfg(test)]
 mod tests_of_friction;
+#[cfg(test)]
+mod tests_of_holding;
+#[cfg(test)]
+mod tests_of_immobility;
 mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
+pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
+pub use immobility::{Immobility, Order, immobility};
 pub use rest::{Rest, settle};
 pub use sticking::{Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};
@@ -46,7 +54,7 @@ use motion::{Motion, Until, Unwatched};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use sticking::{Doubting, Holding};
+use sticking::{Doubting, OnTheWay};
 
 /// What may change the answer of [`run`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -159,7 +167,7 @@ impl<'a> Follower<'a> {
     ///
     /// With friction it goes another way: this says what holds where motion without it (or with the friction of the settings) comes by, and no more.
     pub fn follow_holding(&mut self, error: &PoseError, most: f64) -> (End, f64) {
-        let mut holding = Holding::up_to(most);
+        let mut holding = OnTheWay::up_to(most);
         // All the way, also where it is known before that it docks.
         let homing = std::mem::take(&mut self.0.homing);
         let (outcome, last) = self.0.follow(error, Until::Known, &mut holding);

@@ -41,6 +41,8 @@ fn product(a: &Column, b: &Column) -> f64 {
 pub(super) struct Projection {
     columns: Vec<Column>,
     passive: Passive,
+    /// What the last displacement was divided by.
+    residual: f64,
 }
 
 impl Projection {
@@ -71,6 +73,7 @@ impl Projection {
             return Some(*push);
         }
         let residual = self.non_negative_residual();
+        self.residual = residual[GAPS];
         // The last residual is 0 only if the constraints contradict each other.
         (residual[GAPS].abs() > 1e-14)
             .then(|| std::array::from_fn(|k| push[k] - scale * residual[k] / residual[GAPS]))
@@ -81,9 +84,15 @@ impl Projection {
         &self.passive.columns[..self.passive.count]
     }
 
+    /// How hard the last displacement presses against rows, all others not at all: `u = push + Σ force · row` where `scale` is 1.
+    pub(super) fn forces(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let Passive { count, columns, lambda, .. } = &self.passive;
+        columns.iter().zip(lambda).take(*count).map(|(column, lambda)| (*column, -lambda / self.residual))
+    }
+
     /// Residual `E λ − f` of non-negative least squares `min |E λ − f|, λ ≥ 0` with f = 1 in the row of the gaps.
     fn non_negative_residual(&mut self) -> Column {
-        let Self { columns, passive } = self;
+        let Self { columns, passive, .. } = self;
         let mut residual = TARGET.map(|t| -t);
         let limit = 3 * columns.len() + 20;
         for _ in 0..limit {

@@ -8,7 +8,7 @@ use crate::pose::PoseError;
 
 /// Gaps up to this touch at rest, in D: motions keep a hundredth of it clear of walls, and end before flush faces have closed to the last; no
 /// fit is as close.
-const TOUCHING: f64 = 1e-4;
+pub const TOUCHING: f64 = 1e-4;
 
 /// The end of a motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +40,13 @@ impl Watch for Last {
 }
 
 impl Follower<'_> {
+    /// Follows one pose until it has come to rest, also in the seat, as [`Follower::rest`] does, and keeps what carries it there.
+    pub fn come_to_rest(&mut self, error: &PoseError) -> Rest {
+        let mut last = Last::default();
+        let (outcome, error) = self.0.follow(error, Until::AtRest, &mut last);
+        Rest { outcome, error, height: last.height, contacts: last.contacts }
+    }
+
     /// Follows one pose until it is known what becomes of it, as [`Follower::follow`] does, and keeps what carried it last: where it
     /// jams, where it rests.
     pub fn settle(&mut self, error: &PoseError) -> Rest {

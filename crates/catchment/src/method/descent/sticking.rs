@@ -40,7 +40,7 @@ const SHARE: f64 = 0.7;
 const NEAR: f64 = 2e-3;
 
 /// Where the force pushes.
-const DOWN: Vector = {
+pub(super) const DOWN: Vector = {
     let mut down = [0.0; MAX_COORDINATES];
     down[2] = -1.0;
     down
@@ -58,25 +58,52 @@ pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
 }
 
 /// What touches, as rows.
-#[derive(Debug, Default)]
-struct Touching {
-    rows: Vec<Vector>,
-    tangents: Vec<Tangents>,
+#[derive(Debug, Clone, Default)]
+pub(super) struct Touching {
+    pub(super) rows: Vec<Vector>,
+    pub(super) tangents: Vec<Tangents>,
     coulomb: Coulomb,
     projection: Projection,
 }
 
 impl Touching {
     fn see(&mut self, motion: &Motion, state: &State) {
-        let axes = motion.axes(state);
-        self.rows.clear();
-        self.tangents.clear();
         // Plain motion keeps clear of walls, and what tight fits keep are contacts that touch.
         let touches =
             |contact: &Contact| motion.pair.is_tight() || contact.gap <= OVERLAP + 2.0 * margin(contact);
+        self.see_those(touches, motion, state);
+    }
+
+    /// What is no farther apart than `near` counts as touching.
+    pub(super) fn see_within(&mut self, near: f64, motion: &Motion, state: &State) {
+        self.see_those(|contact| contact.gap <= near, motion, state);
+    }
+
+    fn see_those(&mut self, touches: impl Fn(&Contact) -> bool, motion: &Motion, state: &State) {
+        let axes = motion.axes(state);
+        self.rows.clear();
+        self.tangents.clear();
         for (contact, _) in motion.contacts.iter().filter(|(contact, _)| touches(contact)) {
             self.rows.push(motion.row(contact, state, &axes));
             self.tangents.push(motion.slips(contact, state, &axes));
+        }
+    }
+
+    /// What the contacts do not take of a push: the push less the nearest one that they hold.
+    pub(super) fn unheld(&mut self, push: &Vector, friction: f64) -> Option<Vector> {
+        if friction == 0.0 {
+            let touching = self.rows.iter().map(|_| 0.0);
+            return self.projection.closest_allowed(push, &self.rows, touching, 1.0);
+        }
+        let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
+        self.coulomb.unheld(&mut self.projection, push, contacts)
+    }
+
+    /// The forces along normals that hold a push without friction, by rows; those of the nearest push that is held.
+    pub(super) fn forces(&mut self, push: &Vector) -> Vec<(usize, f64)> {
+        match self.unheld(push, 0.0) {
+            Some(_) => self.projection.forces().collect(),
+            None => Vec::new(),
         }
     }
 
@@ -163,7 +190,7 @@ impl Watch for Doubting {
 
 /// The least friction at which some force would hold it somewhere on the way, the end left out.
 #[derive(Debug)]
-pub(super) struct Holding {
+pub(super) struct OnTheWay {
     touching: Touching,
     /// At the place that was seen last.
     here: f64,
@@ -173,7 +200,7 @@ pub(super) struct Holding {
 /// To so much it is found.
 const WAY_HOLDS_TO: f64 = 1e-4;
 
-impl Holding {
+impl OnTheWay {
     pub(super) fn up_to(most: f64) -> Self {
         Self { touching: Touching::default(), here: most, least: most }
     }
@@ -183,7 +210,7 @@ impl Holding {
     }
 }
 
-impl Watch for Holding {
+impl Watch for OnTheWay {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.least = self.least.min(self.here);
         self.touching.see(motion, state);

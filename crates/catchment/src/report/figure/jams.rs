@@ -1,12 +1,16 @@
-//! Jams: each cut through what touches, and in space, with the features that hold it.
+//! Jams and rests: each cut through what touches, and in space, with the features that hold it.
 
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::plane::{Patch, Plane};
 use super::section::{Placement, View, describe};
 use super::solid::panel;
 use super::{FigureError, Picture};
+use crate::acceptance::Outcome;
 use crate::connector::Connector;
-use crate::report::{ContactReport, JamReport, JamsReport};
+use crate::design::Design;
+use crate::report::resting::{Told, words};
+use crate::report::text::grouped;
+use crate::report::{ContactReport, JamReport, JamsReport, RestReport, RestsReport};
 use crate::run::jams::Firmness;
 use glam::DVec3;
 
@@ -27,19 +31,23 @@ const SPACE: [f64; 2] = [180.0, 190.0];
 /// Above the panels.
 const TOP: f64 = 76.0;
 
+/// What a panel shows.
+struct Panel<'a> {
+    head: String,
+    contacts: &'a [ContactReport],
+    placement: Placement,
+    /// Below what touches and where.
+    tail: Vec<String>,
+}
+
 /// Draws the jams with most of the poses: the halves of `connector` as the report's design places them.
 ///
 /// # Errors
 /// If nothing jams.
 pub fn jams(report: &JamsReport, connector: &Connector) -> Result<Picture, FigureError> {
-    let shown = report.jams.len().min(SHOWN);
-    if shown == 0 {
+    if report.jams.is_empty() {
         return Err(FigureError::Empty { what: "none of the poses jams" });
     }
-    let rows = shown.div_ceil(COLUMNS);
-    let columns = shown.min(COLUMNS);
-    let mut svg = Svg::new(24.0 + columns as f64 * WIDTH, TOP + rows as f64 * HEIGHT + 10.0);
-    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let all: Vec<String> = report
         .outcomes
         .iter()
@@ -47,12 +55,93 @@ pub fn jams(report: &JamsReport, connector: &Connector) -> Result<Picture, Figur
         .map(|(outcome, share)| format!("{} {}", outcome.name(), percent(share.share)))
         .collect();
     let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
-    for (k, line) in broken(&story, columns as f64 * WIDTH - 30.0).iter().enumerate() {
+    let panels: Vec<Panel<'_>> =
+        report.jams.iter().take(SHOWN).enumerate().map(|(k, jam)| jam_panel(report, k + 1, jam)).collect();
+    draw_all(&report.design, connector, &story, &panels)
+}
+
+fn jam_panel<'a>(report: &JamsReport, number: usize, jam: &'a JamReport) -> Panel<'a> {
+    let tail = jam.examined.map(|examined| {
+        let level =
+            if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
+        let lifted = |climb| Told::of(&report.design).lifted(climb);
+        let way = examined
+            .way_out
+            .map_or_else(String::new, |way| format!(": {} it gets out", lifted(way.climb_at_most_d)));
+        format!("{level}{way}")
+    });
+    Panel {
+        head: format!(
+            "jam {number}:  {} of jams, {} of the box",
+            percent(jam.of_jams),
+            percent(jam.of_box.share)
+        ),
+        contacts: &jam.contacts,
+        placement: Placement { error: jam.pose, height: jam.height_d },
+        tail: tail.into_iter().collect(),
+    }
+}
+
+/// Draws the rests with most of the poses.
+///
+/// # Errors
+/// If nothing comes to rest.
+pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, FigureError> {
+    if report.rests.is_empty() {
+        return Err(FigureError::Empty { what: "none of the poses comes to rest" });
+    }
+    let off: Vec<String> = report
+        .outcomes
+        .iter()
+        .filter(|(outcome, share)| matches!(outcome, Outcome::Missed | Outcome::Undecided) && share.count > 0)
+        .map(|(outcome, share)| format!(", {} {}", outcome.name(), percent(share.share)))
+        .collect();
+    let story = format!(
+        "where motions rest under a load along −z: {} random poses of the error box{}",
+        grouped(report.motions),
+        off.concat()
+    );
+    let panels: Vec<Panel<'_>> = report
+        .rests
+        .iter()
+        .take(SHOWN)
+        .enumerate()
+        .map(|(k, rest)| rest_panel(report, k + 1, rest))
+        .collect();
+    draw_all(&report.design, connector, &story, &panels)
+}
+
+fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestReport) -> Panel<'a> {
+    let docked = if rest.is_docked() { ", docked" } else { "" };
+    let mut tail = Vec::new();
+    tail.extend(rest.order());
+    if rest.examined.is_some() {
+        tail.push(report.out(rest));
+    }
+    Panel {
+        head: format!("rest {number}:  basin {} of the box{docked}", percent(rest.of_box.share)),
+        contacts: &rest.contacts,
+        placement: Placement { error: rest.pose, height: rest.height_d },
+        tail,
+    }
+}
+
+fn draw_all(
+    design: &Design,
+    connector: &Connector,
+    story: &str,
+    panels: &[Panel<'_>],
+) -> Result<Picture, FigureError> {
+    let rows = panels.len().div_ceil(COLUMNS);
+    let columns = panels.len().min(COLUMNS);
+    let mut svg = Svg::new(24.0 + columns as f64 * WIDTH, TOP + rows as f64 * HEIGHT + 10.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    for (k, line) in broken(story, columns as f64 * WIDTH - 30.0).iter().enumerate() {
         svg.text([24.0, 50.0 + 15.0 * k as f64], LABEL, Anchor::Start, SOFT, line);
     }
-    for (k, jam) in report.jams.iter().take(shown).enumerate() {
+    for (k, panel) in panels.iter().enumerate() {
         let corner = [24.0 + (k % COLUMNS) as f64 * WIDTH, TOP + (k / COLUMNS) as f64 * HEIGHT];
-        draw(&mut svg, corner, report, connector, k + 1, jam)?;
+        draw(&mut svg, corner, design, connector, panel)?;
     }
     Ok(Picture::of(svg))
 }
@@ -60,39 +149,29 @@ pub fn jams(report: &JamsReport, connector: &Connector) -> Result<Picture, Figur
 fn draw(
     svg: &mut Svg,
     [x, y]: [f64; 2],
-    report: &JamsReport,
+    design: &Design,
     connector: &Connector,
-    number: usize,
-    jam: &JamReport,
+    shown: &Panel<'_>,
 ) -> Result<(), FigureError> {
-    let design = &report.design;
-    let placement = Placement { error: jam.pose, height: jam.height_d };
-    let head =
-        format!("jam {number}:  {} of jams, {} of the box", percent(jam.of_jams), percent(jam.of_box.share));
-    svg.bold([x, y + 16.0], LABEL + 1.0, Anchor::Start, &head);
+    let placement = shown.placement;
+    svg.bold([x, y + 16.0], LABEL + 1.0, Anchor::Start, &shown.head);
     let mut lines: Vec<(&str, String)> = Vec::new();
-    for words in jam.words() {
+    for words in words(shown.contacts) {
         lines.extend(broken(&words, WIDTH - 40.0).into_iter().map(|line| (INK, line)));
     }
-    if lines.len() > MOST_LINES {
-        lines.truncate(MOST_LINES);
+    let most = MOST_LINES + 1 - shown.tail.len().clamp(1, MOST_LINES);
+    if lines.len() > most {
+        lines.truncate(most);
         if let Some((_, last)) = lines.last_mut() {
             last.push_str(" …");
         }
     }
     lines.push((SOFT, describe(design, &placement)));
-    if let Some(examined) = &jam.examined {
-        let level =
-            if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
-        let way = examined
-            .way_out
-            .map_or_else(String::new, |way| format!(": {} it gets out", report.lifted(way.climb_at_most_d)));
-        lines.push((SOFT, format!("{level}{way}")));
-    }
+    lines.extend(shown.tail.iter().map(|words| (SOFT, words.clone())));
     for (k, (colour, words)) in lines.iter().enumerate() {
         svg.text([x, y + 33.0 + 15.0 * k as f64], LABEL - 0.5, Anchor::Start, colour, words);
     }
-    let patches: Vec<Patch> = jam.contacts.iter().map(patch).collect();
+    let patches: Vec<Patch> = shown.contacts.iter().map(patch).collect();
     let plane = Plane::through(connector, &patches);
     let view = View::along(design, connector, std::slice::from_ref(&placement), plane)?;
     let rect = Rect { x: x + 52.0, y: y + WORDS, w: SECTION[0], h: SECTION[1] };
@@ -159,6 +238,19 @@ mod tests {
         assert!(picture.svg().contains("of the fixed one"));
         let text = "[connector]\nfamily = \"pyramid\"\nwidth = 50\nunit = \"mm\"\naspect_ratio = 0.5\n";
         look("jams-pyramid", &drawn(text).unwrap());
+    }
+
+    #[test]
+    fn every_rest_is_drawn() {
+        use crate::run::rests;
+        let text = "[connector]\nfamily = \"v-face\"\nwidth = 50\nunit = \"mm\"\n[alignment]\nrotation_length = 1.0\n";
+        let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
+        let settings = rests::Settings { motions: Some(400), ..rests::Settings::default() };
+        let found = rests::run(&problem, &settings, &Exec::new()).unwrap();
+        let report = RestsReport::new(problem.design(), &found, Vec::new(), None);
+        let picture = super::rests(&report, problem.connector()).unwrap();
+        look("rests", &picture);
+        assert!(picture.svg().contains("immobile to first order"));
     }
 
     #[test]

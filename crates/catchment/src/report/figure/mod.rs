@@ -18,7 +18,8 @@
 //!   lever       the first contact with its lever arms and angles, as the kinematic method sees it
 //!   faces       designs side by side, mated and at the largest offset that still slides home
 //!   bodies      convex pieces of the halves, what they sweep, and where they overlap
-//!   jams        where halves rest that do not dock, cut through what touches, and in space
+//!   hold        how hard a docked half may be pushed, over the direction, and twisted
+//!   jams        where halves rest that do not dock, cut through what touches, and in space; rests likewise
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   trials      the exact region beside the outcomes of single trials
@@ -45,6 +46,7 @@ pub mod draw;
 mod faces;
 mod friction;
 mod heights;
+mod hold;
 mod jams;
 mod lever;
 mod map;
@@ -77,7 +79,8 @@ pub use difference::difference;
 pub use faces::{Face, faces};
 pub use friction::friction;
 pub use heights::heights;
-pub use jams::jams;
+pub use hold::hold;
+pub use jams::{jams, rests};
 pub use lever::lever;
 pub use matrix::slice_matrix;
 pub use memory::{ensure_fits, ensure_grid_fits, ensure_run_fits};

@@ -23,21 +23,21 @@ const MOST_PLACES: usize = 48;
 
 /// Rests that are one jam.
 #[derive(Debug, Clone)]
-pub(super) struct Cluster {
+pub(in crate::run) struct Cluster {
     /// Their numbers, ascending.
-    pub(super) members: Vec<usize>,
+    pub(in crate::run) members: Vec<usize>,
     /// The one in the middle.
-    pub(super) middle: usize,
+    pub(in crate::run) middle: usize,
     /// From where to where they lie, images laid upon each other.
-    pub(super) extent: [[f64; 2]; 5],
+    pub(in crate::run) extent: [[f64; 2]; 5],
     /// At how many places that are images of each other they lie.
-    pub(super) places: usize,
+    pub(in crate::run) places: usize,
     /// How firmly the middle one holds, where it was asked.
-    pub(super) held: Option<Held>,
+    pub(in crate::run) held: Option<Held>,
 }
 
 /// Gathers rests into jams, the largest first.
-pub(super) fn gather(
+pub(in crate::run) fn gather(
     problem: &Problem,
     rests: &[Rested],
     images: &Images,

@@ -13,10 +13,11 @@
 use super::firmness::{Ground, STEEPEST, Space, ground, moved};
 use super::rests::Rested;
 use crate::acceptance::{Outcome, Stream};
-use crate::contact::{Nearby, Pair};
+use crate::contact::{FLUSH, Nearby, Pair};
 use crate::method::affordable;
 use crate::method::descent::{self, Follower};
-use crate::pose::PoseError;
+use crate::pose::{CorPose, PoseError, angle_between, step_length};
+use glam::DVec2;
 
 /// How closely a way is looked at, in the metric of the motion, in D.
 const STEP: f64 = 0.02;
@@ -27,6 +28,10 @@ const FARTHEST: f64 = 1.5;
 /// Random ways and moves about the best, of simple halves, per free error.
 const WAYS: f64 = 24.0;
 const LEAST_WAYS: f64 = 4.0;
+/// Rests farther apart than this are two, in the metric of the motion, in D: rests as near are gathered into one.
+const ELSEWHERE: f64 = 0.1;
+/// Motions keep so far from walls, in D, and heights beside a wall differ by that on its slope.
+const OPEN: f64 = 1e-4;
 /// What counts as lower, in D: above what motions leave.
 const LOWER: f64 = 1e-5;
 
@@ -39,6 +44,20 @@ pub struct WayOut {
     pub to: Outcome,
     /// The pose error from which motion leads there.
     pub over: PoseError,
+    /// Where that ends.
+    pub end: PoseError,
+}
+
+/// What counts as out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::run) enum Leaving {
+    /// Docked, off, or a lower rest; walls are in the way.
+    Jam,
+    /// Off, or any other rest; walls may be lifted over.
+    Rest {
+        /// Whether it may lie anywhere on what carries it: another rest then is one that is lower, or turned.
+        is_level: bool,
+    },
 }
 
 /// One way, as far as it leads out.
@@ -56,19 +75,29 @@ struct Search<'a> {
     nearby: Nearby<'a>,
     follower: Follower<'a>,
     best: Option<Way>,
+    leaving: Leaving,
+    /// Whether nothing is above the rest: it may be lifted straight up, and heights are those of a half that comes from above.
+    open: bool,
 }
 
 /// The lowest way out that is found; none where all that are tried climb on, or end at walls.
-pub(super) fn way_out(pair: &Pair, rest: &Rested, seed: u64) -> Option<WayOut> {
-    let settings = descent::Settings::default();
+pub(in crate::run) fn way_out(
+    pair: &Pair,
+    rest: &Rested,
+    motions: &descent::Settings,
+    leaving: Leaving,
+    seed: u64,
+) -> Option<WayOut> {
     let space = Space::of(pair);
     let stream = Stream::new(seed).branch(FARTHEST.to_bits());
     let ways = (WAYS * affordable(pair).sqrt()).max(LEAST_WAYS) as u64 * space.count() as u64;
     let mut search = Search {
         rest,
         nearby: pair.about(2.0 * STEP),
-        follower: Follower::new(pair, &settings),
+        follower: Follower::new(pair, motions),
         best: None,
+        leaving,
+        open: leaving != Leaving::Jam && is_open(pair, rest),
         space,
     };
     let home = search.space.towards(rest, &PoseError::default());
@@ -103,14 +132,16 @@ impl Search<'_> {
     fn try_way(&mut self, way: &[f64; 5]) {
         let most = self.best.map_or(f64::INFINITY, |best| best.out.climb);
         let (mut top, mut last, mut climbing) = (0.0f64, self.rest.height, false);
+        let mut asked = 0.0;
         for k in 1..=(FARTHEST / STEP) as usize {
             let length = k as f64 * STEP;
             let pose = self.space.displaced(self.rest, way, length);
-            let z = match ground(&mut self.nearby, &pose, last + STEEPEST * STEP) {
+            let z = match self.look(&pose, last + STEEPEST * STEP) {
                 Ground::At(z) => z,
                 Ground::Blocked => return,
                 Ground::Gone => {
-                    return self.found(way, length, top, Outcome::Missed);
+                    let over = self.space.error(self.rest, way, length);
+                    return self.found(way, length, top, (Outcome::Missed, over));
                 }
             };
             top = top.max(z - self.rest.height);
@@ -118,8 +149,13 @@ impl Search<'_> {
                 return;
             }
             let falls = z < last - LOWER * STEP;
-            if z < self.rest.height - LOWER || falls && climbing {
-                climbing = false;
+            // Level ground beyond is another rest as soon as it is far enough.
+            let is_level = self.leaving != Leaving::Jam
+                && top > LOWER
+                && z <= last + LOWER * STEP
+                && (climbing || length - asked > ELSEWHERE);
+            if z < self.rest.height - LOWER || falls && climbing || is_level {
+                (climbing, asked) = (false, length);
                 if let Some(to) = self.leads_out(way, length) {
                     return self.found(way, length, top, to);
                 }
@@ -129,20 +165,43 @@ impl Search<'_> {
         }
     }
 
-    fn found(&mut self, way: &[f64; 5], length: f64, climb: f64, to: Outcome) {
-        let over = self.space.error(self.rest, way, length);
-        self.best = Some(Way { along: *way, length, out: WayOut { climb, to, over } });
+    /// The height at a pose.
+    fn look(&mut self, pose: &CorPose, ceiling: f64) -> Ground {
+        if !self.open {
+            return ground(&mut self.nearby, pose, ceiling);
+        }
+        self.nearby.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
+        self.nearby.height_below(pose.lateral, f64::INFINITY).0.map_or(Ground::Gone, Ground::At)
     }
 
-    /// Where motion leads from a place on a way, if that is lower than the rest.
-    fn leads_out(&mut self, way: &[f64; 5], length: f64) -> Option<Outcome> {
-        let end = self.follower.settle(&self.space.error(self.rest, way, length));
+    fn found(&mut self, way: &[f64; 5], length: f64, climb: f64, (to, end): (Outcome, PoseError)) {
+        let over = self.space.error(self.rest, way, length);
+        self.best = Some(Way { along: *way, length, out: WayOut { climb, to, over, end } });
+    }
+
+    /// Where motion leads from a place on a way, if that is out.
+    fn leads_out(&mut self, way: &[f64; 5], length: f64) -> Option<(Outcome, PoseError)> {
+        let from = self.space.error(self.rest, way, length);
+        let end = match self.leaving {
+            Leaving::Jam => self.follower.settle(&from),
+            Leaving::Rest { .. } => self.follower.come_to_rest(&from),
+        };
         let is_lower = end.height.is_some_and(|height| height < self.rest.height - LOWER);
-        match end.outcome {
-            Outcome::Aligned | Outcome::Missed => Some(end.outcome),
-            Outcome::Jammed => is_lower.then_some(Outcome::Jammed),
-            Outcome::Undecided => None,
-        }
+        let is_out = match (end.outcome, self.leaving) {
+            (Outcome::Missed, _) | (Outcome::Aligned, Leaving::Jam) => true,
+            (Outcome::Undecided, _) => false,
+            (Outcome::Jammed, Leaving::Jam) => is_lower,
+            (_, Leaving::Rest { is_level }) => is_lower || self.is_elsewhere(&end.error, is_level),
+        };
+        is_out.then_some((end.outcome, end.error))
+    }
+
+    /// Whether a rest is another one.
+    fn is_elsewhere(&self, end: &PoseError, is_level: bool) -> bool {
+        let pose = self.space.pose(end);
+        let turned = angle_between(&pose.rotation, &self.rest.pose.rotation);
+        let lateral = if is_level { DVec2::ZERO } else { pose.lateral - self.rest.pose.lateral };
+        step_length(lateral, turned, self.space.rho()) > ELSEWHERE
     }
 
     /// The climb of a way, looked at more closely.
@@ -151,11 +210,16 @@ impl Search<'_> {
         let (mut top, mut last) = (best.out.climb, self.rest.height);
         for k in 1..steps {
             let pose = self.space.displaced(self.rest, &best.along, k as f64 * STEP / FINER as f64);
-            if let Ground::At(z) = ground(&mut self.nearby, &pose, last + STEEPEST * STEP) {
+            if let Ground::At(z) = self.look(&pose, last + STEEPEST * STEP) {
                 top = top.max(z - self.rest.height);
                 last = z;
             }
         }
         WayOut { climb: top, ..best.out }
     }
+}
+
+/// Whether a half lowered from far above comes to the rest: nothing is above it.
+fn is_open(pair: &Pair, rest: &Rested) -> bool {
+    pair.height(&rest.pose).is_some_and(|height| height <= rest.height + OPEN)
 }

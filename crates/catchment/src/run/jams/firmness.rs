@@ -68,7 +68,7 @@ pub struct Held {
 
 /// What becomes of the height aside of a rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Ground {
+pub(in crate::run) enum Ground {
     /// z of the COR, in D.
     At(f64),
     /// A wall is in the way.
@@ -78,7 +78,7 @@ pub(super) enum Ground {
 }
 
 /// Directions in the errors that are free, unit in the metric of the motion.
-pub(super) struct Space {
+pub(in crate::run) struct Space {
     free: Vec<Dof>,
     rho: f64,
     cor: f64,
@@ -86,7 +86,7 @@ pub(super) struct Space {
 }
 
 impl Space {
-    pub(super) fn of(pair: &Pair) -> Self {
+    pub(in crate::run) fn of(pair: &Pair) -> Self {
         let alignment = &pair.alignment;
         Self {
             free: alignment.free.iter().collect(),
@@ -96,13 +96,23 @@ impl Space {
         }
     }
 
+    /// The pose of a pose error.
+    pub(in crate::run) fn pose(&self, error: &PoseError) -> CorPose {
+        CorPose::from_error(error, self.cor, self.free.iter().copied().collect())
+    }
+
+    /// The rotation length, in D.
+    pub(in crate::run) const fn rho(&self) -> f64 {
+        self.rho
+    }
+
     /// How many errors are free.
-    pub(super) const fn count(&self) -> usize {
+    pub(in crate::run) const fn count(&self) -> usize {
         self.free.len()
     }
 
     /// Along one error alone, either way.
-    pub(super) fn axes(&self) -> Vec<[f64; 5]> {
+    pub(in crate::run) fn axes(&self) -> Vec<[f64; 5]> {
         let along = |dof: &Dof| {
             [1.0, -1.0].map(|sign| {
                 let mut way = [0.0; 5];
@@ -114,7 +124,7 @@ impl Space {
     }
 
     /// Direction number k of a stream.
-    pub(super) fn random(&self, stream: Stream, k: u64) -> [f64; 5] {
+    pub(in crate::run) fn random(&self, stream: Stream, k: u64) -> [f64; 5] {
         /// Numbers that a direction takes.
         const EACH: u64 = 10;
         let mut way = [0.0; 5];
@@ -126,7 +136,7 @@ impl Space {
     }
 
     /// From a rest towards another pose error, and how far that is; none where it is the same.
-    pub(super) fn towards(&self, rest: &Rested, to: &PoseError) -> Option<[f64; 5]> {
+    pub(in crate::run) fn towards(&self, rest: &Rested, to: &PoseError) -> Option<[f64; 5]> {
         let (from, to) = (rest.error.to_array(), to.to_array());
         let mut way = [0.0; 5];
         for dof in &self.free {
@@ -137,7 +147,7 @@ impl Space {
     }
 
     /// Where a push by `length` in a direction leads from a rest.
-    pub(super) fn displaced(&self, rest: &Rested, way: &[f64; 5], length: f64) -> CorPose {
+    pub(in crate::run) fn displaced(&self, rest: &Rested, way: &[f64; 5], length: f64) -> CorPose {
         let lateral = rest.pose.lateral + DVec2::new(way[0], way[1]) * length;
         let turn = [way[2], way[3], way[4]].map(|part| part * length / self.rho);
         let rotation = if self.spherical {
@@ -153,7 +163,7 @@ impl Space {
     }
 
     /// The pose error there. Of angles that are not all free it is their sum, also beyond 90° of pitch; what is locked stays exactly 0.
-    pub(super) fn error(&self, rest: &Rested, way: &[f64; 5], length: f64) -> PoseError {
+    pub(in crate::run) fn error(&self, rest: &Rested, way: &[f64; 5], length: f64) -> PoseError {
         let pose = self.displaced(rest, way, length);
         let error = pose.to_error(self.cor);
         if self.spherical {
@@ -173,7 +183,7 @@ impl Space {
 }
 
 /// A direction moved by another.
-pub(super) fn moved(way: &[f64; 5], by: &[f64; 5], share: f64) -> [f64; 5] {
+pub(in crate::run) fn moved(way: &[f64; 5], by: &[f64; 5], share: f64) -> [f64; 5] {
     unit(std::array::from_fn(|k| way[k] + share * by[k]))
 }
 
@@ -183,14 +193,14 @@ fn unit(way: [f64; 5]) -> [f64; 5] {
 }
 
 /// A standard normal number from two of a stream (Box and Muller, 1958).
-pub(super) fn normal(stream: Stream, j: u64) -> f64 {
+pub(in crate::run) fn normal(stream: Stream, j: u64) -> f64 {
     // In (0, 1]: its logarithm is finite.
     let radius = (-2.0 * libm::log(1.0 - stream.uniform(j))).sqrt();
     radius * libm::cos(std::f64::consts::TAU * stream.uniform(j + 1))
 }
 
 /// The height at a pose that is reached from no higher than `ceiling`.
-pub(super) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f64) -> Ground {
+pub(in crate::run) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f64) -> Ground {
     nearby.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
     let (below, covered) = nearby.height_below(pose.lateral, ceiling);
     match below {
@@ -202,10 +212,10 @@ pub(super) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f64) -> G
 }
 
 /// Rises that count as climbing and not as a wall, per length: a slope of 87°.
-pub(super) const STEEPEST: f64 = 20.0;
+pub(in crate::run) const STEEPEST: f64 = 20.0;
 
 /// How firmly a half rests.
-pub(super) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
+pub(in crate::run) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
     let space = Space::of(pair);
     let mut nearby = pair.about(2.0 * PUSH);
     let mut rise = |way: &[f64; 5], push: f64| {
@@ -233,6 +243,10 @@ pub(super) fn held(pair: &Pair, rest: &Rested, seed: u64) -> Held {
         // Smaller and smaller moves: from a radian to a hundredth.
         let share = 0.01f64.powf(k as f64 / MOVES as f64);
         let way = moved(&best.0, &space.random(stream, tries + k), share);
+        if way == [0.0; 5] {
+            // Of one free error a move may lead back to where it is.
+            continue;
+        }
         let found = rise(&way, PUSH);
         if found < best.1 {
             best = (way, found);

@@ -15,14 +15,14 @@ const LOCKED: f64 = 1e-6;
 const MOST: usize = 600;
 
 /// The symmetries of a pair.
-pub(super) struct Images {
+pub(in crate::run) struct Images {
     pairs: Vec<[DMat3; 2]>,
     free: DofSet,
     rho: f64,
 }
 
 impl Images {
-    pub(super) fn of(features: &Features, alignment: &Alignment) -> Self {
+    pub(in crate::run) fn of(features: &Features, alignment: &Alignment) -> Self {
         let [fixed, moving] = [Side::Fixed, Side::Moving].map(|side| &features.turns(side).0);
         let like = |a: &DMat3, b: &DMat3| (a.determinant() > 0.0) == (b.determinant() > 0.0);
         let pairs =
@@ -59,12 +59,12 @@ impl Images {
     }
 
     /// Distance of two poses in the metric of the motion, in D.
-    pub(super) fn distance(&self, a: &CorPose, b: &CorPose) -> f64 {
+    pub(in crate::run) fn distance(&self, a: &CorPose, b: &CorPose) -> f64 {
         step_length(a.lateral - b.lateral, angle_between(&a.rotation, &b.rotation), self.rho)
     }
 
     /// The image of `pose` that is nearest to `to`, and how near that is.
-    pub(super) fn nearest(&self, pose: &CorPose, to: &CorPose) -> (CorPose, f64) {
+    pub(in crate::run) fn nearest(&self, pose: &CorPose, to: &CorPose) -> (CorPose, f64) {
         let mut best = (*pose, self.distance(pose, to));
         for image in self.each(pose) {
             let distance = self.distance(&image, to);
@@ -77,7 +77,7 @@ impl Images {
 
     /// How far a pose is off another one, whose error is given: lateral offset of the COR, and the turns of the Euler angles that lead there
     /// to first order, about their own axes; in D and radians. Exact for one rotation.
-    pub(super) fn off(&self, pose: &CorPose, from: &CorPose, error: &PoseError) -> [f64; 5] {
+    pub(in crate::run) fn off(&self, pose: &CorPose, from: &CorPose, error: &PoseError) -> [f64; 5] {
         let lateral = pose.lateral - from.lateral;
         let turn = DQuat::from_mat3(&(pose.rotation * from.rotation.transpose())).to_scaled_axis();
         let axes = euler_axes(error.pitch, error.yaw);
@@ -89,12 +89,12 @@ impl Images {
     }
 
     /// The rotation length, in D.
-    pub(super) const fn rho(&self) -> f64 {
+    pub(in crate::run) const fn rho(&self) -> f64 {
         self.rho
     }
 
     /// Whether an image of `pose` may be as near to `to` as this: what no symmetry changes is compared.
-    pub(super) fn may_be_near(&self, pose: &CorPose, to: &CorPose, near: f64) -> bool {
+    pub(in crate::run) fn may_be_near(&self, pose: &CorPose, to: &CorPose, near: f64) -> bool {
         let tilt = |pose: &CorPose| pose.rotation.z_axis.z.clamp(-1.0, 1.0).acos();
         (pose.lateral.length() - to.lateral.length()).abs() <= near
             && (tilt(pose) - tilt(to)).abs() * self.rho <= near

@@ -15,15 +15,15 @@
 //! - **Way out**: by how much it must be lifted, at most, to get to where motion leads lower: the least climb of all ways that were tried, each
 //!   straight. A bent way may be lower, so this is a bound from above alone.
 //!
-//! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out: with it
-//! there are more rests. Lengths in D, angles in radians.
+//! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Rise is that of the height alone:
+//! with friction a half may stay where it would fall. Lengths in D, angles in radians.
 
-mod clusters;
+pub(super) mod clusters;
 mod draw;
-mod escape;
+pub(super) mod escape;
 mod firmness;
-mod images;
-mod rests;
+pub(super) mod images;
+pub(super) mod rests;
 #[cfg(test)]
 mod tests;
 
@@ -35,7 +35,7 @@ use crate::connector::Side;
 use crate::contact::{FeatureKind, Features};
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
-use crate::method::descent;
+use crate::method::descent::{self, FrictionOutOfRange};
 use crate::pose::{Dof, PoseError};
 use crate::poses::Distribution;
 use crate::problem::Problem;
@@ -43,7 +43,7 @@ use clusters::Cluster;
 use glam::DVec3;
 use images::Images;
 use rayon::prelude::*;
-use rests::{Follow, Rested};
+use rests::{Follow, Rested, Which};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -59,11 +59,13 @@ pub struct Settings {
     pub errors: Option<Distribution>,
     /// How many jams are examined, those with most of the poses.
     pub examined: usize,
+    /// Coefficient of friction between the halves.
+    pub friction: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { motions: None, seed: 1, errors: None, examined: 6 }
+        Self { motions: None, seed: 1, errors: None, examined: 6, friction: 0.0 }
     }
 }
 
@@ -104,7 +106,7 @@ pub struct Jam {
     pub places: usize,
     /// What touches.
     pub contacts: Vec<Touched>,
-    /// What was found out about it; none of jams beyond those that are examined.
+    /// What was found out about it; none of those beyond those that are examined.
     pub examined: Option<Examined>,
 }
 
@@ -161,6 +163,9 @@ pub struct Examined {
 /// Why no jams can be told.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum JamsError {
+    /// No coefficient of friction.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
     /// Nothing was asked.
     #[error("no motions, no jams: follow one random pose at least")]
     Nothing,
@@ -218,7 +223,8 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, 
     }
     let settings = Settings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
-    let follow = Follow { problem, features: &features };
+    let followed_by = descent::Settings::with_friction(settings.friction)?;
+    let follow = Follow { problem, features: &features, motions: &followed_by, which: Which::Jams };
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
         return Err(JamsError::Nothing);
     };
@@ -281,7 +287,7 @@ impl Jams {
 }
 
 impl Jam {
-    fn of(
+    pub(super) fn of(
         problem: &Problem,
         features: &Features,
         rests: &[Rested],
@@ -312,7 +318,8 @@ pub(crate) fn what_sticks(
     exec: &Exec,
 ) -> Result<(usize, Vec<Touching>), Cancelled> {
     let features = Features::of(problem.pair());
-    let follow = Follow { problem, features: &features };
+    let motions = descent::Settings::default();
+    let follow = Follow { problem, features: &features, motions: &motions, which: Which::Jams };
     let rest = |(pose, friction): &(PoseError, f64)| {
         exec.check()?;
         let settings = descent::Settings { friction: *friction, ..descent::Settings::default() };

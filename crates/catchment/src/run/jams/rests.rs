@@ -1,6 +1,7 @@
 //! Poses followed to where they rest, with the features that touch there.
 
-use super::firmness::Space;
+use super::escape::Leaving;
+use super::firmness::{Firmness, Space};
 use super::{Cluster, Examined, Named, Touched, escape, firmness, part_of};
 use crate::acceptance::{Outcome, Stream};
 use crate::connector::Side;
@@ -23,52 +24,65 @@ const OFF: f64 = 5e-3;
 /// Pushes per free error.
 const PUSHES: usize = 4;
 
-/// What follows poses.
-pub(super) struct Follow<'a> {
-    pub(super) problem: &'a Problem,
-    pub(super) features: &'a Features,
+/// Which ends are places of rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::run) enum Which {
+    /// Those that did not dock.
+    Jams,
+    /// All.
+    All,
 }
 
-/// Where a motion came to rest that did not dock.
+/// What follows poses.
+pub(in crate::run) struct Follow<'a> {
+    pub(in crate::run) problem: &'a Problem,
+    pub(in crate::run) features: &'a Features,
+    /// How.
+    pub(in crate::run) motions: &'a descent::Settings,
+    pub(in crate::run) which: Which,
+}
+
+/// Where a motion came to rest.
 #[derive(Debug, Clone)]
-pub(super) struct Rested {
-    pub(super) error: PoseError,
-    pub(super) pose: CorPose,
-    pub(super) height: f64,
+pub(in crate::run) struct Rested {
+    pub(in crate::run) outcome: Outcome,
+    pub(in crate::run) error: PoseError,
+    pub(in crate::run) pose: CorPose,
+    pub(in crate::run) height: f64,
     /// What touches, by pairs of features in their order.
-    pub(super) met: Vec<Met>,
+    pub(in crate::run) met: Vec<Met>,
     /// The classes of these pairs, sorted.
-    pub(super) signature: Vec<[u32; 2]>,
+    pub(in crate::run) signature: Vec<[u32; 2]>,
 }
 
 /// Two features that touch.
 #[derive(Debug, Clone)]
-pub(super) struct Met {
-    pub(super) features: [u32; 2],
-    pub(super) contacts: Vec<Contact>,
+pub(in crate::run) struct Met {
+    pub(in crate::run) features: [u32; 2],
+    pub(in crate::run) contacts: Vec<Contact>,
 }
 
 /// The classes of two features.
-pub(super) fn classes(features: &Features, [fixed, moving]: [u32; 2]) -> [u32; 2] {
+pub(in crate::run) fn classes(features: &Features, [fixed, moving]: [u32; 2]) -> [u32; 2] {
     [features.class(Side::Fixed, fixed), features.class(Side::Moving, moving)]
 }
 
 impl Follow<'_> {
-    /// Follows every pose; where it rests if it jams.
-    pub(super) fn all(
+    /// Follows every pose; where it rests, if that is asked.
+    pub(in crate::run) fn all(
         &self,
         poses: &[PoseError],
         exec: &Exec,
     ) -> Result<Vec<(Outcome, Option<Rested>)>, Cancelled> {
-        let (done, settings) = (AtomicUsize::new(0), descent::Settings::default());
+        let done = AtomicUsize::new(0);
         exec.install(|| {
             poses
                 .par_iter()
                 .map_init(
-                    || Follower::new(self.problem.pair(), &settings),
+                    || Follower::new(self.problem.pair(), self.motions),
                     |follower, pose| {
                         exec.check()?;
-                        let rest = follower.settle(pose);
+                        let rest = self.end(follower, pose);
                         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                         if done.is_multiple_of(BETWEEN) {
                             exec.report(done as f64 / poses.len() as f64, "motions");
@@ -80,8 +94,20 @@ impl Follow<'_> {
         })
     }
 
+    /// Follows one pose as far as it matters.
+    fn end(&self, follower: &mut Follower<'_>, pose: &PoseError) -> Rest {
+        match self.which {
+            Which::Jams => follower.settle(pose),
+            Which::All => follower.come_to_rest(pose),
+        }
+    }
+
+    fn is_rest(&self, outcome: Outcome) -> bool {
+        outcome == Outcome::Jammed || self.which == Which::All && outcome == Outcome::Aligned
+    }
+
     pub(super) fn rested(&self, rest: &Rest) -> Option<Rested> {
-        let height = rest.height.filter(|_| rest.outcome == Outcome::Jammed)?;
+        let height = rest.height.filter(|_| self.is_rest(rest.outcome))?;
         let alignment = self.problem.alignment();
         let pose = CorPose::from_error(&rest.error, alignment.center_of_rotation, alignment.free);
         let mut by_pair: BTreeMap<[u32; 2], Vec<Contact>> = BTreeMap::new();
@@ -97,22 +123,21 @@ impl Follow<'_> {
         let mut signature: Vec<[u32; 2]> =
             met.iter().map(|met| classes(self.features, met.features)).collect();
         signature.sort_unstable();
-        Some(Rested { error: rest.error, pose, height, met, signature })
+        Some(Rested { outcome: rest.outcome, error: rest.error, pose, height, met, signature })
     }
 
     /// How firmly a rest holds, which way leads out, and whether it comes back when it is pushed.
-    pub(super) fn examine(&self, rest: &Rested, cluster: &Cluster, seed: u64) -> Examined {
+    pub(in crate::run) fn examine(&self, rest: &Rested, cluster: &Cluster, seed: u64) -> Examined {
         let pair = self.problem.pair();
         let space = Space::of(pair);
         let held = cluster.held.unwrap_or_else(|| firmness::held(pair, rest, seed));
-        let settings = descent::Settings::default();
-        let mut follower = Follower::new(pair, &settings);
+        let mut follower = Follower::new(pair, self.motions);
         let stream = Stream::new(seed).branch(OFF.to_bits());
         let pushed = PUSHES * space.count();
         let rho = pair.alignment.rotation_length;
         let back = (0..pushed).filter(|k| {
             let way = space.random(stream, *k as u64);
-            let end = follower.settle(&space.error(rest, &way, OFF));
+            let end = self.end(&mut follower, &space.error(rest, &way, OFF));
             let pose =
                 CorPose::from_error(&end.error, pair.alignment.center_of_rotation, pair.alignment.free);
             let off = step_length(
@@ -120,27 +145,31 @@ impl Follow<'_> {
                 angle_between(&pose.rotation, &rest.pose.rotation),
                 rho,
             );
-            end.outcome == Outcome::Jammed && off <= 2.0 * OFF
+            self.is_rest(end.outcome) && off <= 2.0 * OFF
         });
         let back = back.count();
-        Examined { held, way_out: escape::way_out(pair, rest, seed), pushed, back }
+        let leaving = match self.which {
+            Which::Jams => Leaving::Jam,
+            Which::All => Leaving::Rest { is_level: held.firmness == Firmness::Level },
+        };
+        Examined { held, way_out: escape::way_out(pair, rest, self.motions, leaving, seed), pushed, back }
     }
 }
 
 impl Rested {
     /// Everything that touches, named.
-    pub(super) fn touched(&self, problem: &Problem, features: &Features) -> Vec<Touched> {
+    pub(in crate::run) fn touched(&self, problem: &Problem, features: &Features) -> Vec<Touched> {
         self.met.iter().map(|met| self.name(problem, features, met)).collect()
     }
 
     /// The names of two features that touch.
-    pub(super) fn names(features: &Features, met: &Met) -> [String; 2] {
+    pub(in crate::run) fn names(features: &Features, met: &Met) -> [String; 2] {
         let [fixed, moving] = met.features;
         [features.get(Side::Fixed, fixed).name(), features.get(Side::Moving, moving).name()]
     }
 
     /// Two features that touch, named.
-    pub(super) fn name(&self, problem: &Problem, features: &Features, met: &Met) -> Touched {
+    pub(in crate::run) fn name(&self, problem: &Problem, features: &Features, met: &Met) -> Touched {
         let face = {
             let cor = self.pose.lateral.extend(self.height);
             cor + face_from_cor(&self.pose.rotation, problem.alignment().center_of_rotation)

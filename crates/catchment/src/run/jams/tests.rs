@@ -132,3 +132,18 @@ fn errors_are_drawn_as_they_are_distributed() {
     assert!(poses.iter().all(|e| e.y.abs() <= 0.3) && poses.iter().any(|e| e.y > 0.28));
     assert!(problem.alignment().free == DofSet::ALL);
 }
+
+/// Offsets alone on facets of a slope of 0.2: below it friction changes nothing, above it all jam on the slopes.
+#[test]
+fn friction_above_the_slope_jams_all_over_it() {
+    let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
+    let problem = Problem::of(crate::design::read(text, ".".as_ref()).unwrap().design).unwrap();
+    let with = |friction: f64| {
+        let settings = Settings { motions: Some(300), friction, ..Settings::default() };
+        run(&problem, &settings, &Exec::new()).unwrap()
+    };
+    assert_eq!(with(0.1).counts, with(0.0).counts);
+    let stuck = with(0.3);
+    assert!(stuck.counts[0] < 15 && stuck.counts[1] > 130, "{:?}", stuck.counts);
+    assert!(stuck.pairs.iter().any(|pair| pair.fixed.name.contains("slope of 11")), "{:?}", stuck.pairs);
+}

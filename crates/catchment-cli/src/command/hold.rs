@@ -1,0 +1,143 @@
+//! `catchment hold`: how hard a docked half may be pushed and twisted.
+
+use crate::args::{DesignArgs, quantity};
+use crate::asked::AskedArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::FileArgs;
+use catchment::design::Quantity;
+use catchment::poses::parse_pose;
+use catchment::problem::Problem;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{HoldReport, csv, figure};
+use catchment::study::hold::{HoldError, Settings, run as find};
+use clap::Args;
+use std::time::Instant;
+
+/// How hard a docked half may be pushed and twisted until it leaves
+///
+/// Pressed on by a preload along -z through the centre of rotation, the half rests in its mated pose. Finds the smallest force sideways, in
+/// every direction, and the smallest torque about every free axis that no forces of the contacts withstand: as shares of the preload, or in N. Each where
+/// the half is guided (it moves as it is pushed and up, nothing else) and where it is free to tilt.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment hold design.toml\n  \
+    catchment hold design.toml --friction 0.2 --preload 40 -o hold.png\n  \
+    catchment hold design.toml --lever '30 mm'      pushed 30 mm above the face centre\n  \
+    catchment hold design.toml --pose 'x=0.1,pitch=100 deg'\n                                                  where that pose comes to rest\n  \
+    catchment hold design.toml --require 'least_force>=0.3'\n  \
+    catchment hold design.toml --json | jq '.weakest.smooth_free'\n\n\
+    -o writes .png and .svg (pictures), .csv (a line per load) and .json. Forces are shares of the preload, torques of the preload times D, and angles \
+    in radians in CSV and JSON.")]
+pub(crate) struct HoldArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Coefficient of friction between the halves
+    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    friction: f64,
+    /// What presses the half on, in newtons: forces are told in N instead of shares of it
+    #[arg(long, value_name = "NEWTONS", value_parser = newtons, allow_hyphen_values = true)]
+    preload: Option<f64>,
+    /// How far above the face centre of the moving half it is pushed: in D, or with a unit, such as "30 mm"
+    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true, default_value = "0")]
+    lever: Quantity,
+    /// The pose error that is let go of; held where it comes to rest [default: the mated pose]
+    #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
+    pose: Option<String>,
+    /// What is no farther apart counts as touching: play that is taken for used [default: 1e-4 D]
+    #[arg(long, value_name = "LENGTH", value_parser = quantity, allow_hyphen_values = true)]
+    play: Option<Quantity>,
+    /// Directions sideways that are tried
+    #[arg(long, value_name = "N", default_value_t = 72, value_parser = clap::value_parser!(u32).range(4..=3600))]
+    directions: u32,
+    #[command(flatten)]
+    asked: AskedArgs,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &HoldArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
+    let problem = args.design.problem()?;
+    let settings = args.settings(&problem)?;
+    let running = args.exec.start()?;
+    let found = find(&problem, &settings, &running.exec).map_err(refused)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = HoldReport::new(problem.design(), &found, args.preload, doubts, Some(timing));
+    args.asked.check(&report)?;
+    match kind {
+        Some("csv") => args.file.write(&csv(&report.records())?)?,
+        Some("json") => args.file.write(report.to_json()?.as_bytes())?,
+        Some(kind) => {
+            let picture = figure::hold(&report)?;
+            if kind == "png" {
+                args.file.write(&picture.png(PNG_SCALE)?)?;
+            } else {
+                args.file.write(picture.svg().as_bytes())?;
+            }
+        }
+        None => {}
+    }
+    args.asked.tell(&report, HoldReport::table)
+}
+
+impl HoldArgs {
+    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
+        let design = problem.design();
+        let length = |option: &str, quantity: &Quantity| {
+            quantity.length_d(&design.scale()).map_err(|complaint| {
+                Failure::with_help(format!("{option}: {complaint}"), complaint.help().map(Into::into))
+            })
+        };
+        let pose = match &self.pose {
+            None => None,
+            Some(text) => Some(
+                parse_pose(text, design).map_err(|findings| Failure::of_option("--pose", text, findings))?,
+            ),
+        };
+        let play = self.play.as_ref().map(|play| length("--play", play)).transpose()?;
+        let defaults = Settings::default();
+        Ok(Settings {
+            friction: self.friction,
+            directions: self.directions as usize,
+            lever: length("--lever", &self.lever)?,
+            play: play.unwrap_or(defaults.play),
+            pose,
+        })
+    }
+}
+
+/// A preload.
+fn newtons(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        Ok(_) => Err("a preload presses the half on: a number above 0, in newtons".to_owned()),
+        Err(_) => Err("a preload is a number of newtons, such as 40".to_owned()),
+    }
+}
+
+/// Why nothing can be said, with what helps.
+fn refused(error: HoldError) -> Failure {
+    let help = match &error {
+        HoldError::NoRest { .. } => {
+            Some("catchment trace --pose shows its way; start from a pose that comes to rest")
+        }
+        HoldError::NotHeld => Some(
+            "catchment check says whether the aligned pose is a mated one; --play takes what is farther apart for touching",
+        ),
+        _ => None,
+    };
+    match help {
+        Some(help) => Failure::with_help(error.to_string(), Some(help.to_owned())),
+        None => error.into(),
+    }
+}

@@ -1,0 +1,87 @@
+//! `catchment rests`: where a half rests under its load.
+
+use super::run::resolution;
+use crate::args::DesignArgs;
+use crate::asked::AskedArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::FileArgs;
+use catchment::landscape::Resolution;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{RestsReport, csv, figure};
+use catchment::run::rests::{Rests, Settings, run as find};
+use clap::Args;
+use std::time::Instant;
+
+/// Where a half rests under its load: every equilibrium, how it is held, and what it takes to leave
+///
+/// The two halves may be any pair: a hand and what it grasps, a fixture and its part, the ground and what stands on it. Follows random poses of
+/// the error box by exact motion to where they rest; the load acts along -z through the centre of rotation. Of each rest: its basin, what touches, whether it is
+/// immobile to first order or to second (Rimon and Burdick), how far it must be lifted at most to leave, and where that leads.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment rests design.toml\n  \
+    catchment rests design.toml -o rests.png        each rest cut through its contacts, and in space\n  \
+    catchment rests design.toml --require 'rests.0.depth_at_most_d>=0.1'\n  \
+    catchment rests design.toml --json | jq '.rests[] | {pose, depth_at_most_d}'\n\n\
+    -o writes .png and .svg (pictures), .csv (a line per rest) and .json. Lengths are in D and angles in radians in CSV and JSON. Another direction \
+    of the load is another approach of the design.")]
+pub(crate) struct RestsArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Random poses of the error box [default: 4000, fewer for round halves]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    motions: Option<u32>,
+    /// Seed of the random poses and of all searches
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// How many rests are examined: by which order they are held, and the way out
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    examine: u32,
+    /// A grid over the error box whose merge tree says depths, too, such as 200 or x=100,pitch=50
+    #[arg(long, value_name = "CELLS", value_parser = resolution)]
+    resolution: Option<Resolution>,
+    #[command(flatten)]
+    asked: AskedArgs,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
+    let problem = args.design.problem()?;
+    let settings = Settings {
+        motions: args.motions.map(|motions| motions as usize),
+        seed: args.seed,
+        examined: args.examine as usize,
+        resolution: args.resolution.clone(),
+    };
+    let running = args.exec.start()?;
+    let found: Rests = find(&problem, &settings, &running.exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = RestsReport::new(problem.design(), &found, doubts, Some(timing));
+    args.asked.check(&report)?;
+    match kind {
+        Some("csv") => args.file.write(&csv(&report.records())?)?,
+        Some("json") => args.file.write(report.to_json()?.as_bytes())?,
+        Some(kind) => {
+            let picture = figure::rests(&report, problem.connector())?;
+            if kind == "png" {
+                args.file.write(&picture.png(PNG_SCALE)?)?;
+            } else {
+                args.file.write(picture.svg().as_bytes())?;
+            }
+        }
+        None => {}
+    }
+    args.asked.tell(&report, RestsReport::table)
+}

@@ -1,0 +1,63 @@
+//! Rests, through the real binary.
+
+use super::{catchment, json, run};
+use serde_json::Value;
+use std::fs;
+
+/// A cube of 50 mm on a plane, its centre of rotation in its middle, with pitch alone free.
+fn home() -> tempfile::TempDir {
+    let home = tempfile::tempdir().unwrap();
+    let text = "[connector]\nwidth = 50.0\nunit = \"mm\"\n[[connector.fixed.parts]]\nbox = [300, 300, 20]\n\
+                [[connector.moving.parts]]\nbox = [50, 50, 50]\n[alignment]\nfree = [\"pitch\"]\ncenter_of_rotation = -0.5\n\
+                rotation_length = 0.5\n[errors]\npitch = \"80 deg\"\n";
+    fs::write(home.path().join("cube.toml"), text).unwrap();
+    home
+}
+
+#[test]
+fn a_cube_is_as_deep_as_its_edge_says_in_millimetres() {
+    let home = home();
+    let report = json(home.path(), &["rests", "cube.toml", "--motions", "300", "--json"]);
+    // (√2 − 1)/2; the way is looked at every thousandth of its radius.
+    let depth = report["rests"][0]["depth_at_most_d"].as_f64().unwrap();
+    assert!((depth - 0.5 * (2f64.sqrt() - 1.0)).abs() < 1e-4, "{depth}");
+    assert_eq!(report["rests"][0]["immobility"]["order"], "first");
+    // D/2 per radian, in a metric of D/2 per radian.
+    assert!((report["rests"][0]["immobility"]["slope"][0].as_f64().unwrap() - 1.0).abs() < 1e-4);
+    let told = run(home.path(), &["rests", "cube.toml", "--motions", "300"]);
+    assert!(
+        told.starts_with("exit 0\n") && told.contains("lifted by 10.36 mm at most, and it comes to"),
+        "{told}"
+    );
+    assert!(told.contains("immobile to first order: rises by at least"), "{told}");
+    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+}
+
+#[test]
+fn threads_change_nothing_and_files_are_whole() {
+    let home = home();
+    let with = |threads: &str| {
+        let args = ["rests", "cube.toml", "--motions", "200", "--json", "--threads", threads];
+        let mut report = json(home.path(), &args);
+        report["timing"] = Value::Null;
+        report
+    };
+    assert_eq!(with("1"), with("2"));
+    assert_eq!(with("1"), with("4"));
+    for (file, begins) in [("r.svg", "<svg"), ("r.csv", "rest,count,share,"), ("r.json", "{\n")] {
+        let told = run(home.path(), &["rests", "cube.toml", "--motions", "200", "-o", file]);
+        assert!(told.starts_with("exit 0\n"), "{told}");
+        assert!(fs::read_to_string(home.path().join(file)).unwrap().starts_with(begins));
+    }
+}
+
+#[test]
+fn a_requirement_decides_the_exit_code() {
+    let home = home();
+    let code = |require: &str| {
+        let args = ["rests", "cube.toml", "--motions", "200", "--require", require];
+        catchment(home.path()).args(args).output().unwrap().status.code()
+    };
+    assert_eq!(code("rests.0.depth_at_most_d>=0.2"), Some(0));
+    assert_eq!(code("rests.0.depth_at_most_d>=0.21"), Some(1));
+}

@@ -1,0 +1,140 @@
+//! Closed forms of what a half withstands, and a judge that tries motions.
+
+use super::holding::{self, Guide, Holding, Load};
+use crate::acceptance::Stream;
+use crate::contact::Pair;
+use crate::pose::PoseError;
+use crate::problem::Problem;
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_4, SQRT_2};
+use std::path::Path;
+
+/// A load of 10⁻⁷ of the push that is not held counts as none.
+const EXACT: f64 = 2e-6;
+
+fn pair(connector: &str, free: &str) -> Pair {
+    let text = format!(
+        "[connector]\n{connector}\n[alignment]\nfree = [{free}]\ncenter_of_rotation = 0.0\nrotation_length = 0.5\n"
+    );
+    Problem::of(crate::design::read(&text, Path::new("")).unwrap().design).unwrap().pair().clone()
+}
+
+const ALL: &str = "\"x\", \"y\", \"roll\", \"pitch\", \"yaw\"";
+const PLANE: &str = "\"x\", \"pitch\"";
+
+fn mated(pair: &Pair) -> Holding {
+    Holding::at(pair, &PoseError::default(), holding::TOUCHING).unwrap()
+}
+
+fn sideways(degrees: f64) -> Load {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Load { force: DVec3::new(cos, sin, 0.0), moment: DVec3::ZERO }
+}
+
+fn about(moment: DVec3) -> Load {
+    Load { force: DVec3::ZERO, moment }
+}
+
+/// h = AR·max(|x|, |y|): AR along x and y, AR/√2 at 45°; a twist lifts by AR/2 of D.
+#[test]
+fn the_spatial_x_face_takes_its_aspect_ratio() {
+    let ratio = 3f64.sqrt().recip();
+    let pair = pair(&format!("family = \"x-face-3d\"\naspect_ratio = {ratio}"), ALL);
+    let mut held = mated(&pair);
+    let mut most = |load: &Load| held.most(load, Guide::Along, 0.0).unwrap();
+    for (degrees, expected) in [(0.0, ratio), (90.0, ratio), (180.0, ratio), (45.0, ratio / SQRT_2)] {
+        let found = most(&sideways(degrees));
+        assert!((found - expected).abs() < EXACT, "{degrees}: {found} {expected}");
+    }
+    for side in [1.0, -1.0] {
+        let found = most(&about(DVec3::Z * side));
+        assert!((found - ratio / 2.0).abs() < EXACT, "{found}");
+    }
+}
+
+/// A lip with draft δ takes cot δ instead of its aspect ratio, and an upright one anything.
+#[test]
+fn a_lip_takes_the_cotangent_of_its_draft() {
+    for draft in [0.1f64, 0.3] {
+        let pair = pair(&format!("family = \"x-face-3d-locking\"\ndraft_angle = {draft}"), ALL);
+        let found = mated(&pair).most(&sideways(0.0), Guide::Along, 0.0).unwrap();
+        assert!((found * draft.tan() - 1.0).abs() < 1e-5, "{draft}: {found}");
+    }
+    let upright = pair("family = \"x-face-3d-locking\"", ALL);
+    // Its play ends within the clearance: before, it is a plain face.
+    let [before, behind] = [1e-4, 0.1].map(|near| {
+        let held = Holding::at(&upright, &PoseError::default(), near);
+        held.unwrap().most(&sideways(0.0), Guide::Along, 0.0).unwrap()
+    });
+    assert!(before < 1.0 && behind == f64::INFINITY, "{before} {behind}");
+}
+
+/// On one flank of slope α a force climbs at tan(α + φ), and where that is a right angle at none.
+#[test]
+fn a_flank_with_friction_takes_the_tangent_of_both_angles() {
+    let pair = pair("family = \"v-face\"\naspect_ratio = 0.6", "\"x\"");
+    let slope = 1.2f64.atan();
+    for friction in [0.0f64, 0.1, 0.3, 0.6] {
+        let expected = (slope + friction.atan()).tan();
+        let found = mated(&pair).most(&sideways(0.0), Guide::Free, friction).unwrap();
+        assert!((found - expected).abs() < 1e-5 * expected, "{friction}: {found} {expected}");
+    }
+    assert_eq!(mated(&pair).most(&sideways(180.0), Guide::Free, 0.9), Some(f64::INFINITY));
+}
+
+/// Something flat slides at the coefficient of friction and tips over its edge: D/2 from the middle.
+#[test]
+fn a_plate_slides_at_its_friction_and_tips_over_its_edge() {
+    let text = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nbox = [2.0, 2.0, 0.5]\n[[connector.moving.parts]]\n\
+                box = [1.0, 1.0, 0.5]\n[alignment]\nfree = [\"roll\", \"pitch\"]\nrotation_length = 0.5\n\
+                center_of_rotation = 0.0\n";
+    let design = crate::design::read(text, Path::new("")).unwrap().design;
+    let pair = Problem::of(design).unwrap().pair().with_free(crate::pose::DofSet::ALL);
+    let mut held = mated(&pair);
+    for friction in [0.0, 0.25] {
+        let found = held.most(&sideways(30.0), Guide::Along, friction).unwrap();
+        assert!((found - friction).abs() < EXACT, "{found}");
+    }
+    for axis in [DVec3::X, DVec3::NEG_Y] {
+        let found = held.most(&about(axis), Guide::Free, 0.0).unwrap();
+        assert!((found - 0.5).abs() < EXACT, "{axis}: {found}");
+    }
+    let across = DVec3::new(FRAC_PI_4.cos(), FRAC_PI_4.sin(), 0.0);
+    let found = held.most(&about(across), Guide::Free, 0.0).unwrap();
+    assert!((found - 0.5 * SQRT_2).abs() < EXACT, "{found}");
+}
+
+/// No motion that the contacts allow lifts by less per way of the load than the half withstands, and some lifts hardly more.
+#[test]
+fn the_least_lift_of_all_motions_is_what_it_withstands() {
+    const TRIED: u64 = 200_000;
+    let pair = pair("family = \"v-face\"\naspect_ratio = 0.5", PLANE);
+    let mut held = mated(&pair);
+    let rows: Vec<[f64; 3]> = held
+        .contacts()
+        .iter()
+        .map(|(contact, _)| {
+            let turn = (contact.point - held.cor()).cross(contact.normal).y / 0.5;
+            [contact.normal.x, contact.normal.z, turn]
+        })
+        .collect();
+    let stream = Stream::new(3);
+    for (force, moment) in [([1.0, 0.0], 0.0), ([0.0, 0.0], 0.4), ([1.0, 0.0], -0.3)] {
+        let load = Load { force: DVec3::new(force[0], 0.0, 0.0), moment: DVec3::Y * moment };
+        let most = held.most(&load, Guide::Free, 0.0).unwrap();
+        let mut least = f64::INFINITY;
+        for k in 0..TRIED {
+            let side = |j: u64| 2.0 * stream.uniform(2 * k + j) - 1.0;
+            let [x, turn] = [side(0), side(1)];
+            let way = force[0] * x + moment / 0.5 * turn;
+            if way <= 1e-3 {
+                continue;
+            }
+            let lift =
+                rows.iter().map(|[nx, nz, nt]| -(nx * x + nt * turn) / nz).fold(f64::NEG_INFINITY, f64::max);
+            least = least.min(lift / way);
+        }
+        assert!(most <= least + EXACT, "{load:?}: {most} {least}");
+        assert!(least < most * 1.02 + 1e-3, "{load:?}: {most} {least}");
+    }
+}

@@ -1,0 +1,164 @@
+//! What is told of a place of rest, of jams and of all others: where it is, how it is held, what touches.
+
+use super::text::wrapped;
+use super::{ContactReport, ExaminedReport, ExtentReport, FeatureReport};
+use crate::design::Design;
+use crate::pose::{Dof, PoseError};
+use crate::run::jams::Firmness;
+
+/// A line of a place, wrapped.
+pub(super) fn said(text: &mut String, name: &str, words: &str) {
+    wrapped(text, &format!("  {name:<15}"), words);
+}
+
+/// What touches, in words, the same pairs said once: `rim on wall, twice`.
+pub(super) fn words(contacts: &[ContactReport]) -> Vec<String> {
+    let mut said: Vec<(String, usize)> = Vec::new();
+    for contact in contacts {
+        let words =
+            format!("{} of the moving half on {} of the fixed one", contact.moving.name, contact.fixed.name);
+        match said.iter_mut().find(|(other, _)| *other == words) {
+            Some((_, count)) => *count += 1,
+            None => said.push((words, 1)),
+        }
+    }
+    let times = |count: usize| match count {
+        1 => String::new(),
+        2 => ", twice".to_owned(),
+        n => format!(", {n} times"),
+    };
+    said.into_iter().map(|(words, count)| words + &times(count)).collect()
+}
+
+/// Lengths and poses of a design, in words.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Told<'a> {
+    design: &'a Design,
+}
+
+impl<'a> Told<'a> {
+    /// Of a design.
+    pub(super) const fn of(design: &'a Design) -> Self {
+        Self { design }
+    }
+
+    /// How firmly it is held, in words.
+    pub(super) fn held(self, examined: &ExaminedReport) -> String {
+        let push = self.length(examined.push_d);
+        let rise = match (examined.firmness, examined.rise_at_most_d) {
+            (Firmness::Level, Some(rise)) => {
+                format!("near-level: pushed {push} one way it rises by {} only", self.fine(rise))
+            }
+            (Firmness::Ridge, _) => {
+                format!("not at all: pushed {push} one way it falls, it came to rest on a ridge")
+            }
+            (firmness, Some(rise)) => {
+                format!(
+                    "{}: pushed {push} the weakest way found it rises by {}",
+                    firmness.name(),
+                    self.fine(rise)
+                )
+            }
+            (firmness, None) => format!("{}: walls all around", firmness.name()),
+        };
+        format!("{rise}; {} of {} poses beside it came back", examined.back, examined.pushed)
+    }
+
+    /// How far a half must be lifted, in words.
+    pub(super) fn lifted(self, climb: f64) -> String {
+        if climb < NOTHING {
+            "not lifted at all".to_owned()
+        } else {
+            format!("lifted by {} at most", self.fine(climb))
+        }
+    }
+
+    /// What touches, and where on either half.
+    pub(super) fn contact_lines(self, text: &mut String, contacts: &[ContactReport]) {
+        for (k, words) in words(contacts).iter().enumerate() {
+            said(text, if k == 0 { "  touching" } else { "" }, words);
+        }
+        for contact in contacts.iter().take(MOST_CONTACTS) {
+            let [fixed, moving] = [&contact.fixed, &contact.moving].map(|feature| self.drawn(feature));
+            said(text, "", &format!("at {fixed} of the fixed, {moving} of the moving half as drawn"));
+        }
+        if contacts.len() > MOST_CONTACTS {
+            said(text, "", &format!("and at {} more", contacts.len() - MOST_CONTACTS));
+        }
+    }
+
+    /// From where to where rests lie where that is more than a place.
+    pub(super) fn extent(self, pose: &PoseError, extent: &[ExtentReport]) -> String {
+        // On its side roll and yaw are turns about one axis: only their sum, or difference, means anything.
+        let on_its_side = pose.pitch.cos().abs() < ON_ITS_SIDE;
+        let is_told = |axis: Dof| !(on_its_side && matches!(axis, Dof::Roll | Dof::Yaw));
+        let wide = extent.iter().filter(|side| is_told(side.axis) && side.to - side.from > ONE_PLACE);
+        let said: Vec<String> = wide
+            .map(|side| {
+                if side.axis.is_rotation() {
+                    let [from, to] = [side.from, side.to].map(|value| value.to_degrees() + 0.0);
+                    format!("{} {from:.1} … {to:.1}°", side.axis.name())
+                } else {
+                    let [from, to] = [side.from, side.to].map(|value| self.plain(value));
+                    format!("{} {from} … {to} {}", side.axis.name(), self.unit())
+                }
+            })
+            .collect();
+        said.join(", ")
+    }
+
+    fn unit(self) -> &'static str {
+        self.design.unit.map_or("D", |unit| unit.symbol())
+    }
+
+    fn scale(self) -> f64 {
+        if self.design.unit.is_some() { self.design.width } else { 1.0 }
+    }
+
+    fn plain(self, value: f64) -> String {
+        super::text::length(value * self.scale(), self.scale())
+    }
+
+    /// A length with its unit.
+    pub(super) fn length(self, value: f64) -> String {
+        format!("{} {}", self.plain(value), self.unit())
+    }
+
+    /// A small length, to three digits.
+    pub(super) fn fine(self, value: f64) -> String {
+        let value = if value < NOTHING { 0.0 } else { value };
+        format!("{} {}", super::text::significant(value * self.scale()), self.unit())
+    }
+
+    fn drawn(self, feature: &FeatureReport) -> String {
+        let [x, y, z] = feature.drawn_d.map(|part| self.plain(part));
+        let part = feature.part.map_or_else(String::new, |part| format!(" on part {part}"));
+        format!("({x}, {y}, {z}) {}{part}", self.unit())
+    }
+
+    /// A pose error in words.
+    pub(super) fn place(self, error: &PoseError) -> String {
+        let free = self.design.alignment.free.iter();
+        let said: Vec<String> = free
+            .map(|axis| {
+                let value = error.to_array()[axis.index()];
+                if axis.is_rotation() {
+                    let degrees = value.to_degrees();
+                    format!("{} {:.2}°", axis.name(), if degrees.abs() < 5e-3 { 0.0 } else { degrees })
+                } else {
+                    format!("{} {}", axis.name(), self.length(value))
+                }
+            })
+            .collect();
+        said.join(", ")
+    }
+}
+
+/// Cosine of a pitch at which roll and yaw can no longer be told apart: 89°.
+const ON_ITS_SIDE: f64 = 0.0175;
+/// Heights below this are nothing, in D: rounding.
+const NOTHING: f64 = 1e-8;
+/// Contacts whose places are told.
+const MOST_CONTACTS: usize = 4;
+/// Rests within this are at one place, in D or radians.
+const ONE_PLACE: f64 = 0.01;

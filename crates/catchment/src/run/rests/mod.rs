@@ -1,0 +1,201 @@
+//! Where a half rests under its load: all equilibria of a pair, how each is held, and what it takes to leave.
+//!
+//! ```text
+//!      h
+//!      │ ╲        ╱╲      depth: how far it must be lifted to leave = energy per unit of weight
+//!      │  ╲  ╱╲__╱  ╲ ↕
+//!      │   ╲╱        ╲    basin share: how many random poses end there
+//!      └──────────────── q
+//! ```
+//!
+//! The same search as [`crate::run::jams`], where a mated pose is one rest among others: a hand and what it grasps, a fixture and its part, the ground and
+//! what stands on it. The load acts along −z through the centre of rotation, so that z of that point is the energy per unit of weight; another direction is another `approach` of the
+//! design.
+//!
+//! - **Immobility**: [`crate::method::descent::immobility()`], to first or second order.
+//! - **Depth**: the climb of the lowest way out that was found, to a lower rest, to another one, or off: at most so much is needed. A half whose rest nothing
+//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. With a resolution the merge tree of a grid says a depth, too (`grid`). Rests that are shallower than a cage's energy do not hold it.
+//!
+//! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out. Lengths in D, angles
+//! in radians.
+
+mod grid;
+#[cfg(test)]
+mod tests;
+
+use super::jams::clusters::{self, Cluster};
+use super::jams::images::Images;
+use super::jams::rests::{Follow, Rested, Which};
+use super::jams::{Examined, Jam, WayOut};
+use crate::acceptance::{Domain, Outcome};
+use crate::contact::Features;
+use crate::exec::{Cancelled, Exec};
+use crate::landscape::{Resolution, ResolutionError};
+use crate::method::Decide;
+use crate::method::descent::{self, Holding, Immobility, TOUCHING, immobility};
+use crate::method::flood::FloodError;
+use crate::pose::CorPose;
+use crate::problem::Problem;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.
+    pub motions: Option<usize>,
+    /// Their seed, and that of every search.
+    pub seed: u64,
+    /// How many rests are examined, those with most of the poses.
+    pub examined: usize,
+    /// A grid whose merge tree says depths, too; none where nothing is said.
+    pub resolution: Option<Resolution>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { motions: None, seed: 1, examined: 6, resolution: None }
+    }
+}
+
+/// The rests of a pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rests {
+    /// How it was asked for, everything filled in.
+    pub settings: Settings,
+    /// Random poses of the error box by their outcomes, in the order of [`Outcome::ALL`].
+    pub counts: [usize; 4],
+    /// Where they rest, the place with most of them first.
+    pub rests: Vec<Place>,
+}
+
+/// A place, or places alike, where halves come to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// Where, how many poses end there, what touches, how firmly it holds and the lowest way out.
+    pub found: Jam,
+    /// How many of its poses count as docked.
+    pub docked: usize,
+    /// How it is held; none of rests beyond those that are examined, and where contacts do not hold the load.
+    pub immobility: Option<Immobility>,
+    /// The rest to which the way out leads, from 0; none where it leads off, or nowhere known.
+    pub leads_to: Option<usize>,
+    /// The depth that the merge tree of a grid says, in D; none where none was asked for or none is known.
+    pub depth_on_grid: Option<f64>,
+}
+
+/// Why no rests can be told.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RestsError {
+    /// Nothing was asked.
+    #[error("no motions, no rests: follow one random pose at least")]
+    Nothing,
+    /// The grid is none.
+    #[error(transparent)]
+    Resolution(#[from] ResolutionError),
+    /// The grid has no merge tree.
+    #[error(transparent)]
+    Flood(#[from] FloodError),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// A way that ends nearer than this to a rest, in the metric of the motion, in D, leads there.
+const THERE: f64 = 0.1;
+
+/// Finds the rests of a problem.
+///
+/// # Errors
+/// See [`RestsError`].
+///
+/// # Examples
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use catchment::design::read;
+/// use catchment::exec::Exec;
+/// use catchment::problem::Problem;
+/// use catchment::run::rests::{self, Settings};
+///
+/// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n";
+/// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
+/// let found = rests::run(&problem, &Settings { motions: Some(500), ..Settings::default() }, &Exec::new())?;
+/// // Docked, and with the tip on its side in the notch.
+/// assert!(found.rests.len() >= 2 && found.rests[0].docked > 0);
+/// # Ok(())
+/// # }
+/// ```
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests, RestsError> {
+    let motions =
+        settings.motions.unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()));
+    if motions == 0 {
+        return Err(RestsError::Nothing);
+    }
+    let settings = Settings { motions: Some(motions), ..settings.clone() };
+    let features = Features::of(problem.pair());
+    let motions_of = descent::Settings::default();
+    let follow = Follow { problem, features: &features, motions: &motions_of, which: Which::All };
+    let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
+        return Err(RestsError::Nothing);
+    };
+    let ends = follow.all(&poses, exec)?;
+    let counts = Outcome::ALL.map(|outcome| ends.iter().filter(|(end, _)| *end == outcome).count());
+    let rests: Vec<Rested> = ends.into_iter().filter_map(|(_, rested)| rested).collect();
+    let images = Images::of(&features, problem.alignment());
+    let clusters = clusters::gather(problem, &rests, &images, settings.seed, exec)?;
+    let mut places: Vec<Place> = clusters
+        .iter()
+        .map(|cluster| {
+            let found = Jam::of(problem, &features, &rests, rests.len(), false, cluster);
+            let is_docked = |member: &&usize| rests[**member].outcome == Outcome::Aligned;
+            let docked = cluster.members.iter().filter(is_docked).count();
+            Place { found, docked, immobility: None, leads_to: None, depth_on_grid: None }
+        })
+        .collect();
+    let examine = |(k, cluster): (usize, &Cluster)| {
+        exec.check()?;
+        let (rest, seed) = (&rests[cluster.middle], settings.seed.wrapping_add(k as u64));
+        let examined = follow.examine(rest, cluster, seed);
+        let holding = Holding::at_rest(problem.pair(), &rest.error, rest.height, TOUCHING);
+        let immobility = holding.and_then(|held| immobility(problem.pair(), &held, &rest.error, seed));
+        Ok((examined, immobility))
+    };
+    let looked: Vec<(usize, &Cluster)> = clusters.iter().enumerate().take(settings.examined).collect();
+    let seen = exec.install(|| {
+        looked
+            .into_par_iter()
+            .map(examine)
+            .collect::<Result<Vec<(Examined, Option<Immobility>)>, Cancelled>>()
+    })?;
+    let middles: Vec<CorPose> = clusters.iter().map(|cluster| rests[cluster.middle].pose).collect();
+    for (place, (examined, immobility)) in places.iter_mut().zip(seen) {
+        place.leads_to = examined.way_out.and_then(|way| leads_to(problem, &images, &middles, &way));
+        place.found.examined = Some(examined);
+        place.immobility = immobility;
+    }
+    if let Some(resolution) = &settings.resolution {
+        let at: Vec<_> = places.iter().map(|place| (place.found.pose, place.found.height)).collect();
+        let depths = grid::depths(problem, resolution, &at, exec)?;
+        places.iter_mut().zip(depths).for_each(|(place, depth)| place.depth_on_grid = depth);
+    }
+    Ok(Rests { settings, counts, rests: places })
+}
+
+/// The rest that is nearest to the end of a way out.
+fn leads_to(problem: &Problem, images: &Images, middles: &[CorPose], way: &WayOut) -> Option<usize> {
+    if way.to == Outcome::Missed {
+        return None;
+    }
+    let alignment = problem.alignment();
+    let end = CorPose::from_error(&way.end, alignment.center_of_rotation, alignment.free);
+    let far = middles.iter().map(|middle| images.nearest(&end, middle).1).enumerate();
+    far.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, distance)| *distance <= THERE).map(|(k, _)| k)
+}
+
+impl Rests {
+    /// How many random poses of the error box were followed.
+    pub fn motions(&self) -> usize {
+        self.counts.iter().sum()
+    }
+}

@@ -1,0 +1,158 @@
+//! Rests of pairs whose rests are known.
+
+use super::*;
+use crate::design::read;
+use crate::pose::PoseError;
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
+use std::fmt::Write;
+use std::path::Path;
+
+fn problem(text: &str) -> Problem {
+    Problem::of(read(text, Path::new("")).unwrap().design).unwrap()
+}
+
+fn found(problem: &Problem, motions: usize) -> Rests {
+    run(problem, &Settings { motions: Some(motions), ..Settings::default() }, &Exec::new()).unwrap()
+}
+
+fn depth(place: &Place) -> f64 {
+    place.found.examined.unwrap().way_out.unwrap().climb
+}
+
+/// Its centre of rotation in its middle; `errors` far enough to fall on its sides.
+const CUBE: &str = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nbox = [6.0, 6.0, 0.5]\n[[connector.moving.parts]]\n\
+                    box = [1.0, 1.0, 1.0]\n[alignment]\nfree = [\"pitch\"]\ncenter_of_rotation = -0.5\nrotation_length = 0.5\n\
+                    [errors]\npitch = \"120 deg\"\n";
+
+/// Over an edge a cube is lifted from ½ to √2/2; pushed it rises about an edge, by D/2 per turn.
+#[test]
+fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
+    let found = found(&problem(CUBE), 600);
+    assert!(!found.rests.is_empty() && found.counts[2] == 0, "{found:?}");
+    for place in &found.rests {
+        let turn = place.found.pose.pitch / FRAC_PI_2;
+        assert!((turn - turn.round()).abs() < 1e-3, "{place:?}");
+        // Motions end within 10⁻⁵ of a turn, over half a width.
+        assert!((place.found.height - 0.5).abs() < 1e-5, "{place:?}");
+        assert_eq!(place.found.examined.unwrap().held.firmness, crate::run::jams::Firmness::Sharp);
+        assert!((depth(place) - 0.5 * (SQRT_2 - 1.0)).abs() < 1e-4, "{place:?}");
+        let held = place.immobility.unwrap();
+        assert_eq!(held.order, descent::Order::First, "{place:?}");
+        assert!(held.slope.iter().all(|slope| (slope - 1.0).abs() < 1e-3), "{place:?}");
+    }
+    assert_eq!(found.rests.iter().map(|place| place.found.count).sum::<usize>(), 600);
+}
+
+/// A cube let go of a little aside falls back, beyond half a right angle on its side: as a trial by rigid bodies does.
+#[cfg(feature = "drop")]
+#[test]
+fn a_rigid_body_comes_to_the_same_rests() {
+    let problem = problem(CUBE);
+    let drop = "drop".parse().unwrap();
+    let poses = [0.5f64, 1.0].map(|pitch| PoseError { pitch, ..PoseError::default() });
+    let (_, ends) = problem.follow_by(&drop, &poses, &Exec::new()).unwrap();
+    for (end, expected) in ends.iter().zip([0.0, FRAC_PI_2]) {
+        assert!((end.error.pitch - expected).abs() < 0.03, "{end:?}");
+        let exact = descent::settle(
+            problem.pair(),
+            &poses[usize::from(expected > 0.0)],
+            &descent::Settings::default(),
+        );
+        assert!((exact.error.pitch - end.error.pitch).abs() < 0.03, "{exact:?} {end:?}");
+    }
+}
+
+/// A ball of radius r in a funnel of slope s and rim radius R rests with its centre r√(1 + s²) above the apex, and leaves over the rim at R s + r.
+#[test]
+fn a_ball_in_a_cone_leaves_over_its_rim() {
+    const SIDES: usize = 12;
+    let (slope, rim, radius) = (1.0f64, 0.5f64, 0.2f64);
+    // Wedges about the axis: each holds up one plane through the apex; the least rim is in the middle of a side.
+    let mut text = String::from("[connector]\nwidth = 1.0\n");
+    let corner = rim / (std::f64::consts::PI / SIDES as f64).cos();
+    let height = slope * rim;
+    for side in 0..SIDES {
+        let at = |k: usize, r: f64, z: f64| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / SIDES as f64).sin_cos();
+            format!("[{}, {}, {z}]", r * cos, r * sin)
+        };
+        let (a, b) = (side, side + 1);
+        let _ = writeln!(
+            text,
+            "[[connector.fixed.parts]]\npieces = [[[0, 0, 0], [0, 0, -0.1], {}, {}, {}, {}]]",
+            at(a, corner, height),
+            at(b, corner, height),
+            at(a, corner, -0.1),
+            at(b, corner, -0.1)
+        );
+    }
+    text += "[[connector.moving.parts]]\nsphere = { radius = 0.2 }\nchord_error = 0.0005\n[alignment]\nfree = [\"x\", \"y\"]\n\
+             center_of_rotation = 0.0\nrotation_length = 0.5\n[errors]\nx = 0.4\ny = 0.4\n";
+    let found = found(&problem(&text), 60);
+    let place = &found.rests[0];
+    let expected = slope * rim + radius - radius * (1.0 + slope * slope).sqrt();
+    // The ball is a chord error too small, and its facets shift where it touches by as much.
+    assert!((depth(place) - expected).abs() < 4e-3, "{expected} {place:?}");
+    assert_eq!(place.found.examined.unwrap().way_out.unwrap().to, Outcome::Missed);
+}
+
+/// Walls all around: it is lifted as high as the level ground beside the hole.
+#[test]
+fn a_peg_is_as_deep_as_its_hole() {
+    let text = "[connector]\nfamily = \"pin-hole\"\npins = 1\ncircle_radius = 0\npin_radius = 0.1\nclearance = 0.01\n\
+                chamfer = 0.06\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.3\ny = 0.3\n";
+    let found = found(&problem(text), 300);
+    let [home, ground] =
+        [true, false].map(|docked| found.rests.iter().find(|place| (place.docked > 0) == docked).unwrap());
+    assert!((depth(home) - ground.found.above).abs() < 1e-4, "{home:?} {ground:?}");
+    assert!(home.found.examined.unwrap().way_out.unwrap().climb > 0.05);
+}
+
+/// The merge tree of a fine grid says the same, over an edge of a cube.
+#[test]
+fn the_merge_tree_agrees() {
+    let resolution = Some(Resolution::uniform(801).unwrap());
+    let settings = Settings { motions: Some(200), resolution, ..Settings::default() };
+    let found = run(&problem(CUBE), &settings, &Exec::new()).unwrap();
+    // Heights differ by at most ½ per radian from cell to cell, 0.3° here.
+    for place in &found.rests {
+        let on_grid = place.depth_on_grid.unwrap();
+        assert!((on_grid - depth(place)).abs() < 0.003, "{on_grid} {place:?}");
+    }
+}
+
+/// What second order says is what a push of a hundredth shows.
+#[test]
+fn curvature_is_the_rise_of_a_push() {
+    let text = "[connector]\nwidth = 1.0\nfixed = { pieces = [[[0.2, -0.5, 1], [0.2, 0.5, 1], [0.22, -0.5, 0], [0.22, 0.5, 0], [0.18, -0.5, 0], \
+                [0.18, 0.5, 0]], [[-0.2, -0.5, 1], [-0.2, 0.5, 1], [-0.22, -0.5, 0], [-0.22, 0.5, 0], [-0.18, -0.5, 0], [-0.18, 0.5, 0]]] }\n\
+                moving = { pieces = [[[0, -0.5, 1.2], [0, 0.5, 1.2], [1, -0.5, 0.2], [1, 0.5, 0.2], [-1, -0.5, 0.2], [-1, 0.5, 0.2]]] }\n\
+                face_height = 1.0\n[alignment]\nfree = [\"x\", \"pitch\"]\nmount = \"y\"\ncenter_of_rotation = -0.2\nrotation_length = 0.5\n\
+                [errors]\nx = 0.05\npitch = \"10 deg\"\n";
+    let found = found(&problem(text), 100);
+    let place = &found.rests[0];
+    let (held, examined) = (place.immobility.unwrap(), place.found.examined.unwrap());
+    assert_eq!(held.order, descent::Order::Second, "{place:?}");
+    let expected = 0.5 * held.curvature.unwrap() * crate::run::jams::PUSH.powi(2);
+    let rise = examined.held.rise.unwrap();
+    assert!((rise / expected - 1.0).abs() < 0.05, "{rise} {expected} {place:?}");
+}
+
+#[test]
+fn threads_change_nothing_and_what_cannot_be_asked_is_refused() {
+    let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+    let problem = problem(text);
+    let settings = Settings { motions: Some(200), ..Settings::default() };
+    let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
+    let one = with(1);
+    assert_eq!(one, with(2));
+    assert_eq!(one, with(4));
+    // Every pose that rests is in one rest.
+    assert_eq!(one.rests.iter().map(|place| place.found.count).sum::<usize>(), one.counts[0] + one.counts[1]);
+    assert_eq!(one.rests.iter().map(|place| place.docked).sum::<usize>(), one.counts[0]);
+    let none = Settings { motions: Some(0), ..Settings::default() };
+    assert_eq!(run(&problem, &none, &Exec::new()).unwrap_err(), RestsError::Nothing);
+    let exec = Exec::new();
+    exec.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+    assert!(matches!(run(&problem, &settings, &exec), Err(RestsError::Cancelled(_))));
+}
