@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::setting::{Change, with_changes};
 use catchment::method::Method;
 use catchment::method::drop::{Launch, PRESETS, Settings};
+use catchment::poses::Circumstance;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use serde_json::{Value, json};
@@ -143,6 +144,47 @@ impl DropArgs {
     /// A setting that no trial can be made with.
     pub(crate) fn settings(&self) -> Result<Settings, Failure> {
         Ok(serde_json::from_value(self.of("drop")?.settings())?)
+    }
+
+    /// These settings with what was asked for, but for the number of trials and their seed, which need not be odd there.
+    ///
+    /// # Errors
+    /// A setting that no trial can be made with.
+    pub(crate) fn on(&self, settings: Settings) -> Result<Settings, Failure> {
+        let mut changes = self.changes();
+        changes.retain(|change| !matches!(change.setting, "trials" | "seed"));
+        Ok(serde_json::from_value(with_changes(&Method::new(settings), &changes)?.settings())?)
+    }
+
+    /// Trials, where they were given.
+    pub(crate) fn trials(&self) -> Option<usize> {
+        self.trials.map(|trials| trials as usize)
+    }
+
+    /// Their seed, where it was given.
+    pub(crate) const fn seed(&self) -> Option<u64> {
+        self.trial_seed
+    }
+
+    /// Whether it is said what pushes the half.
+    pub(crate) const fn pushes(&self) -> bool {
+        self.push.is_some() || self.gravity.is_some() || self.preset.is_some()
+    }
+
+    /// The option that gives a circumstance a number.
+    pub(crate) fn fixes(&self, of: Circumstance) -> Option<&'static str> {
+        let (option, given) = match of {
+            Circumstance::Speed => ("--speed", self.speed.is_some()),
+            Circumstance::DriftX | Circumstance::DriftY => ("--drift", self.drift.is_some()),
+            Circumstance::SpinRoll | Circumstance::SpinPitch | Circumstance::SpinYaw => {
+                ("--spin", self.spin.is_some())
+            }
+            Circumstance::Mass => ("--mass", self.mass.is_some()),
+            Circumstance::Friction => ("--friction", self.friction.is_some()),
+            Circumstance::Restitution => ("--restitution", self.restitution.is_some()),
+            Circumstance::Height => ("--drop-height", self.drop_height.is_some()),
+        };
+        given.then_some(option)
     }
 
     /// A method by its name with what was asked for.

@@ -2,6 +2,7 @@
 
 mod catalog;
 mod chain;
+mod chance;
 mod check;
 mod classify;
 mod compare;
@@ -41,10 +42,11 @@ pub(crate) enum Command {
     Slices(Box<slices::SlicesArgs>),
     Sweep(Box<sweep::SweepArgs>),
     Outcome(Box<outcome::OutcomeArgs>),
-    Trace(trace::TraceArgs),
+    Trace(Box<trace::TraceArgs>),
     Window(Box<window::WindowArgs>),
     Success(Box<success::SuccessArgs>),
     Jams(Box<jams::JamsArgs>),
+    Chance(Box<chance::ChanceArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -76,6 +78,7 @@ impl Command {
             Self::Window(args) => window::run(&args),
             Self::Success(args) => success::run(&args),
             Self::Jams(args) => jams::run(&args),
+            Self::Chance(args) => chance::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

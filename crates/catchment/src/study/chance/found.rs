@@ -1,8 +1,8 @@
 //! What was found.
 
-use super::Settings;
+use super::{Question, Settings};
 use crate::acceptance::Outcome;
-use crate::landscape::GridAxis;
+use crate::landscape::{Grid, GridAxis};
 use crate::method::correction::wilson95;
 use crate::pose::PoseError;
 use crate::study::success::Stratum;
@@ -84,6 +84,42 @@ pub struct AtSpeed {
     pub probability: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
+}
+
+impl Chance {
+    /// With every place that an answer has, and numbers that mean nothing: what requirements are tried on.
+    pub fn form(asked: &Question, settings: &Settings) -> Self {
+        let nothing = [0.0, 1.0];
+        let pose =
+            |error| PoseChance { error, trials: 1, counts: [0; Outcome::ALL.len()], quasi_static: 0.0 };
+        let map = (!asked.map.is_empty()).then(|| {
+            let grid = Grid { axes: asked.map.clone() };
+            let cells = (0..grid.len()).map(|cell| pose(grid.pose(cell))).collect();
+            Map { axes: grid.axes, cells }
+        });
+        let overall = asked.errors.as_ref().map(|errors| Overall {
+            kind: errors.kind(),
+            probability: 0.0,
+            ci95: nothing,
+            trials: 0,
+            plain_trials: 0.0,
+            shares: [0.0; Outcome::ALL.len()],
+            strata: Vec::new(),
+            cells: 0,
+            quasi_static: 0.0,
+            quasi_static_ci95: nothing,
+            motions: 0,
+        });
+        let at = |factor: &f64| AtSpeed { factor: *factor, speed: 0.0, probability: 0.0, ci95: nothing };
+        Self {
+            settings: settings.clone(),
+            poses: asked.poses.iter().copied().map(pose).collect(),
+            map,
+            overall,
+            curve: asked.times.iter().map(at).collect(),
+            trials: 0,
+        }
+    }
 }
 
 impl PoseChance {

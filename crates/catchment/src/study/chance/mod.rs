@@ -40,6 +40,7 @@ use crate::method::descent::FrictionOutOfRange;
 use crate::method::drop;
 use crate::pose::{Dof, PoseError};
 use crate::poses::{Circumstance, Dynamics, Spread};
+use crate::problem::Problem;
 pub use ask::run;
 pub use found::{AtSpeed, Chance, Map, Overall, PoseChance, majority_of_three};
 use serde::{Deserialize, Serialize};
@@ -183,7 +184,38 @@ const FEWEST_OVERALL: usize = 100;
 /// What a trial takes, about, in seconds on one core: measured between simple halves.
 const TRIAL_SECONDS: f64 = 0.004;
 
+/// Beyond this it is said how long it takes, in seconds.
+const LONG: f64 = 600.0;
+
 impl Question {
+    /// A map over two errors, so many cells along each, as far as the error box reaches.
+    #[must_use]
+    pub fn with_map(mut self, problem: &Problem, axes: [Dof; 2], cells: usize) -> Self {
+        let alignment = problem.alignment();
+        let axis = |dof| {
+            let half = alignment.half_range(dof);
+            GridAxis { dof, lo: -half, hi: half, cells }
+        };
+        self.map = axes.map(axis).to_vec();
+        self
+    }
+
+    /// The same with errors even over the whole error box, where speeds are asked about, or nothing at all, and no errors are expected.
+    #[must_use]
+    pub fn or_box(mut self, problem: &Problem) -> Self {
+        let nothing = self.poses.is_empty() && self.map.is_empty();
+        if self.errors.is_none() && (nothing || !self.times.is_empty()) {
+            let alignment = problem.alignment();
+            let mut half_width = [0.0; 5];
+            for dof in alignment.free.iter() {
+                half_width[dof.index()] = alignment.half_range(dof);
+            }
+            let half_width = PoseError::from_array(half_width);
+            self.errors = Some(Spread::Uniform { mean: PoseError::default(), half_width });
+        }
+        self
+    }
+
     /// Trials in all.
     pub fn trials(&self, settings: &Settings) -> usize {
         let cells = self.map.iter().map(|axis| axis.cells).fold(1usize, usize::saturating_mul);
@@ -193,8 +225,17 @@ impl Question {
         places.saturating_mul(settings.trials).saturating_add(curves.saturating_mul(settings.overall))
     }
 
-    /// Core-seconds that it takes between simple halves, about.
-    pub fn seconds(&self, settings: &Settings) -> f64 {
-        self.trials(settings) as f64 * TRIAL_SECONDS
+    /// That it takes long on so many threads, if it does.
+    pub fn doubt(&self, settings: &Settings, threads: usize) -> Option<String> {
+        let trials = self.trials(settings);
+        let seconds = trials as f64 * TRIAL_SECONDS / threads.max(1) as f64;
+        (seconds > LONG).then(|| {
+            let took = if seconds < 3600.0 {
+                format!("{:.0} minutes", seconds / 60.0)
+            } else {
+                format!("{:.1} hours", seconds / 3600.0)
+            };
+            format!("{trials} trials take about {took} between simple halves")
+        })
     }
 }
