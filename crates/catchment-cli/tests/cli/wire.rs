@@ -30,7 +30,9 @@ fn every_json_has_one_head_and_its_fields() {
     let run = ["run", "v.toml", "--resolution", "8", "--samples", "50", "--json"];
     let kinematic = ["trace", "x.toml", "--cor=-0.5", "--pose", "x=0.2,pitch=0.2", "--method", "kinematic"];
     std::fs::copy(super::designs().join("x-face.toml"), home.path().join("x.toml")).unwrap();
-    let calls: [(&str, &[&str]); 18] = [
+    let chance =
+        ["chance", "v.toml", "--draw", "speed=1", "--trials", "2", "--overall", "100", "--pose", "x=0.1"];
+    let calls: [(&str, &[&str]); 20] = [
         ("run", &[&run[..], &["--method", "flood", "--error-sigma", "x=0.1"]].concat()),
         ("check", &["check", "v.toml", "--json"]),
         ("outcome", &["outcome", "v.toml", "--poses", "poses.csv", "--json"]),
@@ -41,6 +43,15 @@ fn every_json_has_one_head_and_its_fields() {
         ("window", &["window", "v.toml", "--motions", "100", "--json"]),
         ("success", &["success", "v.toml", "--error-sigma", "x=0.3", "--motions", "100", "--json"]),
         ("jams", &["jams", "v.toml", "--motions", "100", "--error-sigma", "x=0.1", "--json"]),
+        (
+            "chance",
+            &[
+                &chance[..],
+                &["--map", "x,pitch", "--cells", "2", "--times", "2", "--preset", "gazebo-2014", "--json"],
+            ]
+            .concat(),
+        ),
+        ("trace", &["trace", "v.toml", "--pose", "x=0.2", "--method", "drop", "--json"]),
         ("slices", &["slices", "v.toml", "--resolution", "8", "--json"]),
         ("convergence", &["run", "v.toml", "--converge", "--time-limit", "0.001 ms", "--json"]),
         ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "50", "--json"]),

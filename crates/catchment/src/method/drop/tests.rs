@@ -239,8 +239,10 @@ fn a_half_in_flight_keeps_its_velocities() {
     let start = PoseError { y: 0.05, ..x(-0.1) };
     let path = Bench::new(&pair).unwrap().trace(&start, &settings, &Exec::new()).unwrap();
     let landing = path.moments.iter().find(|moment| !moment.waypoint.touches.is_empty()).unwrap();
-    // Turned it stands on its edges earlier: not by more than a tenth of the fall.
-    assert!(landing.time > 0.9 * 0.5 && landing.time < 0.52, "{}", landing.time);
+    let at = crate::pose::CorPose::from_error(&landing.waypoint.error, 0.5, DofSet::ALL);
+    // It touches where the heights of contact say, but for what it falls in a step, and what the engine sees ahead.
+    let above = landing.waypoint.height - pair.height(&at).unwrap();
+    assert!(above.abs() < 3e-3, "{above}");
     let flown = path.moments.iter().rfind(|moment| moment.time < 0.4).unwrap();
     let (time, error) = (flown.time, flown.waypoint.error);
     // A push of 10⁻⁹ and rounding.
@@ -289,12 +291,22 @@ fn a_push_beside_the_centre_of_mass_turns_a_half() {
 fn a_frozen_rotation_leaves_the_region_of_sliding() {
     let pair = pair(Family::Pyramid, DofSet::ALL);
     let settings = Settings { inertia_factor: 1e5, trials: 1, ..Settings::gazebo_2014() };
-    let poses = || vec![x(0.45), PoseError { y: -0.45, ..x(0.45) }, x(0.55), PoseError { y: 0.55, ..x(0.2) }];
+    let turned = |yaw: f64| PoseError { yaw, ..x(0.05) };
+    let poses = || {
+        vec![
+            x(0.45),
+            PoseError { y: -0.45, ..x(0.45) },
+            x(0.55),
+            PoseError { y: 0.55, ..x(0.2) },
+            turned(0.3),
+        ]
+    };
     let frozen = outcomes(&pair, poses(), &settings);
     assert_eq!(frozen[..2], [Outcome::Aligned; 2]);
     assert!(!frozen[2..].contains(&Outcome::Aligned), "{frozen:?}");
-    let turning = outcomes(&pair, poses(), &Settings { inertia_factor: 1.0, ..settings });
-    assert_ne!(turning, frozen, "free to turn it does not seat from everywhere");
+    // Free to turn it turns home.
+    let free = outcomes(&pair, vec![turned(0.3)], &Settings { inertia_factor: 1.0, ..settings });
+    assert_eq!(free, [Outcome::Aligned]);
 }
 
 /// Figure 4.5: a half that rests on the other one and on the ground that this one stands on.

@@ -40,12 +40,13 @@ pub enum Law {
     },
 }
 
-/// Numbers that are drawn for one value: two, as often as it has to be drawn again.
-pub(crate) const DRAWN: u64 = 2 * ATTEMPTS;
 /// At least half of a law lies in its range: once in 10¹⁹ all of these lie outside.
 const ATTEMPTS: u64 = 64;
 
 impl Law {
+    /// Numbers that are drawn for one value at most: two, as often as it has to be drawn again.
+    pub const DRAWN: u64 = 2 * ATTEMPTS;
+
     /// The number that is always the same.
     pub const fn constant(value: f64) -> Self {
         Self::Constant { value }
@@ -96,8 +97,8 @@ impl Law {
         }
     }
 
-    /// A value in a range, by numbers uniform in [0, 1) that can be looked up; its mean, put into the range, where none lies there.
-    pub(crate) fn draw(&self, [lo, hi]: [f64; 2], uniform: impl Fn(u64) -> f64) -> f64 {
+    /// A value in a range, by numbers uniform in [0, 1) that can be looked up, [`Law::DRAWN`] of them; its mean, put into the range, where none lies there.
+    pub fn draw(&self, [lo, hi]: [f64; 2], uniform: impl Fn(u64) -> f64) -> f64 {
         let drawn = (0..ATTEMPTS).map(|k| self.value(uniform(2 * k), uniform(2 * k + 1)));
         let mut inside = drawn.filter(|value| (lo..=hi).contains(value));
         inside.next().unwrap_or_else(|| self.mean().clamp(lo, hi))

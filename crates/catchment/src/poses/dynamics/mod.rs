@@ -21,7 +21,6 @@ mod read;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use law::DRAWN;
 pub use law::Law;
 pub use read::{parse_draw, read_dynamics};
 
@@ -140,6 +139,12 @@ impl Dynamics {
     pub fn with(mut self, of: Circumstance, law: Law) -> Self {
         self.declared.insert(of, law);
         self
+    }
+
+    /// The mean of a circumstance, put into its range; none of what is not declared.
+    pub fn mean(&self, of: Circumstance) -> Option<f64> {
+        let [lo, hi] = of.range();
+        self.law(of).map(|law| law.mean().clamp(lo, hi))
     }
 
     /// What is declared, in the order of [`Circumstance::ALL`].

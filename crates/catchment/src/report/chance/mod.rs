@@ -99,6 +99,8 @@ pub struct AtSpeedReport {
     pub factor: f64,
     /// Mean approach speed then, in D/s.
     pub speed: f64,
+    /// Trials that this took.
+    pub trials: usize,
     /// Probability of docking.
     pub probability: f64,
     /// Its 95 % interval.
@@ -222,7 +224,7 @@ impl ChanceReport {
         }
         for at in &self.curve {
             let of = [at.probability, at.ci95[0], at.ci95[1]];
-            push("speed", [number(at.factor), number(at.speed)], None, none(), of, none());
+            push("speed", [number(at.factor), number(at.speed)], None, at.trials.to_string(), of, none());
         }
         let cells = self.map.iter().flat_map(|map| &map.cells).map(|cell| ("cell", cell));
         for (what, pose) in self.poses.iter().map(|pose| ("pose", pose)).chain(cells) {
@@ -302,7 +304,13 @@ fn overall(found: &Overall) -> OverallReport {
 }
 
 const fn at_speed(at: &AtSpeed) -> AtSpeedReport {
-    AtSpeedReport { factor: at.factor, speed: at.speed, probability: at.probability, ci95: at.ci95 }
+    AtSpeedReport {
+        factor: at.factor,
+        speed: at.speed,
+        trials: at.trials,
+        probability: at.probability,
+        ci95: at.ci95,
+    }
 }
 
 fn pose(pose: &PoseChance) -> PoseChanceReport {

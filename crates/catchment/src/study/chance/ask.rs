@@ -10,7 +10,7 @@ use crate::landscape::Grid;
 use crate::method::descent::{self, Follower};
 use crate::method::drop::Bench;
 use crate::pose::PoseError;
-use crate::poses::{Circumstance, Law};
+use crate::poses::Circumstance;
 use crate::problem::Problem;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -81,7 +81,7 @@ pub fn run(
     let map = grid.map(|grid| Map { axes: grid.axes, cells });
     let counted = overall.as_ref().map_or(0, |overall| overall.trials);
     let places = poses.len() + map.as_ref().map_or(0, |map| map.cells.len());
-    let made = places * settings.trials + counted + curve.len() * settings.overall;
+    let made = places * settings.trials + counted + curve.iter().map(|at| at.trials).sum::<usize>();
     Ok(Chance { settings: settings.clone(), poses, map, overall, curve, trials: made })
 }
 
@@ -188,7 +188,6 @@ impl Trials<'_> {
 
     /// The mean of an approach speed, in D/s.
     pub(super) fn speed(&self) -> f64 {
-        let law = self.settings.dynamics.law(Circumstance::Speed);
-        law.map_or(self.settings.drop.launch.speed, Law::mean)
+        self.settings.dynamics.mean(Circumstance::Speed).unwrap_or(self.settings.drop.launch.speed)
     }
 }

@@ -80,6 +80,8 @@ pub struct AtSpeed {
     pub factor: f64,
     /// Mean approach speed then, in D/s.
     pub speed: f64,
+    /// Trials that this took.
+    pub trials: usize,
     /// Probability of docking.
     pub probability: f64,
     /// Its 95 % interval.
@@ -110,7 +112,13 @@ impl Chance {
             quasi_static_ci95: nothing,
             motions: 0,
         });
-        let at = |factor: &f64| AtSpeed { factor: *factor, speed: 0.0, probability: 0.0, ci95: nothing };
+        let at = |factor: &f64| AtSpeed {
+            factor: *factor,
+            speed: 0.0,
+            trials: 0,
+            probability: 0.0,
+            ci95: nothing,
+        };
         Self {
             settings: settings.clone(),
             poses: asked.poses.iter().copied().map(pose).collect(),

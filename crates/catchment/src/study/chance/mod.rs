@@ -76,8 +76,7 @@ impl Default for Settings {
 impl Settings {
     /// How far a half coasts that comes with the mean speed, in D; none without damping or speed.
     pub fn coasting(&self) -> Option<f64> {
-        let speed =
-            self.dynamics.law(Circumstance::Speed).map_or(self.drop.launch.speed, crate::poses::Law::mean);
+        let speed = self.dynamics.mean(Circumstance::Speed).unwrap_or(self.drop.launch.speed);
         (speed > 0.0 && self.drop.damping > 0.0).then(|| speed / self.drop.damping)
     }
 }

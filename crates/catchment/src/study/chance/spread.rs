@@ -60,8 +60,8 @@ pub(super) fn overall(
     let found = asked.sample(1.0, &step(0))?;
     let mut curve = Vec::new();
     for (k, factor) in factors.into_iter().enumerate() {
-        let Sample { probability, ci95, .. } = asked.sample(factor, &step(k + 1))?;
-        curve.push(AtSpeed { factor, speed: factor * trials.speed(), probability, ci95 });
+        let Sample { probability, ci95, motions, .. } = asked.sample(factor, &step(k + 1))?;
+        curve.push(AtSpeed { factor, speed: factor * trials.speed(), trials: motions, probability, ci95 });
     }
     let shares = Outcome::ALL.map(|outcome| {
         found.poses.iter().filter(|pose| pose.outcome == outcome).map(|pose| pose.weight).sum::<f64>()

@@ -82,6 +82,7 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
     for friction in [0.0, 0.2] {
         let dynamics = Dynamics::default()
             .with(Circumstance::Speed, Law::Lognormal { median: 1.0, factor: 1.3 })
+            .with(Circumstance::DriftX, Law::Normal { mean: 0.0, sigma: 1.0 })
             .with(Circumstance::Friction, Law::constant(friction))
             .with(Circumstance::Restitution, Law::constant(0.2));
         let settings = Settings { dynamics, overall: 300, ..Settings::default() };
@@ -96,10 +97,7 @@ fn the_curve_meets_exact_motion_where_speed_vanishes() {
         let half = |[lo, hi]: [f64; 2]| 0.5 * (hi - lo);
         let doubt = half(slow.ci95).hypot(half(overall.quasi_static_ci95));
         assert!(apart <= doubt, "μ {friction}: {slow:?} for {}", overall.quasi_static);
-        assert!(
-            fast.ci95[1] < overall.quasi_static_ci95[0] || fast.ci95[0] > overall.quasi_static_ci95[1],
-            "{fast:?}"
-        );
+        assert!(fast.ci95[1] < overall.quasi_static_ci95[0], "{fast:?}");
     }
 }
 
@@ -180,7 +178,8 @@ fn neither_threads_nor_other_poses_change_a_bit() {
     let one = on(1);
     assert_eq!(one, on(2));
     assert_eq!(one, on(4));
-    assert_eq!(one.trials, asked.trials(&settings));
+    // Strata that run out leave a few.
+    assert!(one.trials <= asked.trials(&settings) && one.trials + 10 > asked.trials(&settings));
     let reversed: Vec<PoseError> = poses.into_iter().rev().collect();
     let mut alone = of_poses(&problem, &reversed, &settings);
     alone.reverse();

@@ -4,7 +4,6 @@ use super::{ChanceError, Settings};
 use crate::acceptance::Stream;
 use crate::method::drop::{self, Bench, Body, Launch, Push};
 use crate::pose::{Dof, PoseError};
-use crate::poses::dynamics::DRAWN;
 use crate::poses::{Circumstance, Dynamics, Law};
 use crate::problem::Problem;
 
@@ -26,7 +25,7 @@ impl Draw {
     /// By numbers that can be looked up.
     pub(super) fn of(dynamics: &Dynamics, stream: Stream) -> Self {
         let value = |of: Circumstance| {
-            let uniform = |k: u64| stream.uniform(START + DRAWN * of.index() as u64 + k);
+            let uniform = |k: u64| stream.uniform(START + Law::DRAWN * of.index() as u64 + k);
             dynamics.law(of).map(|law| law.draw(of.range(), uniform))
         };
         let off = std::array::from_fn(|k| 2.0 * stream.uniform(k as u64) - 1.0);
@@ -94,7 +93,7 @@ impl Draw {
 
 /// The mass whose damping is declared: the mean of the law, or what the settings say, in kg.
 pub(super) fn nominal(settings: &Settings, bench: &Bench<'_>) -> f64 {
-    settings.dynamics.law(Circumstance::Mass).map_or_else(|| bench.mass(&settings.drop), Law::mean)
+    settings.dynamics.mean(Circumstance::Mass).unwrap_or_else(|| bench.mass(&settings.drop))
 }
 
 /// The error that a circumstance moves.
