@@ -258,6 +258,13 @@ impl ChanceBody {
                 "damping takes the speed within {coasting:.1e} D: as good as quasi-static; with less damping speed would show"
             ));
         }
+        let drop = &self.settings.drop;
+        if self.settings.held && (drop.angular_damping != drop.damping || drop.inertia_factor != 1.0) {
+            doubts.push(
+                "turning is damped otherwise than moving: exact motions, which damp both alike by rho, are not the limit of no speed"
+                    .to_owned(),
+            );
+        }
         if !self.settings.held && !self.curve.is_empty() {
             doubts.push(
                 "what pushes the half stays as it is where speeds are multiplied: the slowest is let go nearly at rest, which is no \
