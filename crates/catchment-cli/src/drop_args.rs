@@ -166,6 +166,11 @@ impl DropArgs {
         self.trial_seed
     }
 
+    /// Friction between the halves; 0 where nothing is said.
+    pub(crate) fn friction(&self) -> f64 {
+        self.friction.unwrap_or_default()
+    }
+
     /// Whether it is said what pushes the half.
     pub(crate) const fn pushes(&self) -> bool {
         self.push.is_some() || self.gravity.is_some() || self.preset.is_some()

@@ -87,7 +87,9 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     if args.method == By::Drop {
         return dropped(args, &problem, &error, kind);
     }
-    let settings: Settings = serde_json::from_value(args.drop.of("descent")?.settings())?;
+    let settings = Settings::with_friction(args.drop.friction())?;
+    // Other settings are of drop tests.
+    args.drop.of("descent")?;
     let path = descent::trace(pair, &error, &settings);
     let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
     let doubts = problem.objections().iter().map(WarningReport::note).collect();

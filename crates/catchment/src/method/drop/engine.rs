@@ -191,7 +191,7 @@ pub(super) fn stays_locked(center: &DVec3, free: DofSet) -> bool {
     center.length() <= CENTERED || holds(Dof::X, Dof::Roll) && holds(Dof::Y, Dof::Pitch)
 }
 
-/// A centre of mass this close to the COR, in D, is there.
+/// Places this close to each other, in D, are one: a centre of mass and the COR, contacts of two pieces.
 const CENTERED: f64 = 1e-9;
 
 /// z of the lowest corner of a turned half, in D.
@@ -311,7 +311,7 @@ impl<'a> Fall<'a> {
 
     /// Where the halves touch, in the world, with unit normals towards the moving half; the ground counts as fixed.
     pub(super) fn contacts(&self) -> Vec<Touch> {
-        let mut found = Vec::new();
+        let mut found: Vec<Touch> = Vec::new();
         for pair in self.world.narrow_phase.contact_pairs() {
             let Some(first) = self.world.colliders.get(pair.collider1) else { continue };
             let towards = if first.parent() == Some(self.half) { -1.0 } else { 1.0 };
@@ -319,10 +319,17 @@ impl<'a> Fall<'a> {
                 let place =
                     manifold.subshape_pos1().map_or(*first.position(), |part| *first.position() * part);
                 let pushes = manifold.points.iter().filter(|contact| contact.data.impulse > 0.0);
-                found.extend(pushes.map(|contact| Touch {
-                    point: place * contact.local_p1,
-                    normal: manifold.data.normal * towards,
-                }));
+                for contact in pushes {
+                    let touch =
+                        Touch { point: place * contact.local_p1, normal: manifold.data.normal * towards };
+                    // Pieces of a half that meet there say it once each.
+                    let is_known = |known: &Touch| {
+                        known.point.distance(touch.point) < CENTERED && known.normal.dot(touch.normal) > 0.5
+                    };
+                    if !found.iter().any(is_known) {
+                        found.push(touch);
+                    }
+                }
             }
         }
         found

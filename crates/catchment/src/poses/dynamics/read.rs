@@ -246,6 +246,9 @@ fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design)
     let (text, own) = (text.trim(), unit_of(text.trim()));
     let unit = if own.is_empty() { beside.unwrap_or_default() } else { own };
     let number = text[..text.len() - own.len()].trim();
+    if number.is_empty() {
+        return Err(Fault::new(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
+    }
     let told = |c: crate::design::Complaint| Fault { message: format!("{}: {c}", of.name()), help: c.help() };
     match of {
         Circumstance::Friction | Circumstance::Restitution if unit.is_empty() => plain(number),

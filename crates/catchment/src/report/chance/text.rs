@@ -52,7 +52,7 @@ impl ChanceReport {
         for declared in &self.declared {
             row(text, declared.circumstance.name(), &self.law(declared.circumstance, &declared.law));
         }
-        let rate = |rate: f64| format!("{} 1/s", significant(rate));
+        let rate = |rate: f64| format!("{} 1/s", tidy(rate));
         row(text, "damping", &format!("{}, of turning {}", rate(drop.damping), rate(drop.angular_damping)));
         if self.settings.held {
             let coasts = self.coasting_d.map_or_else(String::new, |coasting| {
@@ -67,10 +67,10 @@ impl ChanceReport {
         } else {
             let push = match drop.push {
                 crate::method::drop::Push::Force(force) => {
-                    format!("by a force of {} kg·D/s²", significant(force))
+                    format!("by a force of {} kg·D/s²", tidy(force))
                 }
                 crate::method::drop::Push::Gravity(gravity) => {
-                    format!("by gravity of {} D/s²", significant(gravity))
+                    format!("by gravity of {} D/s²", tidy(gravity))
                 }
             };
             row(text, "pushed", &push);
@@ -80,14 +80,14 @@ impl ChanceReport {
     /// `50.00 ± 10.00 mm/s`, `0.1 … 0.3`.
     fn law(&self, of: Circumstance, law: &Law) -> String {
         let (factor, unit) = self.unit(of);
-        let shown = |value: f64| significant(value * factor);
+        let shown = |value: f64| tidy(value * factor);
         let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
         match law {
             Law::Constant { value } => format!("{}{unit}", shown(*value)),
             Law::Normal { mean, sigma } => format!("{} ± {}{unit}, normal", shown(*mean), shown(*sigma)),
             Law::Uniform { from, to } => format!("{} … {}{unit}, uniform", shown(*from), shown(*to)),
             Law::Lognormal { median, factor } => {
-                format!("{}{unit} times or by {}, lognormal", shown(*median), significant(*factor))
+                format!("{}{unit} times or by {}, lognormal", shown(*median), tidy(*factor))
             }
             Law::Measured { measured } => {
                 format!("{}{unit} on average, {} measured values", shown(law.mean()), measured.len())
@@ -108,7 +108,7 @@ impl ChanceReport {
 
     fn length(&self, value: f64) -> String {
         let (width, symbol) = self.design.unit.map_or((1.0, "D"), |unit| (self.design.width, unit.symbol()));
-        format!("{} {symbol}", significant(value * width))
+        format!("{} {symbol}", tidy(value * width))
     }
 
     fn curve(&self, text: &mut String) {
@@ -124,8 +124,8 @@ impl ChanceReport {
         }
         for at in &self.curve {
             let [lo, hi] = at.ci95.map(share);
-            let times = format!("times {}", significant(at.factor));
-            let speed = significant(at.speed * factor);
+            let times = format!("times {}", tidy(at.factor));
+            let speed = tidy(at.speed * factor);
             line(text, &format!("  {times:<15}{speed:>14}{:>10}   {lo} … {hi}", share(at.probability)));
         }
     }
@@ -180,8 +180,8 @@ impl ChanceReport {
 
     fn place(&self, error: &PoseError) -> String {
         let (width, symbol) = self.design.unit.map_or((1.0, "D"), |unit| (self.design.width, unit.symbol()));
-        let free = self.design.alignment.free.iter();
-        let said: Vec<String> = free
+        let said: Vec<String> = (self.design.alignment.free.iter())
+            .filter(|axis| error.to_array()[axis.index()] != 0.0)
             .map(|axis: Dof| {
                 let value = error.to_array()[axis.index()];
                 if axis.is_rotation() {
@@ -191,7 +191,7 @@ impl ChanceReport {
                 }
             })
             .collect();
-        said.join(", ")
+        if said.is_empty() { "none".to_owned() } else { said.join(", ") }
     }
 }
 
@@ -216,6 +216,16 @@ fn overall_of(text: &mut String, overall: &OverallReport) {
     row(text, "outcomes", &met.join("  "));
     let [lo, hi] = overall.quasi_static_ci95.map(share);
     row(text, "quasi-static", &format!("{}   (95 %: {lo} … {hi})", share(overall.quasi_static)));
+}
+
+/// Four digits, without zeros at the end.
+fn tidy(value: f64) -> String {
+    let text = significant(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 /// `93.4 %`; what is nearly all or nearly nothing is not rounded to it.
