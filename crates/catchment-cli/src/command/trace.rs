@@ -95,7 +95,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
     let end = path.waypoints.last().map(|waypoint| waypoint.error);
     let reason = end.and_then(|end| Reason::of(&problem, path.outcome, &end));
-    let report = TraceReport::new(design, settings, error, &path, reason, doubts);
+    let report = TraceReport::new(design, &settings, error, &path, reason, doubts);
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,

@@ -82,7 +82,7 @@ impl TraceReport {
     /// design.
     pub fn new(
         design: &Design,
-        settings: Settings,
+        settings: &Settings,
         start: PoseError,
         path: &Trajectory,
         reason: Option<Reason>,
@@ -241,7 +241,7 @@ mod tests {
         design.name = "a\u{1b}[2Jb".to_owned();
         let path = Trajectory { waypoints, outcome: Outcome::Aligned };
         let doubts = vec![WarningReport::note("shallow")];
-        TraceReport::new(&design, Settings::default(), PoseError::default(), &path, None, doubts)
+        TraceReport::new(&design, &Settings::default(), PoseError::default(), &path, None, doubts)
     }
 
     #[test]

@@ -113,13 +113,10 @@ impl Reader<'_> {
     }
 
     fn law(&mut self, value: &Value<'_>, of: Circumstance) -> Result<Law, (Range<usize>, Fault)> {
-        match value.get_ref() {
-            DeValue::Table(table) => self.table(table, value.span(), of),
-            _ => {
-                let text = written(value)?;
-                line(&text, of, self.design).map_err(|fault| (value.span(), fault))
-            }
+        if let DeValue::Table(table) = value.get_ref() {
+            return self.table(table, value.span(), of);
         }
+        line(&written(value)?, of, self.design).map_err(|fault| (value.span(), fault))
     }
 
     fn table(

@@ -2,7 +2,7 @@
 
 use super::super::table::heading;
 use super::super::text::{self, grouped, line, row, significant, wrapped};
-use super::{ChanceReport, MapReport, OverallReport};
+use super::{ChanceReport, MapReport, OverallReport, PoseChanceReport};
 use crate::acceptance::Outcome;
 use crate::pose::{Dof, PoseError};
 use crate::poses::{Circumstance, Law};
@@ -31,7 +31,7 @@ impl ChanceReport {
         }
         if let Some(map) = &self.map {
             text.push('\n');
-            self.map(&mut text, map);
+            map_of(&mut text, map);
         }
         for warning in &self.warnings {
             text.push('\n');
@@ -152,32 +152,6 @@ impl ChanceReport {
         line(text, &format!("  by {} trials each; exact: quasi-static motions", grouped(trials)));
     }
 
-    fn map(&self, text: &mut String, map: &MapReport) {
-        let cells = map.cells.len().max(1) as f64;
-        let over: Vec<&str> = map.axes.iter().map(|axis| axis.dof.name()).collect();
-        let sizes: Vec<String> = map.axes.iter().map(|axis| axis.cells.to_string()).collect();
-        let trials = map.cells.first().map_or(0, |cell| cell.trials);
-        let what = format!(
-            "{} cells over {}, {} trials each",
-            sizes.join(" × "),
-            over.join(" and "),
-            grouped(trials)
-        );
-        row(text, "map", &what);
-        let mean = map.cells.iter().map(|cell| cell.probability).sum::<f64>() / cells;
-        let still = map.cells.iter().map(|cell| cell.quasi_static).sum::<f64>() / cells;
-        row(text, "", &format!("{} of the trials dock, by exact motions {}", share(mean), share(still)));
-        let mixed = map.cells.iter().filter(|cell| cell.minority > 0.0).count();
-        let against = |cell: &&super::PoseChanceReport| (cell.probability > 0.5) != (cell.quasi_static > 0.5);
-        let otherwise = map.cells.iter().filter(against).count();
-        row(
-            text,
-            "",
-            &format!("{mixed} cells both dock and fail; most trials of {otherwise} fare otherwise than"),
-        );
-        row(text, "", "exact motions");
-    }
-
     fn place(&self, error: &PoseError) -> String {
         let (width, symbol) = self.design.unit.map_or((1.0, "D"), |unit| (self.design.width, unit.symbol()));
         let said: Vec<String> = (self.design.alignment.free.iter())
@@ -193,6 +167,28 @@ impl ChanceReport {
             .collect();
         if said.is_empty() { "none".to_owned() } else { said.join(", ") }
     }
+}
+
+fn map_of(text: &mut String, map: &MapReport) {
+    let cells = map.cells.len().max(1) as f64;
+    let over: Vec<&str> = map.axes.iter().map(|axis| axis.dof.name()).collect();
+    let sizes: Vec<String> = map.axes.iter().map(|axis| axis.cells.to_string()).collect();
+    let trials = map.cells.first().map_or(0, |cell| cell.trials);
+    let what =
+        format!("{} cells over {}, {} trials each", sizes.join(" × "), over.join(" and "), grouped(trials));
+    row(text, "map", &what);
+    let mean = map.cells.iter().map(|cell| cell.probability).sum::<f64>() / cells;
+    let still = map.cells.iter().map(|cell| cell.quasi_static).sum::<f64>() / cells;
+    row(text, "", &format!("{} of the trials dock, by exact motions {}", share(mean), share(still)));
+    let mixed = map.cells.iter().filter(|cell| cell.minority > 0.0).count();
+    let against = |cell: &&PoseChanceReport| (cell.probability > 0.5) != (cell.quasi_static > 0.5);
+    let otherwise = map.cells.iter().filter(against).count();
+    row(
+        text,
+        "",
+        &format!("{mixed} cells both dock and fail; most trials of {otherwise} fare otherwise than"),
+    );
+    row(text, "", "exact motions");
 }
 
 fn overall_of(text: &mut String, overall: &OverallReport) {

@@ -7,6 +7,7 @@ use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use super::{FigureError, Picture};
 use crate::poses::Circumstance;
 use crate::report::{ChanceReport, MapReport};
+use std::fmt::Write;
 
 /// Colour of exact motions.
 const EXACT: Rgb = [0x1f, 0x29, 0x33];
@@ -91,15 +92,16 @@ fn cells(svg: &mut Svg, report: &ChanceReport, map: &MapReport, rect: Rect) {
         svg.rect(Rect { x, y, w: w + 0.4, h: h + 0.4 }, &format!(r#"fill="{fill}" stroke="none""#));
     }
     let docks = |i: usize, j: usize| map.cells[j * first.cells + i].quasi_static > 0.5;
+    // Writing into a string does not fail.
     let mut border = String::new();
     for j in 0..second.cells {
         for i in 0..first.cells {
             let [x, y] = corner(i + 1, j + 1);
             if i + 1 < first.cells && docks(i, j) != docks(i + 1, j) {
-                border.push_str(&format!("M{x:.2} {y:.2}v{h:.2}"));
+                let _ = write!(border, "M{x:.2} {y:.2}v{h:.2}");
             }
             if j + 1 < second.cells && docks(i, j) != docks(i, j + 1) {
-                border.push_str(&format!("M{x:.2} {y:.2}h{:.2}", -w));
+                let _ = write!(border, "M{x:.2} {y:.2}h{:.2}", -w);
             }
         }
     }
