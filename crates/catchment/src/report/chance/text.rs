@@ -183,12 +183,10 @@ fn map_of(text: &mut String, map: &MapReport) {
     let mixed = map.cells.iter().filter(|cell| cell.minority > 0.0).count();
     let against = |cell: &&PoseChanceReport| (cell.probability > 0.5) != (cell.quasi_static > 0.5);
     let otherwise = map.cells.iter().filter(against).count();
-    row(
-        text,
-        "",
-        &format!("{mixed} cells both dock and fail; most trials of {otherwise} fare otherwise than"),
+    let words = format!(
+        "{mixed} cells both dock and fail; in {otherwise} most trials fare otherwise than exact motion"
     );
-    row(text, "", "exact motions");
+    wrapped(text, &format!("  {:<15}", ""), &words);
 }
 
 fn overall_of(text: &mut String, overall: &OverallReport) {
