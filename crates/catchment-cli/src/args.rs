@@ -38,6 +38,9 @@ use std::path::PathBuf;
         catchment hold design.toml --friction 0.2
                                           how hard it may be pushed and twisted once docked
   \
+        catchment chance design.toml --draw 'speed=50 ± 10 mm/s' --times 0.1,1,10
+                                          how likely it docks that comes with speed
+  \
         catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
         catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
         catchment sweep design.toml --over aspect_ratio=0.5,1,2 --over cor=-1..1/5\n                                          many designs at once\n  \

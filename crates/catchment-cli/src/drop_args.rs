@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::setting::{Change, with_changes};
 use catchment::method::Method;
-use catchment::method::drop::{PRESETS, Settings};
+use catchment::method::drop::{Launch, PRESETS, Settings};
+use catchment::poses::Circumstance;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use serde_json::{Value, json};
@@ -26,8 +27,11 @@ pub(crate) struct DropArgs {
     /// Radius of gyration about it in D: inertia = mass·gyration² [default: rho]
     #[arg(long, value_name = "LENGTH", help_heading = DROP)]
     gyration: Option<f64>,
+    /// Centre of mass from the moving face centre, along the axes of the fixed half when docked, in D [default: the centre of rotation]
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, help_heading = DROP)]
+    mass_center: Option<[f64; 3]>,
     /// Density in kg/D³: mass, centre of mass and inertia are those of the solid; instead of --mass
-    #[arg(long, value_name = "DENSITY", help_heading = DROP, conflicts_with_all = ["mass", "gyration"])]
+    #[arg(long, value_name = "DENSITY", help_heading = DROP, conflicts_with_all = ["mass", "gyration", "mass_center"])]
     density: Option<f64>,
     /// Friction with the surroundings, 1/s: the force -mass·damping·v [default: 1000, heavy]
     #[arg(long, value_name = "RATE", help_heading = DROP)]
@@ -50,6 +54,18 @@ pub(crate) struct DropArgs {
     /// Height above first contact from which the half is let go, in D [default: 0.01]
     #[arg(long, value_name = "LENGTH", help_heading = DROP)]
     drop_height: Option<f64>,
+    /// Speed along the approach with which it is let go, in D/s [default: 0]
+    #[arg(long, value_name = "SPEED", help_heading = DROP)]
+    speed: Option<f64>,
+    /// Velocity of the centre of rotation along x and y then, in D/s [default: 0,0]
+    #[arg(long, value_name = "X,Y", value_parser = pair, allow_hyphen_values = true, help_heading = DROP)]
+    drift: Option<[f64; 2]>,
+    /// Rates of roll, pitch and yaw then, in rad/s [default: 0,0,0]
+    #[arg(long, value_name = "ROLL,PITCH,YAW", value_parser = triple, allow_hyphen_values = true, help_heading = DROP)]
+    spin: Option<[f64; 3]>,
+    /// Inertia, and friction against turning, times this: 1e5 all but locks rotations [default: 1]
+    #[arg(long, value_name = "FACTOR", help_heading = DROP)]
+    inertia_factor: Option<f64>,
     /// Time step of the engine, in s [default: 0.001]
     #[arg(long, value_name = "TIME", help_heading = DROP)]
     timestep: Option<f64>,
@@ -92,9 +108,10 @@ impl DropArgs {
         add("--preset", "ground", preset.map(|preset| json!(preset.ground)));
         add("--push", "push", self.push.map(|force| json!({ "force": force })));
         add("--gravity", "push", self.gravity.map(|gravity| json!({ "gravity": gravity })));
-        let given = |mass: Option<f64>, gyration: Option<f64>| json!({ "given": { "mass": mass.unwrap_or(1.0), "gyration": gyration } });
-        add("--mass", "body", self.mass.map(|mass| given(Some(mass), self.gyration)));
-        add("--gyration", "body", self.gyration.map(|gyration| given(self.mass, Some(gyration))));
+        let given = || json!({ "given": { "mass": self.mass.unwrap_or(1.0), "gyration": self.gyration, "center": self.mass_center } });
+        add("--mass", "body", self.mass.map(|_| given()));
+        add("--gyration", "body", self.gyration.map(|_| given()));
+        add("--mass-center", "body", self.mass_center.map(|_| given()));
         add("--density", "body", self.density.map(|density| json!({ "solid": { "density": density } })));
         add("--damping", "damping", self.damping.map(Value::from));
         let turning = self.angular_damping.or(self.damping);
@@ -104,6 +121,19 @@ impl DropArgs {
         add("--restitution", "restitution", self.restitution.map(Value::from));
         add("--ground", "ground", self.ground.map(Value::from));
         add("--drop-height", "drop_height", self.drop_height.map(Value::from));
+        let is_launched = self.speed.is_some() || self.drift.is_some() || self.spin.is_some();
+        let launch = Launch {
+            speed: self.speed.unwrap_or_default(),
+            drift: self.drift.unwrap_or_default(),
+            spin: self.spin.unwrap_or_default(),
+        };
+        let option = match (self.speed, self.drift) {
+            (Some(_), _) => "--speed",
+            (None, Some(_)) => "--drift",
+            (None, None) => "--spin",
+        };
+        add(option, "launch", is_launched.then(|| json!(launch)));
+        add("--inertia-factor", "inertia_factor", self.inertia_factor.map(Value::from));
         add("--timestep", "timestep", self.timestep.map(Value::from));
         add("--timeout", "timeout", self.timeout.map(Value::from));
         add("--trials", "trials", self.trials.map(Value::from));
@@ -117,7 +147,78 @@ impl DropArgs {
     /// # Errors
     /// A setting that no trial can be made with.
     pub(crate) fn settings(&self) -> Result<Settings, Failure> {
-        let method = with_changes(&Method::new(Settings::default()), &self.changes())?;
-        Ok(serde_json::from_value(method.settings())?)
+        Ok(serde_json::from_value(self.of("drop")?.settings())?)
     }
+
+    /// These settings with what was asked for, but for the number of trials and their seed, which need not be odd there.
+    ///
+    /// # Errors
+    /// A setting that no trial can be made with.
+    pub(crate) fn on(&self, settings: Settings) -> Result<Settings, Failure> {
+        let mut changes = self.changes();
+        changes.retain(|change| !matches!(change.setting, "trials" | "seed"));
+        Ok(serde_json::from_value(with_changes(&Method::new(settings), &changes)?.settings())?)
+    }
+
+    /// Trials, where they were given.
+    pub(crate) fn trials(&self) -> Option<usize> {
+        self.trials.map(|trials| trials as usize)
+    }
+
+    /// Their seed, where it was given.
+    pub(crate) const fn seed(&self) -> Option<u64> {
+        self.trial_seed
+    }
+
+    /// Friction between the halves; 0 where nothing is said.
+    pub(crate) fn friction(&self) -> f64 {
+        self.friction.unwrap_or_default()
+    }
+
+    /// Whether it is said what pushes the half.
+    pub(crate) const fn pushes(&self) -> bool {
+        self.push.is_some() || self.gravity.is_some() || self.preset.is_some()
+    }
+
+    /// The option that gives a circumstance a number.
+    pub(crate) fn fixes(&self, of: Circumstance) -> Option<&'static str> {
+        let (option, given) = match of {
+            Circumstance::Speed => ("--speed", self.speed.is_some()),
+            Circumstance::DriftX | Circumstance::DriftY => ("--drift", self.drift.is_some()),
+            Circumstance::SpinRoll | Circumstance::SpinPitch | Circumstance::SpinYaw => {
+                ("--spin", self.spin.is_some())
+            }
+            Circumstance::Mass => ("--mass", self.mass.is_some()),
+            Circumstance::Friction => ("--friction", self.friction.is_some()),
+            Circumstance::Restitution => ("--restitution", self.restitution.is_some()),
+            Circumstance::Height => ("--drop-height", self.drop_height.is_some()),
+        };
+        given.then_some(option)
+    }
+
+    /// A method by its name with what was asked for.
+    ///
+    /// # Errors
+    /// A setting that it does not have, or refuses.
+    pub(crate) fn of(&self, method: &str) -> Result<Method, Failure> {
+        with_changes(&method.parse::<Method>()?, &self.changes())
+    }
+}
+
+/// Two numbers.
+fn pair(text: &str) -> Result<[f64; 2], String> {
+    numbers(text)
+}
+
+/// Three numbers.
+fn triple(text: &str) -> Result<[f64; 3], String> {
+    numbers(text)
+}
+
+fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let read: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let read = read
+        .and_then(|list| <[f64; N]>::try_from(list).ok())
+        .filter(|list| list.iter().all(|v| v.is_finite()));
+    read.ok_or_else(|| format!("give {N} numbers with commas between them"))
 }

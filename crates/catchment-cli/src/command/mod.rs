@@ -2,6 +2,7 @@
 
 mod catalog;
 mod chain;
+mod chance;
 mod check;
 mod classify;
 mod compare;
@@ -44,13 +45,14 @@ pub(crate) enum Command {
     Slices(Box<slices::SlicesArgs>),
     Sweep(Box<sweep::SweepArgs>),
     Outcome(Box<outcome::OutcomeArgs>),
-    Trace(trace::TraceArgs),
+    Trace(Box<trace::TraceArgs>),
     Window(Box<window::WindowArgs>),
     Success(Box<success::SuccessArgs>),
     Jams(Box<jams::JamsArgs>),
     Friction(friction::FrictionArgs),
     Rests(Box<rests::RestsArgs>),
     Hold(Box<hold::HoldArgs>),
+    Chance(Box<chance::ChanceArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -85,6 +87,7 @@ impl Command {
             Self::Friction(args) => friction::run(&args),
             Self::Rests(args) => rests::run(&args),
             Self::Hold(args) => hold::run(&args),
+            Self::Chance(args) => chance::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

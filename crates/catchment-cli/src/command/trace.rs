@@ -1,13 +1,18 @@
 //! `catchment trace`: the way of one pose from first contact to its end.
 
 use crate::args::DesignArgs;
+use crate::drop_args::DropArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, to_stderr, to_stdout};
 use catchment::acceptance::Reason;
+use catchment::exec::Exec;
 use catchment::method::descent::{self, Settings};
+use catchment::method::drop::Bench;
 use catchment::method::kinematic::Start;
+use catchment::pose::PoseError;
 use catchment::poses::parse_pose;
+use catchment::problem::Problem;
 use catchment::report::figure::Picture;
 use catchment::report::schema::WarningReport;
 use catchment::report::{LeverReport, TraceReport, csv, figure};
@@ -15,7 +20,8 @@ use clap::{Args, ValueEnum};
 
 /// Follow one pose from first contact to its end
 ///
-/// The motion is exact and quasi-static: no inertia, contact kept, Coulomb friction where it is given. Prints waypoints spread over the
+/// The motion is exact and quasi-static: no inertia, contact kept, Coulomb friction where it is given; by the drop method it is one trial
+/// in a rigid-body engine, with speed, mass and bounce, from where the half is let go. Prints waypoints spread over the
 /// path; -o writes all of them, or a picture. By the kinematic method it is the first contact alone: rotation points, lever
 /// arms and angles of the dissertation's planar analysis.
 #[derive(Debug, Args)]
@@ -23,7 +29,8 @@ use clap::{Args, ValueEnum};
     catchment trace design.toml --pose \"x=0.2,pitch=10 deg\"\n  \
     catchment trace design.toml --pose \"x=5 mm\" -o trace.png\n  \
     catchment trace design.toml --pose \"x=0.2,yaw=0.3\" --json | jq .outcome\n  \
-    catchment trace x-face.toml --cor=-0.5 --pose \"x=0.2,pitch=10 deg\" --method kinematic -o levers.svg\n\n\
+    catchment trace x-face.toml --cor=-0.5 --pose \"x=0.2,pitch=10 deg\" --method kinematic -o levers.svg\n  \
+    catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" --method drop --damping 10 --speed 2\n\n\
     Lengths are in D and angles in radians unless they have a unit. -o writes .png and .svg (pictures), .csv (a \
     line per contact point) and .json.")]
 pub(crate) struct TraceArgs {
@@ -35,9 +42,8 @@ pub(crate) struct TraceArgs {
     /// What follows the pose
     #[arg(long, value_enum, default_value_t = By::Descent)]
     method: By,
-    /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0)]
-    friction: f64,
+    #[command(flatten)]
+    drop: DropArgs,
     /// Print the whole path as JSON
     #[arg(long)]
     json: bool,
@@ -52,6 +58,8 @@ enum By {
     Descent,
     /// The first contact of a planar face: rotation points, lever arms, angles
     Kinematic,
+    /// One dynamic drop test in a rigid-body engine, from where the half is let go
+    Drop,
 }
 
 /// Pixels per unit of a picture.
@@ -76,17 +84,48 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
         to_stdout(&told)?;
         return Ok(ExitStatus::Done);
     }
-    let settings = Settings::with_friction(args.friction)?;
+    if args.method == By::Drop {
+        return dropped(args, &problem, &error, kind);
+    }
+    let settings = Settings::with_friction(args.drop.friction())?;
+    // Other settings are of drop tests.
+    args.drop.of("descent")?;
     let path = descent::trace(pair, &error, &settings);
     let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
     let end = path.waypoints.last().map(|waypoint| waypoint.error);
     let reason = end.and_then(|end| Reason::of(&problem, path.outcome, &end));
-    let report = TraceReport::new(design, settings, error, &path, reason, doubts);
+    let report = TraceReport::new(design, &settings, error, &path, reason, doubts);
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
         Some(picture) => args.draw(picture, &figure::trajectory(design, problem.connector(), &path)?)?,
+        None => {}
+    }
+    to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
+    to_stderr(&said);
+    Ok(ExitStatus::Done)
+}
+
+/// The way of one trial.
+fn dropped(
+    args: &TraceArgs,
+    problem: &Problem,
+    error: &PoseError,
+    kind: Option<&str>,
+) -> Result<ExitStatus, Failure> {
+    let design = problem.design();
+    let settings = args.drop.settings()?;
+    let path = Bench::new(problem.pair())?.trace(error, &settings, &Exec::new())?;
+    let doubts: Vec<WarningReport> = problem.objections().iter().map(WarningReport::note).collect();
+    let said: Vec<String> = doubts.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
+    let report = TraceReport::of_drop(design, &settings, *error, &path, doubts);
+    match kind {
+        Some("csv") => args.file.write(&csv(&report.records())?)?,
+        Some("json") => args.file.write(report.to_json()?.as_bytes())?,
+        Some(picture) => {
+            args.draw(picture, &figure::trajectory(design, problem.connector(), &path.trajectory())?)?;
+        }
         None => {}
     }
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;

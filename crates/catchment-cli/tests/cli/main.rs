@@ -6,6 +6,7 @@ mod area;
 mod bad_inputs;
 mod catalog;
 mod chain;
+mod chance;
 mod check;
 mod compare;
 mod compose;

@@ -30,7 +30,9 @@ fn every_json_has_one_head_and_its_fields() {
     let run = ["run", "v.toml", "--resolution", "8", "--samples", "50", "--json"];
     let kinematic = ["trace", "x.toml", "--cor=-0.5", "--pose", "x=0.2,pitch=0.2", "--method", "kinematic"];
     std::fs::copy(super::designs().join("x-face.toml"), home.path().join("x.toml")).unwrap();
-    let calls: [(&str, &[&str]); 21] = [
+    let chance =
+        ["chance", "v.toml", "--draw", "speed=1", "--trials", "2", "--overall", "100", "--pose", "x=0.1"];
+    let calls: [(&str, &[&str]); 23] = [
         ("run", &[&run[..], &["--method", "flood", "--error-sigma", "x=0.1"]].concat()),
         ("check", &["check", "v.toml", "--json"]),
         ("outcome", &["outcome", "v.toml", "--poses", "poses.csv", "--json"]),
@@ -44,6 +46,15 @@ fn every_json_has_one_head_and_its_fields() {
         ("friction", &["friction", "v.toml", "--frictions", "0.1", "--motions", "100", "--json"]),
         ("rests", &["rests", "v.toml", "--motions", "100", "--json"]),
         ("hold", &["hold", "v.toml", "--friction", "0.2", "--preload", "40", "--json"]),
+        (
+            "chance",
+            &[
+                &chance[..],
+                &["--map", "x,pitch", "--cells", "2", "--times", "2", "--preset", "gazebo-2014", "--json"],
+            ]
+            .concat(),
+        ),
+        ("trace", &["trace", "v.toml", "--pose", "x=0.2", "--method", "drop", "--json"]),
         ("slices", &["slices", "v.toml", "--resolution", "8", "--json"]),
         ("convergence", &["run", "v.toml", "--converge", "--time-limit", "0.001 ms", "--json"]),
         ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "50", "--json"]),

@@ -10,6 +10,8 @@
 //!
 //!   [[robot]] sigma = { … }  robots, and how their errors       read_robots         ──▶ Robot { name, errors: Spread }
 //!                            spread: a TOML file
+//!
+//!   [dynamics] speed = …     how fast, heavy, slippery: laws    read_dynamics       ──▶ Dynamics
 //! ```
 //!
 //! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`] says the
@@ -21,6 +23,7 @@
 
 pub(crate) mod covariance;
 mod distribution;
+pub(crate) mod dynamics;
 mod fields;
 mod header;
 mod offsets;
@@ -32,6 +35,7 @@ mod written;
 
 pub use covariance::Matrix;
 pub use distribution::{Distribution, parse_sizes};
+pub use dynamics::{Circumstance, Dynamics, Law, parse_draw, read_dynamics};
 pub use offsets::OffsetsAt;
 pub use robots::{MOST_ROBOTS, Moments, NotACovariance, Robot, Spread, read_robots};
 pub use table::{MOST_POSES, PoseTable};

@@ -7,7 +7,7 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · jams · rests · hold · friction · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · chance · jams · rests · hold · friction · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -18,6 +18,8 @@
 mod answer;
 #[cfg(feature = "zarr")]
 mod bounded;
+#[cfg(feature = "drop")]
+mod chance;
 mod check;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub mod compare;
@@ -56,6 +58,11 @@ pub mod zarr;
 mod zraa;
 
 pub use answer::UnanswerableError;
+#[cfg(feature = "drop")]
+pub use chance::{
+    AtSpeedReport, ChanceBody, ChanceReport, CircumstanceReport, MapReport, OverallReport, PoseChanceReport,
+    PresetReport,
+};
 pub use check::{CheckBody, CheckReport, Place, ProblemReport};
 pub use comparison::{
     Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,

@@ -6,8 +6,11 @@ use super::text::{line, number};
 use crate::acceptance::{Outcome, Reason};
 use crate::design::Design;
 use crate::method::descent::{Settings, Touch, Trajectory, Waypoint};
+#[cfg(feature = "drop")]
+use crate::method::drop;
 use crate::pose::{Dof, PoseError};
 use serde::Serialize;
+use serde_json::{Value, json};
 
 /// Lines of the text, about.
 const LINES: usize = 24;
@@ -25,7 +28,7 @@ pub struct TraceBody {
     /// Name of the method that followed the pose.
     pub method: &'static str,
     /// Its settings.
-    pub settings: Settings,
+    pub settings: Value,
     /// The pose error that the path starts from.
     pub start: PoseError,
     /// How it ends.
@@ -34,15 +37,17 @@ pub struct TraceBody {
     pub reason: Option<Reason>,
     /// The last pose error; null if the halves never meet.
     pub end: Option<PoseError>,
-    /// From first contact on.
+    /// From first contact on; of a drop test from where it was let go.
     pub waypoints: Vec<WaypointReport>,
 }
 
 /// One moment of a motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WaypointReport {
-    /// Path length since first contact, in the ρ-metric, in D.
+    /// Path length since the first of them, in the ρ-metric, in D.
     pub travelled_d: f64,
+    /// Since it was let go, in s; null of quasi-static motions, which take no time.
+    pub time_s: Option<f64>,
     /// The pose error.
     pub error: PoseError,
     /// z of the COR in the world frame, in D.
@@ -68,7 +73,7 @@ impl From<&Waypoint> for WaypointReport {
     fn from(w: &Waypoint) -> Self {
         let touch = |t: &Touch| TouchReport { point_d: t.point.to_array(), normal: t.normal.to_array() };
         let touches = w.touches.iter().map(touch).collect();
-        Self { travelled_d: w.travelled, error: w.error, height_d: w.height, touches }
+        Self { travelled_d: w.travelled, time_s: None, error: w.error, height_d: w.height, touches }
     }
 }
 
@@ -77,21 +82,49 @@ impl TraceReport {
     /// design.
     pub fn new(
         design: &Design,
-        settings: Settings,
+        settings: &Settings,
         start: PoseError,
         path: &Trajectory,
         reason: Option<Reason>,
         warnings: Vec<WarningReport>,
     ) -> Self {
+        let waypoints: Vec<WaypointReport> = path.waypoints.iter().map(WaypointReport::from).collect();
         let body = TraceBody {
             design: design.clone(),
             method: "descent",
-            settings,
+            settings: json!(settings),
             start,
             outcome: path.outcome,
             reason,
-            end: path.waypoints.last().map(|w| w.error),
-            waypoints: path.waypoints.iter().map(WaypointReport::from).collect(),
+            end: waypoints.last().map(|w| w.error),
+            waypoints,
+        };
+        Self::of(body, warnings, None)
+    }
+
+    /// Of one drop test with `settings`.
+    #[cfg(feature = "drop")]
+    pub fn of_drop(
+        design: &Design,
+        settings: &drop::Settings,
+        start: PoseError,
+        path: &drop::Path,
+        warnings: Vec<WarningReport>,
+    ) -> Self {
+        let told = |moment: &drop::Moment| WaypointReport {
+            time_s: Some(moment.time),
+            ..WaypointReport::from(&moment.waypoint)
+        };
+        let waypoints: Vec<WaypointReport> = path.moments.iter().map(told).collect();
+        let body = TraceBody {
+            design: design.clone(),
+            method: "drop",
+            settings: json!(settings),
+            start,
+            outcome: path.outcome,
+            reason: None,
+            end: waypoints.last().map(|w| w.error),
+            waypoints,
         };
         Self::of(body, warnings, None)
     }
@@ -106,13 +139,16 @@ impl TraceReport {
                 || self.waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > STILL)
         };
         let dofs: Vec<Dof> = Dof::ALL.into_iter().filter(moves).collect();
+        let timed = self.waypoints.iter().any(|w| w.time_s.is_some());
         let mut lines = vec![vec!["path [D]".to_owned()]];
+        lines[0].extend(timed.then(|| "time [s]".to_owned()));
         lines[0].extend(
             dofs.iter().map(|d| format!("{} [{}]", d.name(), if d.is_rotation() { "deg" } else { symbol })),
         );
         lines[0].extend([format!("height [{symbol}]"), "contacts".to_owned()]);
         for w in spread(&self.waypoints) {
             let mut cells = vec![format!("{:.4}", w.travelled_d)];
+            cells.extend(w.time_s.map(|time| format!("{time:.4}")));
             cells.extend(dofs.iter().map(|dof| {
                 let value = w.error.to_array()[dof.index()];
                 if dof.is_rotation() { format!("{:.3}", tidy(value.to_degrees())) } else { length(value) }
@@ -147,10 +183,17 @@ impl TraceReport {
         let head =
             "waypoint travelled x y roll pitch yaw height point_x point_y point_z normal_x normal_y normal_z";
         let mut records = vec![head.split(' ').map(str::to_owned).collect::<Vec<_>>()];
+        let timed = self.waypoints.iter().any(|w| w.time_s.is_some());
+        if timed {
+            records[0].insert(TIME, "time".to_owned());
+        }
         for (k, w) in self.waypoints.iter().enumerate() {
             let mut record = vec![k.to_string(), number(w.travelled_d)];
             record.extend(w.error.to_array().map(number));
             record.push(number(w.height_d));
+            if timed {
+                record.insert(TIME, w.time_s.map_or_else(String::new, number));
+            }
             for touch in &w.touches {
                 let contact = touch.point_d.into_iter().chain(touch.normal).map(number);
                 records.push(record.iter().cloned().chain(contact).collect());
@@ -163,6 +206,9 @@ impl TraceReport {
         records
     }
 }
+
+/// Column of the time, where there is one.
+const TIME: usize = 2;
 
 /// Waypoints spread evenly over the path, the first and the last among them.
 fn spread(waypoints: &[WaypointReport]) -> Vec<&WaypointReport> {
@@ -195,7 +241,7 @@ mod tests {
         design.name = "a\u{1b}[2Jb".to_owned();
         let path = Trajectory { waypoints, outcome: Outcome::Aligned };
         let doubts = vec![WarningReport::note("shallow")];
-        TraceReport::new(&design, Settings::default(), PoseError::default(), &path, None, doubts)
+        TraceReport::new(&design, &Settings::default(), PoseError::default(), &path, None, doubts)
     }
 
     #[test]

@@ -7,14 +7,17 @@
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
 //!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
 //!   success      how likely the errors of a robot are corrected  one design, stratified exact motions
-//!   friction     what docks at each friction, and what sticks first  one design, the same poses at every friction
-//!   hold         what a docked half withstands, sideways and twisted one design, contact forces alone
+//!   friction     what docks at each friction, what sticks first  one design, the same poses at every friction
+//!   hold         what a docked half withstands                   one design, contact forces alone
+//!   chance       how likely drop tests dock, under declared laws  one design, trials in a rigid-body engine
 //!   window       the largest box of errors that all dock         one design, exact motions without a grid
 //!   proposal     all ways in which two parts may dock           two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
 //! ```
 
 pub mod agreement;
+#[cfg(feature = "drop")]
+pub mod chance;
 pub mod convergence;
 pub mod friction;
 pub mod hold;

@@ -97,6 +97,11 @@ fn files_of_robots() {
 }
 
 #[test]
+fn files_of_laws() {
+    replay("dynamics", targets::dynamics);
+}
+
+#[test]
 fn lines_that_people_write() {
     replay("lines", targets::line);
 }

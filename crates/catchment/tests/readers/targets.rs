@@ -10,7 +10,9 @@ use catchment::design::{
 use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
-use catchment::poses::{Distribution, OffsetsAt, PoseTable, Spread, parse_pose, read_robots};
+use catchment::poses::{
+    Distribution, OffsetsAt, PoseTable, Spread, parse_draw, parse_pose, read_dynamics, read_robots,
+};
 use catchment::report::{Report, table};
 use catchment::run::Requirement;
 use std::path::Path;
@@ -184,12 +186,42 @@ pub(crate) fn robots(bytes: &[u8]) {
     }
 }
 
+/// A file of laws: every value that is drawn lies in the range of what it describes, or problems whose places lie in the text.
+pub(crate) fn dynamics(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    match read_dynamics(&SourceText::new("dynamics.toml", text.clone()), &design()) {
+        Ok(dynamics) => {
+            assert!(dynamics.declared().count() > 0);
+            for (of, law) in dynamics.declared() {
+                let [lo, hi] = of.range();
+                for k in 0..4 {
+                    let value = law.draw([lo, hi], |index| ((index * 7 + k * 13) % 29) as f64 / 29.0);
+                    assert!((lo..=hi).contains(&value), "{of:?} {law:?}: {value}");
+                }
+            }
+        }
+        Err(findings) => {
+            assert!(!findings.list.is_empty());
+            let source = findings.source.as_ref().expect("a refusal names its text");
+            for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+                assert!(source.text.get(span).is_some(), "an objection is not a piece of the text");
+            }
+        }
+    }
+}
+
 /// One line that a person writes: a pose, a quantity, degrees of freedom, a distribution.
 pub(crate) fn line(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
     if let Ok(error) = parse_pose(&text, &design) {
         assert!(error.to_array().iter().all(|v| v.is_finite()));
+    }
+    if let Err(findings) = parse_draw(&text, &design) {
+        assert!(!findings.list.is_empty());
+        for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+            assert!(text.get(span).is_some(), "an objection is not a piece of the text");
+        }
     }
     if let Ok(quantity) = text.parse::<Quantity>() {
         let _ = design.clone().with_center_of_rotation(quantity);

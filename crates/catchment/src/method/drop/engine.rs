@@ -7,13 +7,13 @@
 use super::DropError;
 use super::mass::Mass;
 use super::pieces::{Part, parts};
-use super::settings::{Push, Settings};
+use super::settings::{Launch, Push, Settings};
 use super::turning::Turning;
 use crate::acceptance::Outcome;
 use crate::connector::Half;
 use crate::contact::{Pair, Seat};
 use crate::exec::{Cancelled, Exec};
-use crate::method::descent::End;
+use crate::method::descent::{End, Touch};
 use crate::pose::{CorPose, Dof, DofSet, PoseError, face_from_cor, rotation};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use rapier3d_f64::parry::mass_properties::MassProperties;
@@ -23,12 +23,24 @@ use rapier3d_f64::prelude::{
     RigidBodyHandle, SharedShape, SpringCoefficients,
 };
 
-/// A pair as the engine takes it.
+/// The halves as the engine takes them: the same for any settings.
+pub(super) struct Shapes {
+    fixed: Vec<SharedShape>,
+    moving: Vec<SharedShape>,
+}
+
+impl Shapes {
+    pub(super) fn of(pair: &Pair) -> Result<Self, DropError> {
+        let of = |half: &Half| parts(half).iter().map(shape).collect::<Result<_, _>>();
+        Ok(Self { fixed: of(&pair.fixed)?, moving: of(&pair.moving)? })
+    }
+}
+
+/// A pair with settings.
 pub(super) struct Engine<'a> {
     pair: &'a Pair,
     settings: &'a Settings,
-    fixed: Vec<SharedShape>,
-    moving: Vec<SharedShape>,
+    shapes: &'a Shapes,
     /// z of the ground, in D.
     ground: Option<f64>,
     /// The moving half as it is.
@@ -54,10 +66,10 @@ const SWEEPS: usize = 8;
 const RELAXATIONS: usize = 2;
 
 impl<'a> Engine<'a> {
-    pub(super) fn new(pair: &'a Pair, settings: &'a Settings) -> Result<Self, DropError> {
+    pub(super) fn new(pair: &'a Pair, shapes: &'a Shapes, settings: &'a Settings) -> Result<Self, DropError> {
         settings.check()?;
         let alignment = &pair.alignment;
-        let body = Mass::of(&pair.moving, settings, alignment.rotation_length);
+        let body = Mass::of(&pair.moving, settings, alignment);
         let turning = Turning::new(alignment.free);
         if !stays_locked(&body.center, alignment.free) {
             return Err(DropError::OffCenter { center: body.center });
@@ -65,8 +77,7 @@ impl<'a> Engine<'a> {
         Ok(Self {
             pair,
             settings,
-            fixed: parts(&pair.fixed).iter().map(shape).collect::<Result<_, _>>()?,
-            moving: parts(&pair.moving).iter().map(shape).collect::<Result<_, _>>()?,
+            shapes,
             ground: settings.ground.map(|below| lowest(&pair.fixed, &DMat3::IDENTITY) - below),
             body,
             damped: body.damped(settings, alignment.rotation_length),
@@ -76,6 +87,16 @@ impl<'a> Engine<'a> {
 
     /// Lets the half go with this error and follows it to its end.
     pub(super) fn fall(&self, error: &PoseError, exec: &Exec) -> Result<End, Cancelled> {
+        self.watch(error, exec, &mut |_, _| {})
+    }
+
+    /// The same; `seen` is told how the half lies where it is let go, as step 0, and after every step.
+    pub(super) fn watch(
+        &self,
+        error: &PoseError,
+        exec: &Exec,
+        seen: &mut dyn FnMut(usize, &Fall<'_>),
+    ) -> Result<End, Cancelled> {
         exec.check()?;
         let alignment = &self.pair.alignment;
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
@@ -94,12 +115,14 @@ impl<'a> Engine<'a> {
         let mut settled = 0;
         let mut quiet = 0;
         let mut before = fall.place();
+        seen(0, &fall);
         for step in 1..=self.settings.steps() {
             fall.step();
             let (cor, rotation) = fall.place();
             if !(cor.is_finite() && rotation.is_finite()) {
                 return Ok(End { outcome: Outcome::Undecided, error: *error });
             }
+            seen(step, &fall);
             let apart = self.apart(cor, &rotation);
             // The way into the seat is looked for once: what is deep enough stays where it is connected.
             seated = cor.z <= seat.level()
@@ -134,12 +157,17 @@ impl<'a> Engine<'a> {
         (cor + face_from_cor(rotation, self.pair.alignment.center_of_rotation)).length()
     }
 
+    /// When a step ends, in s.
+    pub(super) fn time(&self, step: usize) -> f64 {
+        step as f64 * self.settings.timestep
+    }
+
     /// ρ times the angle between two rotations near each other, in D.
-    fn turn(&self, from: &DMat3, to: &DMat3) -> f64 {
+    pub(super) fn turn(&self, from: &DMat3, to: &DMat3) -> f64 {
         crate::pose::rotation_angle(&(*to * from.transpose())) * self.pair.alignment.rotation_length
     }
 
-    fn end(&self, outcome: Outcome, cor: DVec3, rotation: &DMat3) -> End {
+    pub(super) fn end(&self, outcome: Outcome, cor: DVec3, rotation: &DMat3) -> End {
         let pose = CorPose { lateral: DVec2::new(cor.x, cor.y), rotation: *rotation };
         let mut error = pose.to_error(self.pair.alignment.center_of_rotation);
         [error.roll, error.pitch, error.yaw] = self.turning.angles(rotation);
@@ -163,7 +191,7 @@ pub(super) fn stays_locked(center: &DVec3, free: DofSet) -> bool {
     center.length() <= CENTERED || holds(Dof::X, Dof::Roll) && holds(Dof::Y, Dof::Pitch)
 }
 
-/// A centre of mass this close to the COR, in D, is there.
+/// Places this close to each other, in D, are one: a centre of mass and the COR, contacts of two pieces.
 const CENTERED: f64 = 1e-9;
 
 /// z of the lowest corner of a turned half, in D.
@@ -188,7 +216,7 @@ fn shape(part: &Part) -> Result<SharedShape, DropError> {
 }
 
 /// A world with a falling half.
-struct Fall<'a> {
+pub(super) struct Fall<'a> {
     engine: &'a Engine<'a>,
     world: PhysicsWorld,
     half: RigidBodyHandle,
@@ -240,14 +268,17 @@ impl<'a> Fall<'a> {
         } else {
             RigidBodyBuilder::fixed()
         });
+        let (velocity, spin) = engine.launch(&rotation);
         let half = RigidBodyBuilder::dynamic()
             .pose(Pose::from_parts(cor, DQuat::from_mat3(&rotation)))
+            .linvel(velocity)
+            .angvel(spin)
             .additional_mass_properties(engine.mass_properties(&rotation))
             .enabled_translations(free(Dof::X), free(Dof::Y), true)
             .gyroscopic_forces_enabled(engine.turning.is_spherical())
             .can_sleep(false);
         let half = world.insert_body(half);
-        for (body, shapes) in [(fixed, &engine.fixed), (half, &engine.moving)] {
+        for (body, shapes) in [(fixed, &engine.shapes.fixed), (half, &engine.shapes.moving)] {
             for shape in shapes {
                 let collider = ColliderBuilder::new(shape.clone())
                     .density(0.0)
@@ -268,14 +299,40 @@ impl<'a> Fall<'a> {
     }
 
     /// The COR and the rotation.
-    fn place(&self) -> (DVec3, DMat3) {
+    pub(super) fn place(&self) -> (DVec3, DMat3) {
         let pose = self.world.bodies[self.half].position();
         (pose.translation, DMat3::from_quat(pose.rotation))
     }
 
     /// Whether anything touches.
-    fn touches(&self) -> bool {
+    pub(super) fn touches(&self) -> bool {
         self.world.narrow_phase.contact_pairs().any(ContactPair::has_any_active_contact)
+    }
+
+    /// Where the halves touch, in the world, with unit normals towards the moving half; the ground counts as fixed.
+    pub(super) fn contacts(&self) -> Vec<Touch> {
+        let mut found: Vec<Touch> = Vec::new();
+        for pair in self.world.narrow_phase.contact_pairs() {
+            let Some(first) = self.world.colliders.get(pair.collider1) else { continue };
+            let towards = if first.parent() == Some(self.half) { -1.0 } else { 1.0 };
+            for manifold in pair.manifolds() {
+                let place =
+                    manifold.subshape_pos1().map_or(*first.position(), |part| *first.position() * part);
+                let pushes = manifold.points.iter().filter(|contact| contact.data.impulse > 0.0);
+                for contact in pushes {
+                    let touch =
+                        Touch { point: place * contact.local_p1, normal: manifold.data.normal * towards };
+                    // Pieces of a half that meet there say it once each.
+                    let is_known = |known: &Touch| {
+                        known.point.distance(touch.point) < CENTERED && known.normal.dot(touch.normal) > 0.5
+                    };
+                    if !found.iter().any(is_known) {
+                        found.push(touch);
+                    }
+                }
+            }
+        }
+        found
     }
 
     fn step(&mut self) {
@@ -321,6 +378,18 @@ impl<'a> Fall<'a> {
 }
 
 impl Engine<'_> {
+    /// Velocity of the centre of the damped body and its rate of turning, as the half is let go with this rotation: those of the COR and
+    /// of the free hinges.
+    fn launch(&self, rotation: &DMat3) -> (DVec3, DVec3) {
+        let Launch { speed, drift: [x, y], spin } = self.settings.launch;
+        let free = |dof, rate: f64| if self.pair.alignment.free.contains(dof) { rate } else { 0.0 };
+        let hinges = self.turning.hinges(self.turning.angles(rotation));
+        let rate = |dof: Dof| spin[dof.index() - Dof::Roll.index()];
+        let turning: DVec3 = hinges.into_iter().map(|(dof, axis)| axis * rate(dof)).sum();
+        let cor = DVec3::new(free(Dof::X, x), free(Dof::Y, y), -speed);
+        (cor + turning.cross(*rotation * self.damped.center), turning)
+    }
+
     /// What the engine moves at this rotation.
     fn mass_properties(&self, rotation: &DMat3) -> MassProperties {
         let damped = &self.damped;
@@ -347,7 +416,8 @@ mod tests {
     #[test]
     fn a_half_at_rest_overlaps_by_a_thousandth_and_settles_mated() {
         let (pair, settings) = (pair(Family::Pyramid, DofSet::ALL), Settings::default());
-        let engine = Engine::new(&pair, &settings).unwrap();
+        let shapes = Shapes::of(&pair).unwrap();
+        let engine = Engine::new(&pair, &shapes, &settings).unwrap();
         let cor = pair.alignment.center_of_rotation;
         let mut fall = Fall::new(&engine, DVec3::new(0.02, 0.0, 0.01 - cor), DMat3::IDENTITY);
         for _ in 0..400 {
@@ -362,13 +432,14 @@ mod tests {
     #[test]
     fn triangles_hold_like_pieces() {
         let (pair, settings) = (pair(Family::Pyramid, DofSet::ALL), Settings::default());
-        let mut engine = Engine::new(&pair, &settings).unwrap();
+        let mut shapes = Shapes::of(&pair).unwrap();
         let mut outcomes = Vec::new();
         for meshes in [false, true] {
             if meshes {
                 let mesh = |surface: &Surface| shape(&Part::Mesh(surface.clone())).unwrap();
-                engine.fixed = pair.fixed.surfaces.iter().map(mesh).collect();
+                shapes.fixed = pair.fixed.surfaces.iter().map(mesh).collect();
             }
+            let engine = Engine::new(&pair, &shapes, &settings).unwrap();
             let fall = |k: u32| {
                 let [x, yaw] = [0.02, 0.05].map(|step| step * f64::from(k));
                 engine

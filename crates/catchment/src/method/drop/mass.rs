@@ -11,6 +11,8 @@
 
 use super::settings::{Body, Settings};
 use crate::connector::{Half, Surface};
+use crate::design::Alignment;
+use crate::pose::face_from_cor;
 use glam::{DMat3, DVec3};
 
 /// A rigid body, seen from the COR, in its own axes.
@@ -26,14 +28,17 @@ pub(super) struct Mass {
 
 impl Mass {
     /// What the settings say of the moving half, given from the COR.
-    pub(super) fn of(moving: &Half, settings: &Settings, rotation_length: f64) -> Self {
-        match settings.body {
-            Body::Given { mass, gyration } => {
-                let radius = gyration.unwrap_or(rotation_length);
-                Self { weight: mass, center: DVec3::ZERO, inertia: isotropic(mass * radius * radius) }
+    pub(super) fn of(moving: &Half, settings: &Settings, alignment: &Alignment) -> Self {
+        let mass = match settings.body {
+            Body::Given { mass, gyration, center } => {
+                let radius = gyration.unwrap_or(alignment.rotation_length);
+                let face = face_from_cor(&DMat3::IDENTITY, alignment.center_of_rotation);
+                let center = center.map_or(DVec3::ZERO, |center| face + DVec3::from_array(center));
+                Self { weight: mass, center, inertia: isotropic(mass * radius * radius) }
             }
             Body::Solid { density } => Self::solid(&moving.surfaces, density),
-        }
+        };
+        Self { inertia: mass.inertia * settings.inertia_factor, ..mass }
     }
 
     /// Volume integrals over the tetrahedra from the origin to the triangles of the surfaces.
@@ -63,7 +68,13 @@ impl Mass {
         let at_cor = Self {
             weight: impulse * settings.damping,
             center: DVec3::ZERO,
-            inertia: isotropic(impulse * settings.angular_damping * rotation_length * rotation_length),
+            inertia: isotropic(
+                impulse
+                    * settings.angular_damping
+                    * settings.inertia_factor
+                    * rotation_length
+                    * rotation_length,
+            ),
         };
         let weight = self.weight + at_cor.weight;
         let center = self.center * (self.weight / weight);

@@ -28,13 +28,15 @@ pub(super) mod door;
 mod engine;
 pub mod export;
 mod mass;
+mod path;
 mod pieces;
 mod settings;
 #[cfg(test)]
 mod tests;
 mod turning;
 
-pub use settings::{Body, PRESETS, Preset, Push, SettingError, Settings};
+pub use path::{Moment, Path};
+pub use settings::{Body, Launch, PRESETS, Preset, Push, SettingError, Settings};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::advice::Advice;
@@ -44,8 +46,9 @@ use crate::landscape::Resolution;
 use crate::method::descent::End;
 use crate::method::door::Finished;
 use crate::pose::{Dof, PoseError};
-use engine::Engine;
+use engine::{Engine, Shapes};
 use glam::DVec3;
+use mass::Mass;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -63,8 +66,8 @@ pub enum DropError {
     },
     /// A translation is locked at the COR, but the centre of mass swings about it.
     #[error(
-        "the centre of mass of the solid lies at {center} D from the centre of rotation, and a translation is locked there while \
-         rotations are free: give a mass instead of a density, or free the translation"
+        "the centre of mass lies at {center} D from the centre of rotation, and a translation is locked there while rotations are \
+         free: give a mass at the centre of rotation, or free the translation"
     )]
     OffCenter {
         /// Where the centre of mass lies, from the COR, in D.
@@ -104,7 +107,8 @@ fn run_told(
     exec: &Exec,
     finished: Finished<'_>,
 ) -> Result<(Acceptance, Vec<End>), DropError> {
-    let engine = Engine::new(pair, settings)?;
+    let shapes = Shapes::of(pair)?;
+    let engine = Engine::new(pair, &shapes, settings)?;
     let count = domain.checked_len();
     let axes = if let Domain::Grid(grid) = &domain { grid.axes.len() } else { 0 };
     let needed = count.map_or(u64::MAX, |count| (count as u64).saturating_mul(POSE_BYTES));
@@ -164,6 +168,43 @@ fn verdict(ends: &[End]) -> End {
     let most = ends.iter().rev().filter(|e| e.outcome != Outcome::Aligned).max_by_key(|e| votes(e.outcome));
     let missing = End { outcome: Outcome::Undecided, error: PoseError::default() };
     majority.or(most).copied().unwrap_or(missing)
+}
+
+/// Halves that trials of any settings are made with: what the engine needs of them is prepared once.
+pub struct Bench<'a> {
+    pair: &'a Pair,
+    shapes: Shapes,
+}
+
+impl<'a> Bench<'a> {
+    /// Of a pair.
+    ///
+    /// # Errors
+    /// If the engine does not take the geometry.
+    pub fn new(pair: &'a Pair) -> Result<Self, DropError> {
+        Ok(Self { pair, shapes: Shapes::of(pair)? })
+    }
+
+    /// One trial with these settings, which starts where `error` says and nowhere else: nothing is perturbed.
+    ///
+    /// # Errors
+    /// See [`DropError`]. A stop is looked for every 64 time steps.
+    pub fn fall(&self, error: &PoseError, settings: &Settings, exec: &Exec) -> Result<End, DropError> {
+        Ok(Engine::new(self.pair, &self.shapes, settings)?.fall(error, exec)?)
+    }
+
+    /// The same, with its way.
+    ///
+    /// # Errors
+    /// As [`Bench::fall`].
+    pub fn trace(&self, error: &PoseError, settings: &Settings, exec: &Exec) -> Result<Path, DropError> {
+        Ok(path::trace(&Engine::new(self.pair, &self.shapes, settings)?, error, exec)?)
+    }
+
+    /// Mass of the moving half with these settings, in kg.
+    pub fn mass(&self, settings: &Settings) -> f64 {
+        Mass::of(&self.pair.moving, settings, &self.pair.alignment).weight
+    }
 }
 
 /// Where a trial starts: uniform within the perturbation around the pose, and a function of the seed, the free errors of the

@@ -24,8 +24,13 @@ pub struct Settings {
     pub restitution: f64,
     /// A plane to fall onto, this far below the lowest point of the fixed half, in D: 0 where that stands on the ground.
     pub ground: Option<f64>,
-    /// Height above first contact from which the half is let go, at rest, in D.
+    /// Height above first contact from which the half is let go, in D.
     pub drop_height: f64,
+    /// How it moves then; at rest where nothing is said.
+    pub launch: Launch,
+    /// Inertia, and friction with the surroundings against turning, are so many times what they would be: 10⁵ all but locks rotations,
+    /// which is how the dissertation did it (section 4.2.2).
+    pub inertia_factor: f64,
     /// Time between two states of the engine, in s.
     pub timestep: f64,
     /// Simulated time after which a trial ends, in s: jammed if it is at rest, else undecided.
@@ -53,17 +58,33 @@ pub enum Push {
     Gravity(f64),
 }
 
+/// How the moving half moves when it is let go. What is said of errors that the design locks does not count.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Launch {
+    /// Speed of the COR along the approach, towards the fixed half, in D/s.
+    pub speed: f64,
+    /// Velocity of the COR along x and y, in D/s.
+    pub drift: [f64; 2],
+    /// Rates of roll, pitch and yaw, in rad/s.
+    pub spin: [f64; 3],
+}
+
 /// Mass and inertia of the moving half.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum Body {
-    /// Given, with the centre of mass at the COR.
+    /// Given.
     Given {
         /// In kg.
         mass: f64,
-        /// Radius of gyration about every axis, in D: the inertia is mass·gyration². `None`: ρ, so that the metric of inertia is
-        /// that of friction.
+        /// Radius of gyration about every axis through the centre of mass, in D: the inertia is mass·gyration². `None`: ρ, so that the
+        /// metric of inertia is that of friction.
         gyration: Option<f64>,
+        /// Where the centre of mass is, from the face centre of the moving half, along the axes of the fixed half when it is docked (z away
+        /// from that), in D. `None`: at the COR.
+        #[serde(default)]
+        center: Option<[f64; 3]>,
     },
     /// A solid of this density: mass, centre of mass and inertia follow from the geometry. Pieces that overlap count twice.
     Solid {
@@ -76,13 +97,15 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             push: Push::Force(5000.0),
-            body: Body::Given { mass: 1.0, gyration: None },
+            body: Body::Given { mass: 1.0, gyration: None, center: None },
             damping: 1000.0,
             angular_damping: 1000.0,
             friction: 0.0,
             restitution: 0.0,
             ground: None,
             drop_height: 0.01,
+            launch: Launch::default(),
+            inertia_factor: 1.0,
             timestep: 1e-3,
             timeout: 20.0,
             lost_beyond: 1.0,
@@ -103,6 +126,8 @@ pub struct Preset {
     pub summary: &'static str,
     /// The settings.
     pub settings: fn() -> Settings,
+    /// What its source leaves open, and what stands here instead.
+    pub unknown: &'static [&'static str],
 }
 
 /// The presets.
@@ -111,6 +136,15 @@ pub const PRESETS: [Preset; 1] = [Preset {
     summary: "the trials of the dissertation, as far as it states them: gravity of 9000 m/s², velocities that decay by 0.99 per \
               step, a ground",
     settings: Settings::gazebo_2014,
+    unknown: &[
+        "the time step: 1 ms, the default of Gazebo, is taken",
+        "the range of the slices: that of the design's error box is taken",
+        "the back of the part, which decides its mass and what of it meets the ground: that of the design is taken, of one density",
+        "how near counts as aligned: the seat is taken",
+        "how high it is let go: 0.01 D above first contact is taken",
+        "how long is unusually long: 20 s is taken",
+        "whether the lower half could slide on its ground: it is held",
+    ],
 }];
 
 impl Settings {
@@ -177,14 +211,19 @@ impl Settings {
             let advice = "give 0 or more";
             if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(SettingError { name, value, advice }) }
         };
+        let finite = |name, value: f64| {
+            let advice = "give a number";
+            if value.is_finite() { Ok(()) } else { Err(SettingError { name, value, advice }) }
+        };
         match self.push {
             Push::Force(force) => positive("force", force)?,
             Push::Gravity(gravity) => positive("gravity", gravity)?,
         }
         match self.body {
-            Body::Given { mass, gyration } => {
+            Body::Given { mass, gyration, center } => {
                 positive("mass", mass)?;
                 gyration.map_or(Ok(()), |gyration| positive("gyration", gyration))?;
+                center.into_iter().flatten().try_for_each(|part| finite("center", part))?;
             }
             Body::Solid { density } => positive("density", density)?,
         }
@@ -199,6 +238,10 @@ impl Settings {
             at_least_zero(name, value)?;
         }
         self.ground.map_or(Ok(()), |ground| at_least_zero("ground", ground))?;
+        at_least_zero("speed", self.launch.speed)?;
+        self.launch.drift.into_iter().try_for_each(|part| finite("drift", part))?;
+        self.launch.spin.into_iter().try_for_each(|part| finite("spin", part))?;
+        positive("inertia_factor", self.inertia_factor)?;
         if !(0.0..=1.0).contains(&self.restitution) {
             let advice = "give a share between 0 and 1";
             return Err(SettingError { name: "restitution", value: self.restitution, advice });
@@ -222,6 +265,14 @@ impl Settings {
             return Err(SettingError { name: "trials", value, advice });
         }
         Ok(())
+    }
+
+    /// The preset that these settings come from, as far as what it sets is unchanged.
+    pub fn preset(&self) -> Option<&'static Preset> {
+        PRESETS.iter().find(|preset| {
+            let of = (preset.settings)();
+            (self.push, self.body, self.damping, self.ground) == (of.push, of.body, of.damping, of.ground)
+        })
     }
 
     /// Steps of one trial, at most.

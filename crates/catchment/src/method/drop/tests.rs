@@ -164,6 +164,9 @@ fn what_cannot_run_is_refused() {
         Settings { restitution: 1.5, ..Settings::default() },
         Settings { timestep: 1e-9, ..Settings::default() },
         Settings { push: Push::Force(0.0), ..Settings::default() },
+        Settings { inertia_factor: 0.0, ..Settings::default() },
+        Settings { launch: Launch { speed: -1.0, ..Launch::default() }, ..Settings::default() },
+        Settings { launch: Launch { drift: [0.0, f64::NAN], ..Launch::default() }, ..Settings::default() },
         Settings { body: Body::Solid { density: -1.0 }, ..Settings::default() },
     ] {
         assert!(matches!(refused(&settings, &Exec::new()), DropError::Setting(_)));
@@ -219,4 +222,111 @@ fn the_preset_of_the_dissertation_docks_and_fails_as_it_should() {
     let met = outcomes(&pair, vec![x(0.05), x(0.97)], &settings);
     assert_eq!(met[0], Outcome::Aligned);
     assert_ne!(met[1], Outcome::Aligned);
+}
+
+/// Nothing drives it and nothing slows it: it lands after h/v, having drifted and turned at its rates.
+#[test]
+fn a_half_in_flight_keeps_its_velocities() {
+    let pair = pair(Family::Pyramid, DofSet::ALL);
+    let settings = Settings {
+        push: Push::Force(1e-9),
+        damping: 0.0,
+        angular_damping: 0.0,
+        drop_height: 0.4,
+        launch: Launch { speed: 0.8, drift: [0.2, -0.1], spin: [0.0, 0.0, 0.3] },
+        ..Settings::default()
+    };
+    let start = PoseError { y: 0.05, ..x(-0.1) };
+    let path = Bench::new(&pair).unwrap().trace(&start, &settings, &Exec::new()).unwrap();
+    let landing = path.moments.iter().find(|moment| !moment.waypoint.touches.is_empty()).unwrap();
+    let at = crate::pose::CorPose::from_error(&landing.waypoint.error, 0.5, DofSet::ALL);
+    // It touches where the heights of contact say, but for what it falls in a step, and what the engine sees ahead.
+    let above = landing.waypoint.height - pair.height(&at).unwrap();
+    assert!(above.abs() < 3e-3, "{above}");
+    let flown = path.moments.iter().rfind(|moment| moment.time < 0.4).unwrap();
+    let (time, error) = (flown.time, flown.waypoint.error);
+    // A push of 10⁻⁹ and rounding.
+    let near = |value: f64, expected: f64| (value - expected).abs() < 1e-7;
+    assert!(near(error.yaw, 0.3 * time), "{error:?} at {time}");
+    // Offsets are of the face centre, which stands over the COR while only yaw turns.
+    assert!(near(error.x, -0.1 + 0.2 * time) && near(error.y, 0.05 - 0.1 * time), "{error:?} at {time}");
+    let times: Vec<f64> = path.moments.iter().map(|moment| moment.time).collect();
+    assert!(times[0] == 0.0 && times.windows(2).all(|pair| pair[0] < pair[1]));
+    // Of locked errors nothing counts.
+    let locked = super::tests::pair(Family::Pyramid, DofSet::EMPTY.with(Dof::X));
+    let path = Bench::new(&locked).unwrap().trace(&x(0.1), &settings, &Exec::new()).unwrap();
+    assert!(
+        path.moments.iter().all(|moment| moment.waypoint.error.y == 0.0 && moment.waypoint.error.yaw == 0.0)
+    );
+}
+
+/// A force through the COR beside the centre of mass turns a half by F·a/(m·k²); a weight does not turn it.
+#[test]
+fn a_push_beside_the_centre_of_mass_turns_a_half() {
+    let pair = pair(Family::Pyramid, DofSet::ALL);
+    let pitch = |push: Push| {
+        let center = Some([0.2, 0.0, -0.5]);
+        let settings = Settings {
+            push,
+            body: Body::Given { mass: 2.0, gyration: Some(0.4), center },
+            damping: 0.0,
+            angular_damping: 0.0,
+            drop_height: 0.5,
+            ..Settings::default()
+        };
+        let path = Bench::new(&pair).unwrap().trace(&x(0.0), &settings, &Exec::new()).unwrap();
+        let flown = path.moments.iter().rfind(|moment| moment.time < 0.15).unwrap();
+        (flown.time, flown.waypoint.error.pitch)
+    };
+    let (time, turned) = pitch(Push::Force(20.0));
+    let expected = -0.5 * 20.0 * 0.2 / (2.0 * 0.16) * time * time;
+    // Steps of 1 ms in the place of an integral: half a step of the way; and the arm shortens as it turns.
+    assert!(time > 0.1 && (turned / expected - 1.0).abs() < 0.03, "{turned} for {expected} at {time}");
+    let (_, turned) = pitch(Push::Gravity(10.0));
+    assert!(turned.abs() < 1e-12, "{turned}");
+}
+
+/// Inertia 10⁵ times as large leaves translation alone, as in section 4.2.2: the pyramid seats from D/2, with all errors free.
+#[test]
+fn a_frozen_rotation_leaves_the_region_of_sliding() {
+    let pair = pair(Family::Pyramid, DofSet::ALL);
+    let settings = Settings { inertia_factor: 1e5, trials: 1, ..Settings::gazebo_2014() };
+    let turned = |yaw: f64| PoseError { yaw, ..x(0.05) };
+    let poses = || {
+        vec![
+            x(0.45),
+            PoseError { y: -0.45, ..x(0.45) },
+            x(0.55),
+            PoseError { y: 0.55, ..x(0.2) },
+            turned(0.3),
+        ]
+    };
+    let frozen = outcomes(&pair, poses(), &settings);
+    assert_eq!(frozen[..2], [Outcome::Aligned; 2]);
+    assert!(!frozen[2..].contains(&Outcome::Aligned), "{frozen:?}");
+    // Free to turn it turns home.
+    let free = outcomes(&pair, vec![turned(0.3)], &Settings { inertia_factor: 1.0, ..settings });
+    assert_eq!(free, [Outcome::Aligned]);
+}
+
+/// Figure 4.5: a half that rests on the other one and on the ground that this one stands on.
+#[test]
+fn a_half_rests_on_the_other_and_on_the_ground() {
+    let alignment = Alignment { center_of_rotation: 0.5, ..Alignment::default_for(Some(Family::XFace3d)) };
+    let connector =
+        ConnectorSpec::Family(FamilySpec::new(Family::XFace3d).with_aspect_ratio(30f64.to_radians().tan()));
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment };
+    let pair = Pair::new(&Connector::build(&design).unwrap(), &design.alignment);
+    let settings = Settings { trials: 1, ..Settings::gazebo_2014() };
+    let ground = pair.fixed.surfaces.iter().flat_map(|s| &s.vertices).fold(0.0f64, |low, v| low.min(v.z));
+    let bench = Bench::new(&pair).unwrap();
+    let rests = |x: f64, y: f64, pitch: f64, yaw: f64| {
+        let start = PoseError { x, y, roll: 0.0, pitch: pitch.to_radians(), yaw: yaw.to_radians() };
+        let path = bench.trace(&start, &settings, &Exec::new()).unwrap();
+        let last = path.moments.last().unwrap();
+        let on_ground = |touch: &&crate::method::descent::Touch| (touch.point.z - ground).abs() < 5e-3;
+        let down = last.waypoint.touches.iter().filter(on_ground).count();
+        path.outcome == Outcome::Jammed && down > 0 && down < last.waypoint.touches.len()
+    };
+    assert!(rests(0.44, 0.61, 26.0, 0.0) || rests(-0.47, 0.08, -21.0, 12.0));
 }

@@ -10,6 +10,7 @@
 //!   curves      any curves over a logarithmic scale, side by side
 //!   sensitivity the Sum against rho
 //!   success     the success of robots over the factor of their errors, and what each error gains
+//!   chance      how likely trials dock over two errors, and against speed
 //!   sweep       the Sum of many designs in colours, and what each accepts
 //!   heights     height of first contact over a pair, contours, the same border on top
 //!   section     both halves cut along the approach axis, at any pose
@@ -39,6 +40,8 @@ mod agreement;
 mod answer;
 mod basins;
 mod bodies;
+#[cfg(feature = "drop")]
+mod chance;
 mod convergence;
 mod curves;
 mod difference;
@@ -73,6 +76,8 @@ pub use agreement::agreement;
 pub use answer::Drawn;
 pub use basins::basins;
 pub use bodies::bodies;
+#[cfg(feature = "drop")]
+pub use chance::chance;
 pub use convergence::convergence;
 pub use curves::{Curve, CurveChart, CurvePoint, curves};
 pub use difference::difference;

@@ -38,33 +38,33 @@ const BLOCK: usize = 4096;
 
 /// A pose that was followed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Followed {
+pub(in crate::study) struct Followed {
     /// Its number among the errors of the source.
     pub(super) number: u64,
     /// The share of all errors that it stands for.
-    pub(super) weight: f64,
+    pub(in crate::study) weight: f64,
     /// What became of it.
-    pub(super) outcome: Outcome,
+    pub(in crate::study) outcome: Outcome,
     /// Its stratum.
     pub(super) stratum: usize,
 }
 
 /// What a sample says.
 #[derive(Debug, Clone)]
-pub(super) struct Sample {
+pub(in crate::study) struct Sample {
     /// Probability of docking, in [0, 1], and its 95 % interval.
-    pub(super) probability: f64,
-    pub(super) ci95: [f64; 2],
+    pub(in crate::study) probability: f64,
+    pub(in crate::study) ci95: [f64; 2],
     /// Motions that were followed.
-    pub(super) motions: usize,
+    pub(in crate::study) motions: usize,
     /// How many of them could not be followed to their end.
-    pub(super) undecided: usize,
+    pub(in crate::study) undecided: usize,
     /// Plain motions whose interval would be as wide.
-    pub(super) plain: f64,
+    pub(in crate::study) plain: f64,
     /// The poses that were followed.
-    pub(super) poses: Vec<Followed>,
+    pub(in crate::study) poses: Vec<Followed>,
     /// What was seen of every stratum that has errors.
-    pub(super) strata: Vec<Stratum>,
+    pub(in crate::study) strata: Vec<Stratum>,
     /// The stratum of every error that was drawn.
     pub(super) labels: Vec<u8>,
     /// Share that docks, by stratum, and the same drawn towards a half.
@@ -83,6 +83,20 @@ pub(super) fn sample(
     motions: usize,
     exec: &Exec,
 ) -> Result<Sample, Cancelled> {
+    sample_by(source, factors, strata, motions, exec, |numbered, part| {
+        follow(problem, source, factors, numbered, part)
+    })
+}
+
+/// The same of anything that becomes of errors: `follow` has their strata and numbers.
+pub(in crate::study) fn sample_by<E: From<Cancelled>>(
+    source: &Source<'_>,
+    factors: &[f64; 5],
+    strata: &Strata,
+    motions: usize,
+    exec: &Exec,
+    mut follow: impl FnMut(&[(usize, u64)], &Exec) -> Result<Vec<Outcome>, E>,
+) -> Result<Sample, E> {
     let plain = source.rows().or((!strata.is_some()).then_some(motions));
     let labels = if let Some(count) = plain {
         vec![0; count]
@@ -100,7 +114,7 @@ pub(super) fn sample(
         let numbered = drawn.batch(&allot(batch.poses, &seen));
         let span = [drawn.total(), drawn.total() + batch.poses].map(|done| done as f64 / motions as f64);
         let part = exec.part(span, "random motions");
-        let outcomes = follow(problem, source, factors, &numbered, &part)?;
+        let outcomes = follow(&numbered, &part)?;
         drawn.take(batch.poses, &numbered, &outcomes);
         seen = drawn.seen();
         whole = Whole::of(&seen, drawn.total());

@@ -22,13 +22,13 @@
 //! radians.
 
 mod drawn;
-mod estimate;
+pub(in crate::study) mod estimate;
 mod failure;
 mod fit;
 mod found;
 mod gain;
-mod source;
-mod strata;
+pub(in crate::study) mod source;
+pub(in crate::study) mod strata;
 #[cfg(test)]
 mod tests;
 mod tolerable;

@@ -16,11 +16,11 @@ use crate::poses::{Moments, Spread};
 use std::f64::consts::TAU;
 
 /// No σ changed.
-pub(super) const SAME: [f64; 5] = [1.0; 5];
+pub(in crate::study) const SAME: [f64; 5] = [1.0; 5];
 
 /// Errors of a robot by their numbers.
 #[derive(Debug, Clone)]
-pub(super) struct Source<'a> {
+pub(in crate::study) struct Source<'a> {
     law: Law<'a>,
     mean: [f64; 5],
     /// Standard deviations; half-widths where errors are uniform.
@@ -49,7 +49,7 @@ const NUMBERS: u64 = 6;
 
 impl<'a> Source<'a> {
     /// Of a spread; of measured errors every row once where `rows` of them are followed, else any of them.
-    pub(super) fn of(spread: &'a Spread, rows: usize, seed: u64) -> Self {
+    pub(in crate::study) fn of(spread: &'a Spread, rows: usize, seed: u64) -> Self {
         let Moments { mean, sigma, correlation } = spread.moments();
         let mut scale = sigma.to_array();
         let law = match spread {
@@ -135,7 +135,7 @@ impl<'a> Source<'a> {
     }
 
     /// z of error number `number`.
-    pub(super) fn standard(&self, number: u64) -> [f64; 5] {
+    pub(in crate::study) fn standard(&self, number: u64) -> [f64; 5] {
         let uniform = |k: u64| self.random.uniform(NUMBERS * number + k);
         let even = || std::array::from_fn(|k| 2.0 * uniform(k as u64) - 1.0);
         match self.law {
@@ -170,7 +170,7 @@ impl<'a> Source<'a> {
     }
 
     /// The pose error of z with every σ multiplied by its factor.
-    pub(super) fn pose(&self, z: &[f64; 5], factors: &[f64; 5]) -> PoseError {
+    pub(in crate::study) fn pose(&self, z: &[f64; 5], factors: &[f64; 5]) -> PoseError {
         let y = self.in_sigmas(z);
         PoseError::from_array(std::array::from_fn(|k| self.mean[k] + factors[k] * self.scale[k] * y[k]))
     }

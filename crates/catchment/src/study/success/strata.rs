@@ -39,7 +39,7 @@ pub(super) const STRATA: usize = INSIDE + 3;
 
 /// Strata of errors.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Strata {
+pub(in crate::study) struct Strata {
     grid: Option<Grid>,
     /// Whether the centre of each cell docks.
     docks: Vec<bool>,
@@ -50,7 +50,7 @@ pub(super) struct Strata {
 impl Strata {
     /// Decides a grid for the errors of a source; none where halves are so intricate, or `cells` per axis so few, that it would say
     /// nothing.
-    pub(super) fn decide(
+    pub(in crate::study) fn decide(
         problem: &Problem,
         source: &Source<'_>,
         cells: Option<usize>,
@@ -100,12 +100,12 @@ impl Strata {
     }
 
     /// Cells that were decided.
-    pub(super) const fn cells(&self) -> usize {
+    pub(in crate::study) const fn cells(&self) -> usize {
         self.docks.len()
     }
 
     /// Motions that this took.
-    pub(super) const fn motions(&self) -> usize {
+    pub(in crate::study) const fn motions(&self) -> usize {
         self.motions
     }
 

@@ -15,7 +15,7 @@ pub mod sdf;
 use super::engine::stays_locked;
 use super::mass::Mass;
 use super::pieces::{Part, parts};
-use super::settings::{Push, SettingError, Settings};
+use super::settings::{Launch, Push, SettingError, Settings};
 use super::turning::Turning;
 use crate::connector::{Half, Surface};
 use crate::contact::{Pair, Seat};
@@ -58,6 +58,11 @@ pub enum ExportError {
     /// A ground, which the files have none of.
     #[error("a ground plane is not exported: leave it out here, and add one to the file")]
     Ground,
+    /// A half that moves when it is let go, which the files do not say.
+    #[error(
+        "a half that is let go in motion is not exported: leave its speed, drift and spin out here, and add them to the file"
+    )]
+    Launch,
     /// The halves pass each other by.
     #[error("with this error the halves pass each other by: there is nothing to drop onto")]
     NoContact,
@@ -81,8 +86,11 @@ impl<'a> Scene<'a> {
         if settings.ground.is_some() {
             return Err(ExportError::Ground);
         }
+        if settings.launch != Launch::default() {
+            return Err(ExportError::Launch);
+        }
         let alignment = &pair.alignment;
-        let body = Mass::of(&pair.moving, settings, alignment.rotation_length);
+        let body = Mass::of(&pair.moving, settings, alignment);
         if !stays_locked(&body.center, alignment.free) {
             return Err(ExportError::OffCenter(super::DropError::OffCenter { center: body.center }));
         }
@@ -154,7 +162,8 @@ impl<'a> Scene<'a> {
 
     /// c·ρ² of turning, in kg·D²/s.
     fn turning_damping(&self) -> f64 {
-        self.body.weight * self.settings.angular_damping * self.pair.alignment.rotation_length.powi(2)
+        let turning = self.settings.angular_damping * self.settings.inertia_factor;
+        self.body.weight * turning * self.pair.alignment.rotation_length.powi(2)
     }
 }
 

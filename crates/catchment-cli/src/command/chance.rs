@@ -1,0 +1,205 @@
+//! `catchment chance`: dynamics as a probability.
+
+use crate::args::DesignArgs;
+use crate::asked::AskedArgs;
+use crate::drop_args::DropArgs;
+use crate::error_args::ErrorArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, to_stderr};
+use crate::source::read_table;
+use catchment::design::{Design, Findings, SourceText, load, parse_dofs};
+use catchment::pose::Dof;
+use catchment::poses::{
+    Circumstance, Dynamics, OffsetsAt, PoseTable, Spread, parse_draw, parse_pose, read_dynamics,
+};
+use catchment::problem::Problem;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{ChanceReport, csv, figure};
+use catchment::study::chance::{Chance, Question, Settings, run as ask};
+use clap::Args;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Dynamics as a probability: how likely it docks that comes with some speed, drift, spin, mass, friction, bounce, height
+///
+/// Trials in a rigid-body engine, each with circumstances of its own, drawn from declared laws. Prints how likely single poses dock, or the errors that
+/// are expected (the whole error box, where nothing is said), the same with all speeds multiplied, and beside it what exact quasi-static motions say: the
+/// limit of no speed.
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("trials", |arg| arg.help("Trials of each pose, and of each cell of a map [default: 100]")),
+    mut_arg("trial_seed", |arg| arg.help("Seed of all draws [default: 1]")),
+    mut_arg("damping", |arg| arg.help("Friction with the surroundings, 1/s: the force -mass·damping·v [default: 10]")),
+    mut_arg("push", |arg| arg.help("Force along the approach, in kg·D/s² [default: what damping balances at the approach speed]")),
+    after_long_help = "Examples:\n  \
+    catchment chance design.toml --draw 'speed=50 ± 10 mm/s' --draw 'drift_x=0 ± 20 mm/s'\n  \
+    catchment chance design.toml --dynamics dynamics.toml --error-sigma 'x=1 mm,yaw=2 deg'\n  \
+    catchment chance design.toml --dynamics dynamics.toml --pose x=0.4 --pose 'x=0.4,pitch=5 deg' --trials 1000\n  \
+    catchment chance design.toml --dynamics dynamics.toml --map x,pitch -o map.png\n  \
+    catchment chance design.toml --draw speed=1 --times 0.01,0.1,1,10 -o speeds.svg\n                                                  \
+    against speed, down to quasi-static\n  \
+    catchment chance design.toml --dynamics dynamics.toml --require 'overall.probability>=0.95'\n  \
+    catchment chance design.toml --preset gazebo-2014 --pose x=0.3 --trials 999\n\n\
+    A file of laws:\n\n  \
+    [dynamics]\n  \
+    speed = { mean = \"50 mm/s\", sigma = \"10 mm/s\" }    # or \"50 ± 10 mm/s\"\n  \
+    friction = { from = 0.1, to = 0.3 }                # or \"0.1..0.3\"\n  \
+    mass = { median = 2, factor = 1.1 }                # or \"2 */ 1.1\", kg\n  \
+    restitution = { measured = [0.1, 0.15, 0.3] }\n\n\
+    and drift_x, drift_y, spin_roll, spin_pitch, spin_yaw, height. Lengths are in D, angles in radians, times in s unless \
+    they have a unit; in JSON always. -o writes .png and .svg (map and curve), .csv and .json."
+)]
+pub(crate) struct ChanceArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    /// A file of laws (TOML), under [dynamics]
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = DRAWN)]
+    dynamics: Option<PathBuf>,
+    /// A law of one circumstance, such as "friction=0.1..0.3" or "speed=50 ± 10 mm/s", before that of the file; may be repeated
+    #[arg(long, value_name = "WHAT=LAW", allow_hyphen_values = true, help_heading = DRAWN)]
+    draw: Vec<String>,
+    /// A pose error to try, such as "x=0.2,pitch=10 deg"; may be repeated
+    #[arg(long, value_name = "ERRORS", allow_hyphen_values = true, help_heading = ASKED)]
+    pose: Vec<String>,
+    /// A table of pose errors to try (CSV); - reads stdin
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = ASKED)]
+    poses: Option<PathBuf>,
+    /// Cells over two errors, all others 0, as far as the error box reaches
+    #[arg(long, value_name = "AXIS,AXIS", value_parser = two, help_heading = ASKED)]
+    map: Option<[Dof; 2]>,
+    /// Cells along each axis of the map
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u16).range(2..=500), help_heading = ASKED)]
+    cells: u16,
+    /// The probability with every velocity multiplied by each of these, such as "0.01,0.1,1,10"
+    #[arg(long, value_name = "FACTOR,…", value_delimiter = ',', help_heading = ASKED)]
+    times: Vec<f64>,
+    /// Trials of the probability under expected errors, and of each speed
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000), help_heading = ASKED)]
+    overall: u32,
+    #[command(flatten)]
+    errors: ErrorArgs,
+    /// Errors as they were measured: a table of poses (CSV); - reads stdin
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect",
+          conflicts_with_all = ["error_sigma", "error_uniform"])]
+    error_measured: Option<PathBuf>,
+    #[command(flatten)]
+    drop: DropArgs,
+    #[command(flatten)]
+    asked: AskedArgs,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+const DRAWN: &str = "What is drawn for every trial";
+const ASKED: &str = "What is asked";
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
+    let problem = args.design.problem()?;
+    let settings = args.settings(problem.design())?;
+    let asked = args.question(&problem)?;
+    let form = ChanceReport::new(problem.design(), &Chance::form(&asked, &settings), Vec::new(), None);
+    args.asked.check(&form)?;
+    if matches!(kind, Some("png" | "svg")) {
+        figure::chance(&form).map_err(|error| {
+            Failure::with_help(error.to_string(), Some("add --map or --times".to_owned()))
+        })?;
+    }
+    let running = args.exec.start()?;
+    let long = asked.doubt(&settings, running.exec.threads());
+    to_stderr(&long.into_iter().collect::<Vec<_>>());
+    let found = ask(&problem, &asked, &settings, &running.exec)?;
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = ChanceReport::new(problem.design(), &found, doubts, Some(timing));
+    match kind {
+        Some("png") => args.file.write(&figure::chance(&report)?.png(PNG_SCALE)?)?,
+        Some("svg") => args.file.write(figure::chance(&report)?.svg().as_bytes())?,
+        Some("csv") => args.file.write(&csv(&report.records())?)?,
+        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
+        None => {}
+    }
+    args.asked.tell(&report, ChanceReport::table)
+}
+
+impl ChanceArgs {
+    fn settings(&self, design: &Design) -> Result<Settings, Failure> {
+        let default = Settings::default();
+        Ok(Settings {
+            drop: self.drop.on(default.drop)?,
+            dynamics: self.declared(design)?,
+            held: !self.drop.pushes(),
+            trials: self.drop.trials().unwrap_or(default.trials),
+            overall: self.overall as usize,
+            seed: self.drop.seed().unwrap_or(default.seed),
+        })
+    }
+
+    /// The laws of the file and of the options.
+    fn declared(&self, design: &Design) -> Result<Dynamics, Failure> {
+        let mut dynamics = match &self.dynamics {
+            Some(path) => read_dynamics(&SourceText::new(path, load(path)?), design)?,
+            None => Dynamics::default(),
+        };
+        let mut drawn: Vec<Circumstance> = Vec::new();
+        for text in &self.draw {
+            let (of, law) =
+                parse_draw(text, design).map_err(|findings| Failure::of_option("--draw", text, findings))?;
+            if drawn.contains(&of) {
+                let message = format!("--draw says twice how {} is drawn", of.name());
+                return Err(Failure::with_help(message, Some("name it once".to_owned())));
+            }
+            drawn.push(of);
+            dynamics = dynamics.with(of, law);
+        }
+        if let Some((of, option)) = dynamics.declared().find_map(|(of, _)| Some((of, self.drop.fixes(of)?))) {
+            let message = format!("{} is drawn from a law, and {option} gives it too", of.name());
+            return Err(Failure::with_help(message, Some(format!("leave out {option}, or the law"))));
+        }
+        Ok(dynamics)
+    }
+
+    fn question(&self, problem: &Problem) -> Result<Question, Failure> {
+        let design = problem.design();
+        let mut asked = Question { times: self.times.clone(), ..Question::default() };
+        for text in &self.pose {
+            let pose =
+                parse_pose(text, design).map_err(|findings| Failure::of_option("--pose", text, findings))?;
+            asked.poses.push(pose);
+        }
+        if let Some(path) = &self.poses {
+            let source = read_table(path)?;
+            let table = PoseTable::parse(&source.text, design, OffsetsAt::Face)
+                .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
+            asked.poses.extend_from_slice(table.errors());
+        }
+        asked.errors = match (&self.error_measured, self.errors.distribution(design)?) {
+            (Some(path), _) => Some(Spread::measured(read_table(path)?, design)?),
+            (None, Some(distribution)) => Some(Spread::of(&distribution)?),
+            (None, None) => None,
+        };
+        if let Some(axes) = self.map {
+            asked = asked.with_map(problem, axes, usize::from(self.cells));
+        }
+        Ok(asked.or_box(problem))
+    }
+}
+
+/// Two different errors.
+fn two(text: &str) -> Result<[Dof; 2], String> {
+    parse_dofs(text).map_err(|complaint| complaint.to_string())?;
+    let named: Result<Vec<Dof>, _> = text.split(',').map(|name| name.trim().parse::<Dof>()).collect();
+    match named.map_err(|unknown| unknown.to_string())?[..] {
+        [first, second] if first != second => Ok([first, second]),
+        _ => Err("a map has two errors, such as x,pitch".to_owned()),
+    }
+}

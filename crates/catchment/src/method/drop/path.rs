@@ -1,0 +1,79 @@
+//! The way of one trial: where the half was, when, how fast, and what pushed it.
+//!
+//! ```text
+//!   let go ──▶ · · · falling · · · ▼ first contact ── · bounces, slides · ──▶ end
+//!   0 D                                                                       path length in the ρ-metric
+//! ```
+//!
+//! A moment is kept where the half has moved on by a step of the path, where contacts begin or end, and at both ends. Contacts are those
+//! that pushed in the step before.
+
+use super::engine::{Engine, Fall};
+use crate::acceptance::Outcome;
+use crate::exec::{Cancelled, Exec};
+use crate::method::descent::{Touch, Trajectory, Waypoint};
+use crate::pose::PoseError;
+use glam::{DMat3, DVec3};
+
+/// The way of one trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// From where it was let go to its end; empty where the halves pass each other by.
+    pub moments: Vec<Moment>,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+/// One moment of a trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moment {
+    /// Since it was let go, in s.
+    pub time: f64,
+    /// Where it is.
+    pub waypoint: Waypoint,
+}
+
+impl Path {
+    /// The same without times: from where it was let go.
+    pub fn trajectory(&self) -> Trajectory {
+        let waypoints = self.moments.iter().map(|moment| moment.waypoint.clone()).collect();
+        Trajectory { waypoints, outcome: self.outcome }
+    }
+}
+
+/// Way between two moments that are kept, in D: a hundred of them to a face.
+const STEP: f64 = 0.01;
+
+/// Follows one trial and keeps its way.
+pub(super) fn trace(engine: &Engine<'_>, error: &PoseError, exec: &Exec) -> Result<Path, Cancelled> {
+    let mut moments: Vec<Moment> = Vec::new();
+    let mut travelled = 0.0;
+    let mut before: Option<(DVec3, DMat3)> = None;
+    let mut latest: Option<Moment> = None;
+    let mut touched = false;
+    let mut seen = |step: usize, fall: &Fall<'_>| {
+        let (cor, rotation) = fall.place();
+        if let Some((from, turned)) = &before {
+            travelled += (cor - *from).length().hypot(engine.turn(turned, &rotation));
+        }
+        before = Some((cor, rotation));
+        let touches: Vec<Touch> = fall.contacts();
+        let changes = touches.is_empty() == touched;
+        touched = !touches.is_empty();
+        let error = engine.end(Outcome::Undecided, cor, &rotation).error;
+        let moment = Moment {
+            time: engine.time(step),
+            waypoint: Waypoint { error, height: cor.z, travelled, touches },
+        };
+        let last = moments.last().map_or(f64::NEG_INFINITY, |moment| moment.waypoint.travelled);
+        if changes || travelled - last >= STEP {
+            moments.push(moment);
+            latest = None;
+        } else {
+            latest = Some(moment);
+        }
+    };
+    let end = engine.watch(error, exec, &mut seen)?;
+    moments.extend(latest);
+    Ok(Path { moments, outcome: end.outcome })
+}

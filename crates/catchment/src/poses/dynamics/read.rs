@@ -1,0 +1,318 @@
+//! Laws as people write them: a file of them, or one on a line.
+
+use super::super::{Fault, Found, shortened};
+use super::{Circumstance, Dynamics, Law};
+use crate::design::{Design, Findings, Quantity, SourceText, nearest};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Share of a law that has to lie in its range.
+const MOST_OF_IT: f64 = 0.5;
+/// Most values of a measured law.
+const MOST_VALUES: usize = 100_000;
+/// How a law is written on a line.
+const FORM: &str = "such as \"50 mm/s\", \"50 ± 10 mm/s\", \"40..60 mm/s\" or \"0.2 */ 1.3\"";
+/// How it is written as a table.
+const TABLES: &str = "{ mean, sigma }, { from, to }, { median, factor } or { measured = [ … ] }";
+
+/// Reads `speed=50 ± 10 mm/s` for a design.
+///
+/// # Errors
+/// What is wrong with the text, with its bytes.
+pub fn parse_draw(text: &str, design: &Design) -> Result<(Circumstance, Law), Findings> {
+    let mut found = Found::default();
+    let read = draw(text, design);
+    match read {
+        Ok(read) => Ok(read),
+        Err((span, fault)) => {
+            found.push(fault, || Some(span));
+            found.refuse()?;
+            Err(Findings { source: None, list: Vec::new(), omitted: 0 })
+        }
+    }
+}
+
+fn draw(text: &str, design: &Design) -> Result<(Circumstance, Law), (Range<usize>, Fault)> {
+    let Some((name, law)) = text.split_once('=') else {
+        let message = format!("`{}` is no circumstance and its law", shortened(text));
+        return Err((0..text.len(), Fault::new(message, "write \"friction=0.1..0.3\"")));
+    };
+    let of = named(name.trim()).map_err(|fault| (0..name.len(), fault))?;
+    let law = line(law, of, design).and_then(|law| sound(law, of));
+    law.map(|law| (of, law)).map_err(|fault| (name.len() + 1..text.len(), fault))
+}
+
+/// Reads a file with a table `[dynamics]` for a design.
+///
+/// # Errors
+/// Everything that is wrong with the file, each in its place.
+pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, Findings> {
+    let (document, syntax) = DeTable::parse_recoverable(&source.text);
+    let mut found = Found::default();
+    let broken: Vec<Range<usize>> = syntax.iter().map(|error| error.span().unwrap_or(0..0)).collect();
+    for (error, span) in syntax.iter().zip(&broken) {
+        let fault = Fault { message: error.message().to_owned(), help: None };
+        found.push(fault, || Some(span.clone()));
+    }
+    let mut reader = Reader { found, broken, design, dynamics: Dynamics::default() };
+    reader.file(document.get_ref());
+    let Reader { found, dynamics, .. } = reader;
+    found.refuse().map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
+    Ok(dynamics)
+}
+
+struct Reader<'a> {
+    found: Found,
+    /// Where the text is no TOML: what is wrong there is an echo.
+    broken: Vec<Range<usize>>,
+    design: &'a Design,
+    dynamics: Dynamics,
+}
+
+impl Reader<'_> {
+    fn note(&mut self, span: Range<usize>, fault: Fault) {
+        if !self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end) {
+            self.found.push(fault, || Some(span).filter(|span| !span.is_empty()));
+        }
+    }
+
+    fn file(&mut self, root: &DeTable<'_>) {
+        const HELP: &str = "begin with [dynamics]";
+        for (name, _) in root.iter().filter(|(name, _)| name.get_ref() != "dynamics") {
+            let message = format!("unknown key `{}` in the file", shortened(name.get_ref()));
+            self.note(name.span(), Fault::new(message, HELP));
+        }
+        let Some(value) = root.get("dynamics") else {
+            if self.broken.is_empty() {
+                self.note(0..0, Fault::new("the file declares no dynamics", HELP));
+            }
+            return;
+        };
+        let DeValue::Table(table) = value.get_ref() else {
+            self.note(value.span(), Fault::new("`dynamics` is no table", HELP));
+            return;
+        };
+        if table.is_empty() && self.broken.is_empty() {
+            let message = "it declares nothing";
+            self.note(value.span(), Fault::new(message, "such as speed = \"50 ± 10 mm/s\""));
+        }
+        for (name, value) in table {
+            let of = match named(name.get_ref()) {
+                Ok(of) => of,
+                Err(fault) => {
+                    self.note(name.span(), fault);
+                    continue;
+                }
+            };
+            match self.law(value, of).and_then(|law| sound(law, of).map_err(|fault| (value.span(), fault))) {
+                Ok(law) => self.dynamics.declared.insert(of, law).map_or((), |_| ()),
+                Err((span, fault)) => self.note(span, fault),
+            }
+        }
+    }
+
+    fn law(&mut self, value: &Value<'_>, of: Circumstance) -> Result<Law, (Range<usize>, Fault)> {
+        if let DeValue::Table(table) = value.get_ref() {
+            return self.table(table, value.span(), of);
+        }
+        line(&written(value)?, of, self.design).map_err(|fault| (value.span(), fault))
+    }
+
+    fn table(
+        &mut self,
+        table: &DeTable<'_>,
+        span: Range<usize>,
+        of: Circumstance,
+    ) -> Result<Law, (Range<usize>, Fault)> {
+        const KEYS: [&str; 7] = ["mean", "sigma", "from", "to", "median", "factor", "measured"];
+        for (name, _) in table {
+            if !KEYS.contains(&&**name.get_ref()) {
+                let help = nearest(name.get_ref(), KEYS)
+                    .map_or_else(|| TABLES.to_owned(), |meant| format!("did you mean `{meant}`?"));
+                let message = format!("unknown key `{}` in {}", shortened(name.get_ref()), of.name());
+                return Err((name.span(), Fault::new(message, help)));
+            }
+        }
+        let design = self.design;
+        let number = |key: &str, bare: bool| match table.get(key) {
+            Some(value) => {
+                let text = written(value)?;
+                let read = if bare { plain(&text) } else { quantity(&text, of, None, design) };
+                read.map(Some).map_err(|fault| (value.span(), fault))
+            }
+            None => Ok(None),
+        };
+        let of_two = |first: &str, second: &str, bare: bool| {
+            Ok(number(first, false)?.zip(number(second, bare)?).filter(|_| table.len() == 2))
+        };
+        if let Some((mean, sigma)) = of_two("mean", "sigma", false)? {
+            return Ok(Law::Normal { mean, sigma });
+        }
+        if let Some((from, to)) = of_two("from", "to", false)? {
+            return Ok(Law::Uniform { from, to });
+        }
+        if let Some((median, factor)) = of_two("median", "factor", true)? {
+            return Ok(Law::Lognormal { median, factor });
+        }
+        let list = table.get("measured").filter(|_| table.len() == 1);
+        let Some(list) = list else {
+            let message = format!("the law of {} is not complete, or two at once", of.name());
+            return Err((span, Fault::new(message, TABLES)));
+        };
+        let DeValue::Array(values) = list.get_ref() else {
+            return Err((list.span(), Fault::new("`measured` is no list", "measured = [0.1, 0.2]")));
+        };
+        if values.is_empty() || values.len() > MOST_VALUES {
+            let message = format!("{} measured values", values.len());
+            return Err((list.span(), Fault::new(message, format!("give 1 to {MOST_VALUES}"))));
+        }
+        let mut measured = Vec::new();
+        for value in values {
+            let read = quantity(&written(value)?, of, None, design);
+            measured.push(read.map_err(|fault| (value.span(), fault))?);
+        }
+        Ok(Law::Measured { measured })
+    }
+}
+
+type Value<'t> = Spanned<DeValue<'t>>;
+
+/// A number or a text, as it is written.
+fn written(value: &Value<'_>) -> Result<String, (Range<usize>, Fault)> {
+    match value.get_ref() {
+        DeValue::String(text) => Ok(text.to_string()),
+        // TOML lets digits be grouped.
+        DeValue::Integer(integer) => Ok(integer.as_str().replace('_', "")),
+        DeValue::Float(float) => Ok(float.as_str().replace('_', "")),
+        _ => Err((value.span(), Fault::new("it is no number and no law", FORM))),
+    }
+}
+
+/// The circumstance of this name.
+fn named(name: &str) -> Result<Circumstance, Fault> {
+    let names = Circumstance::ALL.map(Circumstance::name);
+    let found = Circumstance::ALL.into_iter().find(|of| of.name() == name);
+    found.ok_or_else(|| {
+        let help = nearest(name, names)
+            .map_or_else(|| format!("one of {}", names.join(", ")), |meant| format!("did you mean {meant}?"));
+        Fault::new(format!("there is no circumstance `{}`", shortened(name)), help)
+    })
+}
+
+/// A law on a line.
+fn line(text: &str, of: Circumstance, design: &Design) -> Result<Law, Fault> {
+    let two = |separator: &str| {
+        let (first, second) = text.split_once(separator)?;
+        Some((first.trim(), second.trim()))
+    };
+    // `50 ± 10 mm/s`: the unit stands once, behind both.
+    let both = |(first, second): (&str, &str)| {
+        let unit = unit_of(second);
+        Ok((quantity(first, of, Some(unit), design)?, quantity(second, of, Some(unit_of(first)), design)?))
+    };
+    if let Some(parts) = two("±").or_else(|| two("+-")) {
+        let (mean, sigma) = both(parts)?;
+        return Ok(Law::Normal { mean, sigma });
+    }
+    if let Some((median, factor)) = two("*/") {
+        return Ok(Law::Lognormal { median: quantity(median, of, None, design)?, factor: plain(factor)? });
+    }
+    if let Some(parts) = two("..") {
+        let (from, to) = both(parts)?;
+        return Ok(Law::Uniform { from, to });
+    }
+    Ok(Law::constant(quantity(text, of, None, design)?))
+}
+
+/// What stands behind the number.
+fn unit_of(text: &str) -> &str {
+    let is_unit = |c: char| c.is_alphabetic() || c == '°' || c == '/' || c == ' ';
+    let number = text.trim_end_matches(is_unit);
+    text[number.len()..].trim()
+}
+
+/// A number without a unit.
+fn plain(text: &str) -> Result<f64, Fault> {
+    let read = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    read.ok_or_else(|| Fault::new(format!("`{}` is no number", shortened(text.trim())), FORM))
+}
+
+/// A number of a circumstance, in its unit; one without a unit has that which is written beside it.
+fn quantity(text: &str, of: Circumstance, beside: Option<&str>, design: &Design) -> Result<f64, Fault> {
+    let (text, own) = (text.trim(), unit_of(text.trim()));
+    let unit = if own.is_empty() { beside.unwrap_or_default() } else { own };
+    let number = text[..text.len() - own.len()].trim();
+    if number.is_empty() {
+        return Err(Fault::new(format!("{}: `{}` is no number", of.name(), shortened(text)), FORM));
+    }
+    let told = |c: crate::design::Complaint| Fault { message: format!("{}: {c}", of.name()), help: c.help() };
+    match of {
+        Circumstance::Friction | Circumstance::Restitution if unit.is_empty() => plain(number),
+        Circumstance::Friction | Circumstance::Restitution => {
+            Err(Fault::new(format!("{} has no unit", of.name()), "give a bare number"))
+        }
+        Circumstance::Mass => {
+            let factor = match unit {
+                "" | "kg" => 1.0,
+                "g" => 1e-3,
+                "lb" => 0.453_592_37,
+                _ => {
+                    let message = format!("mass: there is no unit `{}`", shortened(unit));
+                    return Err(Fault::new(message, "kg, g or lb"));
+                }
+            };
+            Ok(factor * plain(number)?)
+        }
+        Circumstance::Height => {
+            let read = format!("{number} {unit}").parse::<Quantity>().map_err(told)?;
+            read.length_d(&design.scale()).map_err(told)
+        }
+        _ => {
+            let length = match unit.strip_suffix("/s") {
+                Some(length) => length.trim(),
+                None if unit.is_empty() => "",
+                None => {
+                    let message = format!("{}: `{}` is no rate", of.name(), shortened(unit));
+                    return Err(Fault::new(message, "per second, such as \"50 mm/s\" or \"2 deg/s\""));
+                }
+            };
+            let read = format!("{number} {length}").parse::<Quantity>().map_err(told)?;
+            let turns =
+                matches!(of, Circumstance::SpinRoll | Circumstance::SpinPitch | Circumstance::SpinYaw);
+            let value = if turns { read.angle_rad() } else { read.length_d(&design.scale()) };
+            value.map_err(told)
+        }
+    }
+}
+
+/// A law that is one, and lies in the range of what it describes.
+fn sound(law: Law, of: Circumstance) -> Result<Law, Fault> {
+    let name = of.name();
+    match &law {
+        Law::Normal { sigma, .. } if *sigma < 0.0 => {
+            return Err(Fault::new(format!("{name}: a standard deviation cannot be negative"), FORM));
+        }
+        Law::Uniform { from, to } if from > to => {
+            return Err(Fault::new(format!("{name}: {from} is above {to}"), "the lower first"));
+        }
+        Law::Lognormal { median, factor } if *factor < 1.0 || *median <= 0.0 => {
+            let message = format!("{name}: a lognormal law has a median above 0 and a factor of 1 or more");
+            return Err(Fault::new(message, "such as \"0.2 */ 1.3\""));
+        }
+        _ => {}
+    }
+    let [lo, hi] = of.range();
+    let inside = law.inside([lo, hi]);
+    if inside < MOST_OF_IT {
+        let unit = if of.unit().is_empty() { String::new() } else { format!(" {}", of.unit()) };
+        let help = format!("it lies from {lo} to {hi}{unit}");
+        let message = if law.is_constant() {
+            format!("{name} = {}{unit} is out of range", law.mean())
+        } else {
+            format!("{name}: {:.0} % of this law is out of range", 100.0 * (1.0 - inside))
+        };
+        return Err(Fault::new(message, help));
+    }
+    Ok(law)
+}
