@@ -55,7 +55,7 @@ pub(crate) struct HoldArgs {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "least_force>=0.3"; may be repeated
+    /// End with exit code 1 unless this holds of the JSON report; may be repeated
     #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
     require: Vec<Requirement>,
     #[command(flatten)]
@@ -103,9 +103,9 @@ impl HoldArgs {
     fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
         let design = problem.design();
         let length = |option: &str, quantity: &Quantity| {
-            quantity.length_d(&design.scale()).map_err(|complaint| {
-                Failure::with_help(format!("{option}: {complaint}"), complaint.help().map(Into::into))
-            })
+            quantity
+                .length_d(&design.scale())
+                .map_err(|complaint| Failure::with_help(format!("{option}: {complaint}"), complaint.help()))
         };
         let pose = match &self.pose {
             None => None,

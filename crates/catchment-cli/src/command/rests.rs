@@ -45,7 +45,7 @@ pub(crate) struct RestsArgs {
     /// Print JSON, in D and radians
     #[arg(long)]
     json: bool,
-    /// End with exit code 1 unless this holds of the JSON report, such as "rests.0.depth_at_most_d>=0.1"; may be repeated
+    /// End with exit code 1 unless this holds of the JSON report; may be repeated
     #[arg(long, value_name = "PATH OP NUMBER", value_parser = requirement)]
     require: Vec<Requirement>,
     #[command(flatten)]
@@ -65,7 +65,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
         motions: args.motions.map(|motions| motions as usize),
         seed: args.seed,
         examined: args.examine as usize,
-        resolution: args.resolution.clone(),
+        resolution: args.resolution,
     };
     let running = args.exec.start()?;
     let found: Rests = find(&problem, &settings, &running.exec)?;
