@@ -94,9 +94,9 @@ impl HoldArgs {
     fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
         let design = problem.design();
         let length = |option: &str, quantity: &Quantity| {
-            quantity.length_d(&design.scale()).map_err(|complaint| {
-                Failure::with_help(format!("{option}: {complaint}"), complaint.help().map(Into::into))
-            })
+            quantity
+                .length_d(&design.scale())
+                .map_err(|complaint| Failure::with_help(format!("{option}: {complaint}"), complaint.help()))
         };
         let pose = match &self.pose {
             None => None,

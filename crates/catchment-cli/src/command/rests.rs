@@ -61,7 +61,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
         motions: args.motions.map(|motions| motions as usize),
         seed: args.seed,
         examined: args.examine as usize,
-        resolution: args.resolution.clone(),
+        resolution: args.resolution,
     };
     let running = args.exec.start()?;
     let found: Rests = find(&problem, &settings, &running.exec)?;
