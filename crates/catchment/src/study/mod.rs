@@ -8,12 +8,15 @@
 //!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
 //!   success      how likely the errors of a robot are corrected  one design, stratified exact motions
 //!   window       the largest box of errors that all dock         one design, exact motions without a grid
+//!   plan         at which poses a robot should try it            one design, exact motions at every pose
+//!   validate     what a robot's trials say of the prediction     one design, exact motions and the trials
 //!   proposal     all ways in which two parts may dock           two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
 //! ```
 
 pub mod agreement;
 pub mod convergence;
+pub mod plan;
 pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;
@@ -21,6 +24,7 @@ pub mod slices;
 pub mod success;
 pub mod sweep;
 pub mod trials;
+pub mod validate;
 pub mod window;
 
 use crate::acceptance::Outcome;
