@@ -15,6 +15,7 @@ mod man;
 mod new;
 mod outcome;
 mod place;
+mod plan;
 mod reproduce;
 mod run;
 mod schema;
@@ -23,6 +24,7 @@ mod solids;
 mod success;
 mod sweep;
 mod trace;
+mod validate;
 mod window;
 mod zraa;
 
@@ -45,6 +47,8 @@ pub(crate) enum Command {
     Window(Box<window::WindowArgs>),
     Success(Box<success::SuccessArgs>),
     Jams(Box<jams::JamsArgs>),
+    Plan(Box<plan::PlanArgs>),
+    Validate(Box<validate::ValidateArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -76,6 +80,8 @@ impl Command {
             Self::Window(args) => window::run(&args),
             Self::Success(args) => success::run(&args),
             Self::Jams(args) => jams::run(&args),
+            Self::Plan(args) => plan::run(&args),
+            Self::Validate(args) => validate::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

@@ -36,7 +36,10 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], F
             found.push(Fault::new(format!("{name} is locked, so it has one place"), help), span);
         } else if unit != Unit::Bare || value.fract() != 0.0 || !(2.0..=MOST_POINTS).contains(&value) {
             let help = "write how many points, such as 5: 2 or more";
-            found.push(Fault::new(format!("{name}: `{}` is no number of points", Quantity { value, unit }), help), span);
+            found.push(
+                Fault::new(format!("{name}: `{}` is no number of points", Quantity { value, unit }), help),
+                span,
+            );
         } else {
             counts[dof.index()] = Some(value as usize);
         }
@@ -79,7 +82,8 @@ fn one(text: &str, fault: Fault) -> Findings {
 }
 
 fn angles(text: &str) -> Result<Vec<f64>, Fault> {
-    const FORM: &str = "write angles such as \"0..45:2.25 deg\" or \"0,20 deg\"; without a unit they are radians";
+    const FORM: &str =
+        "write angles such as \"0..45:2.25 deg\" or \"0,20 deg\"; without a unit they are radians";
     let text = text.trim();
     let numbers = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '°');
     let symbol = &text[numbers.len()..];
@@ -119,7 +123,6 @@ fn angles(text: &str) -> Result<Vec<f64>, Fault> {
     Ok((0..=count).map(at).collect())
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -145,10 +148,24 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_in_its_place() {
         let text = "x=1,y=5,yaw=2.5,x=3,pich=2";
-        let places: Vec<&str> =
-            parse_counts(text, &design()).unwrap_err().list.into_iter().map(|o| &text[o.span.unwrap()]).collect();
+        let places: Vec<&str> = parse_counts(text, &design())
+            .unwrap_err()
+            .list
+            .into_iter()
+            .map(|o| &text[o.span.unwrap()])
+            .collect();
         assert_eq!(places, ["x=1", "y=5", "yaw=2.5", "x=3", "pich=2"]);
-        for text in ["0..45:2.25", "", "0..10 deg", "10..0:1 deg", "0..1:0 deg", "0,20 mm", "0..1:1e-9", "a", "190 deg"] {
+        for text in [
+            "0..45:2.25",
+            "",
+            "0..10 deg",
+            "10..0:1 deg",
+            "0..1:0 deg",
+            "0,20 mm",
+            "0..1:1e-9",
+            "a",
+            "190 deg",
+        ] {
             assert!(parse_angles(text).is_err(), "{text}");
         }
         assert!(parse_length("3 deg", &design()).is_err() && parse_length("", &design()).is_err());

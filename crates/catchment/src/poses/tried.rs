@@ -126,7 +126,8 @@ impl TriedTable {
             if !seen.insert(trial_number)
                 && let Some(index) = trial
             {
-                let help = "keep one of them, or number them apart; a pose may be tried again under another number";
+                let help =
+                    "keep one of them, or number them apart; a pose may be tried again under another number";
                 wrong(index, Fault::new(format!("trial {trial_number} is there twice"), help));
             }
             let observed = read(cell(outcome)).unwrap_or_else(|fault| {
@@ -155,7 +156,9 @@ fn refused(found: Found) -> Result<TriedTable, Findings> {
 fn head(table: &PoseTable<'_>, design: &Design, text: &str, found: &mut Found) {
     for dof in design.alignment.free.iter().filter(|dof| !table.has(*dof)) {
         let name = dof.name();
-        let help = format!("add a column of it, 0 where it does not occur, or lock {name} in [alignment] of the design");
+        let help = format!(
+            "add a column of it, 0 where it does not occur, or lock {name} in [alignment] of the design"
+        );
         found.push(Fault::new(format!("no column is {name}, which the design leaves free"), help), || {
             let all = spans(text, 0);
             Some(all.first()?.start..all.last()?.end)
@@ -170,8 +173,10 @@ fn read(text: &str) -> Result<Option<Observed>, Fault> {
     let known = Observed::ALL.into_iter().find(|observed| observed.name() == text);
     known.map(Some).ok_or_else(|| {
         let names = Observed::ALL.map(Observed::name);
-        let help = nearest(text, names)
-            .map_or_else(|| format!("one of {}, or nothing", names.join(", ")), |meant| format!("did you mean {meant}?"));
+        let help = nearest(text, names).map_or_else(
+            || format!("one of {}, or nothing", names.join(", ")),
+            |meant| format!("did you mean {meant}?"),
+        );
         Fault::new(format!("`{}` is no outcome", shortened(text)), help)
     })
 }
@@ -200,7 +205,8 @@ mod tests {
         assert_eq!(table.rows[1].predicted, Some(Observed::Jammed));
         assert!((table.rows[0].error.x - 0.1).abs() < 1e-15);
         // Without numbers rows are counted.
-        let table = TriedTable::parse("outcome,x,pitch\nmissed,1,0\n,0,0\n", &design(), OffsetsAt::Cor).unwrap();
+        let table =
+            TriedTable::parse("outcome,x,pitch\nmissed,1,0\n,0,0\n", &design(), OffsetsAt::Cor).unwrap();
         assert_eq!((table.rows[1].trial, table.rows[1].line, table.offsets_at), (2, 0, OffsetsAt::Cor));
     }
 
@@ -211,7 +217,10 @@ mod tests {
         let cells: Vec<&str> = found.iter().map(|(cell, _)| cell.as_str()).collect();
         assert_eq!(cells, ["1", "alined", "x", "nan", "3", "no"], "{found:?}");
         assert_eq!(wrong("x_mm,pitch_deg\n0,0\n")[0].1, "no column says what was seen");
-        assert_eq!(wrong("x_mm,outcome\n0,\n")[0], ("x_mm,outcome".into(), "no column is pitch, which the design leaves free".into()));
+        assert_eq!(
+            wrong("x_mm,outcome\n0,\n")[0],
+            ("x_mm,outcome".into(), "no column is pitch, which the design leaves free".into())
+        );
         assert_eq!(wrong("x_deg,pitch,outcome\n0,0,\n")[0].1, "x_deg: x is a length");
         assert_eq!(wrong("")[0].1, "the table is empty");
     }

@@ -7,7 +7,7 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · jams · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · jams · plan · validation · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -16,6 +16,7 @@
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
+mod bench;
 #[cfg(feature = "zarr")]
 mod bounded;
 mod check;
@@ -33,6 +34,7 @@ pub mod folder;
 mod jams;
 mod lever;
 mod outcomes;
+mod plan;
 #[cfg(all(feature = "figure", feature = "zarr"))]
 mod save;
 pub mod schema;
@@ -45,6 +47,7 @@ mod table;
 pub mod text;
 mod trajectory;
 mod trials;
+mod validation;
 mod window;
 pub mod write;
 #[cfg(feature = "zarr")]
@@ -67,6 +70,7 @@ pub use jams::{
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
+pub use plan::{PlanBody, PlanCounts, PlanReport, PlannedReport, PointReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
 pub use schema::{Report, RunBody};
@@ -84,5 +88,9 @@ pub use table::{table, table_with};
 pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
+pub use validation::{
+    AgreedReport, CountReport, EarlyReport, EvidenceReport, FrictionReport, FrictionTried, LineReport,
+    TriedReport, ValidationBody, ValidationReport,
+};
 pub use window::{CertificateReport, SideReport, WindowBody, WindowReport, WorstReport};
 pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};

@@ -186,12 +186,15 @@ impl<'a> Search<'a> {
         for number in 0..BESIDE * self.axes.len() as u64 {
             let Some(known) = *best else { return };
             let step = random_direction(random, number);
-            let Some(along) = self.unit(std::array::from_fn(|k| known.along[k] + spread * step[k])) else { continue };
+            let Some(along) = self.unit(std::array::from_fn(|k| known.along[k] + spread * step[k])) else {
+                continue;
+            };
             let nearer = known.distance * NEARER;
             if nearer > self.reach(from, &along) || judge.docks(&self.pose(from, &along, nearer)) == docks {
                 spread *= SHRINK;
             } else {
-                *best = Some(Best { distance: self.bisect(judge, from, docks, &along, [0.0, nearer]), along });
+                *best =
+                    Some(Best { distance: self.bisect(judge, from, docks, &along, [0.0, nearer]), along });
             }
         }
     }
@@ -293,4 +296,3 @@ const DRAWS: u64 = 6;
 pub(super) fn random_direction(random: Stream, number: u64) -> [f64; 5] {
     normals(|k| random.uniform(DRAWS * number + k))
 }
-

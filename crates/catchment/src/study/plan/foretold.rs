@@ -88,7 +88,8 @@ pub(in crate::study) fn foretell(
     let borders = for_each(poses.len(), &rest, judge, |judge, k| {
         let before = judge.followed();
         let docks = foretold[k].docks();
-        let others = (0..poses.len()).filter(|other| foretold[*other].docks() != docks).map(|other| &poses[other]);
+        let others =
+            (0..poses.len()).filter(|other| foretold[*other].docks() != docks).map(|other| &poses[other]);
         let nearest = others.min_by(|a, b| search.apart(&poses[k], a).total_cmp(&search.apart(&poses[k], b)));
         let border = search.nearest(judge, &poses[k], docks, nearest, random.branch(k as u64));
         (border, judge.followed() - before)

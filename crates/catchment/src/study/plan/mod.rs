@@ -190,7 +190,9 @@ pub enum PlanError {
     #[error("nothing fails within the error box along any line: enlarge [errors] of the design")]
     NoBorder,
     /// No point of a lattice is near the border.
-    #[error("no point of the lattice is within a step of the border: take a larger step, or enlarge [errors] of the design")]
+    #[error(
+        "no point of the lattice is within a step of the border: take a larger step, or enlarge [errors] of the design"
+    )]
     FarFromBorder,
     /// It was asked to stop.
     #[error(transparent)]
@@ -252,7 +254,8 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Plan, 
         return Err(PlanError::TooMany { most: MOST_TRIALS });
     }
     let errors: Vec<PoseError> = made.poses.iter().map(|placed| placed.error).collect();
-    let (foretold, followed) = foretell(problem, &settings.accuracy, &motions, &errors, settings.seed, &part(1))?;
+    let (foretold, followed) =
+        foretell(problem, &settings.accuracy, &motions, &errors, settings.seed, &part(1))?;
     let point = |(Placed { error, line }, foretold)| Point { error, line, foretold };
     let mut points: Vec<Point> = made.poses.into_iter().zip(foretold).map(point).collect();
     if settings.stop_at_first_failure {

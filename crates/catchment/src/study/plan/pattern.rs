@@ -117,7 +117,11 @@ impl Maker<'_> {
             }
             Pattern::Lattice { step, max, along_border } => {
                 let poses = self.lattice(step, max)?;
-                if *along_border { self.along_border(poses, step, exec) } else { Ok(Made { poses, ..Made::default() }) }
+                if *along_border {
+                    self.along_border(poses, step, exec)
+                } else {
+                    Ok(Made { poses, ..Made::default() })
+                }
             }
             Pattern::Arc { lever, pitch, yaw } => self.arc(*lever, pitch, yaw),
             Pattern::Bracket { trials, lines, resolution } => self.bracket(*trials, *lines, resolution, exec),
@@ -172,7 +176,12 @@ impl Maker<'_> {
     }
 
     /// Only points within one step of the border.
-    fn along_border(&self, poses: Vec<Placed>, step: &[Option<f64>; 5], exec: &Exec) -> Result<Made, PlanError> {
+    fn along_border(
+        &self,
+        poses: Vec<Placed>,
+        step: &[Option<f64>; 5],
+        exec: &Exec,
+    ) -> Result<Made, PlanError> {
         /// A point that rounding puts beyond a step is within it.
         const ROUNDING: f64 = 1e-9;
         let steps = PoseError::from_array(step.map(Option::unwrap_or_default));
@@ -212,19 +221,31 @@ impl Maker<'_> {
                 let error = PoseError { x: clean(face.x), y: clean(face.y), ..turned };
                 let locked = |axis: Dof| !alignment.free.contains(axis);
                 let turning = [(Dof::Pitch, *pitch), (Dof::Yaw, *yaw)];
-                if let Some((axis, _)) = turning.into_iter().find(|(axis, value)| *value != 0.0 && locked(*axis)) {
+                if let Some((axis, _)) =
+                    turning.into_iter().find(|(axis, value)| *value != 0.0 && locked(*axis))
+                {
                     return Err(PlanError::Locked { axis });
                 }
-                let held = CorPose::from_error(&error, alignment.center_of_rotation, crate::pose::DofSet::ALL).lateral;
+                let held =
+                    CorPose::from_error(&error, alignment.center_of_rotation, crate::pose::DofSet::ALL)
+                        .lateral;
                 for (axis, off) in [(Dof::X, held.x), (Dof::Y, held.y)] {
                     if locked(axis) && off.abs() > LOCKED_WITHIN {
-                        return Err(PlanError::JointElsewhere { axis, lever, cor: alignment.center_of_rotation });
+                        return Err(PlanError::JointElsewhere {
+                            axis,
+                            lever,
+                            cor: alignment.center_of_rotation,
+                        });
                     }
                 }
                 poses.push(Placed { error, line: 2 * number + usize::from(*pitch < 0.0) + 1 });
             }
         }
-        if poses.is_empty() { Err(PlanError::Nothing) } else { Ok(Made { poses: numbered(poses), ..Made::default() }) }
+        if poses.is_empty() {
+            Err(PlanError::Nothing)
+        } else {
+            Ok(Made { poses: numbered(poses), ..Made::default() })
+        }
     }
 
     fn bracket(
@@ -316,7 +337,9 @@ impl Maker<'_> {
             let error = self.scaled(along, t);
             let docks = judge.docks(&error);
             match search.nearest(judge, &error, docks, None, random) {
-                Some(found) if found.sigmas < TOLD_APART => apart *= (TOLD_APART / found.sigmas).clamp(1.05, 2.0),
+                Some(found) if found.sigmas < TOLD_APART => {
+                    apart *= (TOLD_APART / found.sigmas).clamp(1.05, 2.0)
+                }
                 _ => break,
             }
         }
@@ -350,7 +373,8 @@ impl Maker<'_> {
         let signs: &[f64] = if self.symmetric { &[1.0] } else { &[1.0, -1.0] };
         let mut all: Vec<[f64; 5]> = Vec::new();
         if let [a, b] = axes[..] {
-            let turn = if self.symmetric { FRAC_PI_2 / (wanted - 1).max(1) as f64 } else { TAU / wanted as f64 };
+            let turn =
+                if self.symmetric { FRAC_PI_2 / (wanted - 1).max(1) as f64 } else { TAU / wanted as f64 };
             for k in 0..wanted {
                 let (sin, cos) = (turn * k as f64).sin_cos();
                 let clean = |part: f64| if part.abs() < f64::EPSILON { 0.0 } else { part };

@@ -61,7 +61,8 @@ pub fn panels(
         axes = problem.alignment().free.iter().collect();
     }
     let beside = axes.split_off(axes.len().min(2));
-    let across: Vec<(Dof, [f64; 2])> = axes.iter().map(|axis| (*axis, range(problem, *axis, poses))).collect();
+    let across: Vec<(Dof, [f64; 2])> =
+        axes.iter().map(|axis| (*axis, range(problem, *axis, poses))).collect();
     let fixed: Vec<Dof> = problem.alignment().free.iter().filter(|axis| !axes.contains(axis)).collect();
     let (values, exact) = values(poses, &beside);
     let mut panels: Vec<Panel> = values
@@ -99,7 +100,9 @@ pub fn panels(
             for (axis, value) in &panel.at {
                 pose[axis.index()] = *value;
             }
-            let center = |range: &[f64; 2], k: usize| range[0] + (range[1] - range[0]) * (k as f64 + 0.5) / CELLS as f64;
+            let center = |range: &[f64; 2], k: usize| {
+                range[0] + (range[1] - range[0]) * (k as f64 + 0.5) / CELLS as f64
+            };
             (0..CELLS)
                 .map(|column| {
                     for ((axis, range), k) in panel.across.iter().zip([column, row]) {
@@ -133,7 +136,8 @@ fn range(problem: &Problem, axis: Dof, poses: &[PoseError]) -> [f64; 2] {
 
 /// The values of the other errors at which panels stand, and whether all poses have one of them.
 fn values(poses: &[PoseError], axes: &[Dof]) -> (Vec<Vec<f64>>, bool) {
-    let of = |pose: &PoseError| -> Vec<f64> { axes.iter().map(|axis| pose.to_array()[axis.index()]).collect() };
+    let of =
+        |pose: &PoseError| -> Vec<f64> { axes.iter().map(|axis| pose.to_array()[axis.index()]).collect() };
     let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
     let mut met: Vec<Vec<f64>> = Vec::new();
     for pose in poses {
@@ -145,7 +149,9 @@ fn values(poses: &[PoseError], axes: &[Dof]) -> (Vec<Vec<f64>>, bool) {
             break;
         }
     }
-    met.sort_by(|a, b| a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal));
+    met.sort_by(|a, b| {
+        a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
+    });
     if met.len() <= MOST {
         return (met, true);
     }

@@ -246,7 +246,8 @@ pub fn run(
     }
     let share = if settings.estimate_friction { PREDICTION } else { 1.0 };
     let part = exec.part([0.0, share], STAGE);
-    let (foretold, mut followed) = foretell(problem, &settings.accuracy, &motions, &poses, settings.seed, &part)?;
+    let (foretold, mut followed) =
+        foretell(problem, &settings.accuracy, &motions, &poses, settings.seed, &part)?;
     let judged = |(trial, number): (&Tried, &usize)| Judged {
         tried: trial.clone(),
         foretold: foretold[*number],
@@ -270,11 +271,8 @@ fn told(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validati
     let made = || trials.iter().filter(|trial| trial.seen.is_some());
     let clear = || made().filter(|trial| !trial.foretold.is_either());
     let agreed = clear().filter(|trial| !trial.disagrees()).count();
-    let agreement = Agreement {
-        trials: clear().count(),
-        agreed,
-        ci95: clopper_pearson(agreed, clear().count(), LEVEL),
-    };
+    let agreement =
+        Agreement { trials: clear().count(), agreed, ci95: clopper_pearson(agreed, clear().count(), LEVEL) };
     let beyond_limit = || made().filter(|trial| trial.foretold.margin() >= settings.limit);
     let docking = beyond_limit().filter(|trial| trial.foretold.docks()).count();
     let deciding = [docking, beyond_limit().count() - docking];
@@ -364,13 +362,8 @@ fn counts(trials: &[Judged]) -> Vec<Count> {
 impl Validation {
     /// A verdict on nothing: what requirements are tried on.
     pub fn form(problem: &Problem, settings: &Settings) -> Self {
-        let friction = FrictionFound {
-            fewest: 0,
-            interval: [0.0; 2],
-            open: false,
-            broken: false,
-            tried: Vec::new(),
-        };
+        let friction =
+            FrictionFound { fewest: 0, interval: [0.0; 2], open: false, broken: false, tried: Vec::new() };
         Self {
             friction: settings.estimate_friction.then_some(friction),
             ..told(problem, Vec::new(), settings)

@@ -29,11 +29,8 @@ pub fn clopper_pearson(successes: usize, trials: usize, level: f64) -> [f64; 2] 
     };
     let half = 0.5 * level;
     let low = if successes == 0 { 0.0 } else { solve(&|p| at_least(successes, trials, p) > half) };
-    let high = if successes >= trials {
-        1.0
-    } else {
-        solve(&|p| 1.0 - at_least(successes + 1, trials, p) < half)
-    };
+    let high =
+        if successes >= trials { 1.0 } else { solve(&|p| 1.0 - at_least(successes + 1, trials, p) < half) };
     [low, high]
 }
 
@@ -110,6 +107,10 @@ mod tests {
                 .sum();
             assert!((tail(&chances, count) - brute).abs() < 1e-14, "{count}");
         }
-        assert!((chance(2.0) - 0.045_500_263_9).abs() < 1e-9 && chance(0.1) == 0.5 && chance(f64::INFINITY) == 0.0);
+        assert!(
+            (chance(2.0) - 0.045_500_263_9).abs() < 1e-9
+                && chance(0.1) == 0.5
+                && chance(f64::INFINITY) == 0.0
+        );
     }
 }
