@@ -51,7 +51,7 @@ impl Told<'_> {
                 let value = accuracy.to_array()[axis.index()];
                 let scale = if axis.is_rotation() { 1f64.to_degrees() } else { self.width() };
                 let unit = if axis.is_rotation() { "°" } else { &format!(" {}", self.unit()) };
-                format!("{} {}{unit}", axis.name(), nine_digits(value * scale))
+                format!("{} {}{unit}", axis.name(), four_digits(value * scale))
             })
             .collect();
         told.join(", ")
@@ -84,4 +84,9 @@ impl Told<'_> {
 pub(super) fn nine_digits(value: f64) -> f64 {
     const NOTHING: f64 = 1e-12;
     if value.abs() < NOTHING { 0.0 } else { format!("{value:.8e}").parse().unwrap_or(value) }
+}
+
+/// The number rounded to four digits, for eyes.
+fn four_digits(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }

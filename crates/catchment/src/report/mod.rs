@@ -89,7 +89,7 @@ pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
 pub use validation::{
-    AgreedReport, CountReport, EarlyReport, EvidenceReport, FrictionReport, FrictionTried, LineReport,
+    AgreedReport, CountReport, EvidenceReport, FrictionReport, FrictionTried, LineReport, OneSidedReport,
     TriedReport, ValidationBody, ValidationReport,
 };
 pub use window::{CertificateReport, SideReport, WindowBody, WindowReport, WorstReport};

@@ -169,7 +169,7 @@ impl PlanReport {
         if self.settings.friction > 0.0 {
             row(&mut text, "friction", &format!("{} between the halves (Coulomb)", self.settings.friction));
         }
-        row(&mut text, "pattern", &self.pattern(&told));
+        wrapped(&mut text, "  pattern        ", &self.pattern(&told));
         row(
             &mut text,
             "accuracy",
@@ -195,13 +195,13 @@ impl PlanReport {
         };
         row(&mut text, "", &format!("in {order}{blocks}"));
         row(&mut text, "predicted", &format!("{docking} dock, {failing} do not"));
-        row(&mut text, "either", &format!("{either} poses are nearer to the border than the accuracy"));
-        row(&mut text, "decide", &format!("{deciding} poses, {LIMIT} accuracies or more from it"));
+        row(&mut text, "either", &format!("{either}, nearer to the border than the accuracy"));
+        row(&mut text, "decide", &format!("{deciding}, {LIMIT} accuracies or more from it"));
         if let Some(point) = self.nearest() {
             let margin = point.margin_in_sigma.unwrap_or_default();
             row(
                 &mut text,
-                "nearest of them",
+                "nearest",
                 &format!(
                     "at most {} from it, {margin:.2} accuracies",
                     told.length(point.distance_to_border.unwrap_or_default())

@@ -7,7 +7,7 @@ use super::schema::{Timing, WarningReport};
 use crate::design::Design;
 use crate::pose::PoseError;
 use crate::poses::{Observed, OffsetsAt};
-use crate::study::validate::{Settings, Validation, Verdict};
+use crate::study::validate::{OneSided, Settings, Validation, Verdict};
 use serde::Serialize;
 
 mod text;
@@ -35,7 +35,9 @@ pub struct ValidationBody {
     /// How often trials fared as predicted, those apart that may go either way.
     pub agreement: AgreedReport,
     /// Failures where docking was predicted.
-    pub early: EarlyReport,
+    pub early: OneSidedReport,
+    /// Docked where it was not.
+    pub late: OneSidedReport,
     /// Every trial that fared otherwise than predicted, the farthest from the border first.
     pub disagreements: Vec<TriedReport>,
     /// Where the border was seen.
@@ -89,12 +91,12 @@ pub struct AgreedReport {
     pub ci95: [f64; 2],
 }
 
-/// Failures where docking was predicted.
+/// Disagreements on one side of the border.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct EarlyReport {
+pub struct OneSidedReport {
     /// How many.
-    pub failures: usize,
-    /// Of so many.
+    pub disagreeing: usize,
+    /// Of so many on that side, one accuracy from the border or more.
     pub trials: usize,
     /// So many are expected at most of the robot's errors.
     pub expected: f64,
@@ -161,6 +163,15 @@ pub struct FrictionTried {
     pub friction: f64,
     /// Disagreements beyond the limit.
     pub beyond: usize,
+}
+
+const fn one_sided(found: &OneSided) -> OneSidedReport {
+    OneSidedReport {
+        disagreeing: found.disagreeing,
+        trials: found.trials,
+        expected: found.expected,
+        p_value: found.p_value,
+    }
 }
 
 impl Body for ValidationBody {
@@ -243,12 +254,8 @@ impl ValidationReport {
                 share: (agreement.trials > 0).then(|| agreement.agreed as f64 / agreement.trials as f64),
                 ci95: agreement.ci95,
             },
-            early: EarlyReport {
-                failures: found.early.failures,
-                trials: found.early.trials,
-                expected: found.early.expected,
-                p_value: found.early.p_value,
-            },
+            early: one_sided(&found.early),
+            late: one_sided(&found.late),
             disagreements,
             lines: lines.collect(),
             friction,

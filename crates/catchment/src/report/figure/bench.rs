@@ -10,6 +10,7 @@ use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_o
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
+use crate::poses::Observed;
 use crate::study::plan::{CELLS, Panel};
 
 /// A trial that fared otherwise than predicted.
@@ -56,7 +57,7 @@ pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
     let marks: Vec<Mark> = report.points.iter().map(of).collect();
     let counts = &report.plan;
     let story = format!(
-        "{} trials at {} poses: {} decide, {} are nearer to the border than the robot's accuracy",
+        "{} trials at {} poses: {} decide, {} nearer to the border than the robot's accuracy",
         counts.trials, counts.poses, counts.deciding, counts.either
     );
     let words = [
@@ -73,7 +74,8 @@ pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
         error: trial.point.error,
         shape: match trial.observed {
             None => Shape::NotMade,
-            Some(_) if trial.disagrees != trial.point.docks() => Shape::Docks,
+            Some(Observed::Aligned) => Shape::Docks,
+            Some(Observed::AlignedElsewhere) if report.design.alignment.symmetry > 1 => Shape::Docks,
             Some(_) => Shape::Fails,
         },
         wrong: trial.disagrees && !trial.point.either,
@@ -114,7 +116,7 @@ fn draw(
     let met: Vec<_> = words
         .iter()
         .filter(|(shape, wrong, _)| {
-            marks.iter().any(|mark| mark.shape == *shape && (mark.wrong == *wrong || *wrong && mark.wrong))
+            marks.iter().any(|mark| if *wrong { mark.wrong } else { mark.shape == *shape })
         })
         .collect();
     let inexact = panels.iter().any(|panel| !panel.exact);
@@ -248,5 +250,51 @@ fn mark(svg: &mut Svg, [x, y]: [f64; 2], shape: Shape, wrong: bool) {
     }
     if wrong {
         svg.circle([x, y], 1.9 * SIZE, &format!(r#"fill="none" stroke="{WRONG}" stroke-width="1.6""#));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::exec::Exec;
+    use crate::method::descent;
+    use crate::poses::{OffsetsAt, Tried};
+    use crate::problem::Problem;
+    use crate::report::schema::testing::design;
+    use crate::study::plan::{Pattern, Settings, panels, run};
+    use crate::study::validate;
+
+    #[test]
+    fn plans_and_verdicts_are_drawn() {
+        let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
+        let accuracy = PoseError { x: 0.03, pitch: 0.06, ..PoseError::default() };
+        let pattern = Pattern::Grid { steps: [Some(7), None, None, Some(5), None], max: [None; 5] };
+        let found = run(&problem, &Settings::new(pattern, accuracy), &Exec::new()).unwrap();
+        let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
+        let slices = panels(&problem, &poses, &descent::Settings::default(), &Exec::new()).unwrap();
+        assert_eq!((slices.len(), slices[0].poses.len(), slices[0].cells.len()), (1, 35, CELLS * CELLS));
+        let report = PlanReport::new(problem.design(), &found, OffsetsAt::Face, Vec::new(), None);
+        let picture = plan(&report, &slices);
+        look("plan", &picture);
+        assert!(picture.svg().contains("35 trials at 35 poses") && !picture.svg().contains("NaN"));
+        let observed = |k: usize| [Some(Observed::Aligned), Some(Observed::Jammed), None][k % 3];
+        let tried = |(k, error): (usize, &PoseError)| Tried {
+            trial: k as u64 + 1,
+            line: 1,
+            error: *error,
+            observed: observed(k),
+            predicted: None,
+        };
+        let tried: Vec<Tried> = poses.iter().enumerate().map(tried).collect();
+        let judged =
+            validate::run(&problem, &tried, &validate::Settings::new(accuracy), &Exec::new()).unwrap();
+        let report = ValidationReport::new(problem.design(), &judged, OffsetsAt::Face, Vec::new(), None);
+        let picture = validation(&report, &slices);
+        look("validation", &picture);
+        assert!(picture.svg().contains("inconsistent; ") && picture.svg().contains("not made"));
+        // Every disagreement that does not go either way is ringed once, and once more in the key.
+        let ringed = report.disagreements.iter().filter(|trial| !trial.point.either).count();
+        assert_eq!(picture.svg().matches(WRONG).count(), ringed + 1);
     }
 }

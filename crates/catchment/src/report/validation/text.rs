@@ -28,13 +28,13 @@ impl ValidationReport {
         );
         text.push('\n');
         row(&mut text, "verdict", self.verdict.name());
-        let [k, evidence] = [self.settings.limit.to_string(), String::new()];
         row(
             &mut text,
             "",
             &format!(
-                "{evidence}{} trials are {k} accuracies or more from the border,",
-                self.evidence.inside + self.evidence.outside
+                "{} trials are {} accuracies or more from the border,",
+                self.evidence.inside + self.evidence.outside,
+                self.settings.limit
             ),
         );
         row(
@@ -45,11 +45,11 @@ impl ValidationReport {
                 self.evidence.inside, self.evidence.outside, self.evidence.beyond
             ),
         );
-        if self.evidence.beyond > 0 {
+        if self.evidence.p_value < 1.0 {
             row(
                 &mut text,
                 "",
-                &format!("by the robot's errors alone: a chance of {}", chance(self.evidence.p_value)),
+                &format!("the robot's errors alone: a chance of {}", chance(self.evidence.p_value)),
             );
         }
         let agreement = &self.agreement;
@@ -66,17 +66,20 @@ impl ValidationReport {
                 ),
             );
         }
-        let early = &self.early;
-        row(
-            &mut text,
-            "early failures",
-            &format!(
-                "{} of {} predicted to dock; chance of so many: {}",
-                early.failures,
-                early.trials,
-                chance(early.p_value)
-            ),
-        );
+        for (name, side, predicted) in [
+            ("early failures", &self.early, "predicted to dock"),
+            ("late successes", &self.late, "predicted to fail"),
+        ] {
+            if side.trials > 0 {
+                let told = format!(
+                    "{} of {} {predicted}, a chance of {}",
+                    side.disagreeing,
+                    side.trials,
+                    chance(side.p_value)
+                );
+                row(&mut text, name, &told);
+            }
+        }
         if self.blank > 0 {
             row(&mut text, "not made", &grouped(self.blank));
         }
@@ -229,11 +232,11 @@ pub(super) fn doubts(found: &Validation) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if found.early.p_value < LEVEL && found.early.failures > 0 {
+    if found.early.p_value < LEVEL && found.early.disagreeing > 0 {
         doubts.push(format!(
             "{} of {} trials failed where docking was predicted, and errors of the robot explain {:.1} of them at most: friction, or a border \
              that is predicted too far out",
-            found.early.failures, found.early.trials, found.early.expected
+            found.early.disagreeing, found.early.trials, found.early.expected
         ));
     }
     if found.beyond > 0 && found.verdict == Verdict::Consistent {

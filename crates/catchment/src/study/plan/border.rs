@@ -34,7 +34,7 @@ pub struct Border {
 /// Random directions per error.
 const RANDOM: u64 = 4;
 /// Directions beside the best one, per error.
-const BESIDE: u64 = 8;
+const BESIDE: u64 = 12;
 /// How far beside, at first, and by what that shrinks with each that finds nothing nearer.
 const SPREAD: f64 = 0.5;
 const SHRINK: f64 = 0.8;
@@ -145,7 +145,7 @@ impl<'a> Search<'a> {
         let mut best = None;
         if let Some(other) = other {
             let distance = self.apart(from, other);
-            if distance > 0.0 && distance <= self.most {
+            if distance > 0.0 && distance.is_finite() && distance <= self.most {
                 let along = std::array::from_fn(|k| {
                     let off = other.to_array()[k] - from.to_array()[k];
                     if self.axes.contains(&k) { off / self.accuracy[k] / distance } else { 0.0 }

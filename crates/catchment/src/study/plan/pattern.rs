@@ -184,8 +184,10 @@ impl Maker<'_> {
     ) -> Result<Made, PlanError> {
         /// A point that rounding puts beyond a step is within it.
         const ROUNDING: f64 = 1e-9;
+        /// Directions that are first looked at may meet the border so much farther off than it is.
+        const OBLIQUE: f64 = 3.0;
         let steps = PoseError::from_array(step.map(Option::unwrap_or_default));
-        let search = Search::new(self.problem, &steps, 1.0 + ROUNDING);
+        let search = Search::new(self.problem, &steps, OBLIQUE);
         let random = Stream::new(self.seed).branch(1);
         let found = for_each(
             poses.len(),
@@ -195,7 +197,8 @@ impl Maker<'_> {
                 let before = judge.followed();
                 let error = &poses[k].error;
                 let docks = judge.docks(error);
-                let near = search.nearest(judge, error, docks, None, random.branch(k as u64)).is_some();
+                let border = search.nearest(judge, error, docks, None, random.branch(k as u64));
+                let near = border.is_some_and(|border| border.sigmas <= 1.0 + ROUNDING);
                 (near, judge.followed() - before)
             },
         )?;

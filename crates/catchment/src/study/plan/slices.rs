@@ -32,7 +32,7 @@ pub struct Panel {
 }
 
 /// Cells along an error of a panel.
-pub const CELLS: usize = 72;
+pub const CELLS: usize = 96;
 /// Most panels.
 const MOST: usize = 6;
 /// Panels where poses do not lie in planes.

@@ -7,16 +7,17 @@
 //!     fails         1        53                        either │ noise   │ beyond k: counts
 //!                                                      0      1         k
 //!   verdict       consistent     none beyond k, or no more than the robot's own errors explain
-//!                 inconsistent   more: by chance less than once in twenty
+//!                 inconsistent   more, farther, or more on one side: by chance less than once in twenty
 //!                 undecided      too few trials are beyond k to decide anything
 //! ```
 //!
 //! A trial m accuracies from the border fares otherwise by the robot's error alone with a chance of at most 2·Φ(−m), a flat border on both sides
-//! of it. Two numbers are held against that: how many trials beyond k disagree, and how far the farthest of them is; the smaller of the two
-//! chances, doubled, is the chance of the verdict.
+//! of it. Four numbers are held against that: how many trials beyond k disagree, how far the farthest of them is, how many trials failed where docking
+//! was predicted (`early`), and how many docked where it was not (`late`). The smallest of the four chances, times four, is that of the verdict. Trials
+//! that may go either way count in none of them.
 //!
-//! Failures where docking was predicted, more than errors of both signs explain, are *systematic*: friction makes them, and a border that is
-//! predicted too far out. `early` tests that one side alone.
+//! Failures where docking was predicted are *systematic* where the robot's errors do not explain them: friction makes them, and a border
+//! that is predicted too far out. `early` tests that one side alone.
 //!
 //! Not promised: that a consistent prediction is right where nothing was tried. Distances are at most so much ([`crate::study::plan`]); trials
 //! count as independent. Lengths in D, angles in radians.
@@ -134,12 +135,12 @@ pub struct Agreement {
     pub ci95: [f64; 2],
 }
 
-/// Failures where docking was predicted.
+/// Disagreements on one side of the border.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Early {
+pub struct OneSided {
     /// How many.
-    pub failures: usize,
-    /// Of so many trials for which docking was predicted.
+    pub disagreeing: usize,
+    /// Of so many trials on that side, one accuracy from the border or more.
     pub trials: usize,
     /// As many are expected at most of the robot's errors alone.
     pub expected: f64,
@@ -166,10 +167,12 @@ pub struct Validation {
     pub deciding: [usize; 2],
     /// Of them, otherwise than predicted.
     pub beyond: usize,
-    /// The chance that the robot's errors make so many, or so far ones; 1 where there are none.
+    /// The chance that the robot's errors make so many, so far ones, or so many on one side; 1 where there are none.
     pub p_value: f64,
     /// Failures where docking was predicted.
-    pub early: Early,
+    pub early: OneSided,
+    /// Docked where it was not.
+    pub late: OneSided,
     /// Where the border was seen.
     pub lines: Vec<Line>,
     /// Which friction explains the trials, if asked for.
@@ -282,29 +285,19 @@ fn told(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validati
         let margins = made().map(|trial| trial.foretold.margin());
         margins.filter(|margin| *margin >= least).map(chance).collect()
     };
-    let p_value = if beyond.is_empty() {
-        1.0
-    } else {
-        let farthest = beyond.iter().copied().fold(0.0, f64::max);
-        let of_number = tail(&chances(settings.limit), beyond.len());
-        let of_farthest = tail(&chances(farthest), 1);
-        (2.0 * of_number.min(of_farthest)).min(1.0)
-    };
+    let [early, late] = [true, false].map(|docks| one_sided(&trials, docks));
+    let farthest = beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let of_number = tail(&chances(settings.limit), beyond.len());
+    let of_farthest = if beyond.is_empty() { 1.0 } else { tail(&chances(farthest), 1) };
+    let all = [of_number, of_farthest, early.p_value, late.p_value];
+    // As many tests, each at a share of the level.
+    let p_value = (all.len() as f64 * all.into_iter().fold(1.0, f64::min)).min(1.0);
     let verdict = if p_value < LEVEL {
         Verdict::Inconsistent
     } else if deciding[0] + deciding[1] < FEWEST {
         Verdict::Undecided
     } else {
         Verdict::Consistent
-    };
-    let hoped: Vec<&Judged> = made().filter(|trial| trial.foretold.docks()).collect();
-    let hoped_chances: Vec<f64> = hoped.iter().map(|trial| chance(trial.foretold.margin())).collect();
-    let failures = hoped.iter().filter(|trial| trial.disagrees()).count();
-    let early = Early {
-        failures,
-        trials: hoped.len(),
-        expected: hoped_chances.iter().sum(),
-        p_value: tail(&hoped_chances, failures),
     };
     let straight = |observed: Option<Observed>| observed == Some(Observed::Aligned);
     let turned = made().filter(|trial| {
@@ -327,12 +320,29 @@ fn told(problem: &Problem, trials: Vec<Judged>, settings: &Settings) -> Validati
         beyond: beyond.len(),
         p_value,
         early,
+        late,
         lines: lines::lines(problem, &trials),
         friction: None,
         otherwise_planned: otherwise.count(),
         turned: turned.count(),
         motions: 0,
         trials,
+    }
+}
+
+/// Disagreements of the trials that should dock, or of those that should not.
+fn one_sided(trials: &[Judged], docks: bool) -> OneSided {
+    let clear = |trial: &&Judged| {
+        trial.seen.is_some() && trial.foretold.docks() == docks && !trial.foretold.is_either()
+    };
+    let side: Vec<&Judged> = trials.iter().filter(clear).collect();
+    let chances: Vec<f64> = side.iter().map(|trial| chance(trial.foretold.margin())).collect();
+    let disagreeing = side.iter().filter(|trial| trial.disagrees()).count();
+    OneSided {
+        disagreeing,
+        trials: side.len(),
+        expected: chances.iter().sum(),
+        p_value: tail(&chances, disagreeing),
     }
 }
 

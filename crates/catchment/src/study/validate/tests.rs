@@ -3,7 +3,7 @@
 use super::*;
 use crate::acceptance::Stream;
 use crate::exec::Exec;
-use crate::pose::Dof;
+use crate::poses::OffsetsAt;
 use crate::study::plan::{self, Pattern};
 use crate::study::success::normals;
 use std::path::Path;
@@ -25,10 +25,10 @@ fn arc(problem: &Problem) -> (Vec<PoseError>, PoseError) {
     (plan.points.iter().map(|point| point.error).collect(), accuracy)
 }
 
-/// What a robot sees: the poses with normal errors of this accuracy, followed exactly on a bench of its own.
+/// What a robot sees that goes to `real` poses with normal errors of this accuracy, on a bench of its own, and writes down others.
 fn trials(
     bench: &Problem,
-    poses: &[PoseError],
+    [real, written]: [&[PoseError]; 2],
     accuracy: &PoseError,
     friction: f64,
     seed: u64,
@@ -36,14 +36,14 @@ fn trials(
     let motions = descent::Settings::with_friction(friction).unwrap();
     let mut judge = plan::Judge::new(bench, &motions);
     let random = Stream::new(seed);
-    let tried = poses.iter().enumerate().map(|(k, pose)| {
+    let tried = real.iter().zip(written).enumerate().map(|(k, (real, written))| {
         let z = normals(|n| random.uniform(6 * k as u64 + n));
-        let (at, by) = (pose.to_array(), accuracy.to_array());
+        let (at, by) = (real.to_array(), accuracy.to_array());
         let error = PoseError::from_array(std::array::from_fn(|k| at[k] + by[k] * z[k]));
         Tried {
             trial: k as u64 + 1,
             line: 1,
-            error: *pose,
+            error: *written,
             observed: Some(judge.predict(&error).unwrap_or(Observed::Jammed)),
             predicted: None,
         }
@@ -53,25 +53,25 @@ fn trials(
 
 /// How often so many runs give each verdict. Predictions are made once: they do not depend on what was seen.
 fn verdicts(
-    problem: &Problem,
-    bench: &Problem,
-    poses: &[PoseError],
+    [predicting, bench]: [&Problem; 2],
+    [real, written]: [&[PoseError]; 2],
     accuracy: &PoseError,
     friction: f64,
     runs: u64,
 ) -> [usize; 3] {
     let settings = Settings::new(*accuracy);
     let motions = descent::Settings::default();
-    let (foretold, _) = foretell(problem, accuracy, &motions, poses, settings.seed, &Exec::new()).unwrap();
+    let (foretold, _) =
+        foretell(predicting, accuracy, &motions, written, settings.seed, &Exec::new()).unwrap();
     let mut counts = [0; 3];
     for seed in 0..runs {
-        let made = trials(bench, poses, accuracy, friction, seed);
+        let made = trials(bench, [real, written], accuracy, friction, seed);
         let judged = made.into_iter().zip(&foretold).map(|(tried, foretold)| Judged {
             seen: tried.observed.map(|o| matches!(o, Observed::Aligned | Observed::AlignedElsewhere)),
             tried,
             foretold: *foretold,
         });
-        counts[told(problem, judged.collect(), &settings).verdict as usize] += 1;
+        counts[told(predicting, judged.collect(), &settings).verdict as usize] += 1;
     }
     counts
 }
@@ -83,35 +83,53 @@ fn arc_about(cor_d: f64) -> Problem {
     problem.with(design).unwrap()
 }
 
+/// Angles of the joint in quarters of a degree at two yaws, as face poses of a design: the offsets at its centre of rotation are 0.
+fn fine_arc(problem: &Problem) -> Vec<PoseError> {
+    let pose = |k: i32, yaw: f64| {
+        let measured = PoseError {
+            pitch: (0.25 * f64::from(k)).to_radians(),
+            yaw: yaw.to_radians(),
+            ..PoseError::default()
+        };
+        OffsetsAt::Cor.to_face(&measured, problem.alignment())
+    };
+    [0.0, 20.0].into_iter().flat_map(|yaw| (20..=120).map(move |k| pose(k, yaw))).collect()
+}
+
 /// A robot as accurate as it says, and halves as predicted: hardly ever is that found inconsistent.
 fn as_predicted(runs: u64) {
     let problem = problem("bench-pyramid-arc.toml");
     let (poses, accuracy) = arc(&problem);
-    let [consistent, ..] = verdicts(&problem, &problem, &poses, &accuracy, 0.0, runs);
-    println!("as predicted: {consistent} of {runs} consistent");
-    assert!(consistent as f64 >= 0.95 * runs as f64, "{consistent} of {runs}");
+    let fine = fine_arc(&problem);
+    for poses in [&poses[..], &fine[..]] {
+        let [consistent, ..] = verdicts([&problem; 2], [poses; 2], &accuracy, 0.0, runs);
+        println!("as predicted, {} poses: {consistent} of {runs} consistent", poses.len());
+        assert!(consistent as f64 >= 0.95 * runs as f64, "{consistent} of {runs}");
+    }
 }
 
-/// A centre of rotation that is 0.3 D elsewhere, or friction of 0.3: hardly ever is that found consistent.
+/// A centre of rotation that is 0.3 D elsewhere than the design has it, or friction of 0.5: hardly ever is that found consistent. (Friction of 0.3
+/// alters none of these outcomes: the faces are steeper than it holds.)
 fn otherwise(runs: u64) {
     let problem = problem("bench-pyramid-arc.toml");
     let cor = problem.alignment().center_of_rotation;
     let (poses, accuracy) = arc(&problem);
+    let real = fine_arc(&problem);
     for by in [0.3, -0.3] {
-        // The lever of the robot is what it is; the design has it wrong.
         let wrong = arc_about(cor + by);
-        let freed = |problem: &Problem| {
-            let mut design = problem.design().clone();
-            design.alignment.free = design.alignment.free.with(Dof::Y);
-            design.alignment.half_ranges[Dof::Y.index()] = design.alignment.half_ranges[Dof::X.index()];
-            problem.with(design).unwrap()
-        };
-        let [_, inconsistent, _] = verdicts(&freed(&wrong), &freed(&problem), &poses, &accuracy, 0.0, runs);
+        let written = fine_arc(&wrong);
+        let [_, inconsistent, _] = verdicts([&wrong, &problem], [&real, &written], &accuracy, 0.0, runs);
         println!("COR {by} D off: {inconsistent} of {runs} inconsistent");
         assert!(inconsistent as f64 >= 0.95 * runs as f64, "COR {by} D off: {inconsistent} of {runs}");
     }
-    let [_, inconsistent, _] = verdicts(&problem, &problem, &poses, &accuracy, 0.3, runs);
-    println!("friction 0.3: {inconsistent} of {runs} inconsistent");
+    let motions = [0.0, 0.3].map(|mu| descent::Settings::with_friction(mu).unwrap());
+    let docking = motions.map(|motions| {
+        let mut judge = plan::Judge::new(&problem, &motions);
+        poses.iter().map(|pose| judge.docks(pose)).collect::<Vec<bool>>()
+    });
+    assert_eq!(docking[0], docking[1]);
+    let [_, inconsistent, _] = verdicts([&problem; 2], [&poses; 2], &accuracy, 0.5, runs);
+    println!("friction 0.5: {inconsistent} of {runs} inconsistent");
     assert!(inconsistent as f64 >= 0.95 * runs as f64, "friction: {inconsistent} of {runs}");
 }
 
@@ -183,9 +201,9 @@ fn counts_margins_and_lines_are_those_of_the_table() {
         (0.45, 0.49, true)
     );
     assert_eq!((line.predicted[0].unwrap().x, line.predicted[1].unwrap().x), (0.49, 0.55));
-    // 2Φ(−½) is more than a half, and the others next to nothing but that at 2.5.
-    let expected = 0.5 + 0.012_419_330_651_552_318;
-    assert!((found.early.expected - expected).abs() < 1e-3 && found.early.failures == 1);
+    // 2Φ(−2.5): the others are next to nothing, and that which may go either way does not count.
+    assert!((found.early.expected - 0.012_419).abs() < 1e-3 && found.early.disagreeing == 0);
+    assert_eq!((found.early.trials, found.late.trials), (4, 2));
 }
 
 #[test]
@@ -203,7 +221,7 @@ fn one_failure_far_inside_is_enough_and_one_near_the_limit_is_not() {
     let near: Vec<_> = (0..10).map(|k| (0.459, if k == 0 { MISSED } else { DOCKED })).collect();
     let near = judged(&near);
     assert_eq!((near.verdict, near.beyond), (Verdict::Consistent, 1));
-    assert!((near.p_value - 0.67).abs() < 0.05, "{}", near.p_value);
+    assert!((near.early.p_value - 0.34).abs() < 0.03 && near.p_value == 1.0, "{near:?}");
     // Half of them may not.
     let half: Vec<_> = (0..10).map(|k| (0.459, if k % 2 == 0 { MISSED } else { DOCKED })).collect();
     assert_eq!(judged(&half).verdict, Verdict::Inconsistent);
@@ -229,12 +247,20 @@ fn too_few_trials_decide_nothing() {
     ));
 }
 
-/// Halves with a friction of 0.3, tried without an error: the interval holds 0.3 and not 0.
+/// Halves with a friction of 0.5, tried without an error: the interval holds 0.5 and not 0.
 #[test]
 fn the_friction_that_made_the_trials_is_in_the_interval() {
-    let problem = problem("bench-pyramid-arc.toml");
-    let (poses, accuracy) = arc(&problem);
-    let made = trials(&problem, &poses, &PoseError::default(), 0.3, 1);
+    let problem = problem("bench-x-face.toml");
+    let width = problem.design().width;
+    let accuracy = PoseError { x: 1.0 / width, y: 1.0 / width, ..PoseError::default() };
+    let pattern = Pattern::Grid {
+        steps: [Some(8), Some(8), None, None, None],
+        max: [Some(1.0), Some(1.0), None, None, None],
+    };
+    let settings = plan::Settings { symmetric: true, ..plan::Settings::new(pattern, accuracy) };
+    let planned = plan::run(&problem, &settings, &Exec::new()).unwrap();
+    let poses: Vec<PoseError> = planned.points.iter().map(|point| point.error).collect();
+    let made = trials(&problem, [&poses; 2], &PoseError::default(), 0.5, 1);
     let settings = Settings { estimate_friction: true, ..Settings::new(accuracy) };
     let with =
         |threads| run(&problem, &made, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
@@ -243,12 +269,12 @@ fn the_friction_that_made_the_trials_is_in_the_interval() {
     println!("{friction:?}");
     assert_eq!((found.verdict, friction.fewest), (Verdict::Inconsistent, 0));
     assert!(
-        friction.interval[0] > 0.0 && friction.interval[0] <= 0.3 && friction.interval[1] >= 0.3,
+        friction.interval[0] > 0.0 && friction.interval[0] <= 0.5 && friction.interval[1] >= 0.5,
         "{friction:?}"
     );
-    assert!(friction.tried[0].1 > 0);
+    assert!(friction.tried[0].1 > 0 && friction.interval[1] < 0.7, "{friction:?}");
     // With that friction the prediction holds; and threads change nothing.
-    let with_friction = Settings { friction: 0.3, estimate_friction: false, ..settings.clone() };
+    let with_friction = Settings { friction: 0.5, estimate_friction: false, ..settings.clone() };
     let again = run(&problem, &made, &with_friction, &Exec::new()).unwrap();
     assert_eq!((again.verdict, again.agreement.agreed), (Verdict::Consistent, again.agreement.trials));
     assert!(found == with(2) && found == with(4));
