@@ -93,12 +93,12 @@ impl TriedTable {
             }
         };
         let mut all = records(text);
-        let Some((_, names)) = all.next() else { return refused(found) };
+        let Some((top, names)) = all.next() else { return refused(found) };
         let place = |name: &str| names.iter().position(|n| n == name);
         let [outcome, trial, line, predicted] = [OUTCOME, TRIAL, LINE, PREDICTED].map(place);
         if outcome.is_none() {
             let help = "write what was seen of every trial into a column `outcome`, and nothing where it was not made";
-            found.push(Fault::new("no column says what was seen", help), || spans(text, 0).first().cloned());
+            found.push(Fault::new("no column says what was seen", help), || spans(text, top).first().cloned());
         }
         let mut rows = Vec::new();
         let mut seen: BTreeSet<u64> = BTreeSet::new();
@@ -160,7 +160,7 @@ fn head(table: &PoseTable<'_>, design: &Design, text: &str, found: &mut Found) {
             "add a column of it, 0 where it does not occur, or lock {name} in [alignment] of the design"
         );
         found.push(Fault::new(format!("no column is {name}, which the design leaves free"), help), || {
-            let all = spans(text, 0);
+            let all = spans(text, records(text).next().map_or(0, |(start, _)| start));
             Some(all.first()?.start..all.last()?.end)
         });
     }

@@ -170,11 +170,8 @@ impl PlanReport {
             row(&mut text, "friction", &format!("{} between the halves (Coulomb)", self.settings.friction));
         }
         wrapped(&mut text, "  pattern        ", &self.pattern(&told));
-        row(
-            &mut text,
-            "accuracy",
-            &format!("{} (one standard deviation)", told.accuracy(&self.settings.accuracy)),
-        );
+        let accuracy = format!("{} (one standard deviation)", told.accuracy(&self.settings.accuracy));
+        wrapped(&mut text, "  accuracy       ", &accuracy);
         text.push('\n');
         let PlanCounts { trials, poses, lines, docking, failing, either, deciding, .. } = self.plan;
         let times = if self.settings.repeats > 1 {
@@ -207,16 +204,14 @@ impl PlanReport {
                     told.length(point.distance_to_border.unwrap_or_default())
                 ),
             );
-            row(&mut text, "", &told.pose(&point.error));
+            wrapped(&mut text, "                 ", &told.pose(&point.error));
         }
         text.push('\n');
         line(&mut text, "  first trials");
         for trial in self.trials.iter().take(SHOWN) {
             let point = &self.points[trial.point];
-            line(
-                &mut text,
-                &format!("  {:>5}  {}: {}", trial.trial, told.pose(&point.error), predicted(point)),
-            );
+            let pose = format!("{}: {}", told.pose(&point.error), predicted(point));
+            wrapped(&mut text, &format!("  {:>5}  ", trial.trial), &pose);
         }
         if self.trials.len() > SHOWN {
             line(&mut text, &format!("      …  {} more", grouped(self.trials.len() - SHOWN)));

@@ -21,11 +21,8 @@ impl ValidationReport {
         if self.settings.friction > 0.0 {
             row(&mut text, "friction", &format!("{} between the halves (Coulomb)", self.settings.friction));
         }
-        row(
-            &mut text,
-            "accuracy",
-            &format!("{} (one standard deviation)", told.accuracy(&self.settings.accuracy)),
-        );
+        let accuracy = format!("{} (one standard deviation)", told.accuracy(&self.settings.accuracy));
+        wrapped(&mut text, "  accuracy       ", &accuracy);
         text.push('\n');
         row(&mut text, "verdict", self.verdict.name());
         row(
@@ -71,12 +68,12 @@ impl ValidationReport {
             ("late successes", &self.late, "predicted to fail"),
         ] {
             if side.trials > 0 {
-                let told = format!(
-                    "{} of {} {predicted}, a chance of {}",
-                    side.disagreeing,
-                    side.trials,
-                    chance(side.p_value)
-                );
+                let by_chance = if side.disagreeing > 0 {
+                    format!(", a chance of {}", chance(side.p_value))
+                } else {
+                    String::new()
+                };
+                let told = format!("{} of {} {predicted}{by_chance}", side.disagreeing, side.trials);
                 row(&mut text, name, &told);
             }
         }
@@ -154,7 +151,7 @@ impl ValidationReport {
             &format!("  the border as it was seen, along {} of {} lines", crossed.len(), self.lines.len()),
         );
         for seen in crossed.iter().take(SHOWN) {
-            let order = if seen.in_order { "" } else { "  (mixed)" };
+            let order = if seen.in_order { "" } else { " (mixed)" };
             let [docked, failed] =
                 [seen.last_success, seen.first_failure].map(|pose| pose.unwrap_or_default());
             let varying = varying(&docked, &failed);
@@ -163,10 +160,8 @@ impl ValidationReport {
                     varying.iter().map(|axis| told.size(*axis, pose.to_array()[axis.index()])).collect();
                 told.join(", ")
             };
-            line(
-                text,
-                &format!("  {:>4}  docks at {}, fails at {}{order}", seen.line, some(&docked), some(&failed)),
-            );
+            let where_ = format!("docks at {}, fails at {}{order}", some(&docked), some(&failed));
+            wrapped(text, &format!("  {:>4}  ", seen.line), &where_);
         }
         if crossed.len() > SHOWN {
             line(text, &format!("     …  {} more", crossed.len() - SHOWN));
@@ -190,7 +185,8 @@ impl ValidationReport {
                     )
                 },
             );
-            line(text, &format!("  {trial:>5}  {}: {seen}", told.pose(&point.error)));
+            let pose = format!("{}: {seen}", told.pose(&point.error));
+            wrapped(text, &format!("  {trial:>5}  "), &pose);
             line(text, &format!("         {margin}"));
         }
         if self.disagreements.len() > SHOWN {

@@ -92,8 +92,8 @@ const LOCKED_WITHIN: f64 = 1e-6;
 const LOOKS: usize = 48;
 /// Bisections of a border along a line: to 2⁻²⁰ of it.
 const HALVINGS: usize = 20;
-/// Points of a bracket are at least so many accuracies from the border, which a trial can tell apart.
-pub(super) const TOLD_APART: f64 = 2.0;
+/// Points of a bracket are at least so many accuracies from the border: a little more than the two from which a trial decides.
+const TOLD_APART: f64 = 2.02;
 /// How often a point that is nearer than that is moved out.
 const MOVES: usize = 4;
 /// One trial in so many is a control, far inside or far outside.
