@@ -98,7 +98,8 @@ impl TriedTable {
         let [outcome, trial, line, predicted] = [OUTCOME, TRIAL, LINE, PREDICTED].map(place);
         if outcome.is_none() {
             let help = "write what was seen of every trial into a column `outcome`, and nothing where it was not made";
-            found.push(Fault::new("no column says what was seen", help), || spans(text, top).first().cloned());
+            found
+                .push(Fault::new("no column says what was seen", help), || spans(text, top).first().cloned());
         }
         let mut rows = Vec::new();
         let mut seen: BTreeSet<u64> = BTreeSet::new();

@@ -267,7 +267,6 @@ impl Maker<'_> {
             return Err(PlanError::TooMany { most: MOST_TRIALS });
         }
         let wanted = lines.unwrap_or((trials - controls) / 2);
-        let pairs = (trials - controls) / (2 * wanted);
         let mut judge = Judge::new(self.problem, self.motions);
         if !judge.docks(&PoseError::default()) {
             return Err(PlanError::NotDocked);
@@ -287,6 +286,9 @@ impl Maker<'_> {
         if borders.is_empty() {
             return Err(PlanError::NoBorder);
         }
+        // There may be fewer lines than were wanted: their trials go to more pairs, and what is left to controls.
+        let pairs = (trials - controls) / (2 * borders.len());
+        let controls = trials - 2 * pairs * borders.len();
         for (number, (along, border)) in borders.iter().enumerate() {
             exec.check()?;
             for sign in [-1.0, 1.0] {
