@@ -132,7 +132,9 @@ impl TriedTable {
                 wrong(index, Fault::new(format!("trial {trial_number} is there twice"), help));
             }
             let observed = read(cell(outcome)).unwrap_or_else(|fault| {
-                outcome.into_iter().for_each(|index| wrong(index, fault.clone()));
+                if let Some(index) = outcome {
+                    wrong(index, fault);
+                }
                 None
             });
             rows.push(Tried {

@@ -141,7 +141,7 @@ impl PlanReport {
             open: found.open,
         };
         let sides = [count(&|p| decides(p) && p.docks()), count(&|p| decides(p) && !p.docks())];
-        doubts.extend(doubts_of(&plan, sides).iter().map(|doubt| WarningReport::note(doubt)));
+        doubts.extend(doubts_of(&plan, sides).iter().map(WarningReport::note));
         let trials = found.trials.iter().map(|trial| PlannedReport {
             trial: trial.number,
             block: trial.block,

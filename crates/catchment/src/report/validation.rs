@@ -187,7 +187,7 @@ impl ValidationReport {
         mut doubts: Vec<WarningReport>,
         timing: Option<Timing>,
     ) -> Self {
-        doubts.extend(text::doubts(found).iter().map(|doubt| WarningReport::note(doubt)));
+        doubts.extend(text::doubts(found).iter().map(WarningReport::note));
         let trials: Vec<TriedReport> = found
             .trials
             .iter()

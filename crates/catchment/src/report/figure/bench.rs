@@ -6,7 +6,7 @@ use super::super::{PlanReport, TriedReport, ValidationReport};
 use super::Picture;
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, Rgb, hex, mix};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
@@ -214,7 +214,8 @@ fn cells(svg: &mut Svg, panel: &Panel, rect: Rect) {
                 (None, true) => from = Some(column),
                 (Some(start), false) => {
                     let [x0, x1] = [start, column].map(|k| rect.x + k as f64 * w);
-                    data += &format!("M{x0:.2} {y:.2}H{x1:.2}V{:.2}H{x0:.2}Z", y + h);
+                    let corners = [[x0, y], [x1, y], [x1, y + h], [x0, y + h]];
+                    data.push_str(&polyline(corners.into_iter(), true));
                     from = None;
                 }
                 _ => {}
@@ -230,7 +231,7 @@ fn mark(svg: &mut Svg, [x, y]: [f64; 2], shape: Shape, wrong: bool) {
     const SIZE: f64 = 3.6;
     match shape {
         Shape::Docks => {
-            svg.circle([x, y], SIZE, &format!(r##"fill="{DOCKED}" stroke="#ffffff" stroke-width="0.7""##))
+            svg.circle([x, y], SIZE, &format!(r##"fill="{DOCKED}" stroke="#ffffff" stroke-width="0.7""##));
         }
         Shape::Fails => {
             let style = format!(r#"stroke="{FAILED}" stroke-width="2" {JOIN}"#);
@@ -245,7 +246,7 @@ fn mark(svg: &mut Svg, [x, y]: [f64; 2], shape: Shape, wrong: bool) {
             svg.path(&data, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="1.1" {JOIN}"##));
         }
         Shape::NotMade => {
-            svg.circle([x, y], SIZE, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="0.9""#))
+            svg.circle([x, y], SIZE, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="0.9""#));
         }
     }
     if wrong {

@@ -46,7 +46,7 @@ impl ValidationReport {
             row(
                 &mut text,
                 "",
-                &format!("the robot's errors alone: a chance of {}", chance(self.evidence.p_value)),
+                &format!("by the robot's errors alone: chance {}", chance(self.evidence.p_value)),
             );
         }
         let agreement = &self.agreement;
@@ -69,7 +69,7 @@ impl ValidationReport {
         ] {
             if side.trials > 0 {
                 let by_chance = if side.disagreeing > 0 {
-                    format!(", a chance of {}", chance(side.p_value))
+                    format!(", chance {}", chance(side.p_value))
                 } else {
                     String::new()
                 };
@@ -131,12 +131,9 @@ impl ValidationReport {
         }
         let shown =
             friction.tried.iter().filter(|t| ((t.friction * 10.0).round() / 10.0 - t.friction).abs() < 1e-9);
-        let mut told = String::new();
-        for tried in shown {
-            told +=
-                &format!("{}{}: {}", if told.is_empty() { "" } else { ", " }, tried.friction, tried.beyond);
-        }
-        wrapped(text, "                 ", &format!("left by each: {told}"));
+        let shown_values: Vec<String> =
+            shown.map(|tried| format!("{}: {}", tried.friction, tried.beyond)).collect();
+        wrapped(text, "                 ", &format!("left by each: {}", shown_values.join(", ")));
     }
 
     fn lines(&self, text: &mut String, told: &Told<'_>) {
@@ -152,8 +149,7 @@ impl ValidationReport {
         );
         for seen in crossed.iter().take(SHOWN) {
             let order = if seen.in_order { "" } else { " (mixed)" };
-            let [docked, failed] =
-                [seen.last_success, seen.first_failure].map(|pose| pose.unwrap_or_default());
+            let [docked, failed] = [seen.last_success, seen.first_failure].map(Option::unwrap_or_default);
             let varying = varying(&docked, &failed);
             let some = |pose: &PoseError| {
                 let told: Vec<String> =
@@ -204,7 +200,7 @@ fn varying(a: &PoseError, b: &PoseError) -> Vec<Dof> {
 /// A chance for eyes.
 fn chance(p: f64) -> String {
     const LEAST: f64 = 1e-4;
-    if p < LEAST { "below 0.0001".to_owned() } else { format!("{p:.4}") }
+    if p < LEAST { "< 0.0001".to_owned() } else { format!("{p:.4}") }
 }
 
 /// What should be known of a verdict.

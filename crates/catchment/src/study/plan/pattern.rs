@@ -18,6 +18,7 @@ use crate::exec::Exec;
 use crate::method::descent;
 use crate::pose::{CorPose, Dof, PoseError, face_from_cor};
 use crate::problem::Problem;
+use crate::study::validate::LIMIT;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -342,8 +343,8 @@ impl Maker<'_> {
             let error = self.scaled(along, t);
             let docks = judge.docks(&error);
             match search.nearest(judge, &error, docks, None, random) {
-                Some(found) if found.sigmas < TOLD_APART => {
-                    apart *= (TOLD_APART / found.sigmas).clamp(1.05, 2.0)
+                Some(found) if found.sigmas < LIMIT => {
+                    apart *= (TOLD_APART / found.sigmas).clamp(1.05, 2.0);
                 }
                 _ => break,
             }

@@ -80,7 +80,9 @@ pub fn panels(
             panel.at.iter().map(|(axis, value)| (pose.to_array()[axis.index()] - value).abs()).sum::<f64>()
         };
         let nearest = panels.iter_mut().min_by(|a, b| off(a).total_cmp(&off(b)));
-        nearest.into_iter().for_each(|panel| panel.poses.push(number));
+        if let Some(panel) = nearest {
+            panel.poses.push(number);
+        }
     }
     panels.retain(|panel| !panel.poses.is_empty());
     let rows = if across.len() > 1 { CELLS } else { 1 };

@@ -44,8 +44,8 @@ const STEPS: usize = 20;
 const HALVINGS: usize = 4;
 /// So many disagreements more than the fewest are clearly more.
 const CLEARLY: usize = 4;
-/// Steps after which a motion creeps: ten times what others take.
-const CREEPS: usize = 2000;
+/// Steps after which a motion creeps; others take tens to hundreds.
+const CREEPS: usize = 1000;
 
 /// Tries coefficients; and how many motions that took.
 pub(super) fn estimate(
