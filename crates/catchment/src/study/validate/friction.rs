@@ -45,7 +45,7 @@ const HALVINGS: usize = 4;
 /// So many disagreements more than the fewest are clearly more.
 const CLEARLY: usize = 4;
 /// Steps after which a motion creeps; others take tens to hundreds.
-const CREEPS: usize = 1000;
+const CREEPS: usize = 500;
 
 /// Tries coefficients; and how many motions that took.
 pub(super) fn estimate(
