@@ -215,7 +215,7 @@ fn cells(svg: &mut Svg, panel: &Panel, rect: Rect) {
                 (Some(start), false) => {
                     let [x0, x1] = [start, column].map(|k| rect.x + k as f64 * w);
                     let corners = [[x0, y], [x1, y], [x1, y + h], [x0, y + h]];
-                    data.push_str(&polyline(corners.into_iter(), true));
+                    data.push_str(&polyline(corners, true));
                     from = None;
                 }
                 _ => {}
