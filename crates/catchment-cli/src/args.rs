@@ -41,6 +41,10 @@ use std::path::PathBuf;
         catchment chance design.toml --draw 'speed=50 ± 10 mm/s' --times 0.1,1,10
                                           how likely it docks that comes with speed
   \
+        catchment plan design.toml --pattern bracket --trials 60 --accuracy 'x=1 mm' -o plan.csv\n                                          at which poses a robot should try it
+  \
+        catchment validate plan.csv design.toml --accuracy 'x=1 mm'\n                                          what its trials say of the prediction
+  \
         catchment compare design.toml --methods descent,flood\n                                          where two of them differ\n  \
         catchment slices design.toml -o out     two errors at a time, finely, everything free\n  \
         catchment sweep design.toml --over aspect_ratio=0.5,1,2 --over cor=-1..1/5\n                                          many designs at once\n  \

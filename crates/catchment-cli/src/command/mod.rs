@@ -18,6 +18,7 @@ mod man;
 mod new;
 mod outcome;
 mod place;
+mod plan;
 mod reproduce;
 mod rests;
 mod run;
@@ -27,6 +28,7 @@ mod solids;
 mod success;
 mod sweep;
 mod trace;
+mod validate;
 mod window;
 mod zraa;
 
@@ -53,6 +55,8 @@ pub(crate) enum Command {
     Rests(Box<rests::RestsArgs>),
     Hold(Box<hold::HoldArgs>),
     Chance(Box<chance::ChanceArgs>),
+    Plan(Box<plan::PlanArgs>),
+    Validate(Box<validate::ValidateArgs>),
     Zraa(Box<zraa::ZraaArgs>),
     Export(Box<export::ExportArgs>),
     Solids(solids::SolidsArgs),
@@ -88,6 +92,8 @@ impl Command {
             Self::Rests(args) => rests::run(&args),
             Self::Hold(args) => hold::run(&args),
             Self::Chance(args) => chance::run(&args),
+            Self::Plan(args) => plan::run(&args),
+            Self::Validate(args) => validate::run(&args),
             Self::Zraa(args) => zraa::run(&args),
             Self::Export(args) => export::run(&args),
             Self::Solids(args) => solids::run(&args),

@@ -57,7 +57,7 @@ pub(crate) struct OutcomeArgs {
 
 /// Where offsets are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Point {
+pub(super) enum Point {
     /// The face centre
     Face,
     /// The centre of rotation, where locked offsets stay 0

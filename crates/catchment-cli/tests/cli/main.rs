@@ -23,6 +23,7 @@ mod limits;
 mod meshes;
 mod new;
 mod place;
+mod plan;
 mod planar;
 mod plumbing;
 mod poses;

@@ -29,10 +29,13 @@ fn every_json_has_one_head_and_its_fields() {
     std::fs::write(home.path().join("poses.csv"), "x,pitch\n0.1,0.2\n").unwrap();
     let run = ["run", "v.toml", "--resolution", "8", "--samples", "50", "--json"];
     let kinematic = ["trace", "x.toml", "--cor=-0.5", "--pose", "x=0.2,pitch=0.2", "--method", "kinematic"];
+    let bench = ["--accuracy", "x=0.01,pitch=0.01", "--json"];
+    let seen = "line,x,pitch,outcome\n1,0.1,0,jammed\n1,0.2,0,aligned\n1,0.9,0,missed\n";
+    std::fs::write(home.path().join("seen.csv"), seen).unwrap();
     std::fs::copy(super::designs().join("x-face.toml"), home.path().join("x.toml")).unwrap();
     let chance =
         ["chance", "v.toml", "--draw", "speed=1", "--trials", "2", "--overall", "100", "--pose", "x=0.1"];
-    let calls: [(&str, &[&str]); 23] = [
+    let calls: [(&str, &[&str]); 25] = [
         ("run", &[&run[..], &["--method", "flood", "--error-sigma", "x=0.1"]].concat()),
         ("check", &["check", "v.toml", "--json"]),
         ("outcome", &["outcome", "v.toml", "--poses", "poses.csv", "--json"]),
@@ -55,6 +58,8 @@ fn every_json_has_one_head_and_its_fields() {
             .concat(),
         ),
         ("trace", &["trace", "v.toml", "--pose", "x=0.2", "--method", "drop", "--json"]),
+        ("plan", &[&["plan", "v.toml", "--pattern", "bracket", "--trials", "8"], &bench[..]].concat()),
+        ("validate", &[&["validate", "seen.csv", "v.toml", "--estimate-friction"], &bench[..]].concat()),
         ("slices", &["slices", "v.toml", "--resolution", "8", "--json"]),
         ("convergence", &["run", "v.toml", "--converge", "--time-limit", "0.001 ms", "--json"]),
         ("sensitivity", &["run", "v.toml", "--sensitivity", "--samples", "50", "--json"]),

@@ -6,6 +6,10 @@
 //!   part, x_mm, pitch_deg    a table: x, y, roll, pitch, yaw,   PoseTable::parse    ──▶ PoseError per row,
 //!   A17,   2.5,        10    other columns carried through                              columns carried through
 //!
+//!   trial, x_mm, outcome     what a robot saw             TriedTable::parse   ──▶ Tried per row
+//!
+//!   x=5,y=5  0..45:2.25 deg  how many, which angles       parse_counts, parse_angles
+//!
 //!   x=1 mm,yaw=2 deg         how large errors are expected      Distribution::normal, Distribution::uniform
 //!
 //!   [[robot]] sigma = { … }  robots, and how their errors       read_robots         ──▶ Robot { name, errors: Spread }
@@ -26,21 +30,25 @@ mod distribution;
 pub(crate) mod dynamics;
 mod fields;
 mod header;
+mod lists;
 mod offsets;
 mod robots;
 mod table;
 mod terms;
 mod text;
+mod tried;
 mod written;
 
 pub use covariance::Matrix;
 pub use distribution::{Distribution, parse_sizes};
 pub use dynamics::{Circumstance, Dynamics, Law, parse_draw, read_dynamics};
+pub use lists::{MOST_ANGLES, parse_angles, parse_counts, parse_length};
 pub use offsets::OffsetsAt;
 pub use robots::{MOST_ROBOTS, Moments, NotACovariance, Robot, Spread, read_robots};
 pub use table::{MOST_POSES, PoseTable};
 pub use terms::parse_pose;
 pub use text::{LARGEST_TEXT, TextError, read_text};
+pub use tried::{Observed, Tried, TriedTable};
 
 use crate::design::{Finding, Findings};
 use std::ops::Range;
@@ -49,7 +57,7 @@ use std::ops::Range;
 const MOST_OBJECTIONS: usize = 20;
 
 /// What is wrong, before it is known where.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Fault {
     message: String,
     help: Option<String>,

@@ -44,6 +44,16 @@ impl<'a> PoseTable<'a> {
     /// Everything that is wrong with the text, of which the first 20 objections are spelled out. More than 1000 columns or
     /// [`MOST_POSES`] rows are not read. A locked error that is not as the lock has it is named once.
     pub fn parse(text: &'a str, design: &'a Design, at: OffsetsAt) -> Result<Self, Findings> {
+        Self::parse_beside(text, design, at, &[])
+    }
+
+    /// The same of a table with columns of these names, which its reader knows: they are no errors.
+    pub(super) fn parse_beside(
+        text: &'a str,
+        design: &'a Design,
+        at: OffsetsAt,
+        known: &[&str],
+    ) -> Result<Self, Findings> {
         let mut found = Found::default();
         let mut rows = records(text);
         let Some((start, names)) = rows.next() else {
@@ -63,7 +73,7 @@ impl<'a> PoseTable<'a> {
             found.push(fault, || spans(text, start).into_iter().next());
             return Err(Findings { source: None, list: found.list, omitted: 0 });
         }
-        let columns = columns(&names, &spans(text, start), design, &mut found);
+        let columns = columns(&names, &spans(text, start), design, known, &mut found);
         let mut errors = Vec::new();
         let mut locked_said = [false; 5];
         for (start, record) in rows {
@@ -129,6 +139,11 @@ impl<'a> PoseTable<'a> {
         self.header().into_iter().enumerate().filter(|(k, _)| !is_error(*k)).collect()
     }
 
+    /// Whether a column of this error was written.
+    pub(super) const fn has(&self, dof: Dof) -> bool {
+        self.columns[dof.index()].is_some()
+    }
+
     /// What the columns of the errors are called, in the order of [`Dof::ALL`]; the plain name where there is none.
     pub fn names(&self) -> [&str; 5] {
         Dof::ALL.map(|dof| self.columns[dof.index()].as_ref().map_or(dof.name(), |column| &column.name))
@@ -164,10 +179,16 @@ fn whole(spans: &[Range<usize>]) -> Option<Range<usize>> {
 }
 
 /// Finds the columns of the errors.
-fn columns(names: &StringRecord, spans: &[Range<usize>], design: &Design, found: &mut Found) -> Columns {
+fn columns(
+    names: &StringRecord,
+    spans: &[Range<usize>],
+    design: &Design,
+    known: &[&str],
+    found: &mut Found,
+) -> Columns {
     let mut columns = Columns::default();
     let mut wrong = false;
-    for (index, name) in names.iter().enumerate() {
+    for (index, name) in names.iter().enumerate().filter(|(_, name)| !known.contains(name)) {
         let fault = match header::column(name, design) {
             Ok(None) => continue,
             Ok(Some((dof, unit))) => {

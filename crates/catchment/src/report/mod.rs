@@ -7,7 +7,8 @@
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
 //!                       └──▶  write: complete or not at all
 //!
-//!   check · trajectory · chance · jams · rests · hold · friction · lever · zraa · faces · trials · export · solids · slices · convergence · sensitivity · sweep · comparison
+//!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
+//!   convergence · sensitivity · sweep · comparison
 //!                             one file per subject: its JSON, its text, its table for programs
 //!   envelope · text           the head of all JSON; what all text is made with
 //! ```
@@ -16,6 +17,7 @@
 //! every machine format; for people the design's own unit and degrees stand beside them.
 
 mod answer;
+mod bench;
 #[cfg(feature = "zarr")]
 mod bounded;
 #[cfg(feature = "drop")]
@@ -37,6 +39,7 @@ mod hold;
 mod jams;
 mod lever;
 mod outcomes;
+mod plan;
 mod resting;
 mod rests;
 #[cfg(all(feature = "figure", feature = "zarr"))]
@@ -51,6 +54,7 @@ mod table;
 pub mod text;
 mod trajectory;
 mod trials;
+mod validation;
 mod window;
 pub mod write;
 #[cfg(feature = "zarr")]
@@ -82,6 +86,7 @@ pub use jams::{
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
+pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
 pub use rests::{HeldReport, RestReport, RestsBody, RestsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
@@ -100,5 +105,9 @@ pub use table::{table, table_with};
 pub use text::{csv, number, printable, steers};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
+pub use validation::{
+    AgreedReport, CountReport, EvidenceReport, ExplainingReport, FrictionTried, LineReport, OneSidedReport,
+    TriedReport, ValidationBody, ValidationReport,
+};
 pub use window::{CertificateReport, SideReport, WindowBody, WindowReport, WorstReport};
 pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};

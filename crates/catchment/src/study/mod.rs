@@ -11,6 +11,8 @@
 //!   hold         what a docked half withstands                   one design, contact forces alone
 //!   chance       how likely drop tests dock, under declared laws  one design, trials in a rigid-body engine
 //!   window       the largest box of errors that all dock         one design, exact motions without a grid
+//!   plan         at which poses a robot should try it            one design, exact motions at every pose
+//!   validate     what a robot's trials say of the prediction     one design, exact motions and the trials
 //!   proposal     all ways in which two parts may dock           two files, the design that docks them
 //!   sweep        any keys of the design file, all combinations     many designs, one run
 //! ```
@@ -21,6 +23,7 @@ pub mod chance;
 pub mod convergence;
 pub mod friction;
 pub mod hold;
+pub mod plan;
 pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;
@@ -28,6 +31,7 @@ pub mod slices;
 pub mod success;
 pub mod sweep;
 pub mod trials;
+pub mod validate;
 pub mod window;
 
 use crate::acceptance::Outcome;

@@ -11,7 +11,8 @@ use catchment::design::{keys, parse_dofs, read};
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, Mount};
 use catchment::poses::{
-    Distribution, OffsetsAt, PoseTable, Spread, parse_draw, parse_pose, read_dynamics, read_robots,
+    Distribution, OffsetsAt, PoseTable, Spread, TriedTable, parse_draw, parse_pose, read_dynamics,
+    read_robots,
 };
 use catchment::report::{Report, table};
 use catchment::run::Requirement;
@@ -127,7 +128,7 @@ fn mesh_treated(name: &str, bytes: &[u8], treatment: Treatment) -> bool {
     }
 }
 
-/// A table of poses has as many errors as rows, all finite, and objections lie in the text.
+/// A table of poses has as many errors as rows, all finite, and objections lie in the text; so has one of trials, each of them once.
 pub(crate) fn pose_table(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let design = design();
@@ -141,6 +142,20 @@ pub(crate) fn pose_table(bytes: &[u8]) {
                 for error in table.errors() {
                     assert!(table.in_units(error).iter().all(|v| v.is_finite()));
                 }
+            }
+            Err(findings) => {
+                assert!(!findings.list.is_empty());
+                for span in findings.list.iter().filter_map(|finding| finding.span.clone()) {
+                    assert!(text.get(span).is_some(), "an objection is not a piece of the text");
+                }
+            }
+        }
+        match TriedTable::parse(&text, &design, at) {
+            Ok(table) => {
+                let mut numbers: Vec<u64> = table.rows.iter().map(|row| row.trial).collect();
+                numbers.sort_unstable();
+                assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]), "a trial is there twice");
+                assert!(table.rows.iter().all(|row| row.error.to_array().iter().all(|v| v.is_finite())));
             }
             Err(findings) => {
                 assert!(!findings.list.is_empty());

@@ -24,6 +24,7 @@
 //!   trajectory  the moving half along its path, and the errors it still has
 //!   region      offsets that are corrected without any rotation, and the largest square among them
 //!   trials      the exact region beside the outcomes of single trials
+//!   bench       trials of a plan over what docks: where, and what was seen of them
 //!   basins      depths of all minima, and the accepted share over the depth tolerance
 //!   watersheds  halves, heights, the labels of flooding before and after merging
 //!   partition   the contact space as polygons, and the exact outline of what is accepted
@@ -39,6 +40,7 @@
 mod agreement;
 mod answer;
 mod basins;
+mod bench;
 mod bodies;
 #[cfg(feature = "drop")]
 mod chance;
@@ -75,6 +77,7 @@ mod watersheds;
 pub use agreement::agreement;
 pub use answer::Drawn;
 pub use basins::basins;
+pub use bench::{plan, validation};
 pub use bodies::bodies;
 #[cfg(feature = "drop")]
 pub use chance::chance;

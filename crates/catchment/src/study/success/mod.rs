@@ -44,6 +44,7 @@ pub use found::{
 };
 use serde::{Deserialize, Serialize};
 use source::Source;
+pub(in crate::study) use source::normals;
 use std::f64::consts::SQRT_2;
 use strata::Strata;
 use tolerable::Curve;

@@ -207,7 +207,7 @@ impl<'a> Source<'a> {
 }
 
 /// Five independent standard normal numbers of six uniform ones (Box and Muller, 1958).
-pub(super) fn normals(uniform: impl Fn(u64) -> f64) -> [f64; 5] {
+pub(in crate::study) fn normals(uniform: impl Fn(u64) -> f64) -> [f64; 5] {
     let mut z = [0.0; 5];
     for (pair, values) in z.chunks_mut(2).enumerate() {
         // A logarithm of (0, 1].

@@ -1,0 +1,339 @@
+//! `catchment plan`: at which poses to try a connector.
+
+use super::outcome::Point;
+use crate::args::DesignArgs;
+use crate::asked::AskedArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{FileArgs, check_place, write_file};
+use catchment::design::Findings;
+use catchment::method::descent;
+use catchment::pose::{Dof, PoseError};
+use catchment::poses::{parse_angles, parse_counts, parse_length, parse_sizes};
+use catchment::problem::Problem;
+use catchment::report::figure::{self, Picture};
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{PlanReport, csv};
+use catchment::study::plan::{Pattern, Plan, PlanError, Settings, panels, run as make};
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Plan a bench test: at which poses a robot should try the connector, so that the trials decide something
+///
+/// Follows every pose of a pattern by exact motion and looks for the border about it. Poses nearer to the border than the robot's accuracy are
+/// marked `either`: they may go either way, and never count against the prediction. Writes a table with an empty column `outcome`; fill it with
+/// aligned, jammed, missed or aligned-elsewhere, and hand it to `catchment validate`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment plan design.toml --pattern bracket --trials 60 --accuracy 'x=1 mm,y=1 mm,yaw=1 deg' -o plan.csv\n                                                  both sides of the border, along lines from zero\n  \
+    catchment plan design.toml --pattern grid --steps x=5,y=5,yaw=6 --max 'x=1 in,y=1 in,yaw=30 deg' --symmetric --accuracy 'x=0.1 mm,y=0.1 mm'\n  \
+    catchment plan design.toml --pattern lattice --step '5 mm' --along-border --symmetric --accuracy 'x=1 mm,y=1 mm' --figure plan.png\n  \
+    catchment plan design.toml --pattern arc --lever '72.9 mm' --pitch '0..45:2.25 deg' --yaw '0,20 deg' --accuracy 'x=1.2 mm'\n                                                  a joint of the robot turns the face: x and pitch together\n  \
+    catchment plan design.toml --pattern bracket --trials 40 --accuracy x=0.01 --require 'plan.deciding>=30'\n\n\
+    -o writes .csv (the table for the robot), .json, .png or .svg. Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    design: DesignArgs,
+    #[command(flatten)]
+    pattern: PatternArgs,
+    /// Standard deviation of each error of the robot, such as "x=0.1 mm,yaw=0.2 deg"; what is not named is exact
+    #[arg(long, value_name = "AXIS=SIZE,…")]
+    accuracy: String,
+    /// How often each pose is tried
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    repeats: u32,
+    /// Parts of the test, as one operator or one day each
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    blocks: u32,
+    /// Leave the trials in the order of the pattern, instead of a random one
+    #[arg(long)]
+    in_order: bool,
+    /// End every line with its first predicted failure
+    #[arg(long)]
+    stop_at_first_failure: bool,
+    /// The point of the moving half where the table gives x and y
+    #[arg(long, value_enum, default_value_t = Point::Face)]
+    offsets_at: Point,
+    /// Coefficient of friction between the halves
+    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    friction: f64,
+    /// Seed of the order, of random lines and of the search for the border
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Also draw the poses over what docks, as .png or .svg
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    figure: Option<PathBuf>,
+    #[command(flatten)]
+    asked: AskedArgs,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// Which poses.
+#[derive(Debug, Args)]
+struct PatternArgs {
+    /// How the poses lie
+    #[arg(long, value_enum, help_heading = "Poses")]
+    pattern: Kind,
+    /// grid: points along each error, such as x=5,y=5,yaw=6
+    #[arg(long, value_name = "AXIS=N,…", help_heading = "Poses")]
+    steps: Option<String>,
+    /// lattice: the step of every offset, such as "5 mm", or of each error, such as "x=5 mm,yaw=6 deg"
+    #[arg(long, value_name = "LENGTH|AXIS=SIZE,…", help_heading = "Poses")]
+    step: Option<String>,
+    /// grid, lattice: the largest errors [default: the error box]
+    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Poses")]
+    max: Option<String>,
+    /// lattice: only poses within one step of the predicted border
+    #[arg(long, help_heading = "Poses")]
+    along_border: bool,
+    /// arc: from the joint of the robot to the face centre; it is never guessed
+    #[arg(long, value_name = "LENGTH", help_heading = "Poses")]
+    lever: Option<String>,
+    /// arc: angles of the joint, such as "0..45:2.25 deg"
+    #[arg(long, value_name = "ANGLES", allow_hyphen_values = true, help_heading = "Poses")]
+    pitch: Option<String>,
+    /// arc: yaws at which that is done, such as "0,20 deg" [default: 0]
+    #[arg(long, value_name = "ANGLES", allow_hyphen_values = true, help_heading = "Poses")]
+    yaw: Option<String>,
+    /// bracket: trials in all
+    #[arg(long, value_name = "N", help_heading = "Poses")]
+    trials: Option<u32>,
+    /// bracket: lines from zero [default: as many as there can be]
+    #[arg(long, value_name = "N", help_heading = "Poses")]
+    lines: Option<u32>,
+    /// bracket: no nearer to the border than this, such as "x=2 mm,y=2 mm" [default: twice the accuracy]
+    #[arg(long, value_name = "AXIS=SIZE,…", help_heading = "Poses")]
+    resolution: Option<String>,
+    /// grid, lattice, bracket: positive errors alone, of symmetric halves
+    #[arg(long, help_heading = "Poses")]
+    symmetric: bool,
+}
+
+/// How the poses lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// So many points along each error
+    Grid,
+    /// Multiples of a step
+    Lattice,
+    /// A joint of the robot turns the face
+    Arc,
+    /// Both sides of the border, along lines from zero
+    Bracket,
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
+    let drawing = figure_kind(args.figure.as_deref())?;
+    let problem = args.design.problem()?;
+    let settings = args.settings(&problem)?;
+    let at = args.offsets_at.into();
+    let form = PlanReport::new(problem.design(), &Plan::form(&settings), at, Vec::new(), None);
+    args.asked.check(&form)?;
+    let running = args.exec.start()?;
+    let found = make(&problem, &settings, &running.exec).map_err(refused)?;
+    let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
+    let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
+        let motions = descent::Settings::with_friction(settings.friction)?;
+        Some(panels(&problem, &poses, &motions, &running.exec)?)
+    } else {
+        None
+    };
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = PlanReport::new(problem.design(), &found, at, doubts, Some(timing));
+    let picture = drawn.map(|panels| figure::plan(&report, &panels));
+    match (kind, &picture) {
+        (Some("csv"), _) => args.file.write(&csv(&report.records())?)?,
+        (Some("json"), _) => args.file.write(report.to_json()?.as_bytes())?,
+        (Some(kind), Some(picture)) => args.file.write(&image(picture, kind)?)?,
+        _ => {}
+    }
+    write_figure(args.figure.as_deref(), drawing, picture.as_ref())?;
+    args.asked.tell(&report, PlanReport::table)
+}
+
+/// What kind of picture the name asks for; refused before anything is computed.
+pub(super) fn figure_kind(path: Option<&Path>) -> Result<Option<&'static str>, Failure> {
+    let Some(path) = path else { return Ok(None) };
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
+    let Some(kind) = ["png", "svg"].into_iter().find(|kind| kind.eq_ignore_ascii_case(ending)) else {
+        let message = format!("cannot tell what to draw into {}", path.display());
+        return Err(Failure::with_help(message, Some("let its name end in .png or .svg".to_owned())));
+    };
+    check_place(path, false)?;
+    Ok(Some(kind))
+}
+
+/// The picture as bytes.
+pub(super) fn image(picture: &Picture, kind: &str) -> Result<Vec<u8>, Failure> {
+    if kind == "png" { Ok(picture.png(PNG_SCALE)?) } else { Ok(picture.svg().as_bytes().to_vec()) }
+}
+
+/// Writes a picture that was asked for.
+pub(super) fn write_figure(
+    path: Option<&Path>,
+    kind: Option<&str>,
+    picture: Option<&Picture>,
+) -> Result<(), Failure> {
+    match (path, kind, picture) {
+        (Some(path), Some(kind), Some(picture)) => write_file(path, &image(picture, kind)?, false),
+        _ => Ok(()),
+    }
+}
+
+/// Sizes of errors, as an option gives them.
+pub(super) fn sizes(option: &str, text: &str, problem: &Problem) -> Result<[Option<f64>; 5], Failure> {
+    parse_sizes(text, problem.design()).map_err(|refusal| Failure::of_option(option, text, refusal))
+}
+
+/// An accuracy: what is not named is exact.
+pub(super) fn accuracy(text: &str, problem: &Problem) -> Result<PoseError, Failure> {
+    Ok(PoseError::from_array(sizes("--accuracy", text, problem)?.map(Option::unwrap_or_default)))
+}
+
+impl PlanArgs {
+    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
+        let pattern = self.pattern.of(problem)?;
+        Ok(Settings {
+            symmetric: self.pattern.symmetric,
+            repeats: self.repeats as usize,
+            blocks: self.blocks as usize,
+            shuffled: !self.in_order,
+            stop_at_first_failure: self.stop_at_first_failure,
+            seed: self.seed,
+            friction: self.friction,
+            ..Settings::new(pattern, accuracy(&self.accuracy, problem)?)
+        })
+    }
+}
+
+impl PatternArgs {
+    fn of(&self, problem: &Problem) -> Result<Pattern, Failure> {
+        self.refuse_others()?;
+        let design = problem.design();
+        let needed = |option: &'static str, value: &Option<String>, why: &str| {
+            value.clone().ok_or_else(|| {
+                let name = self.pattern.name();
+                Failure::with_help(format!("--pattern {name} needs {option}"), Some(why.to_owned()))
+            })
+        };
+        let max = self.max.as_deref().map_or(Ok([None; 5]), |text| sizes("--max", text, problem))?;
+        match self.pattern {
+            Kind::Grid => {
+                let text =
+                    needed("--steps", &self.steps, "how many points along each error, such as x=5,yaw=6")?;
+                let read = parse_counts(&text, design);
+                let steps = read.map_err(|refusal| Failure::of_option("--steps", &text, refusal))?;
+                Ok(Pattern::Grid { steps, max })
+            }
+            Kind::Lattice => {
+                let text = needed("--step", &self.step, "between neighbouring poses, such as \"5 mm\"")?;
+                Ok(Pattern::Lattice { step: step(&text, problem)?, max, along_border: self.along_border })
+            }
+            Kind::Arc => {
+                let why = "from the joint of the robot to the face centre, such as \"72.9 mm\": measure it, nothing else tells it";
+                let lever = needed("--lever", &self.lever, why)?;
+                let pitch =
+                    needed("--pitch", &self.pitch, "angles of the joint, such as \"0..45:2.25 deg\"")?;
+                let told =
+                    |option: &str, text: &str, refusal: Findings| Failure::of_option(option, text, refusal);
+                Ok(Pattern::Arc {
+                    lever: parse_length(&lever, design)
+                        .map_err(|refusal| told("--lever", &lever, refusal))?,
+                    pitch: parse_angles(&pitch).map_err(|refusal| told("--pitch", &pitch, refusal))?,
+                    yaw: match &self.yaw {
+                        Some(text) => parse_angles(text).map_err(|refusal| told("--yaw", text, refusal))?,
+                        None => vec![0.0],
+                    },
+                })
+            }
+            Kind::Bracket => {
+                let Some(trials) = self.trials else {
+                    let why = "how many the robot has time for, such as 60".to_owned();
+                    return Err(Failure::with_help("--pattern bracket needs --trials".to_owned(), Some(why)));
+                };
+                let resolution = self.resolution.as_deref();
+                Ok(Pattern::Bracket {
+                    trials: trials as usize,
+                    lines: self.lines.map(|lines| lines as usize),
+                    resolution: resolution
+                        .map_or(Ok([None; 5]), |text| sizes("--resolution", text, problem))?,
+                })
+            }
+        }
+    }
+
+    /// Options of other patterns would have no effect.
+    fn refuse_others(&self) -> Result<(), Failure> {
+        use Kind::{Arc, Bracket, Grid, Lattice};
+        let given: [(&str, bool, &[Kind]); 10] = [
+            ("--steps", self.steps.is_some(), &[Grid]),
+            ("--step", self.step.is_some(), &[Lattice]),
+            ("--max", self.max.is_some(), &[Grid, Lattice]),
+            ("--along-border", self.along_border, &[Lattice]),
+            ("--lever", self.lever.is_some(), &[Arc]),
+            ("--pitch", self.pitch.is_some(), &[Arc]),
+            ("--yaw", self.yaw.is_some(), &[Arc]),
+            ("--trials", self.trials.is_some(), &[Bracket]),
+            ("--lines", self.lines.is_some(), &[Bracket]),
+            ("--resolution", self.resolution.is_some(), &[Bracket]),
+        ];
+        let symmetric = ("--symmetric", self.symmetric, &[Grid, Lattice, Bracket][..]);
+        let other =
+            given.into_iter().chain([symmetric]).find(|(_, given, of)| *given && !of.contains(&self.pattern));
+        let Some((option, _, of)) = other else { return Ok(()) };
+        let names: Vec<&str> = of.iter().map(|kind| kind.name()).collect();
+        let message = format!("{option} has no effect with --pattern {}", self.pattern.name());
+        Err(Failure::with_help(message, Some(format!("it is for --pattern {}", names.join(" and ")))))
+    }
+}
+
+impl Kind {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::Lattice => "lattice",
+            Self::Arc => "arc",
+            Self::Bracket => "bracket",
+        }
+    }
+}
+
+/// One length for every free offset, or sizes by name.
+fn step(text: &str, problem: &Problem) -> Result<[Option<f64>; 5], Failure> {
+    if text.contains('=') {
+        return sizes("--step", text, problem);
+    }
+    let design = problem.design();
+    let length = parse_length(text, design).map_err(|refusal| Failure::of_option("--step", text, refusal))?;
+    if length < 0.0 {
+        return Err(Failure::with_help("--step: a size cannot be negative".to_owned(), None));
+    }
+    let free = problem.alignment().free;
+    Ok(Dof::ALL.map(|axis| (free.contains(axis) && !axis.is_rotation()).then_some(length)))
+}
+
+/// Why there is no plan, with what helps.
+fn refused(error: PlanError) -> Failure {
+    let help = match &error {
+        PlanError::NotDocked => Some("catchment check says where it settles instead"),
+        PlanError::JointElsewhere { .. } => Some("--cor puts the centre of rotation, --free frees an error"),
+        PlanError::Locked { .. } => Some("--free frees it"),
+        _ => None,
+    };
+    match help {
+        Some(help) => Failure::with_help(error.to_string(), Some(help.to_owned())),
+        None => error.into(),
+    }
+}

@@ -1,0 +1,114 @@
+//! `catchment validate`: what trials say of a prediction.
+
+use super::outcome::Point;
+use super::plan::{accuracy, figure_kind, image, write_figure};
+use crate::args::DesignArgs;
+use crate::asked::AskedArgs;
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::FileArgs;
+use crate::source::read_table;
+use catchment::design::Findings;
+use catchment::method::descent;
+use catchment::pose::PoseError;
+use catchment::poses::TriedTable;
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{ValidationReport, csv, figure};
+use catchment::study::plan::panels;
+use catchment::study::validate::{Settings, Validation, run as judge};
+use clap::Args;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Judge a prediction by a robot's trials: consistent, inconsistent or undecided
+///
+/// Reads the table of `catchment plan` with its column `outcome` filled in (aligned, jammed, missed, aligned-elsewhere, or nothing where a trial was
+/// not made), follows every pose again, and counts. Disagreements nearer to the border than a few accuracies do not count against the
+/// prediction, nor more of them than the robot's own errors explain.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment validate plan.csv design.toml --accuracy 'x=1 mm,y=1 mm,yaw=1 deg'\n  \
+    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --figure trials.png\n                                                  what was seen over what was predicted\n  \
+    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --estimate-friction\n                                                  which friction explains the failures\n  \
+    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --require 'consistent>=1' --require 'agreement.ci95.0>=0.9'\n  \
+    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --json | jq '.disagreements[0]'\n\n\
+    Columns: every error that the design leaves free, as x_mm or yaw_deg, and outcome; trial and line as the plan has them, each trial once. Others are \
+    left alone. Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
+pub(crate) struct ValidateArgs {
+    /// The table of trials (CSV); - reads stdin
+    #[arg(value_name = "PLAN", value_hint = clap::ValueHint::FilePath)]
+    plan: PathBuf,
+    #[command(flatten)]
+    design: DesignArgs,
+    /// Standard deviation of each error of the robot, such as "x=0.1 mm,yaw=0.2 deg"; what is not named is exact
+    #[arg(long, value_name = "AXIS=SIZE,…")]
+    accuracy: String,
+    /// k: disagreements nearer to the border than so many accuracies do not count
+    #[arg(long, value_name = "K", default_value_t = catchment::study::validate::LIMIT)]
+    limit: f64,
+    /// The point of the moving half where the table gives x and y
+    #[arg(long, value_enum, default_value_t = Point::Face)]
+    offsets_at: Point,
+    /// Coefficient of friction of the prediction
+    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    friction: f64,
+    /// Look for the friction that explains the trials
+    #[arg(long)]
+    estimate_friction: bool,
+    /// Seed of the search for the border
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Also draw the trials over what docks, as .png or .svg
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    figure: Option<PathBuf>,
+    #[command(flatten)]
+    asked: AskedArgs,
+    #[command(flatten)]
+    file: FileArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
+    let started = Instant::now();
+    let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
+    let drawing = figure_kind(args.figure.as_deref())?;
+    let problem = args.design.problem()?;
+    let settings = Settings {
+        accuracy: accuracy(&args.accuracy, &problem)?,
+        limit: args.limit,
+        friction: args.friction,
+        estimate_friction: args.estimate_friction,
+        seed: args.seed,
+    };
+    let source = read_table(&args.plan)?;
+    let table = TriedTable::parse(&source.text, problem.design(), args.offsets_at.into())
+        .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
+    let at = table.offsets_at;
+    let form =
+        ValidationReport::new(problem.design(), &Validation::form(&problem, &settings), at, Vec::new(), None);
+    args.asked.check(&form)?;
+    let running = args.exec.start()?;
+    let found = judge(&problem, &table.rows, &settings, &running.exec)?;
+    let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
+        let poses: Vec<PoseError> = found.trials.iter().map(|trial| trial.tried.error).collect();
+        let motions = descent::Settings::with_friction(settings.friction)?;
+        Some(panels(&problem, &poses, &motions, &running.exec)?)
+    } else {
+        None
+    };
+    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
+    drop(running);
+    let doubts = problem.objections().iter().map(WarningReport::note).collect();
+    let report = ValidationReport::new(problem.design(), &found, at, doubts, Some(timing));
+    let picture = drawn.map(|panels| figure::validation(&report, &panels));
+    match (kind, &picture) {
+        (Some("csv"), _) => args.file.write(&csv(&report.records())?)?,
+        (Some("json"), _) => args.file.write(report.to_json()?.as_bytes())?,
+        (Some(kind), Some(picture)) => args.file.write(&image(picture, kind)?)?,
+        _ => {}
+    }
+    write_figure(args.figure.as_deref(), drawing, picture.as_ref())?;
+    args.asked.tell(&report, ValidationReport::table)
+}
