@@ -28,7 +28,7 @@ fn filled(plan: &str, docks_to: f64) -> String {
     let mut text = head.join(",") + "\n";
     for mut row in rows {
         let far: f64 = row[x].parse().unwrap();
-        row[outcome] = if far.abs() < docks_to { "aligned" } else { "missed" }.to_owned();
+        if far.abs() < docks_to { "aligned" } else { "missed" }.clone_into(&mut row[outcome]);
         text += &(row.join(",") + "\n");
     }
     text
