@@ -67,6 +67,13 @@ pub(super) struct Touching {
 }
 
 impl Touching {
+    /// What touches at a place on the way of a motion: contacts that carry by turns lie as far apart there as a step bends.
+    fn see_on_the_way(&mut self, motion: &Motion, state: &State) {
+        let bend = motion.settings.step * motion.settings.step;
+        let touches = |contact: &Contact| motion.pair.is_tight() || contact.gap <= bend;
+        self.see_those(touches, motion, state);
+    }
+
     fn see(&mut self, motion: &Motion, state: &State) {
         // Plain motion keeps clear of walls, and what tight fits keep are contacts that touch.
         let touches =
@@ -181,7 +188,7 @@ impl Watch for Doubting {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.may_stick |= self.here;
         if !self.may_stick {
-            self.touching.see(motion, state);
+            self.touching.see_on_the_way(motion, state);
             self.here = !self.touching.rows.is_empty() && self.touching.holds(motion.settings.friction);
         }
         None
@@ -213,7 +220,7 @@ impl OnTheWay {
 impl Watch for OnTheWay {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.least = self.least.min(self.here);
-        self.touching.see(motion, state);
+        self.touching.see_on_the_way(motion, state);
         let holds =
             (!self.touching.rows.is_empty()).then(|| self.touching.holds_from(self.least, WAY_HOLDS_TO));
         self.here = holds.flatten().unwrap_or(self.least);

@@ -117,7 +117,7 @@ fn a_peg_jams_and_wedges_as_whitney_says() {
     const CLEARANCE: f64 = 2e-3;
     for off in [0.0, 0.3, 0.75, 1.5] {
         for depth in [0.3, 0.6, 1.0] {
-            let (pair, error) = peg(WIDTH, CLEARANCE, off, depth);
+            let (pair, error) = peg(WIDTH, CLEARANCE, -off, depth);
             let found = sticking(&pair, &error).unwrap();
             let expected = depth / f64::max(2.0 * off, WIDTH);
             let holds_from = found.holds_from.unwrap();
