@@ -20,7 +20,7 @@ pub fn friction(report: &FrictionReport) -> Picture {
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let marked = report.kept.iter().find(|kept| kept.share == MARKED);
     let story = marked.map_or_else(String::new, |kept| {
-        let [lo, hi] = kept.ci95.map(short);
+        let [lo, hi] = kept.ci95.map(|friction| format!("{friction:.3}"));
         let share = short(100.0 * kept.share);
         if kept.is_top {
             format!(
@@ -28,8 +28,8 @@ pub fn friction(report: &FrictionReport) -> Picture {
                 short(kept.friction)
             )
         } else {
-            let friction = short(kept.friction);
-            format!("{share} % of what docks without friction docks up to {friction} ({lo} … {hi})")
+            let friction = kept.friction;
+            format!("{share} % of what docks without friction docks up to a friction of {friction:.3} ({lo} … {hi})")
         }
     });
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);

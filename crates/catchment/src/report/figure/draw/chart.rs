@@ -107,7 +107,7 @@ impl Chart<'_> {
         frame.outline(svg);
     }
 
-    /// The frame around all points and the interval of each line's last one; `None` without points.
+    /// The frame around all points, and the interval of each line's last one or, evenly spaced, of all; `None` without points.
     fn frame(&self) -> Option<Frame> {
         /// Room beside the outermost points, as a share of the extent.
         const MARGIN: f64 = 0.06;
@@ -117,9 +117,16 @@ impl Chart<'_> {
         };
         let (left, right) =
             range(&mut points().map(|p| p.x).chain(self.mark.map(|(x, _)| x)).map(|x| self.spacing.at(x)));
-        // Wide intervals of coarse beginnings would leave no room for the values: they run out of the frame.
-        let ends =
-            self.lines.iter().filter_map(|line| line.shown(self.spacing).last()).filter_map(|p| p.interval);
+        // Wide intervals of coarse beginnings would leave no room for the values: on scales of refinement they run out of the frame.
+        let from = |line: &Line| match self.spacing {
+            Spacing::Logarithmic => line.shown(self.spacing).count().saturating_sub(1),
+            Spacing::Even => 0,
+        };
+        let ends = self
+            .lines
+            .iter()
+            .flat_map(|line| line.shown(self.spacing).skip(from(line)))
+            .filter_map(|p| p.interval);
         let (low, high) = range(&mut points().map(|p| p.y).chain(ends.flatten()));
         if !(left <= right && low <= high) {
             return None;
