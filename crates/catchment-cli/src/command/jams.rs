@@ -1,5 +1,6 @@
 //! `catchment jams`: why it jams.
 
+use super::run::resolution;
 use crate::args::DesignArgs;
 use crate::asked::AskedArgs;
 use crate::error_args::ErrorArgs;
@@ -7,6 +8,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
+use catchment::landscape::Resolution;
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{JamsReport, csv, figure};
@@ -40,6 +42,9 @@ pub(crate) struct JamsArgs {
     /// How many jams are examined: how firmly they hold, and the way out
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=1000))]
     examine: u32,
+    /// A grid over the error box whose merge tree says depths, too, such as 200 or x=100,pitch=50
+    #[arg(long, value_name = "CELLS", value_parser = resolution)]
+    resolution: Option<Resolution>,
     /// Coefficient of friction between the halves
     #[arg(long, value_name = "MU", default_value_t = 0.0)]
     friction: f64,
@@ -93,6 +98,7 @@ impl JamsArgs {
             errors: self.errors.distribution(problem.design())?,
             examined: self.examine as usize,
             friction: self.friction,
+            resolution: self.resolution,
         })
     }
 }

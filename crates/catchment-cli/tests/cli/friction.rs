@@ -21,7 +21,7 @@ fn a_facet_holds_everything_from_its_slope_on() {
             && told.contains("90 % docks     up to a friction of 0.199  (0.199 … 0.199)"),
         "{told}"
     );
-    assert!(told.contains("what sticks first, in the first 20 poses that are lost"), "{told}");
+    assert!(told.contains("what sticks where the first are lost (20 poses)"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
 }
 

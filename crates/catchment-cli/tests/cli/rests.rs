@@ -21,9 +21,9 @@ fn a_cube_is_as_deep_as_its_edge_says_in_millimetres() {
     // (√2 − 1)/2; the way is looked at every thousandth of its radius.
     let depth = report["rests"][0]["depth_at_most_d"].as_f64().unwrap();
     assert!((depth - 0.5 * (2f64.sqrt() - 1.0)).abs() < 1e-4, "{depth}");
-    assert_eq!(report["rests"][0]["immobility"]["order"], "first");
+    assert_eq!(report["rests"][0]["examined"]["immobility"]["order"], "first");
     // D/2 per radian, in a metric of D/2 per radian.
-    assert!((report["rests"][0]["immobility"]["slope"][0].as_f64().unwrap() - 1.0).abs() < 1e-4);
+    assert!((report["rests"][0]["examined"]["immobility"]["slope"][0].as_f64().unwrap() - 1.0).abs() < 1e-4);
     let told = run(home.path(), &["rests", "cube.toml", "--motions", "300"]);
     assert!(
         told.starts_with("exit 0\n") && told.contains("lifted by 10.36 mm at most, and it comes to"),

@@ -223,7 +223,7 @@ impl FrictionReport {
             return;
         }
         text.push('\n');
-        line(text, &format!("  what sticks first, in the first {} that are lost", poses(*count)));
+        line(text, &format!("  what sticks where the first are lost ({})", poses(*count)));
         for pair in features.iter().take(SHOWN) {
             wrapped(text, &format!("  {:>8}   ", percent(pair.share)), &pair.words());
         }

@@ -240,11 +240,22 @@ impl HoldReport {
                 if lever.is_empty() { "at ".to_owned() } else { lever }
             ),
         );
+        if self.slides() {
+            let said =
+                "0: sideways it slides as it stands, on level ground or until the play of its fit is used";
+            wrapped(&mut text, "  ", said);
+        }
         for warning in &self.warnings {
             text.push('\n');
             wrapped(&mut text, "warning: ", &warning.message);
         }
         text
+    }
+
+    /// Whether some force as small as one likes moves it sideways where there is no friction.
+    fn slides(&self) -> bool {
+        let least = self.weakest.smooth_free.and_then(|side| side.smooth).and_then(|force| force.free);
+        least.is_some_and(|force| force <= NOTHING)
     }
 
     fn head(&self, text: &mut String, name: &str, what: &str) {

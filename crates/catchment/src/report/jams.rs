@@ -1,7 +1,7 @@
 //! Jams: as versioned JSON, as text, as records for programs.
 
 use super::envelope::{Body, Envelope};
-use super::resting::{Told, said};
+use super::resting::{HeldReport, Told, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
 use super::text::{grouped, line, number, row, wrapped};
@@ -72,6 +72,8 @@ pub struct JamReport {
     pub contacts: Vec<ContactReport>,
     /// What was found out about it; null of jams that were not examined.
     pub examined: Option<ExaminedReport>,
+    /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
+    pub depth_on_grid_d: Option<f64>,
 }
 
 /// From where to where rests lie along an error, in D or radians.
@@ -137,6 +139,8 @@ pub struct ExaminedReport {
     pub rise_at_most_d: Option<f64>,
     /// The direction of that push: offsets in D and turns in radians.
     pub weakest: PoseError,
+    /// By which order contacts alone hold it; null where they do not hold the load, as where friction does.
+    pub immobility: Option<HeldReport>,
     /// The lowest way out that was found; null where none was.
     pub way_out: Option<WayOutReport>,
     /// Poses a little off that were followed.
@@ -187,11 +191,12 @@ impl From<&Touched> for ContactReport {
 
 impl From<&Examined> for ExaminedReport {
     fn from(examined: &Examined) -> Self {
-        let Examined { held, way_out, pushed, back } = *examined;
+        let Examined { held, immobility, way_out, pushed, back } = *examined;
         let way_out =
             way_out.map(|way| WayOutReport { climb_at_most_d: way.climb, to: way.to, over: way.over });
         let (firmness, rise_at_most_d, weakest) = (held.firmness, held.rise, held.weakest);
-        Self { firmness, push_d: PUSH, rise_at_most_d, weakest, way_out, pushed, back }
+        let immobility = immobility.map(HeldReport::from);
+        Self { firmness, push_d: PUSH, rise_at_most_d, weakest, immobility, way_out, pushed, back }
     }
 }
 
@@ -214,6 +219,7 @@ impl JamReport {
             above_mated_d: jam.above,
             contacts: jam.contacts.iter().map(ContactReport::from).collect(),
             examined: jam.examined.as_ref().map(ExaminedReport::from),
+            depth_on_grid_d: jam.depth_on_grid,
         }
     }
 }
@@ -318,8 +324,14 @@ impl JamsReport {
             said(text, "  anywhere in", &wide);
         }
         if let Some(examined) = &jam.examined {
+            if let Some(held) = &examined.immobility {
+                said(text, "  order", &held.words());
+            }
             said(text, "  held", &told.held(examined));
             said(text, "  out", &self.out(examined));
+        }
+        if let Some(depth) = jam.depth_on_grid_d {
+            said(text, "", &format!("{} deep by the merge tree of the grid", told.fine(depth)));
         }
         told.contact_lines(text, &jam.contacts);
     }
@@ -361,8 +373,8 @@ impl JamsReport {
 
     /// Jams and what touches in each as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
-        let head = "jam count share share_lo share_hi of_jams of_failures expected x y roll pitch yaw height above_mated firmness \
-                    rise_at_most climb_at_most leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
+        let head = "jam count share share_lo share_hi of_jams of_failures expected x y roll pitch yaw height above_mated order \
+                    slope_lo slope_hi curvature firmness rise_at_most climb_at_most depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
                     moving_name moving_part moving_x moving_y moving_z";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         for (k, jam) in self.jams.iter().enumerate() {
@@ -375,9 +387,14 @@ impl JamsReport {
             let examined = jam.examined.as_ref();
             let or_nothing = |value: Option<f64>| value.map_or_else(String::new, number);
             let way = examined.and_then(|examined| examined.way_out);
+            let held = examined.and_then(|examined| examined.immobility);
+            record.push(held.map_or("", |held| held.order.name()).to_owned());
+            record.extend([0, 1].map(|k| or_nothing(held.map(|held| held.slope[k]))));
+            record.push(or_nothing(held.and_then(|held| held.curvature_per_d)));
             record.push(examined.map_or("", |examined| examined.firmness.name()).to_owned());
             record.push(or_nothing(examined.and_then(|examined| examined.rise_at_most_d)));
             record.push(or_nothing(way.map(|way| way.climb_at_most_d)));
+            record.push(or_nothing(jam.depth_on_grid_d));
             record.push(way.map_or("", |way| way.to.name()).to_owned());
             for contact in &jam.contacts {
                 let feature = |feature: &FeatureReport| {

@@ -87,7 +87,8 @@ pub use jams::{
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
-pub use rests::{HeldReport, RestReport, RestsBody, RestsReport};
+pub use resting::HeldReport;
+pub use rests::{RestReport, RestsBody, RestsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};
 pub use schema::{Report, RunBody};

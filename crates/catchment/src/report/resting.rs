@@ -1,10 +1,55 @@
 //! What is told of a place of rest, of jams and of all others: where it is, how it is held, what touches.
 
-use super::text::wrapped;
+use super::text::{significant, wrapped};
 use super::{ContactReport, ExaminedReport, ExtentReport, FeatureReport};
 use crate::design::Design;
+use crate::method::descent::{Immobility, Order};
 use crate::pose::{Dof, PoseError};
 use crate::run::jams::Firmness;
+use serde::Serialize;
+
+/// By which order a rest is held (Rimon and Burdick).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HeldReport {
+    /// `first`, `second`, `neutral` or `unstable`.
+    pub order: Order,
+    /// From where to where the least slope of a first-order rest lies, in D per D of the metric of the motion.
+    pub slope: [f64; 2],
+    /// Independent directions that are free to first order.
+    pub free: usize,
+    /// The least curvature of the height among them, per D; null where none is free.
+    pub curvature_per_d: Option<f64>,
+    /// The direction of that: offsets in D and turns in radians.
+    pub weakest: PoseError,
+}
+
+impl From<Immobility> for HeldReport {
+    fn from(found: Immobility) -> Self {
+        let Immobility { order, slope, free, curvature, weakest } = found;
+        Self { order, slope, free, curvature_per_d: curvature, weakest }
+    }
+}
+
+impl HeldReport {
+    /// In words.
+    pub(super) fn words(&self) -> String {
+        let slope = match self.slope {
+            [from, to] if from == to => significant(to),
+            [from, to] => format!("{} to {}", significant(from), significant(to)),
+        };
+        let ways = if self.free == 1 { "one way" } else { "some ways" };
+        let bends = self.curvature_per_d.map_or_else(String::new, |curvature| {
+            format!(", curvature {} per D", significant(curvature).replace('-', "−"))
+        });
+        match self.order {
+            Order::First => format!("immobile to first order: rises by at least {slope} of any push"),
+            Order::Second => format!("free {ways} to first order, immobile to second{bends}"),
+            Order::Neutral if self.free == 0 => "held, but hardly: it rises by next to nothing".to_owned(),
+            Order::Neutral => format!("free {ways} to first order and to second"),
+            Order::Unstable => format!("free {ways} to first order, unstable to second{bends}"),
+        }
+    }
+}
 
 /// A line of a place, wrapped.
 pub(super) fn said(text: &mut String, name: &str, words: &str) {

@@ -4,11 +4,10 @@ use super::envelope::{Body, Envelope};
 use super::resting::{Told, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
-use super::text::{grouped, line, number, row, significant, wrapped};
+use super::text::{grouped, line, number, row, wrapped};
 use super::{ContactReport, ExaminedReport, ExtentReport, ShareReport};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
-use crate::method::descent::{Immobility, Order};
 use crate::pose::PoseError;
 use crate::run::rests::{Place, Rests, Settings};
 use serde::{Serialize, Serializer};
@@ -59,34 +58,10 @@ pub struct RestReport {
     pub contacts: Vec<ContactReport>,
     /// What was found out about it; null of rests that were not examined.
     pub examined: Option<ExaminedReport>,
-    /// By which order it is held; null of rests that were not examined, and where what touches does not hold the load.
-    pub immobility: Option<HeldReport>,
-}
-
-/// By which order a rest is held (Rimon and Burdick).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct HeldReport {
-    /// `first`, `second`, `neutral` or `unstable`.
-    pub order: Order,
-    /// From where to where the least slope of a first-order rest lies, in D per D of the metric of the motion.
-    pub slope: [f64; 2],
-    /// Independent directions that are free to first order.
-    pub free: usize,
-    /// The least curvature of the height among them, per D; null where none is free.
-    pub curvature_per_d: Option<f64>,
-    /// The direction of that: offsets in D and turns in radians.
-    pub weakest: PoseError,
 }
 
 impl Body for RestsBody {
     const KIND: &'static str = "rests";
-}
-
-impl From<Immobility> for HeldReport {
-    fn from(found: Immobility) -> Self {
-        let Immobility { order, slope, free, curvature, weakest } = found;
-        Self { order, slope, free, curvature_per_d: curvature, weakest }
-    }
 }
 
 impl RestReport {
@@ -106,37 +81,16 @@ impl RestReport {
             height_d: found.height,
             above_mated_d: found.above,
             depth_at_most_d: way.map(|way| way.climb),
-            depth_on_grid_d: place.depth_on_grid,
+            depth_on_grid_d: found.depth_on_grid,
             leads_to: place.leads_to,
             contacts: found.contacts.iter().map(ContactReport::from).collect(),
             examined: found.examined.as_ref().map(ExaminedReport::from),
-            immobility: place.immobility.map(HeldReport::from),
         }
     }
 
     /// Whether most of its poses count as docked.
     pub const fn is_docked(&self) -> bool {
         2 * self.docked > self.of_box.count
-    }
-
-    /// By which order it is held, in words.
-    pub(super) fn order(&self) -> Option<String> {
-        let held = self.immobility?;
-        let slope = match held.slope {
-            [from, to] if from == to => significant(to),
-            [from, to] => format!("{} to {}", significant(from), significant(to)),
-        };
-        let ways = if held.free == 1 { "one way" } else { "some ways" };
-        let bends = held.curvature_per_d.map_or_else(String::new, |curvature| {
-            format!(", curvature {} per D", significant(curvature).replace('-', "−"))
-        });
-        Some(match held.order {
-            Order::First => format!("immobile to first order: rises by at least {slope} of any push"),
-            Order::Second => format!("free {ways} to first order, immobile to second{bends}"),
-            Order::Neutral if held.free == 0 => "held, but hardly: it rises by next to nothing".to_owned(),
-            Order::Neutral => format!("free {ways} to first order and to second"),
-            Order::Unstable => format!("free {ways} to first order, unstable to second{bends}"),
-        })
     }
 }
 
@@ -218,10 +172,10 @@ impl RestsReport {
         if !wide.is_empty() {
             said(text, "  anywhere in", &wide);
         }
-        if let Some(order) = rest.order() {
-            said(text, "  order", &order);
-        }
         if let Some(examined) = &rest.examined {
+            if let Some(held) = &examined.immobility {
+                said(text, "  order", &held.words());
+            }
             said(text, "  held", &told.held(examined));
             said(text, "  depth", &self.out(rest));
         }
@@ -259,7 +213,7 @@ impl RestsReport {
             record.push(rest.docked.to_string());
             record.extend(rest.pose.to_array().map(number));
             record.extend([rest.height_d, rest.above_mated_d].map(number));
-            let held = rest.immobility;
+            let held = rest.examined.and_then(|examined| examined.immobility);
             record.push(held.map_or("", |held| held.order.name()).to_owned());
             record.extend([0, 1].map(|k| or_nothing(held.map(|held| held.slope[k]))));
             record.push(held.map_or_else(String::new, |held| held.free.to_string()));

@@ -114,8 +114,8 @@ pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, Fig
 fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestReport) -> Panel<'a> {
     let docked = if rest.is_docked() { ", docked" } else { "" };
     let mut tail = Vec::new();
-    tail.extend(rest.order());
-    if rest.examined.is_some() {
+    if let Some(examined) = &rest.examined {
+        tail.extend(examined.immobility.map(|held| held.words()));
         tail.push(report.out(rest));
     }
     Panel {

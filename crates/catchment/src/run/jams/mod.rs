@@ -12,6 +12,7 @@
 //!
 //! - **Rise**: how much the COR rises at least when the half is pushed [`PUSH`] aside, in the metric of the motion. Nothing: the rest is *level*, and
 //!   friction or chance decides where on it a half stays.
+//! - **Order**: how its contacts hold it, to first or second order ([`crate::method::descent::immobility()`]).
 //! - **Way out**: by how much it must be lifted, at most, to get to where motion leads lower: the least climb of all ways that were tried, each
 //!   straight. A bent way may be lower, so this is a bound from above alone.
 //!
@@ -22,6 +23,7 @@ pub(super) mod clusters;
 mod draw;
 pub(super) mod escape;
 mod firmness;
+pub(super) mod grid;
 pub(super) mod images;
 pub(super) mod rests;
 #[cfg(test)]
@@ -29,13 +31,15 @@ mod tests;
 
 pub use escape::WayOut;
 pub use firmness::{Firmness, Held};
+pub use grid::DepthError;
 
 use crate::acceptance::{Domain, Outcome};
 use crate::connector::Side;
 use crate::contact::{FeatureKind, Features};
 use crate::exec::{Cancelled, Exec};
+use crate::landscape::Resolution;
 use crate::method::Decide;
-use crate::method::descent::{self, FrictionOutOfRange};
+use crate::method::descent::{self, FrictionOutOfRange, Immobility};
 use crate::pose::{Dof, PoseError};
 use crate::poses::Distribution;
 use crate::problem::Problem;
@@ -61,11 +65,13 @@ pub struct Settings {
     pub examined: usize,
     /// Coefficient of friction between the halves.
     pub friction: f64,
+    /// A grid whose merge tree says depths, too; none where nothing is said.
+    pub resolution: Option<Resolution>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { motions: None, seed: 1, errors: None, examined: 6, friction: 0.0 }
+        Self { motions: None, seed: 1, errors: None, examined: 6, friction: 0.0, resolution: None }
     }
 }
 
@@ -108,6 +114,8 @@ pub struct Jam {
     pub contacts: Vec<Touched>,
     /// What was found out about it; none of those beyond those that are examined.
     pub examined: Option<Examined>,
+    /// The depth that the merge tree of a grid says, in D; none where none was asked for or none is known.
+    pub depth_on_grid: Option<f64>,
 }
 
 /// Two features that touch, and where.
@@ -152,6 +160,8 @@ pub struct Touching {
 pub struct Examined {
     /// How firmly it holds.
     pub held: Held,
+    /// By which order contacts alone hold it; none where they do not hold the load, as where friction does.
+    pub immobility: Option<Immobility>,
     /// The lowest way out that was found; none where none was.
     pub way_out: Option<WayOut>,
     /// Poses a little off, all around, that were followed.
@@ -186,6 +196,9 @@ pub enum JamsError {
     /// Numbers that are no covariance.
     #[error("the covariance of the errors is none: symmetric, without negative variances")]
     NotACovariance,
+    /// The grid says no depths.
+    #[error(transparent)]
+    Depth(#[from] DepthError),
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -255,6 +268,11 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, 
     for (jam, examined) in jams.iter_mut().zip(seen) {
         jam.examined = Some(examined);
     }
+    if let Some(resolution) = &settings.resolution {
+        let at: Vec<_> = jams.iter().map(|jam| (jam.pose, jam.height)).collect();
+        let depths = grid::depths(problem, resolution, &at, exec)?;
+        jams.iter_mut().zip(depths).for_each(|(jam, depth)| jam.depth_on_grid = depth);
+    }
     let pairs = touching(problem, &features, &rests[..own]);
     Ok(Jams { settings, counts, expected, jams, pairs })
 }
@@ -307,6 +325,7 @@ impl Jam {
             places: cluster.places,
             contacts: rest.touched(problem, features),
             examined: None,
+            depth_on_grid: None,
         }
     }
 }

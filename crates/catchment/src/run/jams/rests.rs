@@ -7,7 +7,7 @@ use crate::acceptance::{Outcome, Stream};
 use crate::connector::Side;
 use crate::contact::{Contact, Features};
 use crate::exec::{Cancelled, Exec};
-use crate::method::descent::{self, Follower, Rest};
+use crate::method::descent::{self, Follower, Holding, Rest, TOUCHING, immobility};
 use crate::pose::{CorPose, PoseError, angle_between, face_from_cor, step_length};
 use crate::problem::Problem;
 use glam::DVec3;
@@ -152,7 +152,10 @@ impl Follow<'_> {
             Which::Jams => Leaving::Jam,
             Which::All => Leaving::Rest { is_level: held.firmness == Firmness::Level },
         };
-        Examined { held, way_out: escape::way_out(pair, rest, self.motions, leaving, seed), pushed, back }
+        let holding = Holding::at_rest(pair, &rest.error, rest.height, TOUCHING);
+        let immobility = holding.and_then(|holding| immobility(pair, &holding, &rest.error, seed));
+        let way_out = escape::way_out(pair, rest, self.motions, leaving, seed);
+        Examined { held, immobility, way_out, pushed, back }
     }
 }
 

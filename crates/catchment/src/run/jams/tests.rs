@@ -147,3 +147,21 @@ fn friction_above_the_slope_jams_all_over_it() {
     assert!(stuck.counts[0] < 15 && stuck.counts[1] > 130, "{:?}", stuck.counts);
     assert!(stuck.pairs.iter().any(|pair| pair.fixed.name.contains("slope of 11")), "{:?}", stuck.pairs);
 }
+
+/// A V-Face of AR ½ on its side, one slope flush on another: held by contacts alone, and as deep on a grid as its way out climbs, to a cell.
+#[test]
+fn a_jam_has_an_order_and_a_depth_on_a_grid() {
+    let wide = problem(
+        "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n[errors]\npitch = \"170 deg\"\n",
+    );
+    let resolution = Some("120".parse().unwrap());
+    let settings = Settings { motions: Some(400), resolution, ..Settings::default() };
+    let found = run(&wide, &settings, &Exec::new()).unwrap();
+    let jam = found.jams.iter().find(|jam| (jam.pose.pitch.abs() - 0.5 * PI).abs() < 1e-3).unwrap();
+    let examined = jam.examined.unwrap();
+    let held = examined.immobility.unwrap();
+    assert_eq!(held.order, crate::method::descent::Order::First);
+    assert!(held.slope[0] > 0.1);
+    let (climb, on_grid) = (examined.way_out.unwrap().climb, jam.depth_on_grid.unwrap());
+    assert!((on_grid - climb).abs() < 0.02, "{on_grid} {climb}");
+}

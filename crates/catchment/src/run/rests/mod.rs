@@ -14,26 +14,24 @@
 //!
 //! - **Immobility**: [`crate::method::descent::immobility()`], to first or second order.
 //! - **Depth**: the climb of the lowest way out that was found, to a lower rest, to another one, or off: at most so much is needed. A half whose rest nothing
-//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. With a resolution the merge tree of a grid says a depth, too (`grid`). Rests that are shallower than a cage's energy do not hold it.
+//!   covers may be lifted straight over what is in the way; one beneath an overhang is led only where it can slide. With a resolution the merge tree of a grid says a depth, too. Rests that are shallower than a cage's energy do not hold it.
 //!
 //! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Friction is left out. Lengths in D, angles
 //! in radians.
 
-mod grid;
 #[cfg(test)]
 mod tests;
 
 use super::jams::clusters::{self, Cluster};
 use super::jams::images::Images;
 use super::jams::rests::{Follow, Rested, Which};
-use super::jams::{Examined, Jam, WayOut};
+use super::jams::{DepthError, Examined, Jam, WayOut, grid};
 use crate::acceptance::{Domain, Outcome};
 use crate::contact::Features;
 use crate::exec::{Cancelled, Exec};
-use crate::landscape::{Resolution, ResolutionError};
+use crate::landscape::Resolution;
 use crate::method::Decide;
-use crate::method::descent::{self, Holding, Immobility, TOUCHING, immobility};
-use crate::method::flood::FloodError;
+use crate::method::descent;
 use crate::pose::CorPose;
 use crate::problem::Problem;
 use rayon::prelude::*;
@@ -77,12 +75,8 @@ pub struct Place {
     pub found: Jam,
     /// How many of its poses count as docked.
     pub docked: usize,
-    /// How it is held; none of rests beyond those that are examined, and where contacts do not hold the load.
-    pub immobility: Option<Immobility>,
     /// The rest to which the way out leads, from 0; none where it leads off, or nowhere known.
     pub leads_to: Option<usize>,
-    /// The depth that the merge tree of a grid says, in D; none where none was asked for or none is known.
-    pub depth_on_grid: Option<f64>,
 }
 
 /// Why no rests can be told.
@@ -91,12 +85,9 @@ pub enum RestsError {
     /// Nothing was asked.
     #[error("no motions, no rests: follow one random pose at least")]
     Nothing,
-    /// The grid is none.
+    /// The grid says no depths.
     #[error(transparent)]
-    Resolution(#[from] ResolutionError),
-    /// The grid has no merge tree.
-    #[error(transparent)]
-    Flood(#[from] FloodError),
+    Depth(#[from] DepthError),
     /// It was asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -150,34 +141,26 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
             let found = Jam::of(problem, &features, &rests, rests.len(), false, cluster);
             let is_docked = |member: &&usize| rests[**member].outcome == Outcome::Aligned;
             let docked = cluster.members.iter().filter(is_docked).count();
-            Place { found, docked, immobility: None, leads_to: None, depth_on_grid: None }
+            Place { found, docked, leads_to: None }
         })
         .collect();
     let examine = |(k, cluster): (usize, &Cluster)| {
         exec.check()?;
         let (rest, seed) = (&rests[cluster.middle], settings.seed.wrapping_add(k as u64));
-        let examined = follow.examine(rest, cluster, seed);
-        let holding = Holding::at_rest(problem.pair(), &rest.error, rest.height, TOUCHING);
-        let immobility = holding.and_then(|held| immobility(problem.pair(), &held, &rest.error, seed));
-        Ok((examined, immobility))
+        Ok(follow.examine(rest, cluster, seed))
     };
     let looked: Vec<(usize, &Cluster)> = clusters.iter().enumerate().take(settings.examined).collect();
-    let seen = exec.install(|| {
-        looked
-            .into_par_iter()
-            .map(examine)
-            .collect::<Result<Vec<(Examined, Option<Immobility>)>, Cancelled>>()
-    })?;
+    let seen =
+        exec.install(|| looked.into_par_iter().map(examine).collect::<Result<Vec<Examined>, Cancelled>>())?;
     let middles: Vec<CorPose> = clusters.iter().map(|cluster| rests[cluster.middle].pose).collect();
-    for (place, (examined, immobility)) in places.iter_mut().zip(seen) {
+    for (place, examined) in places.iter_mut().zip(seen) {
         place.leads_to = examined.way_out.and_then(|way| leads_to(problem, &images, &middles, &way));
         place.found.examined = Some(examined);
-        place.immobility = immobility;
     }
     if let Some(resolution) = &settings.resolution {
         let at: Vec<_> = places.iter().map(|place| (place.found.pose, place.found.height)).collect();
         let depths = grid::depths(problem, resolution, &at, exec)?;
-        places.iter_mut().zip(depths).for_each(|(place, depth)| place.depth_on_grid = depth);
+        places.iter_mut().zip(depths).for_each(|(place, depth)| place.found.depth_on_grid = depth);
     }
     Ok(Rests { settings, counts, rests: places })
 }

@@ -36,7 +36,7 @@ fn a_cube_on_a_plane_is_as_deep_as_its_edge_says() {
         assert!((place.found.height - 0.5).abs() < 1e-5, "{place:?}");
         assert_eq!(place.found.examined.unwrap().held.firmness, crate::run::jams::Firmness::Sharp);
         assert!((depth(place) - 0.5 * (SQRT_2 - 1.0)).abs() < 1e-4, "{place:?}");
-        let held = place.immobility.unwrap();
+        let held = place.found.examined.unwrap().immobility.unwrap();
         assert_eq!(held.order, descent::Order::First, "{place:?}");
         assert!(held.slope.iter().all(|slope| (slope - 1.0).abs() < 1e-3), "{place:?}");
     }
@@ -116,7 +116,7 @@ fn the_merge_tree_agrees() {
     let found = run(&problem(CUBE), &settings, &Exec::new()).unwrap();
     // Heights differ by at most ½ per radian from cell to cell, 0.3° here.
     for place in &found.rests {
-        let on_grid = place.depth_on_grid.unwrap();
+        let on_grid = place.found.depth_on_grid.unwrap();
         assert!((on_grid - depth(place)).abs() < 0.003, "{on_grid} {place:?}");
     }
 }
@@ -131,7 +131,8 @@ fn curvature_is_the_rise_of_a_push() {
                 [errors]\nx = 0.05\npitch = \"10 deg\"\n";
     let found = found(&problem(text), 100);
     let place = &found.rests[0];
-    let (held, examined) = (place.immobility.unwrap(), place.found.examined.unwrap());
+    let examined = place.found.examined.unwrap();
+    let held = examined.immobility.unwrap();
     assert_eq!(held.order, descent::Order::Second, "{place:?}");
     let expected = 0.5 * held.curvature.unwrap() * crate::run::jams::PUSH.powi(2);
     let rise = examined.held.rise.unwrap();

@@ -4,19 +4,30 @@
 //! also bent ones.
 
 use crate::exec::Exec;
-use crate::landscape::{Landscape, Resolution};
+use crate::landscape::{Landscape, Resolution, ResolutionError};
 use crate::method::flood::{self, FloodError, flood};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 
+/// Why a grid says no depths.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DepthError {
+    /// The grid is none.
+    #[error(transparent)]
+    Resolution(#[from] ResolutionError),
+    /// The grid has no merge tree.
+    #[error(transparent)]
+    Flood(#[from] FloodError),
+}
+
 /// Depths of rests at pose errors and heights of the centre of rotation, in D; none outside of the box, in the only basin, and where a cell's basin was merged into that of
 /// cells without contact.
-pub(super) fn depths(
+pub(in crate::run) fn depths(
     problem: &Problem,
     resolution: &Resolution,
     rests: &[(PoseError, f64)],
     exec: &Exec,
-) -> Result<Vec<Option<f64>>, super::RestsError> {
+) -> Result<Vec<Option<f64>>, DepthError> {
     let (pair, alignment) = (problem.pair(), problem.alignment());
     let grid = resolution.grid(alignment, &Resolution::DEFAULT_CELLS)?;
     let landscape = Landscape::compute(pair, &grid, exec).map_err(FloodError::from)?;
