@@ -2,6 +2,7 @@
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
+use catchment::report::figure::Picture;
 use catchment::report::printable;
 use catchment::report::write::{self, WriteError};
 use clap::Args;
@@ -104,10 +105,57 @@ impl FileArgs {
         Ok(Some(path))
     }
 
+    /// Writes a picture of this kind, if a file is asked for.
+    pub(crate) fn draw(&self, kind: &str, picture: &Picture) -> Result<(), Failure> {
+        self.write(&image(picture, kind)?)
+    }
+
     /// Writes the file, if one is asked for.
     pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         self.output.as_deref().map_or(Ok(()), |path| write_file(path, bytes, self.force))
     }
+}
+
+/// A picture beside the file of [`FileArgs`].
+#[derive(Debug, Args)]
+pub(crate) struct FigureArgs {
+    /// Also draw it, as .png or .svg
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    figure: Option<PathBuf>,
+}
+
+impl FigureArgs {
+    /// Which picture is asked for. Refuses what cannot be written in the end, before anything is computed.
+    pub(crate) fn kind(&self) -> Result<Option<&'static str>, Failure> {
+        let Some(path) = &self.figure else { return Ok(None) };
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
+        let Some(kind) = ["png", "svg"].into_iter().find(|kind| kind.eq_ignore_ascii_case(ending)) else {
+            let message = format!("cannot tell what to draw into {}", path.display());
+            return Err(Failure::with_help(message, Some("let its name end in .png or .svg".to_owned())));
+        };
+        // --force is for the file of -o.
+        write::check_file(path, false).map_err(|error| {
+            let help = matches!(error, WriteError::Exists { .. });
+            Failure::with_help(error.to_string(), help.then(|| "move it away, or name another".to_owned()))
+        })?;
+        Ok(Some(kind))
+    }
+
+    /// Writes the picture, if one is asked for.
+    pub(crate) fn draw(&self, kind: Option<&str>, picture: Option<&Picture>) -> Result<(), Failure> {
+        match (&self.figure, kind, picture) {
+            (Some(path), Some(kind), Some(picture)) => write_file(path, &image(picture, kind)?, false),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Pixels per unit of a picture.
+const PNG_SCALE: f32 = 2.0;
+
+/// A picture as a file of this kind: png, else svg.
+pub(crate) fn image(picture: &Picture, kind: &str) -> Result<Vec<u8>, Failure> {
+    if kind == "png" { Ok(picture.png(PNG_SCALE)?) } else { Ok(picture.svg().as_bytes().to_vec()) }
 }
 
 /// Tries out whether a file can be written at `path`.

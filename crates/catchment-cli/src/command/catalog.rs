@@ -120,9 +120,6 @@ enum Figure {
     Cone,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
     match &args.command {
         None => list(args),
@@ -160,11 +157,7 @@ fn list(args: &CatalogArgs) -> Result<ExitStatus, Failure> {
                 Figure::Cone => figure::cone_over_x_face(),
             };
             drop(running);
-            if kind == "svg" {
-                args.file.write(picture.svg().as_bytes())?;
-            } else {
-                args.file.write(&picture.png(PNG_SCALE)?)?;
-            }
+            args.file.draw(kind, &picture)?;
         }
     }
     if let Some(table) = args.as_printed {

@@ -57,9 +57,6 @@ pub(crate) struct ChainArgs {
     exec: ExecArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 /// Numbers of modules, in order.
 #[derive(Debug, Clone)]
 struct Modules(Vec<usize>);
@@ -119,8 +116,7 @@ pub(crate) fn run(args: &ChainArgs) -> Result<ExitStatus, Failure> {
     let report = report::report(&study, &args.require, Some(timing));
     let verdicts = judged(&args.require, &report)?;
     match kind {
-        Some("svg") => args.file.write(figure::draw(&report, &study).svg().as_bytes())?,
-        Some("png") => args.file.write(&figure::draw(&report, &study).png(PNG_SCALE)?)?,
+        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::draw(&report, &study))?,
         Some("csv") => args.file.write(&csv(&report.records(&study))?)?,
         Some(_) => args.file.write(report.to_json()?.as_bytes())?,
         None => {}

@@ -97,9 +97,6 @@ pub(crate) struct ChanceArgs {
 const DRAWN: &str = "What is drawn for every trial";
 const ASKED: &str = "What is asked";
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
@@ -122,8 +119,7 @@ pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
     let report = ChanceReport::new(problem.design(), &found, doubts, Some(timing));
     match kind {
-        Some("png") => args.file.write(&figure::chance(&report)?.png(PNG_SCALE)?)?,
-        Some("svg") => args.file.write(figure::chance(&report)?.svg().as_bytes())?,
+        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::chance(&report)?)?,
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some(_) => args.file.write(report.to_json()?.as_bytes())?,
         None => {}

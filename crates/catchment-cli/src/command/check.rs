@@ -4,7 +4,7 @@ use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, to_stdout};
+use crate::output::{FileArgs, image, to_stdout};
 use catchment::problem::{Problem, ProblemError};
 use catchment::report::{CheckReport, figure};
 use clap::Args;
@@ -30,9 +30,6 @@ pub(crate) struct CheckArgs {
     exec: ExecArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["svg", "png"])?;
     let running = args.exec.start()?;
@@ -46,8 +43,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
         .and_then(|draft| draft.build_on(&running.exec))
         .and_then(Problem::checked);
     let picture = match (kind, &checked) {
-        (Some("png"), Ok(problem)) => Some(figure::pair(problem)?.png(PNG_SCALE)?),
-        (Some(_), Ok(problem)) => Some(figure::pair(problem)?.svg().as_bytes().to_vec()),
+        (Some(kind), Ok(problem)) => Some(image(&figure::pair(problem)?, kind)?),
         _ => None,
     };
     running.exec.check()?;

@@ -61,9 +61,6 @@ pub(crate) struct ComposeArgs {
     exec: ExecArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(if args.outline { &["svg", "csv"] } else { &["svg", "png", "csv"] })?;
     if !matches!(args.keep_out.len(), 0 | 2) {
@@ -91,8 +88,7 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
     match kind {
         Some("csv") => args.file.write(&csv(&outline_records(&found))?)?,
         Some("svg") if args.outline => args.file.write(outline_svg(&found).as_bytes())?,
-        Some("svg") => args.file.write(figure(&found)?.svg().as_bytes())?,
-        Some(_) => args.file.write(&figure(&found)?.png(PNG_SCALE)?)?,
+        Some(kind) => args.file.draw(kind, &figure(&found)?)?,
         None => {}
     }
     let notes: Vec<String> =

@@ -45,9 +45,6 @@ pub(crate) struct FrictionArgs {
     exec: ExecArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &FrictionArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
@@ -61,8 +58,7 @@ pub(crate) fn run(args: &FrictionArgs) -> Result<ExitStatus, Failure> {
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
     let report = FrictionReport::new(problem.design(), &found, doubts, Some(timing));
     match kind {
-        Some("png") => args.file.write(&figure::friction(&report).png(PNG_SCALE)?)?,
-        Some("svg") => args.file.write(figure::friction(&report).svg().as_bytes())?,
+        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::friction(&report))?,
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some(_) => args.file.write(report.to_json()?.as_bytes())?,
         None => {}

@@ -59,9 +59,6 @@ pub(crate) struct HoldArgs {
     exec: ExecArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &HoldArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
@@ -77,14 +74,7 @@ pub(crate) fn run(args: &HoldArgs) -> Result<ExitStatus, Failure> {
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-        Some(kind) => {
-            let picture = figure::hold(&report)?;
-            if kind == "png" {
-                args.file.write(&picture.png(PNG_SCALE)?)?;
-            } else {
-                args.file.write(picture.svg().as_bytes())?;
-            }
-        }
+        Some(kind) => args.file.draw(kind, &figure::hold(&report)?)?,
         None => {}
     }
     args.asked.tell(&report, HoldReport::table)

@@ -65,8 +65,6 @@ pub(crate) struct InvertArgs {
 
 /// How far apart the halves are drawn, in D.
 const APART: f64 = 0.25;
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
 
 pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["toml", "svg", "png"])?;
@@ -109,8 +107,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     }
     match kind {
         Some("toml") => args.file.write(design_file(design, &found).as_bytes())?,
-        Some("svg") => args.file.write(drawn(design, &found)?.svg().as_bytes())?,
-        Some(_) => args.file.write(&drawn(design, &found)?.png(PNG_SCALE)?)?,
+        Some(kind) => args.file.draw(kind, &drawn(design, &found)?)?,
         None => {}
     }
     let notes: Vec<String> =

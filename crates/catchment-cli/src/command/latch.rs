@@ -46,8 +46,6 @@ pub(crate) struct LatchArgs {
     file: FileArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
 /// The kind of such a folder.
 const KIND: &str = "latch";
 
@@ -64,8 +62,7 @@ fn of_table(args: &LatchArgs) -> Result<ExitStatus, Failure> {
     let report = table::report(&forces);
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some("svg") => args.file.write(chart(&forces, None).svg().as_bytes())?,
-        Some(_) => args.file.write(&chart(&forces, None).png(PNG_SCALE)?)?,
+        Some(kind) => args.file.draw(kind, &chart(&forces, None))?,
         None => {}
     }
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;

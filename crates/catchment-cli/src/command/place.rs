@@ -3,7 +3,7 @@
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{check_place, to_stderr, to_stdout, write_file};
+use crate::output::{check_place, image, to_stderr, to_stdout, write_file};
 use catchment::design::{LengthUnit, parse_dofs};
 use catchment::pose::DofSet;
 use catchment::report::figure;
@@ -91,8 +91,6 @@ enum Drawn {
 const TOLD: usize = 3;
 /// A score that is worth telling.
 const WORTH: f64 = 0.01;
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
 
 pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     let kind = files(args)?;
@@ -116,8 +114,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     let found = propose(&parts, &settings, place, &running.exec).map_err(refused)?;
     // All of it is there before any of it is written.
     let picture = match kind {
-        Some("png") => Some(figure::pair(&found.problem)?.png(PNG_SCALE)?),
-        Some(_) => Some(figure::pair(&found.problem)?.svg().as_bytes().to_vec()),
+        Some(kind) => Some(image(&figure::pair(&found.problem)?, kind)?),
         None => None,
     };
     running.exec.check()?;

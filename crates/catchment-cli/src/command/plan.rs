@@ -6,18 +6,17 @@ use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{FileArgs, check_place, write_file};
+use crate::output::{FigureArgs, FileArgs};
 use catchment::design::Findings;
 use catchment::method::descent;
 use catchment::pose::{Dof, PoseError};
 use catchment::poses::{parse_angles, parse_counts, parse_length, parse_sizes};
 use catchment::problem::Problem;
-use catchment::report::figure::{self, Picture};
+use catchment::report::figure;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{PlanReport, csv};
 use catchment::study::plan::{Pattern, Plan, PlanError, Settings, panels, run as make};
 use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Plan a bench test: at which poses a robot should try the connector, so that the trials decide something
@@ -62,9 +61,8 @@ pub(crate) struct PlanArgs {
     /// Seed of the order, of random lines and of the search for the border
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Also draw the poses over what docks, as .png or .svg
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
-    figure: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureArgs,
     #[command(flatten)]
     asked: AskedArgs,
     #[command(flatten)]
@@ -127,13 +125,10 @@ enum Kind {
     Bracket,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
-    let drawing = figure_kind(args.figure.as_deref())?;
+    let drawing = args.figure.kind()?;
     let problem = args.design.problem()?;
     let settings = args.settings(&problem)?;
     let at = args.offsets_at.into();
@@ -156,40 +151,11 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     match (kind, &picture) {
         (Some("csv"), _) => args.file.write(&csv(&report.records())?)?,
         (Some("json"), _) => args.file.write(report.to_json()?.as_bytes())?,
-        (Some(kind), Some(picture)) => args.file.write(&image(picture, kind)?)?,
+        (Some(kind), Some(picture)) => args.file.draw(kind, picture)?,
         _ => {}
     }
-    write_figure(args.figure.as_deref(), drawing, picture.as_ref())?;
+    args.figure.draw(drawing, picture.as_ref())?;
     args.asked.tell(&report, PlanReport::table)
-}
-
-/// What kind of picture the name asks for; refused before anything is computed.
-pub(super) fn figure_kind(path: Option<&Path>) -> Result<Option<&'static str>, Failure> {
-    let Some(path) = path else { return Ok(None) };
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
-    let Some(kind) = ["png", "svg"].into_iter().find(|kind| kind.eq_ignore_ascii_case(ending)) else {
-        let message = format!("cannot tell what to draw into {}", path.display());
-        return Err(Failure::with_help(message, Some("let its name end in .png or .svg".to_owned())));
-    };
-    check_place(path, false)?;
-    Ok(Some(kind))
-}
-
-/// The picture as bytes.
-pub(super) fn image(picture: &Picture, kind: &str) -> Result<Vec<u8>, Failure> {
-    if kind == "png" { Ok(picture.png(PNG_SCALE)?) } else { Ok(picture.svg().as_bytes().to_vec()) }
-}
-
-/// Writes a picture that was asked for.
-pub(super) fn write_figure(
-    path: Option<&Path>,
-    kind: Option<&str>,
-    picture: Option<&Picture>,
-) -> Result<(), Failure> {
-    match (path, kind, picture) {
-        (Some(path), Some(kind), Some(picture)) => write_file(path, &image(picture, kind)?, false),
-        _ => Ok(()),
-    }
 }
 
 /// Sizes of errors, as an option gives them.

@@ -50,9 +50,6 @@ pub(crate) struct RestsArgs {
     exec: ExecArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
@@ -73,14 +70,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-        Some(kind) => {
-            let picture = figure::rests(&report, problem.connector())?;
-            if kind == "png" {
-                args.file.write(&picture.png(PNG_SCALE)?)?;
-            } else {
-                args.file.write(picture.svg().as_bytes())?;
-            }
-        }
+        Some(kind) => args.file.draw(kind, &figure::rests(&report, problem.connector())?)?,
         None => {}
     }
     args.asked.tell(&report, RestsReport::table)

@@ -50,9 +50,6 @@ pub(crate) struct SolidsArgs {
 /// Those of figure 5.6 of the dissertation.
 const DEFAULT: Settings = Settings { slices: 15, strips: 1 };
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 fn shape_parser() -> ValueParser {
     let shapes = [
         ("halves", "both halves as convex pieces, docked", Subject::Halves),
@@ -79,14 +76,7 @@ pub(crate) fn run(args: &SolidsArgs) -> Result<ExitStatus, Failure> {
     match kind {
         Some("vtp") => args.file.write(solids::vtp(&shape).as_bytes())?,
         Some("obj") => args.file.write(solids::obj(&shape).as_bytes())?,
-        Some(picture) => {
-            let drawn = figure::bodies(problem.design(), &shape)?;
-            if picture == "png" {
-                args.file.write(&drawn.png(PNG_SCALE)?)?;
-            } else {
-                args.file.write(drawn.svg().as_bytes())?;
-            }
-        }
+        Some(picture) => args.file.draw(picture, &figure::bodies(problem.design(), &shape)?)?,
         None => {}
     }
     let doubts = problem.objections().iter().map(WarningReport::note).collect();

@@ -82,9 +82,6 @@ struct ExpectedArgs {
     error_measured: Option<PathBuf>,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["svg", "png", "csv", "json"])?;
@@ -106,8 +103,7 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
     let report = SuccessesReport::new(problem.design(), &found, doubts, Some(timing));
     match kind {
-        Some("svg") => args.file.write(figure::success(&report).svg().as_bytes())?,
-        Some("png") => args.file.write(&figure::success(&report).png(PNG_SCALE)?)?,
+        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::success(&report))?,
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some(_) => args.file.write(report.to_json()?.as_bytes())?,
         None => {}

@@ -13,7 +13,6 @@ use catchment::method::kinematic::Start;
 use catchment::pose::PoseError;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
-use catchment::report::figure::Picture;
 use catchment::report::schema::WarningReport;
 use catchment::report::{LeverReport, TraceReport, csv, figure};
 use clap::{Args, ValueEnum};
@@ -62,9 +61,6 @@ enum By {
     Drop,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
     let problem = args.design.problem()?;
@@ -78,7 +74,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
         match kind {
             Some("csv") => args.file.write(&csv(&report.records())?)?,
             Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-            Some(picture) => args.draw(picture, &figure::lever(design, problem.connector(), &start)?)?,
+            Some(picture) => args.file.draw(picture, &figure::lever(design, problem.connector(), &start)?)?,
             None => {}
         }
         to_stdout(&told)?;
@@ -99,7 +95,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
-        Some(picture) => args.draw(picture, &figure::trajectory(design, problem.connector(), &path)?)?,
+        Some(picture) => args.file.draw(picture, &figure::trajectory(design, problem.connector(), &path)?)?,
         None => {}
     }
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
@@ -124,22 +120,11 @@ fn dropped(
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
         Some(picture) => {
-            args.draw(picture, &figure::trajectory(design, problem.connector(), &path.trajectory())?)?;
+            args.file.draw(picture, &figure::trajectory(design, problem.connector(), &path.trajectory())?)?;
         }
         None => {}
     }
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
     to_stderr(&said);
     Ok(ExitStatus::Done)
-}
-
-impl TraceArgs {
-    /// Writes a picture of this kind.
-    fn draw(&self, kind: &str, picture: &Picture) -> Result<(), Failure> {
-        if kind == "png" {
-            self.file.write(&picture.png(PNG_SCALE)?)
-        } else {
-            self.file.write(picture.svg().as_bytes())
-        }
-    }
 }

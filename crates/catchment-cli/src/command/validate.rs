@@ -1,13 +1,13 @@
 //! `catchment validate`: what trials say of a prediction.
 
 use super::outcome::Point;
-use super::plan::{accuracy, figure_kind, image, write_figure};
+use super::plan::accuracy;
 use crate::args::DesignArgs;
 use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::FileArgs;
+use crate::output::{FigureArgs, FileArgs};
 use crate::source::read_table;
 use catchment::design::Findings;
 use catchment::method::descent;
@@ -59,9 +59,8 @@ pub(crate) struct ValidateArgs {
     /// Seed of the search for the border
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Also draw the trials over what docks, as .png or .svg
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
-    figure: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureArgs,
     #[command(flatten)]
     asked: AskedArgs,
     #[command(flatten)]
@@ -73,7 +72,7 @@ pub(crate) struct ValidateArgs {
 pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
-    let drawing = figure_kind(args.figure.as_deref())?;
+    let drawing = args.figure.kind()?;
     let problem = args.design.problem()?;
     let settings = Settings {
         accuracy: accuracy(&args.accuracy, &problem)?,
@@ -106,9 +105,9 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     match (kind, &picture) {
         (Some("csv"), _) => args.file.write(&csv(&report.records())?)?,
         (Some("json"), _) => args.file.write(report.to_json()?.as_bytes())?,
-        (Some(kind), Some(picture)) => args.file.write(&image(picture, kind)?)?,
+        (Some(kind), Some(picture)) => args.file.draw(kind, picture)?,
         _ => {}
     }
-    write_figure(args.figure.as_deref(), drawing, picture.as_ref())?;
+    args.figure.draw(drawing, picture.as_ref())?;
     args.asked.tell(&report, ValidationReport::table)
 }

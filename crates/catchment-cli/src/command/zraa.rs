@@ -72,9 +72,6 @@ pub(crate) struct ZraaArgs {
 
 const BESIDE: &str = "Trials beside the exact region";
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["svg", "png", "csv"])?;
     let count = args.more.len() + 1;
@@ -120,8 +117,7 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
             (report.records(), figure::faces(&shown), told)
         };
     match kind {
-        Some("svg") => args.file.write(picture?.svg().as_bytes())?,
-        Some("png") => args.file.write(&picture?.png(PNG_SCALE)?)?,
+        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &picture?)?,
         Some(_) => args.file.write(&csv(&records)?)?,
         None => {}
     }
@@ -181,8 +177,7 @@ fn beside(args: &ZraaArgs, method: Method, kind: Option<&str>) -> Result<ExitSta
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
     let report = TrialsReport::new(design, &found, doubts, Some(timing));
     match kind {
-        Some("svg") => args.file.write(figure::trials(design, &found).svg().as_bytes())?,
-        Some("png") => args.file.write(&figure::trials(design, &found).png(PNG_SCALE)?)?,
+        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::trials(design, &found))?,
         Some(_) => args.file.write(&csv(&report.records())?)?,
         None => {}
     }

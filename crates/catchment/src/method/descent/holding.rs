@@ -20,6 +20,7 @@
 //! Not promised: that a half with friction stays up to there. Beyond it no force holds it, and it moves; below it forces exist that hold, which of rigid bodies
 //! says no more ([`super::sticking()`]). Elastic halves give way before.
 
+use super::coulomb::is_still;
 use super::motion::{Motion, State};
 use super::projection::{MAX_COORDINATES, Vector, dot};
 use super::sticking::{DOWN, Touching};
@@ -57,8 +58,6 @@ const BORDER: f64 = 1e-8;
 pub const MOST_LOAD: f64 = 1e6;
 /// The largest load is found to this share of itself, or of the preload.
 const EXACT: f64 = 1e-9;
-/// What is left of a push that is held, as a share of it.
-const STILL: f64 = 1e-7;
 /// A rest withstands its own preload but for this share: motions end on slopes as gentle.
 const OWN: f64 = 1e-3;
 
@@ -141,13 +140,8 @@ impl Holding {
         let load = self.generalised(load);
         match guide {
             Guide::Free => self.largest(&load, friction),
-            Guide::Along => self.guided(load)?.largest_along(&load, friction),
+            Guide::Along => self.guided(load)?.largest(&only(&load), friction),
         }
-    }
-
-    fn largest_along(&mut self, load: &Vector, friction: f64) -> Option<f64> {
-        let along = only(load);
-        self.largest(&along, friction)
     }
 
     pub(super) fn largest(&mut self, load: &Vector, friction: f64) -> Option<f64> {
@@ -173,10 +167,10 @@ impl Holding {
     /// The preload, less what the gentle slope on which a motion ends does not hold of it; `None` if that is more.
     pub(super) fn preload(&mut self, friction: f64) -> Option<Vector> {
         let left = self.touching.unheld(&DOWN, friction)?;
-        let size = dot(&left, &left).sqrt();
-        if size <= STILL {
+        if is_still(&left) {
             return Some(DOWN);
         }
+        let size = dot(&left, &left).sqrt();
         (size <= OWN).then(|| std::array::from_fn(|k| DOWN[k] - left[k]))
     }
 
@@ -184,7 +178,7 @@ impl Holding {
     pub(super) fn holds(&mut self, push: &Vector, friction: f64) -> bool {
         let size = dot(push, push).sqrt();
         let unit = push.map(|part| if size > 0.0 { part / size } else { 0.0 });
-        self.touching.unheld(&unit, friction).is_some_and(|left| left.iter().all(|part| part.abs() <= STILL))
+        self.touching.unheld(&unit, friction).is_some_and(|left| is_still(&left))
     }
 
     /// What displacements do to the gaps of the contacts.
