@@ -58,9 +58,6 @@ pub(crate) struct JamsArgs {
     exec: ExecArgs,
 }
 
-/// Pixels per unit of a picture.
-const PNG_SCALE: f32 = 2.0;
-
 pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
@@ -78,12 +75,7 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
         Some(kind) => {
-            let picture = figure::jams(&report, problem.connector())?;
-            if kind == "png" {
-                args.file.write(&picture.png(PNG_SCALE)?)?;
-            } else {
-                args.file.write(picture.svg().as_bytes())?;
-            }
+            args.file.draw(kind, &figure::jams(&report.design, &report.found, problem.connector())?)?
         }
         None => {}
     }

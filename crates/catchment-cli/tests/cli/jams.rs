@@ -67,3 +67,33 @@ fn a_requirement_decides_the_exit_code() {
     assert_eq!(code("outcomes.jammed.share<=0.3"), Some(0));
     assert_eq!(code("outcomes.jammed.share<=0.01"), Some(1));
 }
+
+/// What `run` says of jams is what `jams` says of as many poses.
+#[test]
+fn a_run_tells_of_jams_what_the_command_does() {
+    let home = home();
+    let asked = ["run", "v.toml", "--resolution", "9", "--seed", "7", "--error-sigma", "x=10 mm", "--jams"];
+    let found = json(home.path(), &[&asked[..], &["--json", "-o", "out"]].concat());
+    let alone = json(home.path(), &["jams", "v.toml", "--seed", "7", "--error-sigma", "x=10 mm", "--json"]);
+    let told = found["jams"].as_object().unwrap();
+    for (key, value) in told {
+        assert_eq!(*value, alone[key], "{key}");
+    }
+    assert!(told["jams"][0]["of_box"]["count"].as_u64().unwrap() > 100);
+    assert!(home.path().join("out/jams.png").exists());
+    let text = run(home.path(), &asked);
+    assert!(text.contains("\n  jam 1 ") && text.contains("of the fixed one"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    let stored = fs::read_to_string(home.path().join("out/report.json")).unwrap();
+    let spoilt = stored.replacen("\"of_failures\": 0.", "\"of_failures\": 7.", 1);
+    assert_ne!(stored, spoilt);
+    fs::write(home.path().join("spoilt.json"), spoilt).unwrap();
+    let refused = run(home.path(), &["compare", "spoilt.json", "out/report.json"]);
+    assert!(refused.starts_with("exit 2\n"), "{refused}");
+    let code = |require: &str| {
+        let args = ["run", "v.toml", "--resolution", "9", "--jams", "--require", require];
+        catchment(home.path()).args(args).output().unwrap().status.code()
+    };
+    assert_eq!(code("jams.outcomes.jammed.share<=0.3"), Some(0));
+    assert_eq!(code("jams.outcomes.jammed.share<=0.01"), Some(1));
+}

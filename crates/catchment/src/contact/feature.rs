@@ -18,6 +18,7 @@ use super::element::Features as Elements;
 use super::{Contact, Meeting, Pair};
 use crate::connector::{Half, Side, Surface};
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
@@ -36,7 +37,8 @@ const EVEN: f64 = 0.035;
 const LEVEL: f64 = 1e-6;
 
 /// What a feature is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// Part of the surface without an edge in it.
     Face,

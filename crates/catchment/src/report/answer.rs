@@ -1,8 +1,8 @@
 //! An answer, told: its report, whether it meets what was required, and its files.
 
-use super::Report;
 use super::envelope::{Body, Envelope};
 use super::schema::{PartitionReport, SuccessReport, Timing, WarningReport, WatershedsReport};
+use super::{JamsFound, Report};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
@@ -12,6 +12,7 @@ use crate::method::confluence::Joined;
 use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
 use crate::problem::Problem;
+use crate::run::jams::Jams;
 use crate::run::{Answer, Corrected, Requirement, RequirementError, Run, RunError, Seating, Verdict};
 use serde::Serialize;
 use serde_json::Value;
@@ -38,6 +39,7 @@ impl Answer {
         if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
+        report.jams = self.jams.as_ref().map(|found| JamsFound::new(self.problem.design(), found));
         report.seat = Some(self.seating.clone());
         report.warnings = self.warnings().into_iter().map(WarningReport::from).collect();
         report
@@ -123,6 +125,9 @@ impl Run {
             report = report.with_sample(&Corrected { found, seed: sample.seed, method, settings });
         }
         report.seat = Some(Seating::form(problem));
+        if self.jams {
+            report.jams = Some(JamsFound::new(problem.design(), &Jams::form(&self.jams_settings())));
+        }
         let by_products = self.method.by_products();
         if let (true, Some(grid)) = (by_products.contains(&"basins"), acceptance.grid()) {
             // So few cells are flooded in no time.

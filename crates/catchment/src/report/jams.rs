@@ -1,16 +1,24 @@
 //! Jams: as versioned JSON, as text, as records for programs.
 
+mod found;
+
+use found::share_of;
+pub(super) use found::shares;
+pub use found::{
+    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsFound, PairReport,
+    ShareReport, WayOutReport,
+};
+
 use super::envelope::{Body, Envelope};
-use super::resting::{HeldReport, Told, said};
+use super::resting::{Told, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
 use super::text::{grouped, line, number, row, wrapped};
 use crate::acceptance::Outcome;
 use crate::design::Design;
-use crate::merit::sum::wilson95;
-use crate::pose::{Dof, PoseError};
-use crate::run::jams::{Examined, Firmness, Jam, Jams, Named, PUSH, Settings, Touched, Touching};
-use serde::{Serialize, Serializer};
+use crate::run::jams::Jams;
+use serde::Serialize;
+use std::ops::Deref;
 
 /// Where motions rest that do not dock, with its head.
 pub type JamsReport = Envelope<JamsBody>;
@@ -20,233 +28,27 @@ pub type JamsReport = Envelope<JamsBody>;
 pub struct JamsBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
-    /// How it was asked for.
-    pub settings: Settings,
-    /// Random poses of the error box that were followed.
-    pub motions: usize,
-    /// What became of them, by the names of outcomes.
-    #[serde(serialize_with = "by_name")]
-    pub outcomes: Vec<(Outcome, ShareReport)>,
-    /// The same of poses drawn from the errors that a robot makes; null where none were given.
-    #[serde(serialize_with = "by_name_or_null")]
-    pub expected: Option<Vec<(Outcome, ShareReport)>>,
-    /// The jams, the one with most of the poses first.
-    pub jams: Vec<JamReport>,
-    /// Which pairs of features touch in jams, the one that does so most often first.
-    pub features: Vec<PairReport>,
-}
-
-/// How many of all poses that were followed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ShareReport {
-    /// How many.
-    pub count: usize,
-    /// Their share, in [0, 1].
-    pub share: f64,
-    /// Wilson's 95 % interval of it.
-    pub ci95: [f64; 2],
-}
-
-/// A place of rest, or places alike.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct JamReport {
-    /// How many poses of the error box end here, and which share that is.
-    pub of_box: ShareReport,
-    /// Their share of the poses that jam.
-    pub of_jams: f64,
-    /// Their share of the poses that do not dock.
-    pub of_failures: f64,
-    /// The same of the errors that a robot makes; null where none were given.
-    pub expected: Option<ShareReport>,
-    /// The pose error of the rest in its middle.
-    pub pose: PoseError,
-    /// From where to where its rests lie, per free error; images by symmetry laid upon each other.
-    pub extent: Vec<ExtentReport>,
-    /// At how many places that are images of each other rests were seen.
-    pub places: usize,
-    /// z of the COR in the world frame, in D.
-    pub height_d: f64,
-    /// How far it is above the mated pose, in D.
-    pub above_mated_d: f64,
-    /// What touches.
-    pub contacts: Vec<ContactReport>,
-    /// What was found out about it; null of jams that were not examined.
-    pub examined: Option<ExaminedReport>,
-    /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
-    pub depth_on_grid_d: Option<f64>,
-}
-
-/// From where to where rests lie along an error, in D or radians.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ExtentReport {
-    /// Which error.
-    pub axis: Dof,
-    /// From here.
-    pub from: f64,
-    /// To here.
-    pub to: f64,
-}
-
-/// Two features that touch.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ContactReport {
-    /// Where, in the world frame, in D.
-    pub points_d: Vec<[f64; 3]>,
-    /// Unit normal, from the fixed half to the moving one.
-    pub normal: [f64; 3],
-    /// The feature of the fixed half.
-    pub fixed: FeatureReport,
-    /// The feature of the moving half.
-    pub moving: FeatureReport,
-}
-
-/// A feature of a half.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FeatureReport {
-    /// `face`, `edge` or `corner`.
-    pub kind: &'static str,
-    /// In words.
-    pub name: String,
-    /// The number of its part in the design file, from 0; null where halves are not made up of parts of one surface each.
-    pub part: Option<usize>,
-    /// Where it touches, in the coordinates in which its half was drawn, in D.
-    pub drawn_d: [f64; 3],
-}
-
-/// A pair of features, and how often it touches where halves jam.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PairReport {
-    /// Poses of the error box that jam on it.
-    pub count: usize,
-    /// Their share of the poses that jam.
-    pub of_jams: f64,
-    /// Their share of the poses that do not dock.
-    pub of_failures: f64,
-    /// The feature of the fixed half.
-    pub fixed: FeatureReport,
-    /// The feature of the moving half.
-    pub moving: FeatureReport,
-}
-
-/// What was found out about a jam.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ExaminedReport {
-    /// `sharp`, `rounded`, `level` or `ridge`.
-    pub firmness: Firmness,
-    /// By how much it is pushed aside, in the metric of the motion, in D.
-    pub push_d: f64,
-    /// The least rise found, in D: the true least is at most that. Null where walls stop it all around.
-    pub rise_at_most_d: Option<f64>,
-    /// The direction of that push: offsets in D and turns in radians.
-    pub weakest: PoseError,
-    /// By which order contacts alone hold it; null where they do not hold the load, as where friction does.
-    pub immobility: Option<HeldReport>,
-    /// The lowest way out that was found; null where none was.
-    pub way_out: Option<WayOutReport>,
-    /// Poses a little off that were followed.
-    pub pushed: usize,
-    /// How many of them came back.
-    pub back: usize,
-}
-
-/// A way out.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct WayOutReport {
-    /// How far the half must be lifted to get out, at most, in D.
-    pub climb_at_most_d: f64,
-    /// What becomes of it then.
-    pub to: Outcome,
-    /// The pose error from which motion leads there.
-    pub over: PoseError,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: JamsFound,
 }
 
 impl Body for JamsBody {
     const KIND: &'static str = "jams";
 }
 
-fn share_of(count: usize, all: usize) -> f64 {
-    if all == 0 { 0.0 } else { count as f64 / all as f64 }
-}
+impl Deref for JamsBody {
+    type Target = JamsFound;
 
-impl ShareReport {
-    pub(super) fn of(count: usize, all: usize) -> Self {
-        Self { count, share: share_of(count, all), ci95: wilson95(count, all) }
-    }
-}
-
-impl From<&Named> for FeatureReport {
-    fn from(named: &Named) -> Self {
-        let Named { kind, name, part, drawn } = named;
-        Self { kind: kind.name(), name: name.clone(), part: *part, drawn_d: drawn.to_array() }
-    }
-}
-
-impl From<&Touched> for ContactReport {
-    fn from(touched: &Touched) -> Self {
-        let points = touched.points.iter().map(glam::DVec3::to_array).collect();
-        let Touched { normal, fixed, moving, .. } = touched;
-        Self { points_d: points, normal: normal.to_array(), fixed: fixed.into(), moving: moving.into() }
-    }
-}
-
-impl From<&Examined> for ExaminedReport {
-    fn from(examined: &Examined) -> Self {
-        let Examined { held, immobility, way_out, pushed, back } = *examined;
-        let way_out =
-            way_out.map(|way| WayOutReport { climb_at_most_d: way.climb, to: way.to, over: way.over });
-        let (firmness, rise_at_most_d, weakest) = (held.firmness, held.rise, held.weakest);
-        let immobility = immobility.map(HeldReport::from);
-        Self { firmness, push_d: PUSH, rise_at_most_d, weakest, immobility, way_out, pushed, back }
-    }
-}
-
-impl JamReport {
-    fn of(design: &Design, found: &Jams, jam: &Jam) -> Self {
-        let extent = design.alignment.free.iter().map(|axis| {
-            let [from, to] = jam.extent[axis.index()];
-            ExtentReport { axis, from, to }
-        });
-        let drawn = found.expected.map_or(0, |counts| counts.iter().sum());
-        Self {
-            of_box: ShareReport::of(jam.count, found.motions()),
-            of_jams: share_of(jam.count, found.jammed()),
-            of_failures: share_of(jam.count, found.failed()),
-            expected: jam.expected.map(|count| ShareReport::of(count, drawn)),
-            pose: jam.pose,
-            extent: extent.collect(),
-            places: jam.places,
-            height_d: jam.height,
-            above_mated_d: jam.above,
-            contacts: jam.contacts.iter().map(ContactReport::from).collect(),
-            examined: jam.examined.as_ref().map(ExaminedReport::from),
-            depth_on_grid_d: jam.depth_on_grid,
-        }
+    fn deref(&self) -> &JamsFound {
+        &self.found
     }
 }
 
 impl JamsReport {
     /// Of a design.
     pub fn new(design: &Design, found: &Jams, doubts: Vec<WarningReport>, timing: Option<Timing>) -> Self {
-        let shares = |counts: [usize; 4]| -> Vec<(Outcome, ShareReport)> {
-            let all = counts.iter().sum();
-            Outcome::ALL.into_iter().zip(counts.map(|count| ShareReport::of(count, all))).collect()
-        };
-        let pair = |pair: &Touching| PairReport {
-            count: pair.count,
-            of_jams: share_of(pair.count, found.jammed()),
-            of_failures: share_of(pair.count, found.failed()),
-            fixed: (&pair.fixed).into(),
-            moving: (&pair.moving).into(),
-        };
-        let body = JamsBody {
-            design: design.clone(),
-            settings: found.settings.clone(),
-            motions: found.motions(),
-            outcomes: shares(found.counts),
-            expected: found.expected.map(shares),
-            jams: found.jams.iter().map(|jam| JamReport::of(design, found, jam)).collect(),
-            features: found.pairs.iter().map(pair).collect(),
-        };
+        let body = JamsBody { design: design.clone(), found: JamsFound::new(design, found) };
         let undecided = found.counts[3] + found.expected.map_or(0, |counts| counts[3]);
         let mut warnings = doubts;
         if undecided > 0 {
@@ -289,8 +91,8 @@ impl JamsReport {
     fn outcome_lines(&self, text: &mut String) {
         let head = if self.expected.is_some() { "of the errors expected" } else { "" };
         line(text, &format!("  {:<15}{:<30}{head}", "outcome", "of the error box"));
-        for (k, (outcome, share)) in self.outcomes.iter().enumerate() {
-            let expected = self.expected.as_ref().map_or_else(String::new, |of| with_interval(&of[k].1));
+        for (outcome, share) in &self.outcomes {
+            let expected = self.expected.as_ref().map_or_else(String::new, |of| with_interval(&of[outcome]));
             line(text, &format!("  {:<15}{:<30}{expected}", outcome.name(), with_interval(share)));
         }
     }
@@ -399,7 +201,7 @@ impl JamsReport {
             for contact in &jam.contacts {
                 let feature = |feature: &FeatureReport| {
                     let part = feature.part.map_or_else(String::new, |part| part.to_string());
-                    let named = [feature.kind.to_owned(), feature.name.clone(), part];
+                    let named = [feature.kind.name().to_owned(), feature.name.clone(), part];
                     named.into_iter().chain(feature.drawn_d.map(number)).collect::<Vec<_>>()
                 };
                 let features = feature(&contact.fixed).into_iter().chain(feature(&contact.moving));
@@ -415,25 +217,12 @@ impl JamsReport {
 }
 
 /// A share of 1 with one decimal.
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
 fn with_interval(share: &ShareReport) -> String {
     format!("{:>7}  ({} … {})", percent(share.share), percent(share.ci95[0]), percent(share.ci95[1]))
-}
-
-fn by_name<S: Serializer>(shares: &[(Outcome, ShareReport)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(shares.iter().map(|(outcome, share)| (outcome.name(), share)))
-}
-
-type OfErrors = Option<Vec<(Outcome, ShareReport)>>;
-
-fn by_name_or_null<S: Serializer>(shares: &OfErrors, serializer: S) -> Result<S::Ok, S::Error> {
-    match shares {
-        Some(shares) => by_name(shares, serializer),
-        None => serializer.serialize_none(),
-    }
 }
 
 /// Jams and pairs of features that are told.

@@ -81,8 +81,8 @@ pub use hold::{
     HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
 };
 pub use jams::{
-    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsReport, PairReport,
-    ShareReport, WayOutReport,
+    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsFound, JamsReport,
+    PairReport, ShareReport, WayOutReport,
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};

@@ -6,10 +6,10 @@ use crate::design::Design;
 use crate::method::descent::{Immobility, Order};
 use crate::pose::{Dof, PoseError};
 use crate::run::jams::Firmness;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// By which order a rest is held (Rimon and Burdick).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HeldReport {
     /// `first`, `second`, `neutral` or `unstable`.
     pub order: Order,

@@ -1,6 +1,7 @@
 //! Rests: as versioned JSON, as text, as records for programs.
 
 use super::envelope::{Body, Envelope};
+use super::jams::shares;
 use super::resting::{Told, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
@@ -10,7 +11,8 @@ use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
 use crate::pose::PoseError;
 use crate::run::rests::{Place, Rests, Settings};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Where halves come to rest, with its head.
 pub type RestsReport = Envelope<RestsBody>;
@@ -25,8 +27,7 @@ pub struct RestsBody {
     /// Random poses of the error box that were followed.
     pub motions: usize,
     /// What became of them, by the names of outcomes.
-    #[serde(serialize_with = "by_name")]
-    pub outcomes: Vec<(Outcome, ShareReport)>,
+    pub outcomes: BTreeMap<Outcome, ShareReport>,
     /// The rests, the one with most of the poses first.
     pub rests: Vec<RestReport>,
 }
@@ -98,12 +99,11 @@ impl RestsReport {
     /// Of a design.
     pub fn new(design: &Design, found: &Rests, doubts: Vec<WarningReport>, timing: Option<Timing>) -> Self {
         let motions = found.motions();
-        let shares = found.counts.map(|count| ShareReport::of(count, motions));
         let body = RestsBody {
             design: design.clone(),
             settings: found.settings.clone(),
             motions,
-            outcomes: Outcome::ALL.into_iter().zip(shares).collect(),
+            outcomes: shares(found.counts),
             rests: found.rests.iter().map(|place| RestReport::of(design, motions, place)).collect(),
         };
         let mut warnings = doubts;
@@ -235,10 +235,6 @@ fn percent(share: f64) -> String {
 
 fn with_interval(share: &ShareReport) -> String {
     format!("{} ({} … {})", percent(share.share), percent(share.ci95[0]), percent(share.ci95[1]))
-}
-
-fn by_name<S: Serializer>(shares: &[(Outcome, ShareReport)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(shares.iter().map(|(outcome, share)| (outcome.name(), share)))
 }
 
 /// Rests that are told.

@@ -1,6 +1,7 @@
 //! The report of a run: a versioned contract. Lengths in D, angles in radians, fields in this order, in the
 //! [`Envelope`] of every report. The same run writes the same bytes but for `timing`.
 
+use super::JamsFound;
 use super::envelope::{Body, Envelope};
 use crate::acceptance::{Acceptance, Warning};
 use crate::design::Design;
@@ -56,6 +57,9 @@ pub struct RunBody {
     /// not know it.
     #[serde(default)]
     pub joined: Option<Joined>,
+    /// Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
+    #[serde(default)]
+    pub jams: Option<JamsFound>,
     /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
     #[serde(default)]
     pub seat: Option<Seating>,
@@ -277,6 +281,7 @@ impl Report {
             partition: None,
             certificate: None,
             joined: None,
+            jams: None,
             seat: None,
         };
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)

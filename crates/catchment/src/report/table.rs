@@ -2,6 +2,7 @@
 
 mod basins;
 mod certificate;
+mod jams;
 mod seat;
 
 use super::schema::{AcceptanceReport, OnaaReport, Report, ToleranceReport};
@@ -63,6 +64,10 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     if let Some(found) = &report.seat {
         text.push('\n');
         seat::lines(&mut text, found, &report.design);
+    }
+    if let Some(found) = &report.jams {
+        text.push('\n');
+        jams::lines(&mut text, found, &report.design);
     }
     if let Some(found) = &report.basins {
         text.push('\n');

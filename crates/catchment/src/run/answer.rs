@@ -1,5 +1,6 @@
 //! Everything that a run found.
 
+use super::jams::Jams;
 use super::{Run, Seating};
 use crate::acceptance::{Acceptance, Warning};
 use crate::landscape::Grid;
@@ -30,6 +31,8 @@ pub struct Answer {
     pub merits: Merits,
     /// The success probability for the errors asked about.
     pub success: Option<Success>,
+    /// Where motions rest that do not dock, if that was asked.
+    pub jams: Option<Jams>,
     /// What the seat is like, and how far off accepted poses rest in it.
     pub seating: Seating,
     /// Wall-clock time, in seconds.

@@ -44,6 +44,7 @@ use crate::merit::success::Distribution;
 use crate::method::correction::{CorrectionError, Stop};
 use crate::method::{DecideError, Method, NotApplicable};
 use crate::problem::Problem;
+use jams::JamsError;
 use serde::{Deserialize, Serialize};
 
 /// Everything that changes an answer, beside the problem.
@@ -64,6 +65,8 @@ pub struct Run {
     pub requirements: Vec<Requirement>,
     /// Keep the heights over the grid, also where the method needs none.
     pub heights: bool,
+    /// Look for the places where motions rest that do not dock, by [`jams`].
+    pub jams: bool,
 }
 
 /// Which poses are decided.
@@ -105,6 +108,7 @@ impl Default for Run {
             errors: None,
             requirements: Vec::new(),
             heights: false,
+            jams: false,
         }
     }
 }
@@ -130,6 +134,9 @@ pub enum RunError {
     /// There are no figures of merit.
     #[error(transparent)]
     Merit(#[from] MeritError),
+    /// There are no jams to tell.
+    #[error(transparent)]
+    Jams(#[from] JamsError),
     /// It does not fit into memory.
     #[error(transparent)]
     OutOfBudget(#[from] OutOfBudget),

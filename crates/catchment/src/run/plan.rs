@@ -1,6 +1,6 @@
 //! What a run will do, known before anything is computed.
 
-use super::{Over, Run, RunError, Sample};
+use super::{Over, Run, RunError, Sample, jams};
 use crate::acceptance::Domain;
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::Landscape;
@@ -64,6 +64,12 @@ impl Run {
         let has_heights = method.by_products().contains(&"landscape");
         let heights = self.heights && is_grid && !has_heights;
         Ok(Plan { method: method.clone(), domain, sample, heights, cost })
+    }
+
+    /// How jams are looked for: by poses of the same seed and errors, with the friction of the method.
+    pub(crate) fn jams_settings(&self) -> jams::Settings {
+        let friction = self.method.motions().friction;
+        jams::Settings { seed: self.seed, errors: self.errors.clone(), friction, ..jams::Settings::default() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The stages of a run, each once.
 
-use super::{Answer, Corrected, Plan, Run, RunError, Seating};
+use super::{Answer, Corrected, Plan, Run, RunError, Seating, jams};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
@@ -80,6 +80,10 @@ pub(super) fn finish(
         Some(distribution) => Some(success(&acceptance, distribution, exec)?),
         None => None,
     };
+    let jams = match run.jams {
+        true => Some(jams::by(problem, &run.jams_settings(), &plan.method.motions(), exec)?),
+        false => None,
+    };
     let seating = Seating::of(problem, &acceptance, &plan.method.motions(), run.seed, exec)?;
     Ok(Answer {
         problem: problem.clone(),
@@ -90,6 +94,7 @@ pub(super) fn finish(
         by_products,
         merits,
         success,
+        jams,
         seating,
         seconds: started.seconds(),
         threads: exec.threads(),

@@ -47,6 +47,7 @@ fn refuse_options(args: &RunArgs) -> Result<(), Failure> {
     let wrong = [
         ("--depth-tolerance", args.how.settings.depth_tolerance.is_some()),
         ("--require", !args.require.is_empty()),
+        ("--jams", args.jams),
         ("--figures", args.place.wants_figures_alone()),
         ("--error-sigma or --error-uniform", args.errors.is_some()),
     ];

@@ -78,6 +78,9 @@ impl Answer {
         if let Some(partition) = &self.by_products.partition {
             drawn.keep("partition", super::partition(&report, partition, acceptance))?;
         }
+        if let Some(found) = &report.jams {
+            drawn.keep("jams", super::jams(design, found, connector))?;
+        }
         exec.check()?;
         let lifted = Placement::mated(design, LIFT);
         drawn.keep("section", super::section(design, connector, &lifted))?;

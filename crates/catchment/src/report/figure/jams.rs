@@ -10,7 +10,7 @@ use crate::connector::Connector;
 use crate::design::Design;
 use crate::report::resting::{Told, words};
 use crate::report::text::grouped;
-use crate::report::{ContactReport, JamReport, JamsReport, RestReport, RestsReport};
+use crate::report::{ContactReport, JamReport, JamsFound, RestReport, RestsReport};
 use crate::run::jams::Firmness;
 use glam::DVec3;
 
@@ -40,15 +40,15 @@ struct Panel<'a> {
     tail: Vec<String>,
 }
 
-/// Draws the jams with most of the poses: the halves of `connector` as the report's design places them.
+/// Draws the jams with most of the poses: the halves of `connector` as the design places them.
 ///
 /// # Errors
 /// If nothing jams.
-pub fn jams(report: &JamsReport, connector: &Connector) -> Result<Picture, FigureError> {
-    if report.jams.is_empty() {
+pub fn jams(design: &Design, found: &JamsFound, connector: &Connector) -> Result<Picture, FigureError> {
+    if found.jams.is_empty() {
         return Err(FigureError::Empty { what: "none of the poses jams" });
     }
-    let all: Vec<String> = report
+    let all: Vec<String> = found
         .outcomes
         .iter()
         .filter(|(_, share)| share.count > 0)
@@ -56,15 +56,15 @@ pub fn jams(report: &JamsReport, connector: &Connector) -> Result<Picture, Figur
         .collect();
     let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
     let panels: Vec<Panel<'_>> =
-        report.jams.iter().take(SHOWN).enumerate().map(|(k, jam)| jam_panel(report, k + 1, jam)).collect();
-    draw_all(&report.design, connector, &story, &panels)
+        found.jams.iter().take(SHOWN).enumerate().map(|(k, jam)| jam_panel(design, k + 1, jam)).collect();
+    draw_all(design, connector, &story, &panels)
 }
 
-fn jam_panel<'a>(report: &JamsReport, number: usize, jam: &'a JamReport) -> Panel<'a> {
+fn jam_panel<'a>(design: &Design, number: usize, jam: &'a JamReport) -> Panel<'a> {
     let tail = jam.examined.map(|examined| {
         let level =
             if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
-        let lifted = |climb| Told::of(&report.design).lifted(climb);
+        let lifted = |climb| Told::of(design).lifted(climb);
         let way = examined
             .way_out
             .map_or_else(String::new, |way| format!(": {} it gets out", lifted(way.climb_at_most_d)));
@@ -226,8 +226,7 @@ mod tests {
         let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
         let found =
             run(&problem, &Settings { motions: Some(400), ..Settings::default() }, &Exec::new()).unwrap();
-        let report = JamsReport::new(problem.design(), &found, Vec::new(), None);
-        jams(&report, problem.connector())
+        jams(problem.design(), &JamsFound::new(problem.design(), &found), problem.connector())
     }
 
     #[test]

@@ -468,6 +468,8 @@ fn a_group_survives_every_stop() {
 fn a_run_survives_every_stop() {
     use crate::problem::Problem;
     use crate::report::Target;
+    use crate::report::figure::draw::svg::Svg;
+    use crate::report::figure::{Drawn, Picture};
     use crate::run::{Over, Run, Sample};
     let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
     let designs = home();
@@ -480,9 +482,9 @@ fn a_run_survives_every_stop() {
             let over = Over::Grid((4 + version).to_string().parse().unwrap());
             let run = Run { over, sample: Sample::None, ..Run::default() };
             let answer = run.on(&problem, &exec).unwrap();
-            let mut drawn = answer.draw(&exec).unwrap();
-            drawn.pictures.truncate(1);
-            (answer, drawn)
+            // As many files as of a run; its pictures take longer to draw than all that is asked here.
+            let dot = Picture::of(Svg::new(8.0, 8.0));
+            (answer, Drawn { pictures: vec![("section", dot)], left_out: Vec::new() })
         })
         .collect();
     let cells: Vec<usize> = answers.iter().map(|(answer, _)| answer.acceptance.outcomes.len()).collect();

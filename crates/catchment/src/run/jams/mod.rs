@@ -229,6 +229,16 @@ const BRANCH: u64 = 0x1a3;
 /// # }
 /// ```
 pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, JamsError> {
+    by(problem, settings, &descent::Settings::with_friction(settings.friction)?, exec)
+}
+
+/// The same by motions of one's own, whose friction is that of the settings.
+pub(super) fn by(
+    problem: &Problem,
+    settings: &Settings,
+    followed_by: &descent::Settings,
+    exec: &Exec,
+) -> Result<Jams, JamsError> {
     let motions =
         settings.motions.unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()));
     if motions == 0 {
@@ -236,8 +246,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, 
     }
     let settings = Settings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
-    let followed_by = descent::Settings::with_friction(settings.friction)?;
-    let follow = Follow { problem, features: &features, motions: &followed_by, which: Which::Jams };
+    let follow = Follow { problem, features: &features, motions: followed_by, which: Which::Jams };
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
         return Err(JamsError::Nothing);
     };

@@ -3,6 +3,7 @@
 use super::{UnsoundError, hold, not_negative, share};
 use crate::method::certified::Certificate;
 use crate::method::flood::Reason;
+use crate::report::JamsFound;
 use crate::report::schema::{BasinsReport, RunBody};
 
 impl RunBody {
@@ -24,6 +25,9 @@ impl RunBody {
             hold(joined.joined <= joined.cells, "joined.joined", "must be at most joined.cells")?;
             hold(joined.wrong <= joined.tried, "joined.wrong", "must be at most joined.tried")?;
             interval(joined.wrong_ci95, "joined.wrong_ci95")?;
+        }
+        if let Some(jams) = &self.jams {
+            check_jams(jams)?;
         }
         self.check_sample()
     }
@@ -63,6 +67,26 @@ fn check_certificate(found: &Certificate) -> Result<(), UnsoundError> {
     not_negative(found.retention_at_least, "certificate.retention_at_least")?;
     let ordered = found.retention_at_most.is_none_or(|most| most >= found.retention_at_least);
     hold(ordered, "certificate.retention_at_most", "must be no less than retention_at_least")
+}
+
+fn check_jams(found: &JamsFound) -> Result<(), UnsoundError> {
+    let followed: Option<usize> =
+        found.outcomes.values().try_fold(0usize, |sum, share| sum.checked_add(share.count));
+    hold(followed == Some(found.motions), "jams.motions", "must be those of jams.outcomes")?;
+    let drawn = found.outcomes.values().chain(found.expected.iter().flat_map(|of| of.values()));
+    for of in drawn.chain(found.jams.iter().map(|jam| &jam.of_box)) {
+        share(of.share, "jams: a share")?;
+        interval(of.ci95, "jams: an interval")?;
+    }
+    let told = found.jams.iter().flat_map(|jam| [jam.of_jams, jam.of_failures]);
+    for of in told.chain(found.features.iter().flat_map(|pair| [pair.of_jams, pair.of_failures])) {
+        share(of, "jams: a share")?;
+    }
+    for jam in &found.jams {
+        let ordered = jam.extent.iter().all(|extent| extent.from <= extent.to);
+        hold(ordered, "jams.jams.extent", "must be in order")?;
+    }
+    Ok(())
 }
 
 /// An interval of a share.

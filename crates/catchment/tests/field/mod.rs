@@ -8,6 +8,7 @@ mod solids;
 
 use catchment::prelude::*;
 use catchment::run::Residual;
+use catchment::study::hold;
 use solids::{Pieces, arc, around, body, rectangle, ring, scaled, turned};
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -76,15 +77,34 @@ fn residual(answer: &Answer) -> Vec<Residual> {
 }
 
 /// The round peg of 12 mm of `IndustReal`: a peg of radius 5.99 with a tip of 5.492 in a hole of 6.499 with a mouth of 7.5 mm.
-#[test]
-fn the_industreal_peg_docks_within_its_mouth() {
-    const D: f64 = 12.0;
+fn industreal_peg(width: f64) -> Problem {
     let hole = [(6.499, -20.0), (6.499, -1.001), (7.5, 0.0)].map(|(r, z)| ring(32, [0.0; 2], r, z));
     let mut fixed = around(&hole, &ring(32, [0.0; 2], 12.0, 0.0));
     fixed.push([ring(32, [0.0; 2], 12.0, -21.0), ring(32, [0.0; 2], 12.0, -20.0)].concat());
     let peg = [(5.99, -5.0), (5.99, 19.502), (5.492, 20.0)].map(|(r, z)| ring(32, [0.0; 2], r, z));
-    let problem =
-        problem(fixed, body(&peg), D, &LATERAL, |a| a.half_ranges = [2.5 / D, 2.5 / D, 1.0, 1.0, 1.0]);
+    let box_of = |a: &mut Alignment| a.half_ranges = [2.5 / width, 2.5 / width, 1.0, 1.0, 1.0];
+    problem(fixed, body(&peg), width, &LATERAL, box_of)
+}
+
+/// Docked it slides in its play, at no force; once that is used a wall of the hole stands in its way.
+#[test]
+fn the_industreal_peg_slides_until_its_play_is_used() {
+    const D: f64 = 12.0;
+    let problem = industreal_peg(D);
+    let least = |play: f64| {
+        let settings = hold::Settings { play, ..hold::Settings::default() };
+        let found = hold::run(&problem, &settings, &Exec::new()).unwrap();
+        found.weakest[1].and_then(|side| side.withstood.smooth).and_then(|force| force.free)
+    };
+    assert!(least(hold::Settings::default().play).unwrap() < 1e-6);
+    let play = geometry("industreal-peg", "play") / D;
+    assert_eq!(least(1.05 * play), None);
+}
+
+#[test]
+fn the_industreal_peg_docks_within_its_mouth() {
+    const D: f64 = 12.0;
+    let problem = industreal_peg(D);
     let run = Run { over: Over::Grid("60".parse().unwrap()), ..Run::default() };
     let answer = run.on(&problem, &Exec::new()).unwrap();
     let [lo, hi] = answer.sum_ci95().unwrap();
