@@ -75,7 +75,7 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
         Some(kind) => {
-            args.file.draw(kind, &figure::jams(&report.design, &report.found, problem.connector())?)?
+            args.file.draw(kind, &figure::jams(&report.design, &report.found, problem.connector())?)?;
         }
         None => {}
     }

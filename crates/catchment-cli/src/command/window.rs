@@ -11,7 +11,7 @@ use catchment::poses::parse_sizes;
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{WindowReport, csv};
-use catchment::study::window::{Settings, Window, WindowError, run as find};
+use catchment::run::window::{Settings, Window, WindowError, run as find};
 use clap::Args;
 use std::time::Instant;
 

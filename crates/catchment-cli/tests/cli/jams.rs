@@ -84,12 +84,6 @@ fn a_run_tells_of_jams_what_the_command_does() {
     let text = run(home.path(), &asked);
     assert!(text.contains("\n  jam 1 ") && text.contains("of the fixed one"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
-    let stored = fs::read_to_string(home.path().join("out/report.json")).unwrap();
-    let spoilt = stored.replacen("\"of_failures\": 0.", "\"of_failures\": 7.", 1);
-    assert_ne!(stored, spoilt);
-    fs::write(home.path().join("spoilt.json"), spoilt).unwrap();
-    let refused = run(home.path(), &["compare", "spoilt.json", "out/report.json"]);
-    assert!(refused.starts_with("exit 2\n"), "{refused}");
     let code = |require: &str| {
         let args = ["run", "v.toml", "--resolution", "9", "--jams", "--require", require];
         catchment(home.path()).args(args).output().unwrap().status.code()

@@ -63,3 +63,28 @@ fn a_requirement_decides_the_exit_code_and_files_are_whole() {
     let kept: Value = serde_json::from_str(&fs::read_to_string(home.path().join("w.json")).unwrap()).unwrap();
     assert_eq!(kept["kind"], "window");
 }
+
+/// What `run` says of the window is what `window` says, by the same names.
+#[test]
+fn a_run_tells_of_the_window_what_the_command_does() {
+    let home = home();
+    let asked = ["run", "v.toml", "--free", "x", "--resolution", "9", "--samples", "50", "--seed", "3"];
+    let found = json(home.path(), &[&asked[..], &["--window", "--json"]].concat());
+    let alone = json(home.path(), &["window", "v.toml", "--free", "x", "--seed", "3", "--json"]);
+    let told = found["window"].as_object().unwrap();
+    assert_eq!(found["window"]["x"], alone["window"]["x"]);
+    assert!(told.get("roll").is_none());
+    for (key, value) in told.iter().filter(|(key, _)| *key != "x") {
+        assert_eq!(*value, alone[key], "{key}");
+    }
+    let text = run(home.path(), &[&asked[..], &["--window"]].concat());
+    assert!(text.contains("±24.97") && text.contains("no failure in 300 000 random poses"), "{text}");
+    let with = |require: &str| {
+        let args = [&asked[..], &["--window", "-o", "out", "--require", require]].concat();
+        catchment(home.path()).args(args).output().unwrap().status.code()
+    };
+    assert_eq!(with("window.x>=24 mm"), Some(0));
+    assert_eq!(with("window.x>=26 mm"), Some(1));
+    // Read back, it is the same.
+    assert!(run(home.path(), &["compare", "out", "out"]).starts_with("exit 0\n"));
+}

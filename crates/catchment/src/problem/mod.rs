@@ -171,3 +171,24 @@ impl fmt::Debug for Problem {
             .finish_non_exhaustive()
     }
 }
+
+#[cfg(test)]
+pub(crate) mod testing {
+    //! Problems to try things on.
+
+    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
+    use crate::pose::DofSet;
+    use crate::problem::Problem;
+
+    /// A family with its defaults, free in `free`.
+    pub(crate) fn design(family: Family, free: DofSet) -> Design {
+        let alignment = Alignment { free, ..Alignment::default_for(Some(family)) };
+        let connector = ConnectorSpec::Family(FamilySpec::new(family));
+        Design { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment }
+    }
+
+    /// Its halves.
+    pub(crate) fn problem(family: Family, free: DofSet) -> Problem {
+        Problem::of(design(family, free)).unwrap()
+    }
+}

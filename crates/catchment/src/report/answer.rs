@@ -2,7 +2,7 @@
 
 use super::envelope::{Body, Envelope};
 use super::schema::{PartitionReport, SuccessReport, Timing, WarningReport, WatershedsReport};
-use super::{JamsFound, Report};
+use super::{JamsFound, Report, WindowSection};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
@@ -13,6 +13,7 @@ use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
 use crate::problem::Problem;
 use crate::run::jams::Jams;
+use crate::run::window::Window;
 use crate::run::{Answer, Corrected, Requirement, RequirementError, Run, RunError, Seating, Verdict};
 use serde::Serialize;
 use serde_json::Value;
@@ -40,6 +41,7 @@ impl Answer {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
         report.jams = self.jams.as_ref().map(|found| JamsFound::new(self.problem.design(), found));
+        report.window = self.window.as_ref().and_then(|found| found.as_ref().ok()).map(WindowSection::from);
         report.seat = Some(self.seating.clone());
         report.warnings = self.warnings().into_iter().map(WarningReport::from).collect();
         report
@@ -125,6 +127,9 @@ impl Run {
             report = report.with_sample(&Corrected { found, seed: sample.seed, method, settings });
         }
         report.seat = Some(Seating::form(problem));
+        if self.window {
+            report.window = Some(WindowSection::from(&Window::form(problem)));
+        }
         if self.jams {
             report.jams = Some(JamsFound::new(problem.design(), &Jams::form(&self.jams_settings())));
         }

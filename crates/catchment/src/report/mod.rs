@@ -110,5 +110,8 @@ pub use validation::{
     AgreedReport, CountReport, EvidenceReport, ExplainingReport, FrictionTried, LineReport, OneSidedReport,
     TriedReport, ValidationBody, ValidationReport,
 };
-pub use window::{CertificateReport, SideReport, WindowBody, WindowReport, WorstReport};
+pub use window::{
+    CertificateReport, HalfWidths, SideReport, WindowBody, WindowFound, WindowReport, WindowSection,
+    WorstReport,
+};
 pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};

@@ -1,4 +1,4 @@
-//! What is told of a place of rest, of jams and of all others: where it is, how it is held, what touches.
+//! Poses and sizes of errors in words, and what is told of a place of rest, of jams and of all others: where it is, how it is held, what touches.
 
 use super::text::{significant, wrapped};
 use super::{ContactReport, ExaminedReport, ExtentReport, FeatureReport};
@@ -176,9 +176,30 @@ impl<'a> Told<'a> {
     }
 
     fn drawn(self, feature: &FeatureReport) -> String {
-        let [x, y, z] = feature.drawn_d.map(|part| self.plain(part));
         let part = feature.part.map_or_else(String::new, |part| format!(" on part {part}"));
-        format!("({x}, {y}, {z}) {}{part}", self.unit())
+        format!("{}{part}", self.point(feature.drawn_d))
+    }
+
+    /// A place: `(1.2, 0.0, -3.4) mm`.
+    pub(super) fn point(self, point: [f64; 3]) -> String {
+        let [x, y, z] = point.map(|part| self.plain(part));
+        format!("({x}, {y}, {z}) {}", self.unit())
+    }
+
+    /// `±0.402 mm` or `±12.3°`, rounded towards zero.
+    pub(super) fn size(self, axis: Dof, value: f64) -> String {
+        let down = |value: f64, digits: f64| (value * digits + 1e-9).floor() / digits;
+        if axis.is_rotation() {
+            return format!("±{:.2}°", down(value.to_degrees(), 100.0));
+        }
+        match self.design.unit {
+            Some(unit) => {
+                let decimals = super::text::decimals(self.design.width);
+                let value = down(value * self.design.width, 10f64.powf(decimals as f64));
+                format!("±{value:.decimals$} {}", unit.symbol())
+            }
+            None => format!("±{:.4} D", down(value, 10_000.0)),
+        }
     }
 
     /// A pose error in words.

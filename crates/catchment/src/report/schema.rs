@@ -1,8 +1,8 @@
 //! The report of a run: a versioned contract. Lengths in D, angles in radians, fields in this order, in the
 //! [`Envelope`] of every report. The same run writes the same bytes but for `timing`.
 
-use super::JamsFound;
 use super::envelope::{Body, Envelope};
+use super::{JamsFound, WindowSection};
 use crate::acceptance::{Acceptance, Warning};
 use crate::design::Design;
 use crate::exec::Exec;
@@ -60,6 +60,9 @@ pub struct RunBody {
     /// Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
     #[serde(default)]
     pub jams: Option<JamsFound>,
+    /// The largest box of errors that all dock; null where that was not asked or there is none, and in reports of versions that did not ask.
+    #[serde(default)]
+    pub window: Option<WindowSection>,
     /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
     #[serde(default)]
     pub seat: Option<Seating>,
@@ -282,6 +285,7 @@ impl Report {
             certificate: None,
             joined: None,
             jams: None,
+            window: None,
             seat: None,
         };
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)

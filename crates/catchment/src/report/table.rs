@@ -7,6 +7,7 @@ mod seat;
 
 use super::schema::{AcceptanceReport, OnaaReport, Report, ToleranceReport};
 use super::text::{COLUMNS, grouped, line, percent, rounded, row, significant, with_error, wrapped};
+use super::window;
 use crate::advice::Advice;
 use crate::design::{ConnectorSpec, Design};
 
@@ -65,49 +66,14 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
         text.push('\n');
         seat::lines(&mut text, found, &report.design);
     }
+    by_products(&mut text, report);
+    if let Some(found) = &report.window {
+        text.push('\n');
+        window::lines(&mut text, &found.found, &report.design);
+    }
     if let Some(found) = &report.jams {
         text.push('\n');
         jams::lines(&mut text, found, &report.design);
-    }
-    if let Some(found) = &report.basins {
-        text.push('\n');
-        basins::lines(&mut text, found, report);
-    }
-    if let Some(found) = &report.watersheds {
-        let [first, merged, dams] = [found.counts.first, found.counts.merged, found.counts.dams].map(grouped);
-        let dams = if found.counts.dams > 0 { format!(" (and {dams} dam cells)") } else { String::new() };
-        row(&mut text, "watersheds", &format!("{first} first labels{dams}, {merged} after merging"));
-        row(&mut text, "", &format!("{} of the cells joined another", percent(found.moved_share)));
-    }
-    if let Some(found) = &report.joined {
-        let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
-        row(&mut text, "joined", &format!("{joined} of {cells} cells in contact joined others;"));
-        let most = percent(found.wrong_ci95[1]);
-        row(
-            &mut text,
-            "",
-            &format!("of {tried} tried {} end otherwise (at most {most} of them)", grouped(found.wrong)),
-        );
-    }
-    if let Some(found) = &report.partition {
-        text.push('\n');
-        let counts = found.counts;
-        let [polytopes, cells, parts, rests] =
-            [counts.polytopes, counts.cells, counts.parts, counts.rests].map(grouped);
-        row(
-            &mut text,
-            "partition",
-            &format!("{:.4} {} accepted, exactly", found.sum, report.acceptance.unit),
-        );
-        row(
-            &mut text,
-            "",
-            &format!("{polytopes} polytopes, {cells} cells, {parts} parts, {rests} places of rest"),
-        );
-    }
-    if let Some(found) = &report.certificate {
-        text.push('\n');
-        certificate::lines(&mut text, found, report);
     }
     if !report.warnings.is_empty() {
         text.push('\n');
@@ -118,6 +84,46 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
         }
     }
     text
+}
+
+/// What else the method knows.
+fn by_products(text: &mut String, report: &Report) {
+    if let Some(found) = &report.basins {
+        text.push('\n');
+        basins::lines(text, found, report);
+    }
+    if let Some(found) = &report.watersheds {
+        let [first, merged, dams] = [found.counts.first, found.counts.merged, found.counts.dams].map(grouped);
+        let dams = if found.counts.dams > 0 { format!(" (and {dams} dam cells)") } else { String::new() };
+        row(text, "watersheds", &format!("{first} first labels{dams}, {merged} after merging"));
+        row(text, "", &format!("{} of the cells joined another", percent(found.moved_share)));
+    }
+    if let Some(found) = &report.joined {
+        let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
+        row(text, "joined", &format!("{joined} of {cells} cells in contact joined others;"));
+        let most = percent(found.wrong_ci95[1]);
+        row(
+            text,
+            "",
+            &format!("of {tried} tried {} end otherwise (at most {most} of them)", grouped(found.wrong)),
+        );
+    }
+    if let Some(found) = &report.partition {
+        text.push('\n');
+        let counts = found.counts;
+        let [polytopes, cells, parts, rests] =
+            [counts.polytopes, counts.cells, counts.parts, counts.rests].map(grouped);
+        row(text, "partition", &format!("{:.4} {} accepted, exactly", found.sum, report.acceptance.unit));
+        row(
+            text,
+            "",
+            &format!("{polytopes} polytopes, {cells} cells, {parts} parts, {rests} places of rest"),
+        );
+    }
+    if let Some(found) = &report.certificate {
+        text.push('\n');
+        certificate::lines(text, found, report);
+    }
 }
 
 pub(super) fn heading(text: &mut String, design: &Design) {

@@ -9,7 +9,7 @@ use crate::method::descent::{Settings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use crate::method::drop;
 use crate::pose::{Dof, PoseError};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// Lines of the text, about.
@@ -57,7 +57,7 @@ pub struct WaypointReport {
 }
 
 /// A point where the halves touch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TouchReport {
     /// Where, in the world frame, in D.
     pub point_d: [f64; 3],

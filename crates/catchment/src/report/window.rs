@@ -1,15 +1,20 @@
 //! A window of pose errors: as versioned JSON, as text, as records for programs.
 
 use super::envelope::{Body, Envelope};
+use super::resting::Told;
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
-use super::text::{self, grouped, line, number, row, wrapped};
+use super::text::{grouped, line, number, row, wrapped};
 use super::trajectory::TouchReport;
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
-use crate::study::window::{Settings, Window};
-use serde::{Serialize, Serializer};
+use crate::run::window::{Settings, Window};
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Deref;
 
 /// What a window has to say, with its head.
 pub type WindowReport = Envelope<WindowBody>;
@@ -19,12 +24,35 @@ pub type WindowReport = Envelope<WindowBody>;
 pub struct WindowBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
+    /// ± so much of every free error, by its name, in D and radians.
+    pub window: HalfWidths,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: WindowFound,
+}
+
+/// A window beside other things: its half-widths by name, and what was found of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WindowSection {
+    /// ± so much of every free error, by its name, in D and radians.
+    #[serde(flatten)]
+    pub half_widths: HalfWidths,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: WindowFound,
+}
+
+/// ± so much of every free error, in D and radians.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct HalfWidths(pub BTreeMap<Dof, f64>);
+
+/// What was found of a window.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WindowFound {
     /// How it was asked for.
     pub settings: Settings,
-    /// ± so much of every free error, by its name, in D and radians.
-    #[serde(serialize_with = "by_name")]
-    pub window: Vec<(Dof, f64)>,
-    /// What is known of every one of them.
+    /// What is known of every free error.
     pub sides: Vec<SideReport>,
     /// Half-widths that were not given are so many times their proportions.
     pub scale: f64,
@@ -39,7 +67,7 @@ pub struct WindowBody {
 }
 
 /// One error, in D or radians.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SideReport {
     /// Which.
     pub axis: Dof,
@@ -58,7 +86,7 @@ pub struct SideReport {
 }
 
 /// A pose that does not dock.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WorstReport {
     /// The pose error.
     pub error: PoseError,
@@ -71,7 +99,7 @@ pub struct WorstReport {
 }
 
 /// None of so many random poses failed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CertificateReport {
     /// How many.
     pub motions: usize,
@@ -85,10 +113,55 @@ impl Body for WindowBody {
     const KIND: &'static str = "window";
 }
 
-impl WindowReport {
-    /// Of a design.
-    pub fn new(design: &Design, found: &Window, doubts: Vec<WarningReport>, timing: Option<Timing>) -> Self {
-        let window = found.axes.iter().map(|side| (side.axis, side.half_width)).collect();
+impl Deref for WindowBody {
+    type Target = WindowFound;
+
+    fn deref(&self) -> &WindowFound {
+        &self.found
+    }
+}
+
+/// Names that are none of an error are of other things.
+impl<'de> Deserialize<'de> for HalfWidths {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Named;
+        impl<'de> Visitor<'de> for Named {
+            type Value = HalfWidths;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("half-widths by the names of errors")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<HalfWidths, A::Error> {
+                let mut found = BTreeMap::new();
+                while let Some(name) = map.next_key::<String>()? {
+                    if let Ok(axis) = name.parse::<Dof>() {
+                        found.insert(axis, map.next_value()?);
+                    } else {
+                        map.next_value::<IgnoredAny>()?;
+                    }
+                }
+                Ok(HalfWidths(found))
+            }
+        }
+        deserializer.deserialize_map(Named)
+    }
+}
+
+impl From<&Window> for HalfWidths {
+    fn from(found: &Window) -> Self {
+        Self(found.axes.iter().map(|side| (side.axis, side.half_width)).collect())
+    }
+}
+
+impl From<&Window> for WindowSection {
+    fn from(found: &Window) -> Self {
+        Self { half_widths: found.into(), found: found.into() }
+    }
+}
+
+impl From<&Window> for WindowFound {
+    fn from(found: &Window) -> Self {
         let sides = found.axes.iter().map(|side| SideReport {
             axis: side.axis,
             half_width: side.half_width,
@@ -115,17 +188,22 @@ impl WindowReport {
             failing_at_most: found.certificate.failing_at_most,
             redrawn: found.certificate.redrawn,
         };
-        let body = WindowBody {
-            design: design.clone(),
+        Self {
             settings: found.settings.clone(),
-            window,
             sides: sides.collect(),
             scale: found.scale,
             tightest: found.tightest,
             worst,
             certificate,
             motions: found.motions,
-        };
+        }
+    }
+}
+
+impl WindowReport {
+    /// Of a design.
+    pub fn new(design: &Design, found: &Window, doubts: Vec<WarningReport>, timing: Option<Timing>) -> Self {
+        let body = WindowBody { design: design.clone(), window: found.into(), found: found.into() };
         Self::of(body, doubts, timing)
     }
 
@@ -138,39 +216,16 @@ impl WindowReport {
             row(&mut text, "friction", &format!("{} between the halves (Coulomb)", self.settings.friction));
         }
         text.push('\n');
-        line(&mut text, "  window         all at once, all dock      one alone      one, the others in it");
-        for side in &self.sides {
-            let tight = if Some(side.axis) == self.tightest { "  tightest" } else { "" };
-            let given = if side.given { " given" } else { "" };
-            let reach = |to: f64, is_border: bool| {
-                format!("{}{}", self.size(side.axis, to), if is_border { "*" } else { "" })
-            };
-            line(
-                &mut text,
-                &format!(
-                    "  {:<13}{:>18}{:<7}{:>16}  {:>16}{tight}",
-                    side.axis.name(),
-                    self.size(side.axis, side.half_width),
-                    given,
-                    reach(side.alone, side.alone_reaches_border),
-                    reach(side.beside, side.beside_reaches_border),
-                ),
-            );
-        }
-        if self.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
-            line(&mut text, "  * up to the border of the error box, perhaps further");
-        }
-        text.push('\n');
-        self.certified(&mut text);
+        lines(&mut text, self, &self.design);
+        let told = Told::of(&self.design);
         if let Some(worst) = &self.worst {
             text.push('\n');
-            row(&mut text, "worst pose", &format!("{}: {}", self.place(&worst.error), worst.outcome.name()));
+            row(&mut text, "worst pose", &format!("{}: {}", told.place(&worst.error), worst.outcome.name()));
             if worst.outcome == Outcome::Jammed {
-                row(&mut text, "", &format!("it rests at {}", self.place(&worst.end)));
+                row(&mut text, "", &format!("it rests at {}", told.place(&worst.end)));
             }
             for touch in worst.touches.iter().take(MOST_TOUCHES) {
-                let [x, y, z] = touch.point_d.map(|part| self.length(part));
-                row(&mut text, "", &format!("touching at ({x}, {y}, {z}) {}", self.unit()));
+                row(&mut text, "", &format!("touching at {}", told.point(touch.point_d)));
             }
             if worst.touches.len() > MOST_TOUCHES {
                 row(&mut text, "", &format!("and at {} places more", worst.touches.len() - MOST_TOUCHES));
@@ -183,24 +238,6 @@ impl WindowReport {
             wrapped(&mut text, "warning: ", &warning.message);
         }
         text
-    }
-
-    fn certified(&self, text: &mut String) {
-        let CertificateReport { motions, failing_at_most, redrawn } = self.certificate;
-        if motions == 0 {
-            row(text, "certificate", "none: no random poses were asked for");
-            return;
-        }
-        row(
-            text,
-            "certificate",
-            &format!("no failure in {} random poses all over it: at most", grouped(motions)),
-        );
-        let one_in = 1.0 / failing_at_most;
-        row(text, "", &format!("1 in {} poses of this window fails, 95 %", grouped(one_in.floor() as usize)));
-        if redrawn > 0 {
-            row(text, "", &format!("{redrawn} larger windows failed it before"));
-        }
     }
 
     /// Window and reaches as records for programs, the names of the columns first; D and radians.
@@ -228,50 +265,49 @@ impl WindowReport {
         }));
         records
     }
-
-    fn unit(&self) -> &'static str {
-        self.design.unit.map_or("D", |unit| unit.symbol())
-    }
-
-    fn length(&self, value: f64) -> String {
-        let scale = if self.design.unit.is_some() { self.design.width } else { 1.0 };
-        text::length(value * scale, scale)
-    }
-
-    /// `±0.402 mm` or `±12.3°`, rounded towards zero.
-    fn size(&self, axis: Dof, value: f64) -> String {
-        let down = |value: f64, digits: f64| (value * digits + 1e-9).floor() / digits;
-        if axis.is_rotation() {
-            return format!("±{:.2}°", down(value.to_degrees(), 100.0));
-        }
-        match self.design.unit {
-            Some(unit) => {
-                let decimals = text::decimals(self.design.width);
-                let value = down(value * self.design.width, 10f64.powf(decimals as f64));
-                format!("±{value:.decimals$} {}", unit.symbol())
-            }
-            None => format!("±{:.4} D", down(value, 10_000.0)),
-        }
-    }
-
-    fn place(&self, error: &PoseError) -> String {
-        let free = self.sides.iter().map(|side| side.axis);
-        let said: Vec<String> = free
-            .map(|axis| {
-                let value = error.to_array()[axis.index()];
-                if axis.is_rotation() {
-                    format!("{} {:.2}°", axis.name(), value.to_degrees() + 0.0)
-                } else {
-                    format!("{} {} {}", axis.name(), self.length(value), self.unit())
-                }
-            })
-            .collect();
-        said.join(", ")
-    }
 }
 
-fn by_name<S: Serializer>(window: &[(Dof, f64)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(window.iter().map(|(axis, half_width)| (axis.name(), half_width)))
+/// The window and what makes it sure, without the worst pose.
+pub(super) fn lines(text: &mut String, found: &WindowFound, design: &Design) {
+    let told = Told::of(design);
+    line(text, "  window         all at once, all dock      one alone      one, the others in it");
+    for side in &found.sides {
+        let tight = if Some(side.axis) == found.tightest { "  tightest" } else { "" };
+        let given = if side.given { " given" } else { "" };
+        let reach = |to: f64, is_border: bool| {
+            format!("{}{}", told.size(side.axis, to), if is_border { "*" } else { "" })
+        };
+        line(
+            text,
+            &format!(
+                "  {:<13}{:>18}{:<7}{:>16}  {:>16}{tight}",
+                side.axis.name(),
+                told.size(side.axis, side.half_width),
+                given,
+                reach(side.alone, side.alone_reaches_border),
+                reach(side.beside, side.beside_reaches_border),
+            ),
+        );
+    }
+    if found.sides.iter().any(|side| side.alone_reaches_border || side.beside_reaches_border) {
+        line(text, "  * up to the border of the error box, perhaps further");
+    }
+    text.push('\n');
+    let CertificateReport { motions, failing_at_most, redrawn } = found.certificate;
+    if motions == 0 {
+        row(text, "certificate", "none: no random poses were asked for");
+        return;
+    }
+    row(
+        text,
+        "certificate",
+        &format!("no failure in {} random poses all over it: at most", grouped(motions)),
+    );
+    let one_in = grouped((1.0 / failing_at_most).floor() as usize);
+    row(text, "", &format!("1 in {one_in} poses of this window fails, 95 %"));
+    if redrawn > 0 {
+        row(text, "", &format!("{redrawn} larger windows failed it before"));
+    }
 }
 
 /// Contacts that are told.

@@ -1,6 +1,7 @@
 //! Everything that a run found.
 
 use super::jams::Jams;
+use super::window::{Window, WindowError};
 use super::{Run, Seating};
 use crate::acceptance::{Acceptance, Warning};
 use crate::landscape::Grid;
@@ -33,6 +34,8 @@ pub struct Answer {
     pub success: Option<Success>,
     /// Where motions rest that do not dock, if that was asked.
     pub jams: Option<Jams>,
+    /// The largest box of errors that all dock, or why there is none, if that was asked.
+    pub window: Option<Result<Window, WindowError>>,
     /// What the seat is like, and how far off accepted poses rest in it.
     pub seating: Seating,
     /// Wall-clock time, in seconds.
@@ -97,6 +100,9 @@ impl Answer {
             }
             None if !descended && self.grid().is_some() => warnings.push(Warning::NoInterval),
             None => {}
+        }
+        if let Some(Err(error)) = &self.window {
+            warnings.push(Warning::Note { text: format!("there is no window: {error}") });
         }
         warnings.extend(self.seating.warnings(&self.problem));
         warnings.extend(self.problem.objections().into_iter().map(|text| Warning::Note { text }));

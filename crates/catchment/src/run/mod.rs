@@ -28,6 +28,7 @@ mod requirement;
 pub mod rests;
 mod seat;
 mod stages;
+pub mod window;
 pub(crate) use stages::correct;
 
 pub use answer::{Answer, Corrected};
@@ -67,6 +68,8 @@ pub struct Run {
     pub heights: bool,
     /// Look for the places where motions rest that do not dock, by [`jams`].
     pub jams: bool,
+    /// Look for the largest box of errors that all dock, by [`window`].
+    pub window: bool,
 }
 
 /// Which poses are decided.
@@ -109,6 +112,7 @@ impl Default for Run {
             requirements: Vec::new(),
             heights: false,
             jams: false,
+            window: false,
         }
     }
 }

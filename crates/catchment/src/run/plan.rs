@@ -1,6 +1,6 @@
 //! What a run will do, known before anything is computed.
 
-use super::{Over, Run, RunError, Sample, jams};
+use super::{Over, Run, RunError, Sample, jams, window};
 use crate::acceptance::Domain;
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::Landscape;
@@ -64,6 +64,12 @@ impl Run {
         let has_heights = method.by_products().contains(&"landscape");
         let heights = self.heights && is_grid && !has_heights;
         Ok(Plan { method: method.clone(), domain, sample, heights, cost })
+    }
+
+    /// How the window is looked for: in the proportions of the error box, with the friction of the method.
+    pub(crate) fn window_settings(&self) -> window::Settings {
+        let friction = self.method.motions().friction;
+        window::Settings { seed: self.seed, friction, ..window::Settings::default() }
     }
 
     /// How jams are looked for: by poses of the same seed and errors, with the friction of the method.

@@ -1,6 +1,7 @@
 //! The stages of a run, each once.
 
-use super::{Answer, Corrected, Plan, Run, RunError, Seating, jams};
+use super::window::WindowError;
+use super::{Answer, Corrected, Plan, Run, RunError, Seating, jams, window};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
@@ -80,11 +81,14 @@ pub(super) fn finish(
         Some(distribution) => Some(success(&acceptance, distribution, exec)?),
         None => None,
     };
-    let jams = match run.jams {
-        true => Some(jams::by(problem, &run.jams_settings(), &plan.method.motions(), exec)?),
-        false => None,
-    };
-    let seating = Seating::of(problem, &acceptance, &plan.method.motions(), run.seed, exec)?;
+    let motions = plan.method.motions();
+    let jams = if run.jams { Some(jams::by(problem, &run.jams_settings(), &motions, exec)?) } else { None };
+    let window =
+        if run.window { Some(window::by(problem, &run.window_settings(), &motions, exec)) } else { None };
+    if let Some(Err(WindowError::Cancelled(error))) = window {
+        return Err(error.into());
+    }
+    let seating = Seating::of(problem, &acceptance, &motions, run.seed, exec)?;
     Ok(Answer {
         problem: problem.clone(),
         run: run.clone(),
@@ -95,6 +99,7 @@ pub(super) fn finish(
         merits,
         success,
         jams,
+        window,
         seating,
         seconds: started.seconds(),
         threads: exec.threads(),

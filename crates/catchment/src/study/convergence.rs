@@ -236,10 +236,10 @@ fn stable(trials: &[Refinement], tolerance: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::problem;
     use super::*;
     use crate::design::Family;
     use crate::pose::Dof;
+    use crate::problem::testing::problem;
 
     fn trial(sum: f64, onaa_edge: f64) -> Refinement {
         let bracket = [sum, sum];

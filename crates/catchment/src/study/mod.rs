@@ -10,7 +10,6 @@
 //!   friction     what docks at each friction, what sticks first  one design, the same poses at every friction
 //!   hold         what a docked half withstands                   one design, contact forces alone
 //!   chance       how likely drop tests dock, under declared laws  one design, trials in a rigid-body engine
-//!   window       the largest box of errors that all dock         one design, exact motions without a grid
 //!   plan         at which poses a robot should try it            one design, exact motions at every pose
 //!   validate     what a robot's trials say of the prediction     one design, exact motions and the trials
 //!   proposal     all ways in which two parts may dock           two files, the design that docks them
@@ -32,7 +31,6 @@ pub mod success;
 pub mod sweep;
 pub mod trials;
 pub mod validate;
-pub mod window;
 
 use crate::acceptance::Outcome;
 use crate::method::descent;
@@ -41,25 +39,4 @@ use crate::method::descent;
 /// threads are put together.
 const fn pose_bytes() -> u64 {
     (2 * size_of::<descent::End>() + size_of::<Outcome>()) as u64
-}
-
-#[cfg(test)]
-mod testing {
-    //! A problem to study.
-
-    use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
-    use crate::pose::DofSet;
-    use crate::problem::Problem;
-
-    /// A family with its defaults, free in `free`.
-    pub(super) fn design(family: Family, free: DofSet) -> Design {
-        let alignment = Alignment { free, ..Alignment::default_for(Some(family)) };
-        let connector = ConnectorSpec::Family(FamilySpec::new(family));
-        Design { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment }
-    }
-
-    /// Its halves.
-    pub(super) fn problem(family: Family, free: DofSet) -> Problem {
-        Problem::of(design(family, free)).unwrap()
-    }
 }

@@ -371,10 +371,10 @@ impl Discordance {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::design;
     use super::*;
     use crate::design::Family;
     use crate::pose::{Dof, DofSet};
+    use crate::problem::testing::design;
 
     fn planar() -> Design {
         design(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect())

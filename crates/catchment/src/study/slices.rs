@@ -226,10 +226,10 @@ fn estimate(problem: &Problem, slices: &[Slice]) -> Option<Estimate> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::problem;
     use super::*;
     use crate::design::Family;
     use crate::pose::DofSet;
+    use crate::problem::testing::problem;
 
     fn settings(cells: usize, pairs: &[[Dof; 2]]) -> Settings {
         let resolution = Resolution::uniform(cells).unwrap();

@@ -271,10 +271,10 @@ fn counted(resolution: usize, grid: &Grid, trials: &[Trial]) -> Round {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::problem;
     use super::*;
     use crate::design::Family;
     use crate::pose::{Dof, DofSet};
+    use crate::problem::testing::problem;
 
     const XY: DofSet = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
 

@@ -48,6 +48,7 @@ fn refuse_options(args: &RunArgs) -> Result<(), Failure> {
         ("--depth-tolerance", args.how.settings.depth_tolerance.is_some()),
         ("--require", !args.require.is_empty()),
         ("--jams", args.jams),
+        ("--window", args.window),
         ("--figures", args.place.wants_figures_alone()),
         ("--error-sigma or --error-uniform", args.errors.is_some()),
     ];

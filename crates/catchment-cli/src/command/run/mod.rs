@@ -31,7 +31,7 @@ use clap::Args;
     catchment run design.toml --free x,y,yaw --resolution 41,yaw=61\n  \
     catchment run design.toml --tolerance 1%            until the Sum is known to ± 1 %\n  \
     catchment run design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg' --require 'success.probability>=0.99'\n  \
-    catchment run design.toml --jams -o out             also where poses jam, and on what\n  \
+    catchment run design.toml --window --jams -o out    also the window one may ship, and where poses jam\n  \
     catchment run design.toml --json | jq .onaa.edge\n  \
     catchment run design.toml --method all              every method, and how they agree\n  \
     catchment run design.toml --free x,yaw --method drop --friction 0.2\n  \
@@ -55,6 +55,9 @@ pub(crate) struct RunArgs {
     place: place::PlaceArgs,
     #[command(flatten)]
     study: study::StudyArgs,
+    /// Also find the largest box of errors that all dock, in the proportions of the error box, as `catchment window` does
+    #[arg(long)]
+    window: bool,
     /// Also tell where poses jam and what touches there, the first few; `catchment jams` tells more
     #[arg(long)]
     jams: bool,
@@ -98,6 +101,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         requirements: args.require.clone(),
         heights: targets.want_heights(),
         jams: args.jams,
+        window: args.window,
     };
     run.check_requirements(&problem).map_err(|error| match error {
         UnanswerableError::Run(error) => refused(&problem, error),

@@ -19,14 +19,14 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Args)]
 pub(super) struct StudyArgs {
     /// Refine the grid until Sum and ONAA are stable to --tolerance (1%), with every method side by side
-    #[arg(long, help_heading = STUDIES, conflicts_with_all = ["sensitivity", "budget", "figures", "require", "jams"],
+    #[arg(long, help_heading = STUDIES, conflicts_with_all = ["sensitivity", "budget", "figures", "require", "jams", "window"],
           conflicts_with_all = ["method", "resolution", "depth_tolerance", "ErrorArgs"])]
     converge: bool,
     /// --converge, --method all: how long each method may take, such as "20s" or "2 min" [default: 60s]
     #[arg(long, help_heading = STUDIES, value_name = "TIME", value_parser = duration)]
     pub(super) time_limit: Option<Duration>,
     /// How the Sum moves with rho, the centre of rotation and the aspect ratio, by the same random poses
-    #[arg(long, help_heading = STUDIES, conflicts_with_all = ["figures", "require", "budget", "tolerance", "jams"],
+    #[arg(long, help_heading = STUDIES, conflicts_with_all = ["figures", "require", "budget", "tolerance", "jams", "window"],
           conflicts_with_all = ["method", "resolution", "depth_tolerance", "ErrorArgs"])]
     sensitivity: bool,
 }

@@ -8,7 +8,7 @@ use crate::method::drop::{Launch, Push};
 use crate::pose::DofSet;
 use crate::poses::Law;
 use crate::problem::Problem;
-use crate::study::testing::problem;
+use crate::problem::testing::problem;
 
 fn free(dofs: &[Dof]) -> DofSet {
     dofs.iter().copied().collect()

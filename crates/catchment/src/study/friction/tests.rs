@@ -1,7 +1,7 @@
-use super::super::testing::problem;
 use super::*;
 use crate::design::Family;
 use crate::pose::{Dof, DofSet};
+use crate::problem::testing::problem;
 
 /// Rotations locked, the critical friction of a facet is its slope: of every pose, and so of every share of them.
 #[test]

@@ -5,7 +5,7 @@ use crate::acceptance::Outcome;
 use crate::design::Family;
 use crate::pose::DofSet;
 use crate::poses::covariance::IDENTITY;
-use crate::study::testing::problem;
+use crate::problem::testing::problem;
 
 fn free(dofs: &[Dof]) -> DofSet {
     dofs.iter().copied().collect()

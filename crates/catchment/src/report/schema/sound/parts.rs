@@ -3,8 +3,8 @@
 use super::{UnsoundError, hold, not_negative, share};
 use crate::method::certified::Certificate;
 use crate::method::flood::Reason;
-use crate::report::JamsFound;
 use crate::report::schema::{BasinsReport, RunBody};
+use crate::report::{JamsFound, WindowSection};
 
 impl RunBody {
     /// What must hold of the parts that are there.
@@ -25,6 +25,9 @@ impl RunBody {
             hold(joined.joined <= joined.cells, "joined.joined", "must be at most joined.cells")?;
             hold(joined.wrong <= joined.tried, "joined.wrong", "must be at most joined.tried")?;
             interval(joined.wrong_ci95, "joined.wrong_ci95")?;
+        }
+        if let Some(window) = &self.window {
+            check_window(window)?;
         }
         if let Some(jams) = &self.jams {
             check_jams(jams)?;
@@ -67,6 +70,15 @@ fn check_certificate(found: &Certificate) -> Result<(), UnsoundError> {
     not_negative(found.retention_at_least, "certificate.retention_at_least")?;
     let ordered = found.retention_at_most.is_none_or(|most| most >= found.retention_at_least);
     hold(ordered, "certificate.retention_at_most", "must be no less than retention_at_least")
+}
+
+fn check_window(found: &WindowSection) -> Result<(), UnsoundError> {
+    let widths = found.half_widths.0.values().copied();
+    let reaches = found.found.sides.iter().flat_map(|side| [side.half_width, side.alone, side.beside]);
+    for width in widths.chain(reaches) {
+        not_negative(width, "window: a half-width")?;
+    }
+    share(found.found.certificate.failing_at_most, "window.certificate.failing_at_most")
 }
 
 fn check_jams(found: &JamsFound) -> Result<(), UnsoundError> {
@@ -137,8 +149,10 @@ mod tests {
     use crate::method::certified::Certificate;
     use crate::method::confluence::Joined;
     use crate::method::correction::Stratum;
-    use crate::report::Report;
+    use crate::problem::Problem;
     use crate::report::schema::{PartitionReport, RunBody, SampleReport, basins};
+    use crate::report::{JamsFound, Report, WindowSection};
+    use crate::run::{jams, window};
 
     type Spoil = fn(&mut RunBody);
 
@@ -151,6 +165,13 @@ mod tests {
         body.partition = Some(PartitionReport::default());
         body.certificate = Some(Certificate { yes: 0.3, no: 0.6, undecided: 0.1, ..Certificate::default() });
         body.joined = Some(Joined { cells: 9, joined: 7, tried: 5, ..Joined::default() });
+        let problem = Problem::of(design.clone()).unwrap();
+        let asked = jams::Settings { motions: Some(300), ..jams::Settings::default() };
+        let found = jams::run(&problem, &asked, &Exec::new()).unwrap();
+        body.jams = Some(JamsFound::new(&design, &found));
+        let asked = window::Settings { motions: Some(100), ..window::Settings::default() };
+        let found = window::run(&problem, &asked, &Exec::new()).unwrap();
+        body.window = Some(WindowSection::from(&found));
         let stratum = |share| Stratum {
             name: "all".to_owned(),
             share,
@@ -174,8 +195,11 @@ mod tests {
 
     #[test]
     fn parts_that_cannot_be_are_named() {
-        body().check().unwrap();
-        let spoils: [(&str, Spoil); 20] = [
+        let whole = body();
+        whole.check().unwrap();
+        let read: RunBody = serde_json::from_value(serde_json::to_value(&whole).unwrap()).unwrap();
+        assert_eq!(read, whole);
+        let spoils: [(&str, Spoil); 25] = [
             ("basins.tolerance.depth must", |b| b.basins.as_mut().unwrap().tolerance.depth = -1.0),
             ("basins.merged must", |b| b.basins.as_mut().unwrap().minima = 0),
             ("basins.largest must be at most", |b| {
@@ -198,6 +222,13 @@ mod tests {
             ("joined.joined must", |b| b.joined.as_mut().unwrap().joined = 10),
             ("joined.wrong must", |b| b.joined.as_mut().unwrap().wrong = 6),
             ("joined.wrong_ci95 must", |b| b.joined.as_mut().unwrap().wrong_ci95 = [0.2, 0.1]),
+            ("jams.motions must", |b| b.jams.as_mut().unwrap().motions = 7),
+            ("jams: a share must", |b| b.jams.as_mut().unwrap().jams[0].of_failures = 7.0),
+            ("jams: an interval must", |b| b.jams.as_mut().unwrap().jams[0].of_box.ci95.reverse()),
+            ("window: a half-width must", |b| b.window.as_mut().unwrap().found.sides[0].alone = -1.0),
+            ("window.certificate.failing_at_most must", |b| {
+                b.window.as_mut().unwrap().found.certificate.failing_at_most = f64::NAN;
+            }),
             ("acceptance.sample.differing must", |b| sample(b).differing = 1.5),
             ("acceptance.sample.strata.share must lie", |b| sample(b).strata[0].share = -0.25),
             ("acceptance.sample.strata.share must add", |b| sample(b).strata[0].share = 0.5),
@@ -205,7 +236,7 @@ mod tests {
             ("acceptance.sample.descents must", |b| sample(b).descents = 7),
         ];
         for (message, spoil) in spoils {
-            let mut body = body();
+            let mut body = whole.clone();
             spoil(&mut body);
             let told = body.check().unwrap_err().to_string();
             assert!(told.starts_with(message), "{told} instead of {message}");

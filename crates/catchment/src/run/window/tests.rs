@@ -2,7 +2,7 @@ use super::*;
 use crate::design::Family;
 use crate::exec::Exec;
 use crate::pose::DofSet;
-use crate::study::testing::problem;
+use crate::problem::testing::problem;
 
 fn free(dofs: &[Dof]) -> DofSet {
     dofs.iter().copied().collect()

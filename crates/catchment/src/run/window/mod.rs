@@ -55,13 +55,6 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
-    /// How its poses are followed.
-    fn motions(&self) -> Result<descent::Settings, FrictionOutOfRange> {
-        descent::Settings::with_friction(self.friction)
-    }
-}
-
 /// The largest box of errors around zero that all dock, as far as exact motions show.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Window {
@@ -249,7 +242,7 @@ const LATER_CHANCE: f64 = 0.0002;
 /// use catchment::design::read;
 /// use catchment::exec::Exec;
 /// use catchment::problem::Problem;
-/// use catchment::study::window::{self, Settings};
+/// use catchment::run::window::{self, Settings};
 ///
 /// let text = "[connector]\nfamily = \"pyramid\"\n[alignment]\nfree = [\"x\", \"y\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
@@ -260,16 +253,25 @@ const LATER_CHANCE: f64 = 0.0002;
 /// # }
 /// ```
 pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window, WindowError> {
+    by(problem, settings, &descent::Settings::with_friction(settings.friction)?, exec)
+}
+
+/// The same by motions of one's own, whose friction is that of the settings.
+pub(super) fn by(
+    problem: &Problem,
+    settings: &Settings,
+    motions_by: &descent::Settings,
+    exec: &Exec,
+) -> Result<Window, WindowError> {
     let space = Space::of(problem, settings)?;
     let motions = settings.motions.unwrap_or_else(|| default_motions(problem));
     let settings = &Settings { motions: Some(motions), ..settings.clone() };
-    let motions_by = settings.motions()?;
-    let outcome_of = |error: &PoseError| descent::outcome(problem.pair(), error, &motions_by).outcome;
+    let outcome_of = |error: &PoseError| descent::outcome(problem.pair(), error, motions_by).outcome;
     let home = outcome_of(&PoseError::default());
     if home != Outcome::Aligned {
         return Err(WindowError::NotDocked { outcome: home });
     }
-    let mut search = Search::new(problem, space, settings.seed, &motions_by);
+    let mut search = Search::new(problem, space, settings.seed, motions_by);
     search.directions(exec)?;
     search.moves(exec)?;
     let mut redrawn = 0;
@@ -304,7 +306,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
         let half_width = half_widths[axis.index()];
         let mut reach = |others: [f64; 5], from: f64| {
             let space = Space::along(problem, axis, others);
-            let mut search = Search::new(problem, space, settings.seed, &motions_by);
+            let mut search = Search::new(problem, space, settings.seed, motions_by);
             let reach = search.reach(from, exec)?;
             followed += search.followed();
             Ok::<_, Cancelled>(reach)
@@ -319,7 +321,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Window
     let spare = |side: &&Side| side.beside.to / side.half_width;
     let tightest = axes.iter().filter(|side| side.half_width > 0.0 && !side.beside.is_border);
     let tightest = tightest.min_by(|a, b| spare(a).total_cmp(&spare(b))).map(|side| side.axis);
-    let worst = search.worst().map(|error| Worst::of(problem, error, &motions_by));
+    let worst = search.worst().map(|error| Worst::of(problem, error, motions_by));
     Ok(Window { settings: settings.clone(), axes, scale, worst, tightest, certificate, motions: followed })
 }
 
