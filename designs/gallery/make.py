@@ -12,9 +12,9 @@ from pathlib import Path
 HERE = Path(__file__).parent / "meshes"
 
 
-def revolved(profile, sides, turn=0.0):
+def revolved(profile, sides):
     """A closed surface around z: `profile` is a closed polygon of (radius, z) off the axis, counter-clockwise with radius to the right and z up."""
-    angles = [2 * pi * k / sides + turn for k in range(sides)]
+    angles = [2 * pi * k / sides for k in range(sides)]
     points = [(r * cos(a), r * sin(a), z) for a in angles for r, z in profile]
     count = len(profile)
     faces = []
@@ -33,10 +33,10 @@ def hollow(radius, sides):
 
 def obj(name, bodies):
     """Writes bodies into one file, an object each."""
-    lines, first = [f"# by designs/gallery/make.py, in mm"], 1
+    lines, first = ["# by designs/gallery/make.py, in mm"], 1
     for number, (points, faces) in enumerate(bodies):
         lines.append(f"o body{number}")
-        lines += ["v " + " ".join(f"{round(v, 3) + 0.0:g}" if abs(v) < 1e5 else "" for v in p) for p in points]
+        lines += ["v " + " ".join(f"{round(v, 3) + 0.0:g}" for v in p) for p in points]
         lines += ["f " + " ".join(str(first + k) for k in f) for f in faces]
         first += len(points)
     (HERE / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -58,18 +58,18 @@ def arc(radius, start, end, steps):
     return [(radius * cos(a), radius * sin(a)) for a in angles]
 
 
-def funnel(bottom, throat, mouth, depth, rim, sides, floor, turn=0.0):
-    """A funnel with its mouth at z = 0: a straight socket of `bottom` depth below a cone of `depth`, closed by a floor of `floor`."""
+def funnel(bottom, throat, mouth, depth, rim, sides, floor, narrow=0.0):
+    """A funnel with its mouth at z = 0: a socket of `bottom` depth that becomes narrower by `narrow`, below a cone of `depth`, closed by a floor of `floor`."""
     low = -depth - bottom
     # The floor is a disc of its own that the ring stands in.
-    wall = [(throat, low), (rim, low), (rim, 0.0), (mouth, 0.0), (throat, -depth)]
-    plate = revolved_solid([(rim, low - floor), (rim, low + 0.0)], sides, turn)
-    return [revolved(wall, sides, turn), plate]
+    wall = [(throat - narrow, low), (rim, low), (rim, 0.0), (mouth, 0.0), (throat, -depth)]
+    plate = revolved_solid([(rim, low - floor), (rim, low)], sides)
+    return [revolved(wall, sides), plate]
 
 
-def revolved_solid(levels, sides, turn=0.0):
+def revolved_solid(levels, sides):
     """A convex body around z: a polygon of this radius at each height, from below."""
-    angles = [2 * pi * k / sides + turn for k in range(sides)]
+    angles = [2 * pi * k / sides for k in range(sides)]
     points = [(r * cos(a), r * sin(a), z) for r, z in levels for a in angles]
     faces = [tuple(reversed(range(sides))), tuple(range((len(levels) - 1) * sides, len(levels) * sides))]
     for level in range(len(levels) - 1):
@@ -159,7 +159,7 @@ def main():
     # Radius 6.499 below, 7.5 at the mouth, 1.001 deep; a floor 20 below.
     obj("industreal-hole.obj", funnel(18.999, hollow(6.499, n), hollow(7.5, n), 1.001, 12.0, n, 2.0))
     n = 24
-    obj("drogue.obj", funnel(90.0, hollow(62.0, n), hollow(400.0, n), 338.0, 550.0, n, 20.0))
+    obj("drogue.obj", funnel(90.0, hollow(62.0, n), hollow(400.0, n), 338.0, 550.0, n, 20.0, 7.0))
     n = 16
     obj("pad-funnel.obj", funnel(1.0, hollow(4.5, n), hollow(22.4, n), 17.9, 26.0, n, 2.0))
     obj("trihedral.obj", [revolved([(0.3, -3.45), (14.0, -3.45), (14.0, 0.0), (7.2, 0.0)], 3), revolved_solid([(14.0, -10.0), (14.0, -3.45)], 3)])
@@ -171,8 +171,7 @@ def main():
     obj("hex-socket.obj", [revolved([(throat, -4.0), (6.5, -4.0), (6.5, 0.0), (mouth, 0.0), (throat, -0.57)], 6), revolved_solid([(6.5, -8.0), (6.5, -4.0)], 6)])
     key, tip = [f / 3**0.5 for f in (5.98, 5.2)]
     obj("hex-key.obj", [revolved_solid([(key, -12.0), (key, -0.4), (tip, 0.0)], 6)])
-    n = 12
-    hole = arc(hollow(31.75, n), -90, 90, 6), arc(hollow(31.75, n), 90, 270, 6)
+    hole = [arc(hollow(31.75, 24), start, start + 165, 11) for start in (-82.5, 97.5)]
     svg("corner-hole.svg", 180, 164, [[(89, 81), (-89, 81), (-89, -81), (89, -81)],
         [(x + 30.25, y) for x, y in hole[0]] + [(x - 30.25, y) for x, y in hole[1]]])
     bayonet()
