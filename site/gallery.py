@@ -70,13 +70,25 @@ def keep(run: dict) -> dict:
         "box": {axis["axis"]: axis["hi"] for axis in run["axes"]},
         "measure": prod(axis["hi"] - axis["lo"] for axis in run["axes"]),
         **{name: found[name] for name in names},
-        "tolerances": run["tolerances"],
+        "alone": {
+            side["axis"]: [
+                min(side["minus"], side["plus"]),
+                side["minus_reaches_border"] and side["plus_reaches_border"],
+            ]
+            for side in run["tolerances"]
+        },
         "warnings": [warning["message"] for warning in run["warnings"]],
     }
 
 
 def keep_window(window: dict) -> dict:
-    return {name: window[name] for name in ("sides", "tightest", "worst", "certificate", "warnings")}
+    worst = window["worst"]
+    return {
+        "half_widths": {side["axis"]: side["half_width"] for side in window["sides"]},
+        "tightest": window["tightest"],
+        "worst": None if worst is None else worst["outcome"],
+        "failing_at_most": window["certificate"]["failing_at_most"],
+    }
 
 
 ENDS = {"jammed": "jams", "missed": "misses", "undecided": "could not be followed to its end"}
@@ -101,13 +113,10 @@ def entry(stem: str, design: Path, found: dict) -> str:
             break
     words = " ".join(comment)
     about, _, source = words.partition(" Source: ")
-    sides = {side["axis"]: side for side in window["sides"]}
     rows = []
-    for alone in run["tolerances"]:
-        axis, side = alone["axis"], sides[alone["axis"]]
-        least = min(alone["minus"], alone["plus"])
-        at_border = "*" if alone["minus_reaches_border"] and alone["plus_reaches_border"] else ""
-        whole = told(side["half_width"], axis, width, unit)
+    for axis, (least, reaches) in run["alone"].items():
+        at_border = "*" if reaches else ""
+        whole = told(window["half_widths"][axis], axis, width, unit)
         tried = told(run["box"][axis], axis, width, unit)
         rows.append(f"| {axis} | {tried} | {told(least, axis, width, unit)}{at_border} | {whole} |")
     low, high = (100 * bound / run["measure"] for bound in run["sum_ci95"])
@@ -115,7 +124,7 @@ def entry(stem: str, design: Path, found: dict) -> str:
     share = lambda name: f"{100 * counts[name] / run['cells']:.0f} %"
     worst = window["worst"]
     ends = "" if worst is None else (
-        f" The nearest pose beyond it {ENDS[worst['outcome']]}; the tightest error is {window['tightest']}.")
+        f" The nearest pose beyond it {ENDS[worst]}; the tightest error is {window['tightest']}.")
     doubts = "".join(f"\n\n    {' '.join(warning.split())}" for warning in run["warnings"])
     said = f"\n\n!!! note \"What the program adds\"{doubts}" if doubts else ""
     return f"""## {run["name"][0].upper() + run["name"][1:]}

@@ -162,6 +162,8 @@ def main():
     obj("drogue.obj", funnel(90.0, hollow(62.0, n), hollow(400.0, n), 338.0, 550.0, n, 20.0, 7.0))
     n = 16
     obj("pad-funnel.obj", funnel(1.0, hollow(4.5, n), hollow(22.4, n), 17.9, 26.0, n, 2.0))
+    # Radius 5.25 for a pin of 5; the mouth is 3 wider and 3 deep.
+    obj("bushing.obj", funnel(9.0, hollow(5.25, n), hollow(8.25, n), 3.0, 14.0, n, 2.0, 0.2))
     obj("trihedral.obj", [revolved([(0.3, -3.45), (14.0, -3.45), (14.0, 0.0), (7.2, 0.0)], 3), revolved_solid([(14.0, -10.0), (14.0, -3.45)], 3)])
     obj("ball-coupler.obj", cup())
     obj("dock-funnel.obj", rectangular_funnel([(56, 56, 0), (56, 56, 20), (110, 90, 100)], (130, 110), 10))
