@@ -25,6 +25,22 @@ run *arguments:
 docs:
     cargo doc --locked --workspace --no-deps --all-features --open
 
+# the pages that the program writes, and the whole as a site in target/site (needs mkdocs-material)
+site:
+    cargo build --locked
+    python3 site/reference.py target/debug/catchment
+    python3 site/gallery.py --page
+    mkdocs build --strict
+
+# measures the designs of the gallery again: just gallery peg-in-hole
+gallery *designs:
+    cargo build --locked --release
+    python3 site/gallery.py target/release/catchment {{ designs }}
+
+# the archive of a release, made and tried
+archive:
+    release/build
+
 # fuzz one of the readers in fuzz/fuzz_targets: just fuzz stl 600
 fuzz target='design' seconds='60':
     fuzz/run {{ seconds }} {{ target }}

@@ -53,6 +53,7 @@ use std::path::PathBuf;
         catchment zraa design.toml              offsets corrected by sliding alone\n  \
         catchment classify design.toml          where it stands among published connectors\n  \
         catchment export design.toml --pose x=0.2 -o trial\n                                          a drop test for MuJoCo and Gazebo\n  \
+        catchment export out -o set.vti         a stored result for ParaView\n  \
         catchment solids design.toml --free x,y -o shape.vtp\n                                          where its halves overlap, for ParaView\n  \
         catchment reproduce 5.7                 a published table beside ours\n\n\
         Data goes to stdout, everything else to stderr. NO_COLOR is respected.\n\
@@ -136,7 +137,8 @@ impl DesignArgs {
     }
 }
 
-fn dofs(text: &str) -> Result<DofSet, String> {
+/// Reads names of errors.
+pub(crate) fn dofs(text: &str) -> Result<DofSet, String> {
     parse_dofs(text).map_err(|complaint| with_advice(&complaint))
 }
 

@@ -142,6 +142,11 @@ impl DropArgs {
         changes
     }
 
+    /// The first option that was given.
+    pub(crate) fn first_given(&self) -> Option<&'static str> {
+        self.changes().first().map(|change| change.option)
+    }
+
     /// Drop tests with these settings.
     ///
     /// # Errors

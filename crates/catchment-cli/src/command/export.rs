@@ -1,6 +1,13 @@
-//! `catchment export`: a drop test as world files of other engines.
+//! `catchment export`: what other programs read.
+//!
+//! ```text
+//!   a design  ──▶ a drop test as world files: MJCF for MuJoCo, SDF for Gazebo
+//!   a result  ──▶ the set over three axes for VTK and ParaView, or all cells as a table
+//! ```
 
-use crate::args::DesignArgs;
+mod set;
+
+use crate::args::{DesignArgs, dofs};
 use crate::drop_args::DropArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -8,6 +15,7 @@ use crate::output::{to_stderr, to_stdout, written};
 use crate::signals;
 use catchment::exec::Exec;
 use catchment::method::drop::export::{Scene, mjcf, sdf};
+use catchment::pose::DofSet;
 use catchment::poses::parse_pose;
 use catchment::report::folder::{Files, save_files};
 use catchment::report::schema::WarningReport;
@@ -15,28 +23,47 @@ use catchment::report::{ExportBody, ExportReport, write};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Write a drop test for other engines: MJCF for MuJoCo, SDF for Gazebo
+/// Write what other programs read: a stored result for ParaView and tables, a drop test for MuJoCo and Gazebo
 ///
-/// The same pieces, mass, inertia, damping, friction, force, start and locked degrees of freedom as `--method drop`, so that
-/// whoever doubts it can run it again. A comment in each file says the units and what was set.
+/// Of a result of `run -o`: the accepted set over up to three of its axes as VTK image data or as its border, or all cells as a table.
+/// Of a design: a drop test, with the same pieces, mass, inertia, damping, friction, force, start and locked degrees of freedom as `--method
+/// drop`, so that whoever doubts it can run it again. A comment in each file says the units and what was set.
 #[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  \
+#[command(
+    after_long_help = "Examples:\n  \
+    catchment export out -o set.vti                       every cell: outcome, share, height\n  \
+    catchment export out -o set.vtp --axes x,y,yaw --at \"pitch=5 deg\"\n                                                        the border of the accepted set\n  \
+    catchment export out -o set.csv                       a line per cell, for pandas\n  \
     catchment export design.toml --pose \"x=0.2,pitch=10 deg\" -o trial\n  \
     catchment export design.toml --pose x=0.1 --friction 0.3 -o trial\n  \
     python -m mujoco.viewer --mjcf=trial/trial.xml      then load key 0\n  \
     gz sim trial/trial.sdf\n\n\
-    -o DIR: trial.xml (MJCF, all inside), trial.sdf and the meshes that it names. Pieces are convex; a mesh with undercuts is\n\
-    refused, because other engines would replace it by its convex hull.")]
+    Of a result, -o writes .vti, .vtp or .csv, lengths in D and angles in radians.\n\
+    Of a design, -o DIR: trial.xml (MJCF, all inside), trial.sdf and the meshes that it names. Pieces are convex; a mesh with undercuts is\n\
+    refused, because other engines would replace it by its convex hull.",
+    mut_arg("path", |path| path.value_name("DESIGN|RESULT")
+        .help("The design file, a folder written by `run -o`, or its NAME.zarr")
+        .value_hint(clap::ValueHint::AnyPath))
+)]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
     design: DesignArgs,
-    /// The pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
+    /// Of a design: the pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
-    pose: String,
-    /// Write into this folder
-    #[arg(short, long, value_name = "DIR", value_hint = clap::ValueHint::DirPath)]
+    pose: Option<String>,
+    /// Of a result: up to three axes to show, such as x,y,yaw [default: the first three]
+    #[arg(long, value_name = "AXES", value_parser = dofs)]
+    axes: Option<DofSet>,
+    /// Of a result: where along the axes that are not shown, such as "pitch=5 deg"; what is not named is 0
+    #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
+    at: Option<String>,
+    /// Write into this folder, or of a result into this file
+    #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::AnyPath)]
     output: PathBuf,
-    /// Print what was written as JSON
+    /// Of a result: replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    /// Of a design: print what was written as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -52,11 +79,25 @@ const KIND: &str = "export";
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     let exec = Exec::new();
     signals::listen(&exec.cancel_flag())?;
+    if args.design.path.is_dir() {
+        return set::run(args, &exec);
+    }
+    let of_a_result = [("--axes", args.axes.is_some()), ("--at", args.at.is_some()), ("--force", args.force)];
+    if let Some((option, _)) = of_a_result.into_iter().find(|(_, given)| *given) {
+        let help = "name a folder that `run -o` wrote, or its NAME.zarr".to_owned();
+        return Err(Failure::with_help(format!("{option} is about a stored result"), Some(help)));
+    }
+    let Some(pose) = &args.pose else {
+        let help = "--pose says where its drop test starts; a stored result needs none".to_owned();
+        return Err(Failure::with_help(
+            "a design is exported with the pose error of a trial".to_owned(),
+            Some(help),
+        ));
+    };
     write::check_folder(&args.output, KIND)?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
-    let error = parse_pose(&args.pose, design)
-        .map_err(|findings| Failure::of_option("--pose", &args.pose, findings))?;
+    let error = parse_pose(pose, design).map_err(|findings| Failure::of_option("--pose", pose, findings))?;
     let settings = args.drop.settings()?;
     let scene = Scene::new(&design.name, pair, &settings, &error)?;
     let world = sdf::write(&scene)?;

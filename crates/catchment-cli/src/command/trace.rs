@@ -14,7 +14,7 @@ use catchment::pose::PoseError;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
 use catchment::report::schema::WarningReport;
-use catchment::report::{LeverReport, TraceReport, csv, figure};
+use catchment::report::{LeverReport, TraceReport, csv, figure, gltf, vtk};
 use clap::{Args, ValueEnum};
 
 /// Follow one pose from first contact to its end
@@ -27,11 +27,12 @@ use clap::{Args, ValueEnum};
 #[command(after_long_help = "Examples:\n  \
     catchment trace design.toml --pose \"x=0.2,pitch=10 deg\"\n  \
     catchment trace design.toml --pose \"x=5 mm\" -o trace.png\n  \
+    catchment trace design.toml --pose \"x=5 mm\" -o trace.glb       an animation, for browsers, Blender and slides\n  \
     catchment trace design.toml --pose \"x=0.2,yaw=0.3\" --json | jq .outcome\n  \
     catchment trace x-face.toml --cor=-0.5 --pose \"x=0.2,pitch=10 deg\" --method kinematic -o levers.svg\n  \
     catchment trace design.toml --pose \"x=0.2,pitch=10 deg\" --method drop --damping 10 --speed 2\n\n\
     Lengths are in D and angles in radians unless they have a unit. -o writes .png and .svg (pictures), .csv (a \
-    line per contact point) and .json.")]
+    line per contact point), .json, .vtp (way, contacts and halves for ParaView) and .glb (glTF animation, in metres).")]
 pub(crate) struct TraceArgs {
     #[command(flatten)]
     design: DesignArgs,
@@ -61,8 +62,13 @@ enum By {
     Drop,
 }
 
+/// The endings of its files; the last two show motions.
+const KINDS: [&str; 6] = ["png", "svg", "csv", "json", "vtp", "glb"];
+
 pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
-    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
+    // A first contact is no motion.
+    let known = if args.method == By::Kinematic { &KINDS[..4] } else { &KINDS };
+    let kind = args.file.kind(known)?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
     let error = parse_pose(&args.pose, design)
@@ -95,6 +101,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
+        Some(kind @ ("vtp" | "glb")) => args.write_motion(kind, &report, &problem)?,
         Some(picture) => args.file.draw(picture, &figure::trajectory(design, problem.connector(), &path)?)?,
         None => {}
     }
@@ -119,6 +126,7 @@ fn dropped(
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,
+        Some(kind @ ("vtp" | "glb")) => args.write_motion(kind, &report, problem)?,
         Some(picture) => {
             args.file.draw(picture, &figure::trajectory(design, problem.connector(), &path.trajectory())?)?;
         }
@@ -127,4 +135,16 @@ fn dropped(
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
     to_stderr(&said);
     Ok(ExitStatus::Done)
+}
+
+impl TraceArgs {
+    /// Writes the motion for VTK or as an animation.
+    fn write_motion(&self, kind: &str, report: &TraceReport, problem: &Problem) -> Result<(), Failure> {
+        let connector = problem.connector();
+        let written =
+            if kind == "glb" { gltf::glb(report, connector) } else { vtk::motion(report, connector) };
+        let bytes = written
+            .ok_or_else(|| Failure::with_help("the halves never met, there is no path".to_owned(), None))?;
+        self.file.write(&bytes)
+    }
 }

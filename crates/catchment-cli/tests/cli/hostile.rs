@@ -46,7 +46,7 @@ fn names_that_steer_a_terminal_reach_none() {
     let home = home();
     let few = ["--method", "flood", "--resolution", "5"];
     let run = |more: &[&'static str]| [&["run", "@.toml"], &few[..], more].concat();
-    let good: [Vec<&str>; 17] = [
+    let good: [Vec<&str>; 19] = [
         vec!["check", "@.toml"],
         vec!["check", "@.toml", "--json"],
         run(&[]),
@@ -63,6 +63,8 @@ fn names_that_steer_a_terminal_reach_none() {
         vec!["trace", "@.toml", "--pose", "x=0.1", "-o", "@.svg"],
         vec!["trace", "@.toml", "--pose", "x=0.1", "--json"],
         vec!["export", "@.toml", "--pose", "x=0.1", "-o", "@trial"],
+        vec!["export", "@.zarr", "-o", "@.vti"],
+        vec!["trace", "@.toml", "--pose", "x=0.1", "-o", "@.glb"],
         vec!["run", "@.toml", "--sensitivity", "--samples", "20"],
     ];
     for args in good {

@@ -119,3 +119,24 @@ fn a_preset_sets_what_is_not_said_beside_it() {
     assert_eq!(exported.status.code(), Some(2));
     assert!(!Path::new(&home.path().join("trial")).exists());
 }
+
+/// The run writes what `export` writes of its folder, to the byte; a second time only with `--force`.
+#[test]
+fn a_set_is_the_same_from_the_run_and_from_its_folder() {
+    let home = home();
+    let read = |name: &str| fs::read(home.path().join(name)).unwrap();
+    let grid = ["run", "v.toml", "--resolution", "8", "--samples", "0"];
+    let told = run(home.path(), &[&grid[..], &["-o", "out"]].concat());
+    assert!(told.starts_with("exit 0\n"), "{told}");
+    for ending in ["vti", "vtp", "csv"] {
+        let [straight, later] = ["straight", "later"].map(|name| format!("{name}.{ending}"));
+        assert!(run(home.path(), &[&grid[..], &["-o", &straight]].concat()).starts_with("exit 0\n"));
+        let export = ["export", "out", "-o", &later];
+        let told = run(home.path(), &export);
+        assert!(told.starts_with("exit 0\n"), "{told}");
+        assert_eq!(told.contains("of 64 cells"), ending != "csv", "{told}");
+        assert_eq!(read(&straight), read(&later), "{ending}");
+        assert!(run(home.path(), &export).contains("--force replaces it"));
+        assert!(run(home.path(), &[&export[..], &["--force"]].concat()).starts_with("exit 0\n"));
+    }
+}

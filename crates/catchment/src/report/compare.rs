@@ -151,8 +151,8 @@ pub fn compare(
     Ok(Found { report, picture })
 }
 
-/// The Zarr group that a path stands for.
-fn group(path: &Path) -> PathBuf {
+/// The Zarr group that a path stands for: the one in the folder of a run, or the path itself.
+pub fn group(path: &Path) -> PathBuf {
     let inside = path.join(RESULT);
     if inside.is_dir() { inside } else { path.to_owned() }
 }

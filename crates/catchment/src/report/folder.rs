@@ -34,6 +34,9 @@ pub enum SaveError {
     #[cfg(feature = "zarr")]
     #[error(transparent)]
     Zarr(#[from] super::zarr::ZarrError),
+    /// The set cannot be shown to another program so.
+    #[error(transparent)]
+    View(#[from] super::vtk::ViewError),
     /// A table has no CSV form.
     #[error(transparent)]
     Csv(#[from] csv::Error),

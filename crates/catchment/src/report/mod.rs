@@ -5,6 +5,7 @@
 //!   Acceptance ───┼─ table    the same for eyes, in 80 columns
 //!   merit         ├─ figure   PNG and SVG (feature `figure`), with the numbers of the report
 //!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
+//!                 ┊            vtk (ParaView), gltf (viewers), cells (a table): for other tools
 //!                       └──▶  write: complete or not at all
 //!
 //!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
@@ -20,6 +21,7 @@ mod answer;
 mod bench;
 #[cfg(feature = "zarr")]
 mod bounded;
+mod cells;
 #[cfg(feature = "drop")]
 mod chance;
 mod check;
@@ -35,6 +37,7 @@ mod faces;
 pub mod figure;
 pub mod folder;
 mod friction;
+pub mod gltf;
 mod hold;
 mod jams;
 mod lever;
@@ -46,6 +49,7 @@ mod rests;
 mod save;
 pub mod schema;
 mod sensitivity;
+pub mod set;
 mod slices;
 pub mod solids;
 mod success;
@@ -55,6 +59,7 @@ pub mod text;
 mod trajectory;
 mod trials;
 mod validation;
+pub mod vtk;
 mod window;
 pub mod write;
 #[cfg(feature = "zarr")]
@@ -62,6 +67,7 @@ pub mod zarr;
 mod zraa;
 
 pub use answer::UnanswerableError;
+pub use cells::cells;
 #[cfg(feature = "drop")]
 pub use chance::{
     AtSpeedReport, ChanceBody, ChanceReport, CircumstanceReport, MapReport, OverallReport, PoseChanceReport,

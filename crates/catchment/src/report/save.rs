@@ -4,13 +4,16 @@
 //!   save           DIR/report.json, DIR/result.zarr, and every picture as .png and .svg
 //!   save_group     NAME.zarr, the Zarr group alone
 //!   save_pictures  DIR, every picture alone
+//!   save_set       one file for another program: NAME.vti, NAME.vtp, NAME.csv
 //! ```
 
 use super::figure::Drawn;
 use super::folder::{REPORT, RESULT, SaveError, encode, save_files, write_all};
+use super::vtk::View;
 use super::write::{self, WriteError};
-use super::{Report, SlicesReport, SweepReport, zarr};
+use super::{Report, SlicesReport, SweepReport, set, zarr};
 use crate::exec::Exec;
+use crate::pose::PoseError;
 use crate::problem::Problem;
 use crate::run::{Answer, RunError};
 use crate::study::slices::Slices;
@@ -75,6 +78,16 @@ impl Answer {
         Ok(Saved { pictures: drawn.pictures.len(), left_out: drawn.left_out.clone() })
     }
 
+    /// Writes the set alone, over its first three axes where it has more: a file for another program, which must not exist.
+    ///
+    /// # Errors
+    /// Whatever the system refuses, or the set cannot be shown so. Nothing is left behind.
+    pub fn save_set(&self, path: &Path, kind: set::Kind, exec: &Exec) -> Result<(), SaveError> {
+        let heights = self.layers().heights;
+        let view = View::new(&self.acceptance, heights, None, &PoseError::default())?;
+        Ok(write::file(path, &kind.bytes(&view, &self.acceptance, heights, exec)?, false)?)
+    }
+
     fn layers(&self) -> zarr::Layers<'_> {
         zarr::Layers {
             heights: self.by_products.landscape.as_ref().map(|landscape| &landscape.heights[..]),
@@ -131,6 +144,8 @@ pub enum Target<'a> {
     Group(&'a Path),
     /// Pictures alone, into a folder.
     Pictures(&'a Path),
+    /// The set alone, as a file for another program.
+    Set(&'a Path, set::Kind),
 }
 
 impl Target<'_> {
@@ -146,6 +161,7 @@ impl Target<'_> {
             Self::Folder(path) => write::check_folder(path, RUN),
             Self::Group(path) => write::check_folder(path, zarr::KIND),
             Self::Pictures(path) => write::check_folder(path, PICTURES),
+            Self::Set(path, _) => write::check_file(path, false),
         }
     }
 }

@@ -8,7 +8,8 @@ use crate::design::Design;
 use crate::method::descent::{Settings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use crate::method::drop;
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, PoseError, face_from_cor};
+use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -74,6 +75,15 @@ impl From<&Waypoint> for WaypointReport {
         let touch = |t: &Touch| TouchReport { point_d: t.point.to_array(), normal: t.normal.to_array() };
         let touches = w.touches.iter().map(touch).collect();
         Self { travelled_d: w.travelled, time_s: None, error: w.error, height_d: w.height, touches }
+    }
+}
+
+impl WaypointReport {
+    /// Rotation of the moving half, and the position of its face centre in the world frame, in D; `cor` is that of the design.
+    pub fn frame(&self, cor: f64) -> (DMat3, DVec3) {
+        let rotation = self.error.rotation();
+        let face = face_from_cor(&rotation, cor);
+        (rotation, DVec3::new(self.error.x, self.error.y, self.height_d + face.z))
     }
 }
 
@@ -234,7 +244,6 @@ mod tests {
     use super::super::schema::testing::design;
     use super::*;
     use crate::pose::DofSet;
-    use glam::DVec3;
 
     fn report(waypoints: Vec<Waypoint>) -> TraceReport {
         let mut design = design([Dof::X, Dof::Pitch].into_iter().collect::<DofSet>());

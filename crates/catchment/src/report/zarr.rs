@@ -18,7 +18,7 @@ mod read;
 #[cfg(feature = "figure")]
 mod sweep;
 
-pub use read::read;
+pub use read::{read, read_heights};
 #[cfg(feature = "figure")]
 pub(super) use sweep::fill as fill_sweep;
 

@@ -6,6 +6,7 @@ use catchment::exec::Exec;
 use catchment::report::Target;
 use catchment::report::figure::Drawn;
 use catchment::report::folder::{REPORT, RESULT, StudyFolder};
+use catchment::report::set::Kind;
 use catchment::report::write;
 use catchment::run::Answer;
 use clap::Args;
@@ -14,8 +15,9 @@ use std::path::{Path, PathBuf};
 /// Where the files of a run go.
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
-    /// Write pictures, report.json and result.zarr into this folder; NAME.zarr: only that group
-    #[arg(short, long, value_name = "DIR|NAME.zarr", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
+    /// Write pictures, report.json and result.zarr into this folder; NAME.zarr: only that group; NAME.vti, .vtp or .csv: only the set, for
+    /// ParaView or as a table (see `export`)
+    #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
     output: Option<PathBuf>,
     /// Write only the pictures into this folder
     #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
@@ -48,8 +50,11 @@ impl PlaceArgs {
                 return Err(Failure::with_help(message.to_owned(), help));
             }
         }
-        let output =
-            output.map(|path| if is_group(path) { Target::Group(path) } else { Target::Folder(path) });
+        let output = output.map(|path| match Kind::of(path) {
+            Some(kind) => Target::Set(path, kind),
+            None if is_group(path) => Target::Group(path),
+            None => Target::Folder(path),
+        });
         let targets: Vec<Target> = figures.map(Target::Pictures).into_iter().chain(output).collect();
         targets.iter().try_for_each(Target::check)?;
         Ok(Targets(targets))
@@ -71,7 +76,7 @@ impl PlaceArgs {
 impl Targets<'_> {
     /// Whether pictures are drawn.
     pub(super) fn draw(&self) -> bool {
-        self.0.iter().any(|target| !matches!(target, Target::Group(_)))
+        self.0.iter().any(|target| !matches!(target, Target::Group(_) | Target::Set(..)))
     }
 
     /// Whether the heights over the grid are written.
@@ -92,6 +97,11 @@ impl Targets<'_> {
                 }
                 Target::Group(path) => {
                     answer.save_group(path, exec)?;
+                    written(path);
+                    format!("wrote {}", path.display())
+                }
+                Target::Set(path, kind) => {
+                    answer.save_set(path, *kind, exec)?;
                     written(path);
                     format!("wrote {}", path.display())
                 }

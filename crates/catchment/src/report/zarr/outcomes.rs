@@ -1,7 +1,7 @@
-//! The outcomes of a group, read back: only what this program writes, and never more than the report announces.
+//! The outcomes of a group, and its heights, read back: only what this program writes, and never more than the report announces.
 //!
 //! ```text
-//!   outcome/zarr.json   must be what is written: u8 over the report's cells, its chunks, gzip
+//!   outcome/zarr.json   must be what is written: u8 (heights: f32) over the report's cells, its chunks, gzip
 //!   outcome/c/i/j/…     one chunk after the other: whole rows, so each goes on where the one before it ended
 //! ```
 //!
@@ -37,49 +37,71 @@ impl From<Cancelled> for Refused {
 
 /// The outcomes over `shape`, row-major; their number has been compared with the memory allowed.
 pub(super) fn read(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Vec<Outcome>, Refused> {
-    let folder = folder.join("outcome");
-    check_metadata(&folder.join("zarr.json"), shape)?;
+    cells(folder, "outcome", "uint8", shape, exec, |[code]: [u8; 1]| {
+        let outcome = Outcome::ALL.into_iter().find(|outcome| *outcome as u8 == code);
+        outcome.ok_or_else(|| format!("{code} is the code of no outcome"))
+    })
+}
+
+/// The heights over `shape`, row-major, in D, NaN without contact; `None` of a group that has none.
+pub(super) fn heights(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Option<Vec<f32>>, Refused> {
+    if !folder.join("height").is_dir() {
+        return Ok(None);
+    }
+    cells(folder, "height", "float32", shape, exec, |bytes: [u8; 4]| Ok(f32::from_le_bytes(bytes))).map(Some)
+}
+
+/// An array of numbers of `N` bytes over `shape`, each as `value` makes it.
+fn cells<T, const N: usize>(
+    folder: &Path,
+    name: &str,
+    kind: &str,
+    shape: &[usize],
+    exec: &Exec,
+    value: impl Fn([u8; N]) -> Result<T, String>,
+) -> Result<Vec<T>, Refused> {
+    let folder = folder.join(name);
+    check_metadata(&folder.join("zarr.json"), shape, kind)?;
     let chunk = chunk_shape(shape);
     let grid: Vec<usize> = shape.iter().zip(&chunk).map(|(n, c)| n.div_ceil(*c)).collect();
     // The dimension along which the last chunk ends early: before it chunks hold one row, behind it all.
     let cut = chunk.iter().zip(shape).rposition(|(c, n)| c < n).unwrap_or_default();
     let row: usize = chunk[cut + 1..].iter().product();
     let cells: usize = chunk.iter().product();
-    let mut outcomes = Vec::new();
+    let mut found = Vec::new();
     let most: usize = shape.iter().product();
-    if outcomes.try_reserve_exact(most).is_err() {
+    if found.try_reserve_exact(most).is_err() {
         return Err(Refused::Content(folder, format!("there is no memory for its {most} cells")));
     }
     for number in 0..grid.iter().product() {
         exec.check()?;
         let place = unravel(number, &grid);
         let path = place.iter().fold(folder.join("c"), |path, k| path.join(k.to_string()));
-        let codes = unpacked(&path, cells).map_err(|reason| Refused::Content(path.clone(), reason))?;
+        let refused = |reason| Refused::Content(path.clone(), reason);
+        let bytes = unpacked(&path, cells, N).map_err(refused)?;
         let inside = (shape[cut] - place[cut] * chunk[cut]).min(chunk[cut]) * row;
-        for code in &codes[..inside] {
-            let outcome = Outcome::ALL.into_iter().find(|outcome| *outcome as u8 == *code);
-            let unknown = || Refused::Content(path.clone(), format!("{code} is the code of no outcome"));
-            outcomes.push(outcome.ok_or_else(unknown)?);
+        for bytes in bytes.as_chunks().0.iter().take(inside) {
+            found.push(value(*bytes).map_err(refused)?);
         }
     }
-    Ok(outcomes)
+    Ok(found)
 }
 
-/// The cells of a chunk.
-fn unpacked(path: &Path, cells: usize) -> Result<Vec<u8>, String> {
-    let packed = bounded::read(path, CHUNK_BYTES).map_err(|error| error.to_string())?;
-    let mut codes = Vec::with_capacity(cells);
-    let unpacking = GzDecoder::new(&packed[..]).take(cells as u64 + 1).read_to_end(&mut codes);
+/// The bytes of a chunk, `width` of every cell.
+fn unpacked(path: &Path, cells: usize, width: usize) -> Result<Vec<u8>, String> {
+    let packed = bounded::read(path, CHUNK_BYTES * width as u64).map_err(|error| error.to_string())?;
+    let mut bytes = Vec::with_capacity(cells * width);
+    let unpacking = GzDecoder::new(&packed[..]).take((cells * width) as u64 + 1).read_to_end(&mut bytes);
     unpacking.map_err(|error| format!("it is no gzip stream: {error}"))?;
-    match codes.len() {
-        found if found == cells => Ok(codes),
-        found if found > cells => Err(format!("it unpacks to more than its {cells} cells")),
-        found => Err(format!("it unpacks to {found} of {cells} cells")),
+    match bytes.len() {
+        found if found == cells * width => Ok(bytes),
+        found if found > cells * width => Err(format!("it unpacks to more than its {cells} cells")),
+        found => Err(format!("it unpacks to {} of {cells} cells", found / width)),
     }
 }
 
 /// Refuses an array that this program would not have written over these cells.
-fn check_metadata(path: &Path, shape: &[usize]) -> Result<(), Refused> {
+fn check_metadata(path: &Path, shape: &[usize], kind: &str) -> Result<(), Refused> {
     let bad = |reason: String| Refused::Content(path.to_owned(), reason);
     let bytes = bounded::read(path, METADATA_BYTES).map_err(|error| bad(error.to_string()))?;
     let found: Value = serde_json::from_slice(&bytes).map_err(|error| bad(error.to_string()))?;
@@ -92,7 +114,7 @@ fn check_metadata(path: &Path, shape: &[usize]) -> Result<(), Refused> {
     for (what, given, expected) in [
         ("zarr_format", &found["zarr_format"], json!(3)),
         ("node_type", &found["node_type"], json!("array")),
-        ("data_type", &found["data_type"], json!("uint8")),
+        ("data_type", &found["data_type"], json!(kind)),
         ("chunk_grid", &found["chunk_grid"]["name"], json!("regular")),
         ("chunk_shape", &found["chunk_grid"]["configuration"]["chunk_shape"], json!(chunk_shape(shape))),
         ("chunk_key_encoding", &found["chunk_key_encoding"]["name"], json!("default")),

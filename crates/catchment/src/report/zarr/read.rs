@@ -68,6 +68,20 @@ pub fn read(path: &Path, exec: &Exec) -> Result<(Report, Acceptance), ZarrError>
     Ok((report, acceptance))
 }
 
+/// The heights of first contact of a group over the grid of its outcomes, in D, NaN without contact; `None` where they were not kept.
+///
+/// # Errors
+/// What is there is no array over this grid that this program would have written, or it does not fit into the memory allowed.
+pub fn read_heights(path: &Path, grid: &Grid, exec: &Exec) -> Result<Option<Vec<f32>>, ZarrError> {
+    let bytes = (size_of::<f32>() as u64).saturating_mul(grid.len() as u64);
+    exec.ensure_fits("the heights of a stored result", bytes, |_| vec![Advice::MoreMemory])?;
+    let shape: Vec<usize> = grid.axes.iter().rev().map(|axis| axis.cells).collect();
+    outcomes::heights(path, &shape, exec).map_err(|refused| match refused {
+        Refused::Content(path, reason) => ZarrError::Content { path, reason },
+        Refused::Cancelled(cancelled) => cancelled.into(),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::{Layers, write};
@@ -116,6 +130,29 @@ mod tests {
         let nowhere = read(home.path(), &Exec::new()).unwrap_err().to_string();
         assert!(nowhere.starts_with("cannot read"), "{nowhere}");
     }
+
+    #[test]
+    fn heights_that_were_kept_are_read_to_the_bit() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("out.zarr");
+        let design = design([Dof::X, Dof::Yaw].into_iter().collect());
+        let acceptance = blob(&design, 7);
+        let heights: Vec<f32> =
+            (0..49).map(|k| if k == 7 { f32::NEG_INFINITY } else { 0.1 * k as f32 }).collect();
+        let report = Report::new(&design, &acceptance, Value::Null, None, &Exec::new()).unwrap();
+        let layers = Layers { heights: Some(&heights), watersheds: None };
+        write(&path, &report, &acceptance, &layers, &Exec::new()).unwrap();
+        let grid = acceptance.grid().unwrap();
+        let read = read_heights(&path, grid, &Exec::new()).unwrap().unwrap();
+        assert!(read.iter().zip(&heights).all(|(a, b)| a == b || (a.is_nan() && b.is_infinite())));
+        let chunk = path.join("height/c/0/0");
+        std::fs::write(&chunk, packed(&[0; 4 * 49 + 1])).unwrap();
+        let said = read_heights(&path, grid, &Exec::new()).unwrap_err().to_string();
+        assert!(said.contains("unpacks to more than its 49 cells"), "{said}");
+        std::fs::remove_dir_all(path.join("height")).unwrap();
+        assert!(read_heights(&path, grid, &Exec::new()).unwrap().is_none());
+    }
+
     /// A group of 7 × 7 cells, and what is said of it when a file of it is replaced.
     fn spoilt(file: &str, bytes: &[u8]) -> String {
         let home = tempfile::tempdir().unwrap();

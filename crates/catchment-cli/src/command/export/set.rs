@@ -1,0 +1,61 @@
+//! A stored result for other programs.
+
+use super::ExportArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::output::{check_place, tell, write_file};
+use catchment::exec::Exec;
+use catchment::pose::PoseError;
+use catchment::poses::parse_pose;
+use catchment::report::compare::group;
+use catchment::report::set::{ENDINGS, Kind};
+use catchment::report::vtk::View;
+use catchment::report::zarr;
+
+pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure> {
+    let Some(kind) = Kind::of(&args.output) else {
+        let message = format!("cannot tell what to write into {}", args.output.display());
+        return Err(Failure::with_help(
+            message,
+            Some(format!("let its name end in .{}", ENDINGS.join(", ."))),
+        ));
+    };
+    if let Some(option) = of_a_design(args) {
+        let help = "name a design file, or leave the option out".to_owned();
+        return Err(Failure::with_help(
+            format!("{option} is about a design, and this is a result"),
+            Some(help),
+        ));
+    }
+    if kind == Kind::Table && (args.axes.is_some() || args.at.is_some()) {
+        let help = "leave --axes and --at out, or write .vti".to_owned();
+        return Err(Failure::with_help("a table has every axis of the result".to_owned(), Some(help)));
+    }
+    check_place(&args.output, args.force)?;
+    let path = group(&args.design.path);
+    let (report, acceptance) = zarr::read(&path, exec)?;
+    let at = match &args.at {
+        Some(text) => {
+            parse_pose(text, &report.design).map_err(|findings| Failure::of_option("--at", text, findings))?
+        }
+        None => PoseError::default(),
+    };
+    let heights = match acceptance.grid() {
+        Some(grid) => zarr::read_heights(&path, grid, exec)?,
+        None => None,
+    };
+    let view = View::new(&acceptance, heights.as_deref(), args.axes, &at)?;
+    let bytes = kind.bytes(&view, &acceptance, heights.as_deref(), exec)?;
+    write_file(&args.output, &bytes, args.force)?;
+    let told = if kind == Kind::Table { String::new() } else { view.table() };
+    tell(&told, &[format!("wrote {}", args.output.display())])
+}
+
+/// The first option that only a drop test has.
+fn of_a_design(args: &ExportArgs) -> Option<&'static str> {
+    let own = [("--pose", args.pose.is_some()), ("--json", args.json)];
+    own.into_iter()
+        .find_map(|(option, given)| given.then_some(option))
+        .or_else(|| args.design.changed().next().map(|(option, _)| option))
+        .or_else(|| args.drop.first_given())
+}

@@ -1,0 +1,213 @@
+"""The gallery: runs every design of designs/gallery and writes its numbers, its picture and the page.
+
+    python3 site/gallery.py target/release/catchment            all of it, again (minutes)
+    python3 site/gallery.py target/release/catchment peg-in-hole    one of them
+    python3 site/gallery.py --page                              only docs/gallery.md, from the numbers that are stored
+    python3 site/gallery.py --check                             says what is out of date; the program is not run
+
+The numbers lie in site/gallery.json beside the SHA-256 of the design they belong to, and of the files that it names.
+"""
+
+import hashlib
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from math import degrees, prod
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DESIGNS = ROOT / "designs/gallery"
+NUMBERS = ROOT / "site/gallery.json"
+PICTURES = ROOT / "docs/gallery"
+PAGE = ROOT / "docs/gallery.md"
+
+RUN = ["--samples", "1000"]
+CELLS = {1: "200", 2: "60", 3: "24"}
+WINDOW = ["--motions", "1000"]
+
+
+def digest(design: Path) -> str:
+    """Of a design file and of the meshes and drawings it names."""
+    text = design.read_text(encoding="utf-8")
+    named = sorted(set(re.findall(r'"(meshes/[^"]+)"', text)))
+    whole = hashlib.sha256(text.encode())
+    for name in named:
+        whole.update((DESIGNS / name).read_bytes())
+    return whole.hexdigest()
+
+
+def measured(program: str, design: Path) -> dict:
+    """What the program says of a design; its picture goes into docs/gallery."""
+    def call(*args: str) -> dict:
+        done = subprocess.run([program, *args, "--json"], capture_output=True, text=True, cwd=ROOT)
+        if done.returncode != 0:
+            raise SystemExit(f"{design.name}: {' '.join(args)}\n{done.stderr}")
+        return json.loads(done.stdout)
+
+    name = str(design.relative_to(ROOT))
+    with tempfile.TemporaryDirectory() as home:
+        free = re.search(r"^free = \[(.*)\]", design.read_text(encoding="utf-8"), re.M)[1]
+        cells = CELLS[free.count('"') // 2]
+        run = call("run", name, "--resolution", cells, *RUN, "-o", f"{home}/out")
+        window = call("window", name, *WINDOW)
+        for kind in ("overview", "solids"):
+            picture = Path(home) / f"out/{kind}.png"
+            if picture.exists():
+                (PICTURES / f"{design.stem}.png").write_bytes(picture.read_bytes())
+                break
+    return {"digest": digest(design), "run": keep(run), "window": keep_window(window)}
+
+
+def keep(run: dict) -> dict:
+    found = run["acceptance"]
+    names = ["sum", "sum_ci95", "fraction", "cells", "outcomes"]
+    return {
+        "name": run["design"]["name"],
+        "width": run["design"]["width"],
+        "unit": run["design"]["unit"],
+        "box": {axis["axis"]: axis["hi"] for axis in run["axes"]},
+        "measure": prod(axis["hi"] - axis["lo"] for axis in run["axes"]),
+        **{name: found[name] for name in names},
+        "alone": {
+            side["axis"]: [
+                min(side["minus"], side["plus"]),
+                side["minus_reaches_border"] and side["plus_reaches_border"],
+            ]
+            for side in run["tolerances"]
+        },
+        "warnings": [warning["message"] for warning in run["warnings"]],
+    }
+
+
+def keep_window(window: dict) -> dict:
+    worst = window["worst"]
+    return {
+        "half_widths": {side["axis"]: side["half_width"] for side in window["sides"]},
+        "tightest": window["tightest"],
+        "worst": None if worst is None else worst["outcome"],
+        "failing_at_most": window["certificate"]["failing_at_most"],
+    }
+
+
+ENDS = {"jammed": "jams", "missed": "misses", "undecided": "could not be followed to its end"}
+
+
+def told(value: float, axis: str, width: float, unit: str) -> str:
+    """A length in the unit of the design, an angle in degrees."""
+    if axis in ("x", "y"):
+        return f"±{value * width:.3g} {unit}"
+    return f"±{degrees(value):.3g}°"
+
+
+def entry(stem: str, design: Path, found: dict) -> str:
+    run, window = found["run"], found["window"]
+    width, unit = run["width"], run["unit"]
+    text = design.read_text(encoding="utf-8")
+    comment = []
+    for line in text.splitlines():
+        if line.startswith("# "):
+            comment.append(line[2:])
+        elif not line.startswith("#:"):
+            break
+    words = " ".join(comment)
+    about, _, source = words.partition(" Source: ")
+    rows = []
+    for axis, (least, reaches) in run["alone"].items():
+        at_border = "*" if reaches else ""
+        whole = told(window["half_widths"][axis], axis, width, unit)
+        tried = told(run["box"][axis], axis, width, unit)
+        rows.append(f"| {axis} | {tried} | {told(least, axis, width, unit)}{at_border} | {whole} |")
+    low, high = (100 * bound / run["measure"] for bound in run["sum_ci95"])
+    counts = run["outcomes"]
+    share = lambda name: f"{100 * counts[name] / run['cells']:.0f} %"
+    worst = window["worst"]
+    ends = "" if worst is None else (
+        f" The nearest pose beyond it {ENDS[worst]}; the tightest error is {window['tightest']}.")
+    doubts = "".join(f"\n\n    {' '.join(warning.split())}" for warning in run["warnings"])
+    said = f"\n\n!!! note \"What the program adds\"{doubts}" if doubts else ""
+    return f"""## {run["name"][0].upper() + run["name"][1:]}
+
+{about}
+
+*Source:* {source.replace("(docs/field.md)", "([docks in the field](field.md))").replace("(docs/field.md;", "([docks in the field](field.md);").replace("docs/field.md)", "[docks in the field](field.md))") if source else "typical."}
+
+![{run["name"]}: both halves, the accepted set, heights of first contact](gallery/{stem}.png)
+
+| error | tried up to | docks alone up to | all at once, all dock |
+|---|---|---|---|
+{chr(10).join(rows)}
+
+{100 * run["sum"] / run["measure"]:.1f} % of the error box docks ({low:.1f} to {high:.1f} %, 95 %); of its cells {share("jammed")} jam and {share("missed")} miss.{ends}{said}
+
+??? example "designs/gallery/{stem}.toml"
+
+    ```toml
+{chr(10).join("    " + line if line else "" for line in text.rstrip().splitlines())}
+    ```
+"""
+
+
+HEAD = """# Gallery
+
+Fifteen connectors that people recognise, each with its design file, its picture and its numbers. This page is written by `site/gallery.py` from what the program
+said: `run` with 24 cells per axis (60 of two, 200 of one) and 1 000 random poses, `window` with 1 000. Dimensions are real where a source is named, and typical where it says so;
+none of them is a maker's drawing. Everything here is without friction and without play in the approach: what docks here may stick in the field
+([friction](friction.md)). A star says that the error reaches the border of what was tried. All of them are in `designs/gallery/`:
+
+```console
+$ catchment run designs/gallery/peg-in-hole.toml -o out
+```
+"""
+
+
+def page(stored: dict) -> str:
+    parts = [HEAD]
+    for design in sorted(DESIGNS.glob("*.toml")):
+        if design.stem not in stored:
+            raise SystemExit(f"{design.stem} has no numbers yet: python3 site/gallery.py PROGRAM {design.stem}")
+        parts.append(entry(design.stem, design, stored[design.stem]))
+    return "\n".join(parts)
+
+
+def stale(stored: dict) -> list[str]:
+    """What is out of date."""
+    designs = {design.stem: design for design in DESIGNS.glob("*.toml")}
+    wrong = [f"{stem}: there is no such design" for stem in stored if stem not in designs]
+    for stem, design in designs.items():
+        if stored.get(stem, {}).get("digest") != digest(design):
+            wrong.append(f"{stem}: its numbers are of another design")
+        if not (PICTURES / f"{stem}.png").exists():
+            wrong.append(f"{stem}: it has no picture")
+    if len(designs) < 15:
+        wrong.append(f"{len(designs)} designs of fifteen")
+    if not wrong and PAGE.read_text(encoding="utf-8") != page(stored):
+        wrong.append("docs/gallery.md is another page: python3 site/gallery.py --page")
+    return wrong
+
+
+def main() -> None:
+    args = sys.argv[1:]
+    stored = json.loads(NUMBERS.read_text(encoding="utf-8")) if NUMBERS.exists() else {}
+    if args == ["--check"]:
+        if wrong := stale(stored):
+            raise SystemExit("\n".join(wrong))
+        print(f"gallery: {len(stored)} designs with their numbers, pictures and page")
+        return
+    if args != ["--page"]:
+        if not args or args[0].startswith("-"):
+            raise SystemExit(__doc__)
+        PICTURES.mkdir(exist_ok=True)
+        for design in sorted(DESIGNS.glob("*.toml")):
+            if len(args) == 1 or design.stem in args[1:]:
+                stored[design.stem] = measured(args[0], design)
+                text = json.dumps(stored, indent=1, sort_keys=True, ensure_ascii=False)
+                NUMBERS.write_text(text + "\n", encoding="utf-8")
+                print(design.stem, flush=True)
+    if len(args) == 1:
+        PAGE.write_text(page(stored), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

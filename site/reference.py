@@ -1,0 +1,153 @@
+"""The pages of reference, from the program itself.
+
+    python3 site/reference.py target/debug/catchment            writes docs/reference/*.md
+    python3 site/reference.py target/debug/catchment --check    says which of them the program would write otherwise
+
+    cli.md           what every command says with --help
+    design-file.md   every key of a design file, from `catchment schema`, which the one table of keys makes
+    fields.md        every field of the JSON reports, from the snapshot that a test holds the program to
+    measurements.md  rates that the benches stored (crates/catchment/benches/rates.json)
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = ROOT / "docs/reference"
+MADE = "<!-- Written by site/reference.py; ./check compares it. -->\n\n"
+
+
+def said(program: str, *args: str) -> str:
+    """What the program prints, the same on every terminal."""
+    env = {**os.environ, "NO_COLOR": "1", "COLUMNS": "100"}
+    done = subprocess.run([program, *args], capture_output=True, text=True, check=True, env=env)
+    return "\n".join(line.rstrip() for line in done.stdout.splitlines()).strip() + "\n"
+
+
+def cli(program: str) -> str:
+    whole = said(program, "--help")
+    listed = whole.split("Commands:\n", 1)[1].split("\n\n", 1)[0]
+    names = re.findall(r"^  ([a-z]\w*)", listed, re.M)
+    text = f"# Command line\n\n{MADE}```text\n{whole}```\n"
+    for name in names:
+        if name != "help":
+            text += f"\n## catchment {name}\n\n```text\n{said(program, name, '--help')}```\n"
+    return text
+
+
+def cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|").replace("<", "&lt;")
+
+
+def value_of(key: dict) -> str:
+    """What a key may hold, in words."""
+    if "enum" in key:
+        return ", ".join(f"`{value}`" for value in key["enum"])
+    if "anyOf" in key:
+        return " or ".join(dict.fromkeys(value_of(one) for one in key["anyOf"]))
+    kind = key.get("type", "")
+    if kind == "string":
+        units = re.search(r"\\s\*\(([^()]*\|[^()]*)\)\\s\*\$$", key.get("pattern", ""))
+        names = units[1].split("|") if units else []
+        return f'text such as `"5 {"mm" if "mm" in names else names[0]}"`' if names else "text"
+    if kind in ("number", "integer"):
+        low, high = key.get("minimum"), key.get("maximum")
+        name = "whole number" if kind == "integer" else "number"
+        return name if low is None else f"{name}, {low:g} to {high:g}"
+    if kind == "array":
+        least, most = key.get("minItems"), key.get("maxItems")
+        items = value_of(key["items"]) if isinstance(key.get("items"), dict) else ""
+        count = f"{least} × " if least and least == most else ""
+        return f"list of {count}{items}" if items else "list"
+    return {"boolean": "`true` or `false`", "object": "table"}.get(kind, kind)
+
+
+def rows(table: dict, path: str) -> list[str]:
+    found = []
+    for name, key in table.get("properties", {}).items():
+        words = cell(key.get("description", ""))
+        found.append(f"| `{path}{name}` | {cell(value_of(key))} | {words} |")
+        items = key.get("items", {})
+        found += rows(key, f"{path}{name}.")
+        if isinstance(items, dict):
+            found += rows(items, f"{path}{name}[].")
+    return found
+
+
+def design_file(program: str) -> str:
+    schema = json.loads(said(program, "schema"))
+    text = f"""# Design file
+
+{MADE}A design is a TOML file. `catchment new pyramid` prints a commented one, `catchment check` says everything that is wrong with one, each with its place, and
+`#:schema` in its first line lets an editor check it while it is written (`catchment schema -o schema.json`). Numbers without a unit are in D (lengths) and radians
+(angles); with one they are text: `"5 mm"`, `"10 deg"`. [Parts as their files have them](../parts.md) shows the keys of halves at work.
+"""
+    for name, key in schema["properties"].items():
+        if key.get("type") != "object":
+            continue
+        text += f"\n## [{name}]\n\n{key.get('description', '')}\n\n| key | value | what it says |\n|---|---|---|\n"
+        text += "\n".join(rows(key, f"{name}.")) + "\n"
+    top = {"properties": {name: key for name, key in schema["properties"].items() if key.get("type") != "object"}}
+    return text + "\n## Beside the tables\n\n| key | value | what it says |\n|---|---|---|\n" + "\n".join(rows(top, "")) + "\n"
+
+
+def fields() -> str:
+    snapshot = (ROOT / "crates/catchment-cli/tests/cli/snapshots/cli__wire__fields.snap").read_text(encoding="utf-8")
+    listed = snapshot.split("---\n", 2)[2].rstrip()
+    text = f"""# Fields of the JSON reports
+
+{MADE}Every command with `--json` prints one object with the same head: `schema` (the version of the format), `catchment` (of the program) and `kind`. Lengths are in D and angles in
+radians. [Versions](../versions.md) says what may change. `[]` stands for the entries of a list; the fields of `settings` are the method's own.
+"""
+    for block in re.split(r"\n(?=\S)", listed):
+        kind, _, below = block.partition("\n")
+        text += f"\n## {kind}\n\n```text\n{below.replace('  .', '.')}\n```\n"
+    return text
+
+
+def measurements() -> str:
+    stored = json.loads((ROOT / "crates/catchment/benches/rates.json").read_text(encoding="utf-8"))
+    text = f"""# Measurements
+
+{MADE}What `cargo bench -- --store` stored last, a table for each bench, with the machine and the commit it was measured on. `cargo bench` prints today's beside them, and every
+bench asserts its result before it counts. How right the methods are, and how far off, is measured in [accuracy](../accuracy.md) and [coverage](../accuracy-coverage.md);
+what no method promises stands in [limits](../limits.md).
+"""
+    for name, bench in stored.items():
+        text += f"\n## {name}\n\n{bench['machine']}, {bench['date']}, commit {bench['commit']}\n\n| what | per second |\n|---|---:|\n"
+        for what, rate in bench["per_second"].items():
+            grouped = f"{rate:,.0f}".replace(",", " ")
+            text += f"| {cell(what)} | {grouped} |\n"
+    return text
+
+
+def main() -> None:
+    if len(sys.argv) not in (2, 3) or sys.argv[2:] not in ([], ["--check"]):
+        raise SystemExit(__doc__)
+    program = sys.argv[1]
+    pages = {
+        "cli.md": cli(program),
+        "design-file.md": design_file(program),
+        "fields.md": fields(),
+        "measurements.md": measurements(),
+    }
+    if sys.argv[2:]:
+        def stored(name: str) -> str:
+            page = PAGES / name
+            return page.read_text(encoding="utf-8") if page.exists() else ""
+
+        if stale := [name for name, text in pages.items() if stored(name) != text]:
+            raise SystemExit(f"docs/reference: {', '.join(stale)}: out of date; python3 site/reference.py {program}")
+        print(f"reference: {len(pages)} pages as the program writes them")
+        return
+    PAGES.mkdir(exist_ok=True)
+    for name, text in pages.items():
+        (PAGES / name).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
