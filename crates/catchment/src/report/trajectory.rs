@@ -5,10 +5,11 @@ use super::schema::WarningReport;
 use super::text::{line, number};
 use crate::acceptance::{Outcome, Reason};
 use crate::design::Design;
-use crate::method::descent::{Settings, Touch, Trajectory, Waypoint};
+use crate::method::descent::{self, Settings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use crate::method::drop;
 use crate::pose::{Dof, PoseError};
+use crate::problem::Problem;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -78,6 +79,16 @@ impl From<&Waypoint> for WaypointReport {
 }
 
 impl TraceReport {
+    /// Follows a pose by descent: its way, and what is said of it.
+    pub fn follow(problem: &Problem, settings: &Settings, start: PoseError) -> (Trajectory, Self) {
+        let path = descent::trace(problem.pair(), &start, settings);
+        let doubts = problem.objections().iter().map(WarningReport::note).collect();
+        let end = path.waypoints.last().map(|waypoint| waypoint.error);
+        let reason = end.and_then(|end| Reason::of(problem, path.outcome, &end));
+        let report = Self::new(problem.design(), settings, start, &path, reason, doubts);
+        (path, report)
+    }
+
     /// Of a path that descent with `settings` followed from `start`, with the reason why it did not dock, and the doubts about its
     /// design.
     pub fn new(
