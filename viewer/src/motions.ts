@@ -17,7 +17,7 @@ export class Motions {
     constructor(private readonly module: WebAssembly.Module, private readonly design: string, private readonly halves: [Uint8Array, Uint8Array]) {}
 
     private async open(): Promise<Doors> {
-        const doors = (await WebAssembly.instantiate(this.module, {})).exports as unknown as Doors;
+        const doors = (await WebAssembly.instantiate(this.module, strangers(this.module))).exports as unknown as Doors;
         const parts = [new TextEncoder().encode(this.design), ...this.halves];
         const place = doors.input(parts.reduce((sum, part) => sum + part.length, 0)) >>> 0;
         let offset = place;
@@ -46,6 +46,16 @@ export class Motions {
             throw error;
         }
     }
+}
+
+/** What a dependency of the library would ask of a browser (random numbers of archives). No motion does; whoever did would be told. */
+function strangers(module: WebAssembly.Module): WebAssembly.Imports {
+    const imports: Record<string, Record<string, () => never>> = {};
+    for (const { module: from, name } of WebAssembly.Module.imports(module))
+        (imports[from] ??= {})[name] = () => {
+            throw new WebAssembly.RuntimeError(`${name} is not here`);
+        };
+    return imports;
 }
 
 const said = (doors: Doors) =>

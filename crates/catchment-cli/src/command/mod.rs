@@ -30,6 +30,7 @@ mod success;
 mod sweep;
 mod trace;
 mod validate;
+mod view;
 mod window;
 mod zraa;
 
@@ -45,6 +46,7 @@ pub(crate) enum Command {
     Check(check::CheckArgs),
     Run(Box<run::RunArgs>),
     Report(Box<report::ReportArgs>),
+    View(Box<view::ViewArgs>),
     Compare(compare::CompareArgs),
     Slices(Box<slices::SlicesArgs>),
     Sweep(Box<sweep::SweepArgs>),
@@ -83,6 +85,7 @@ impl Command {
             Self::Check(args) => check::run(&args),
             Self::Run(args) => run::run(&args),
             Self::Report(args) => report::run(&args),
+            Self::View(args) => view::run(&args),
             Self::Compare(args) => compare::run(&args),
             Self::Slices(args) => slices::run(&args),
             Self::Sweep(args) => sweep::run(&args),

@@ -40,7 +40,7 @@ pub(crate) struct ReportArgs {
 }
 
 /// How the result of a page is made.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(super) struct MadeArgs {
     /// How the outcomes of a design are decided [default: confluence]
     #[arg(long, value_name = "METHOD", value_parser = method_parser())]
@@ -63,14 +63,19 @@ enum Study {
 }
 
 impl MadeArgs {
+    /// The same over other cells, where some are named.
+    pub(super) fn over(&self, resolution: Option<Resolution>) -> Self {
+        Self { resolution: resolution.or(self.resolution), ..self.clone() }
+    }
+
     /// The run of a design.
-    pub(super) fn run(&self) -> Run {
+    fn run(&self) -> Run {
         let over = Over::Grid(self.resolution.unwrap_or_default());
         Run { over, ..Run::by(self.method.clone().unwrap_or_default()) }
     }
 
     /// What is studied beside it.
-    pub(super) fn studies(&self) -> Studies {
+    fn studies(&self) -> Studies {
         let wanted = |study| !self.leave_out.contains(&study);
         Studies { jams: wanted(Study::Jams), window: wanted(Study::Window) }
     }
