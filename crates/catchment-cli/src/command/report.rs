@@ -100,7 +100,8 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
             [("--method", args.made.method.is_some()), ("--resolution", args.made.resolution.is_some())]
         {
             if given {
-                let message = format!("{option}: {} is a result, which has been decided", args.path.display());
+                let message =
+                    format!("{option}: {} is a result, which has been decided", args.path.display());
                 return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
             }
         }

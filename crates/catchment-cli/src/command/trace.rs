@@ -90,7 +90,8 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     // Other settings are of drop tests.
     args.drop.of("descent")?;
     let (path, report) = TraceReport::follow(&problem, &settings, error);
-    let said: Vec<String> = report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
+    let said: Vec<String> =
+        report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,

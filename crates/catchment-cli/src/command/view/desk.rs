@@ -93,7 +93,8 @@ impl Desk {
         "design".clone_into(&mut state.stage);
         drop(state);
         let desk = Arc::clone(self);
-        let computing = std::thread::Builder::new().name("page".to_owned()).spawn(move || desk.compute(resolution));
+        let computing =
+            std::thread::Builder::new().name("page".to_owned()).spawn(move || desk.compute(resolution));
         if let Err(error) = computing {
             let mut state = locked(&self.state);
             (state.running, state.failed) = (false, Some(error.to_string()));
@@ -105,13 +106,14 @@ impl Desk {
         let made = self.made.over(resolution);
         let told = Arc::downgrade(self);
         let found = (|| -> Result<String, Failure> {
-            let exec = Exec::new().with_threads(self.threads)?.with_progress(Arc::new(move |share, stage| {
-                if let Some(desk) = told.upgrade() {
-                    let mut state = locked(&desk.state);
-                    state.share = share;
-                    stage.clone_into(&mut state.stage);
-                }
-            }));
+            let exec =
+                Exec::new().with_threads(self.threads)?.with_progress(Arc::new(move |share, stage| {
+                    if let Some(desk) = told.upgrade() {
+                        let mut state = locked(&desk.state);
+                        state.share = share;
+                        stage.clone_into(&mut state.stage);
+                    }
+                }));
             *locked(&self.stop) = Some(exec.cancel_flag());
             let parts = made.parts(&Problem::open(&self.path)?, &exec)?;
             let mut page = parts.page();
@@ -122,7 +124,9 @@ impl Desk {
         state.running = false;
         match found {
             Ok(page) => state.page = Some(page),
-            Err(failure) => state.failed = Some(failure.text().lines().map(printable).collect::<Vec<_>>().join("\n")),
+            Err(failure) => {
+                state.failed = Some(failure.text().lines().map(printable).collect::<Vec<_>>().join("\n"))
+            }
         }
     }
 

@@ -48,7 +48,8 @@ pub(super) struct Gate {
 impl Gate {
     /// Lets a request in, its path below the token.
     pub(super) fn admit(&self, mut request: Request) -> Result<Request, Response> {
-        let own = |name: &str| ["127.0.0.1", "localhost"].iter().any(|own| name == format!("{own}:{}", self.port));
+        let own =
+            |name: &str| ["127.0.0.1", "localhost"].iter().any(|own| name == format!("{own}:{}", self.port));
         if request.host.len() != 1 || !own(&request.host[0]) {
             return Err(Response::text(403, "this page is for this machine alone"));
         }
@@ -205,7 +206,8 @@ mod tests {
 
     #[test]
     fn heads_are_read_or_refused() {
-        let (request, length) = head("POST /t/run HTTP/1.1\nHost: 127.0.0.1:9\ncontent-length: 3\n\n").unwrap();
+        let (request, length) =
+            head("POST /t/run HTTP/1.1\nHost: 127.0.0.1:9\ncontent-length: 3\n\n").unwrap();
         assert_eq!((request.method.as_str(), request.path.as_str(), length), ("POST", "/t/run", 3));
         for wrong in [
             "",

@@ -41,7 +41,8 @@ pub(super) fn packed(acceptance: &Acceptance, exec: &Exec) -> Result<Chunks, Pag
             (0..chunk.len()).map(|k| if k < row { code(k) } else { code(k) ^ code(k - row) }).collect();
         Ok(deflated(&bytes)?)
     };
-    let packed = exec.install(|| acceptance.outcomes.par_chunks(cells).map(pack).collect::<Result<_, _>>())?;
+    let packed =
+        exec.install(|| acceptance.outcomes.par_chunks(cells).map(pack).collect::<Result<_, _>>())?;
     Ok(Chunks { cells, packed })
 }
 
