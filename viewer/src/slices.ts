@@ -111,9 +111,14 @@ export class Slice {
             if (!a || !b) continue;
             pen.strokeStyle = colour(name);
             pen.lineWidth = 1.8;
+            // A box that the other errors have left is where it would be.
+            const other = bounds.filter((bound) => bound !== a && bound !== b);
+            const inside = other.every(({ axis, lo, hi }) => lo <= this.value(axis) && this.value(axis) <= hi);
+            pen.globalAlpha = inside ? 1 : 0.3;
             pen.setLineDash(dashed ? [5, 4] : []);
             pen.strokeRect(px(a.lo), py(b.hi), px(a.hi) - px(a.lo), py(b.lo) - py(b.hi));
         }
+        pen.globalAlpha = 1;
         pen.setLineDash([]);
         jams.forEach((jam, k) => {
             const [x, y] = [px(jam[AXES.indexOf(across.axis)]), py(jam[AXES.indexOf(up.axis)])];
@@ -150,6 +155,10 @@ export class Slice {
         pen.restore();
         this.canvas.setAttribute("aria-label",
             `outcomes over ${across.axis} across and ${up.axis} up; arrows move the pose by a cell, Enter plays its motion`);
+    }
+
+    private value(axis: AxisName): number {
+        return this.host.pose()[AXES.indexOf(axis)];
     }
 
     private frame(pen: CanvasRenderingContext2D, field: { x: number; y: number; w: number; h: number }, px: (v: number) => number, py: (v: number) => number) {

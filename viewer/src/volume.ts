@@ -113,11 +113,11 @@ export class Volume {
             };
             const [first, last] = [ticks(units, axis, 4)[0], ticks(units, axis, 4).at(-1)!];
             for (const value of [first, last]) {
-                const text = label(tidy(units.shown(axis.axis, value)), "--soft", 0.052);
+                const text = label(tidy(units.shown(axis.axis, value)), "--soft", 0.072);
                 text.position.copy(along((value - axis.lo) / (axis.hi - axis.lo), 0.09));
                 this.labels.add(text);
             }
-            const name = label(`${axis.axis} [${units.unit(axis.axis)}]`, "--ink", 0.062);
+            const name = label(`${axis.axis} [${units.unit(axis.axis)}]`, "--ink", 0.085);
             name.position.copy(along(0.5, 0.16));
             this.labels.add(name);
         });
