@@ -23,6 +23,11 @@ use std::path::PathBuf;
         catchment place base.stl tool.stl --unit mm -o design.toml\n                                          or one for two parts of your own\n  \
         catchment check design.toml             everything that is wrong with it\n  \
         catchment run design.toml -o out        its area of acceptance, with pictures\n  \
+        catchment report design.toml -o page.html
+                                          the same as one page to click, to mail
+  \
+        catchment view design.toml              that page in your browser, computed again on demand
+  \
         catchment window design.toml --fix 'x=2 mm,y=2 mm'
                                           the largest box of errors that all dock
   \

@@ -52,6 +52,11 @@ impl Drop for Running {
 }
 
 impl ExecArgs {
+    /// How many worker threads are asked for; 0 means one per core.
+    pub(crate) fn threads(&self) -> usize {
+        usize::from(self.threads)
+    }
+
     /// Starts threads, the progress bar (on a terminal only) and the handling of signals: once per process.
     pub(crate) fn start(&self) -> Result<Running, Failure> {
         const STEPS: u64 = 1000;

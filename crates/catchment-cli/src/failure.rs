@@ -46,6 +46,12 @@ impl Failure {
         Self { reports: Vec::new(), closing: None, broken_pipe: true }
     }
 
+    /// What it says, without colours: for a page.
+    pub(crate) fn text(&self) -> String {
+        let told: Vec<String> = self.reports.iter().map(ToString::to_string).collect();
+        told.join("\n")
+    }
+
     /// Prints it on stderr and says how the command ended.
     pub(crate) fn show(self) -> ExitStatus {
         if self.broken_pipe {

@@ -19,6 +19,7 @@ mod new;
 mod outcome;
 mod place;
 mod plan;
+mod report;
 mod reproduce;
 mod rests;
 mod run;
@@ -29,6 +30,7 @@ mod success;
 mod sweep;
 mod trace;
 mod validate;
+mod view;
 mod window;
 mod zraa;
 
@@ -43,6 +45,8 @@ pub(crate) enum Command {
     Place(place::PlaceArgs),
     Check(check::CheckArgs),
     Run(Box<run::RunArgs>),
+    Report(Box<report::ReportArgs>),
+    View(Box<view::ViewArgs>),
     Compare(compare::CompareArgs),
     Slices(Box<slices::SlicesArgs>),
     Sweep(Box<sweep::SweepArgs>),
@@ -80,6 +84,8 @@ impl Command {
             Self::Place(args) => place::run(&args),
             Self::Check(args) => check::run(&args),
             Self::Run(args) => run::run(&args),
+            Self::Report(args) => report::run(&args),
+            Self::View(args) => view::run(&args),
             Self::Compare(args) => compare::run(&args),
             Self::Slices(args) => slices::run(&args),
             Self::Sweep(args) => sweep::run(&args),

@@ -5,9 +5,8 @@ use crate::drop_args::DropArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, to_stderr, to_stdout};
-use catchment::acceptance::Reason;
 use catchment::exec::Exec;
-use catchment::method::descent::{self, Settings};
+use catchment::method::descent::Settings;
 use catchment::method::drop::Bench;
 use catchment::method::kinematic::Start;
 use catchment::pose::PoseError;
@@ -70,7 +69,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let known = if args.method == By::Kinematic { &KINDS[..4] } else { &KINDS };
     let kind = args.file.kind(known)?;
     let problem = args.design.problem()?;
-    let (design, pair) = (problem.design(), problem.pair());
+    let design = problem.design();
     let error = parse_pose(&args.pose, design)
         .map_err(|findings| Failure::of_option("--pose", &args.pose, findings))?;
     if args.method == By::Kinematic {
@@ -92,12 +91,9 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let settings = Settings::with_friction(args.drop.friction())?;
     // Other settings are of drop tests.
     args.drop.of("descent")?;
-    let path = descent::trace(pair, &error, &settings);
-    let said: Vec<String> = problem.objections().iter().map(|doubt| format!("warning: {doubt}")).collect();
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let end = path.waypoints.last().map(|waypoint| waypoint.error);
-    let reason = end.and_then(|end| Reason::of(&problem, path.outcome, &end));
-    let report = TraceReport::new(design, &settings, error, &path, reason, doubts);
+    let (path, report) = TraceReport::follow(&problem, &settings, error);
+    let said: Vec<String> =
+        report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,

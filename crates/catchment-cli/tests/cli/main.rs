@@ -35,6 +35,7 @@ mod studies;
 mod success;
 mod sweep;
 mod tables;
+mod view;
 mod window;
 mod wire;
 

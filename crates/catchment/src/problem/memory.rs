@@ -24,6 +24,15 @@ impl Problem {
         let design = Design { name, connector: ConnectorSpec::Own(own), width: 1.0, unit: None, alignment };
         Draft::from(design).with_halves(connector, &crate::exec::Exec::new())
     }
+
+    /// The problem of a design whose halves were built before, such as by the program that wrote a page: no file is read. The halves are in the
+    /// frames of a [`Connector`]; where they were drawn is forgotten, so that [`Problem::drawn`] knows those frames alone.
+    ///
+    /// # Errors
+    /// What is wrong with the mated pose.
+    pub fn of_halves(design: Design, fixed: Half, moving: Half) -> Result<Self, ProblemError> {
+        Draft::from(design).with_halves(Connector::from_halves(fixed, moving), &crate::exec::Exec::new())
+    }
 }
 
 /// What a design says of a half that came from a source.

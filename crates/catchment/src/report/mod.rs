@@ -3,9 +3,10 @@
 //! ```text
 //!                 ┌─ schema   versioned JSON: everything that changes the answer, and the answer
 //!   Acceptance ───┼─ table    the same for eyes, in 80 columns
-//!   merit         ├─ figure   PNG and SVG (feature `figure`), with the numbers of the report
-//!   study         └─ zarr     the whole grid, for xarray (feature `zarr`)
-//!                 ┊            vtk (ParaView), gltf (viewers), cells (a table): for other tools
+//!   merit         ├─ page     the same to click: one offline file (feature `page`)
+//!   study         ├─ figure   PNG and SVG (feature `figure`), with the numbers of the report
+//!                 ├─ zarr     the whole grid, for xarray (feature `zarr`)
+//!                 └─ vtk (ParaView), gltf (viewers), cells (a table): for other tools
 //!                       └──▶  write: complete or not at all
 //!
 //!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
@@ -42,6 +43,8 @@ mod hold;
 mod jams;
 mod lever;
 mod outcomes;
+#[cfg(feature = "page")]
+pub mod page;
 mod plan;
 mod resting;
 mod rests;

@@ -5,10 +5,11 @@ use super::schema::WarningReport;
 use super::text::{line, number};
 use crate::acceptance::{Outcome, Reason};
 use crate::design::Design;
-use crate::method::descent::{Settings, Touch, Trajectory, Waypoint};
+use crate::method::descent::{self, Settings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use crate::method::drop;
 use crate::pose::{Dof, PoseError, face_from_cor};
+use crate::problem::Problem;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -88,6 +89,16 @@ impl WaypointReport {
 }
 
 impl TraceReport {
+    /// Follows a pose by descent: its way, and what is said of it.
+    pub fn follow(problem: &Problem, settings: &Settings, start: PoseError) -> (Trajectory, Self) {
+        let path = descent::trace(problem.pair(), &start, settings);
+        let doubts = problem.objections().iter().map(WarningReport::note).collect();
+        let end = path.waypoints.last().map(|waypoint| waypoint.error);
+        let reason = end.and_then(|end| Reason::of(problem, path.outcome, &end));
+        let report = Self::new(problem.design(), settings, start, &path, reason, doubts);
+        (path, report)
+    }
+
     /// Of a path that descent with `settings` followed from `start`, with the reason why it did not dock, and the doubts about its
     /// design.
     pub fn new(

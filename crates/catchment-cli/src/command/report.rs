@@ -1,0 +1,122 @@
+//! `catchment report`: a result as one page to click.
+
+use super::run::{refused, resolution};
+use crate::exec_args::ExecArgs;
+use crate::exit::ExitStatus;
+use crate::failure::Failure;
+use crate::method_args::method_parser;
+use crate::output::{OutputArgs, to_stderr};
+use catchment::exec::Exec;
+use catchment::landscape::Resolution;
+use catchment::method::Method;
+use catchment::problem::Problem;
+use catchment::report::page::{Parts, Studies};
+use catchment::run::{Over, Run};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// A result as one page to click: a file to mail, which needs no network and no program
+///
+/// In it: the two halves in space, with a section and a slider for every error; the accepted set in linked slices and as a surface; jams, window,
+/// figures of merit. A pose that is clicked is followed by exact motion in the page itself.
+#[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  \
+    catchment report design.toml -o page.html           computes what it shows\n  \
+    catchment report out -o page.html                   of a result of `run -o`\n  \
+    catchment report out -o page.html --leave-out window,jams\n  \
+    catchment report design.toml --resolution 24 -o page.html\n\n\
+    Jams and window are computed beside the result, from its design. A result whose mesh files are gone or changed becomes a page \
+    without halves, motions, jams and window, which says so. `catchment view` serves the same page and computes again on demand.")]
+pub(crate) struct ReportArgs {
+    /// A design, a folder written by `run -o`, or its NAME.zarr
+    #[arg(value_name = "RESULT_OR_DESIGN", value_hint = clap::ValueHint::AnyPath)]
+    path: PathBuf,
+    #[command(flatten)]
+    made: MadeArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+    #[command(flatten)]
+    exec: ExecArgs,
+}
+
+/// How the result of a page is made.
+#[derive(Debug, Clone, Args)]
+pub(super) struct MadeArgs {
+    /// How the outcomes of a design are decided [default: confluence]
+    #[arg(long, value_name = "METHOD", value_parser = method_parser())]
+    method: Option<Method>,
+    /// Cells per axis of a design's error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
+    #[arg(long, value_name = "CELLS", value_parser = resolution)]
+    resolution: Option<Resolution>,
+    /// What is not computed beside the result
+    #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
+    leave_out: Vec<Study>,
+}
+
+/// What is computed beside a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Study {
+    /// Where it jams
+    Jams,
+    /// The largest box of errors that all dock
+    Window,
+}
+
+impl MadeArgs {
+    /// The same over other cells, where some are named.
+    pub(super) fn over(&self, resolution: Option<Resolution>) -> Self {
+        Self { resolution: resolution.or(self.resolution), ..self.clone() }
+    }
+
+    /// The run of a design.
+    fn run(&self) -> Run {
+        let over = Over::Grid(self.resolution.unwrap_or_default());
+        Run { over, ..Run::by(self.method.clone().unwrap_or_default()) }
+    }
+
+    /// What is studied beside it.
+    fn studies(&self) -> Studies {
+        let wanted = |study| !self.leave_out.contains(&study);
+        Studies { jams: wanted(Study::Jams), window: wanted(Study::Window) }
+    }
+
+    /// The parts of the page of a problem.
+    pub(super) fn parts(&self, problem: &Problem, exec: &Exec) -> Result<Parts, Failure> {
+        let answer = self.run().on(problem, exec).map_err(|error| refused(problem, error))?;
+        let mut parts = Parts::of(&answer);
+        parts.study(self.studies(), exec)?;
+        Ok(parts)
+    }
+}
+
+pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
+    if args.output.is_printed() {
+        let help = "name the file: -o page.html".to_owned();
+        return Err(Failure::with_help("a page is a file to open in a browser".to_owned(), Some(help)));
+    }
+    args.output.check()?;
+    let parts = if args.path.is_dir() {
+        for (option, given) in
+            [("--method", args.made.method.is_some()), ("--resolution", args.made.resolution.is_some())]
+        {
+            if given {
+                let message =
+                    format!("{option}: {} is a result, which has been decided", args.path.display());
+                return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
+            }
+        }
+        let running = args.exec.start()?;
+        let mut parts = Parts::stored(&args.path, &running.exec)?;
+        parts.study(args.made.studies(), &running.exec)?;
+        args.output.write(&parts.page().html(&running.exec)?)?;
+        parts
+    } else {
+        let problem = Problem::open(&args.path)?;
+        let running = args.exec.start()?;
+        let parts = args.made.parts(&problem, &running.exec)?;
+        args.output.write(&parts.page().html(&running.exec)?)?;
+        parts
+    };
+    to_stderr(&parts.notes);
+    Ok(ExitStatus::Done)
+}

@@ -1,0 +1,168 @@
+//! Pages, through the real binary: the file of `report`, and the server of `view`, asked over plain sockets.
+
+use super::{catchment, run};
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+const DESIGN: &str = "name = \"a </script> V\"\n[connector]\nfamily = \"v-face\"\nwidth = 50.0\nunit = \"mm\"\n[errors]\nx = \"30 mm\"\n";
+
+fn home() -> tempfile::TempDir {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("v.toml"), DESIGN).unwrap();
+    home
+}
+
+#[test]
+fn a_page_of_a_result_is_that_of_its_design() {
+    let home = home();
+    let told = run(home.path(), &["run", "v.toml", "--resolution", "8", "-o", "out"]);
+    assert!(told.starts_with("exit 0\n"), "{told}");
+    for args in [
+        &["report", "out", "-o", "stored.html", "--leave-out", "window"][..],
+        &["report", "v.toml", "--resolution", "8", "-o", "fresh.html", "--leave-out", "window"],
+    ] {
+        let told = run(home.path(), args);
+        assert!(told.starts_with("exit 0\n"), "{told}");
+    }
+    let [stored, fresh] =
+        ["stored.html", "fresh.html"].map(|name| fs::read_to_string(home.path().join(name)).unwrap());
+    assert!(stored == fresh && stored.starts_with("<!doctype html>"));
+    assert!(
+        stored.len() < 5_000_000 && stored.contains("id=\"motions\"") && !stored.contains("a </script> V")
+    );
+    // It is not replaced unasked.
+    let told = run(home.path(), &["report", "out", "-o", "stored.html"]);
+    assert!(told.starts_with("exit 2\n") && told.contains("--force replaces it"), "{told}");
+}
+
+/// A server, and where it is; ended with the test.
+struct Server {
+    child: Child,
+    port: u16,
+    token: String,
+}
+
+impl Server {
+    fn start(folder: &Path) -> Self {
+        let mut child = catchment(folder)
+            .args(["view", "v.toml", "--resolution", "6", "--leave-out", "jams,window"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let rest = line.trim().strip_prefix("http://127.0.0.1:").unwrap();
+        let (port, token) = rest.split_once('/').unwrap();
+        Self { child, port: port.parse().unwrap(), token: token.trim_end_matches('/').to_owned() }
+    }
+
+    /// Sends bytes as they are; what comes back.
+    fn raw(&self, bytes: &[u8]) -> String {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
+        // It may refuse before it has read all.
+        let _ = stream.write_all(bytes);
+        let mut text = Vec::new();
+        let _ = stream.read_to_end(&mut text);
+        String::from_utf8_lossy(&text).into_owned()
+    }
+
+    fn ask(&self, method: &str, path: &str, more: &str, body: &str) -> String {
+        let Self { port, token, .. } = self;
+        let length = body.len();
+        self.raw(
+            format!(
+                "{method} /{token}/{path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: {length}\r\n{more}\r\n{body}"
+            )
+            .as_bytes(),
+        )
+    }
+
+    fn wait(&self) {
+        while self.ask("GET", "progress", "", "").contains("\"running\"") {
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[test]
+fn the_page_is_served_and_computed_again_from_the_file_as_it_is_now() {
+    let home = home();
+    let server = Server::start(home.path());
+    assert_eq!(server.token.len(), 32);
+    server.wait();
+    let page = server.ask("GET", "", "", "");
+    assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("\"served\":true"), "{}", &page[..300]);
+    assert!(page.contains("Cache-Control: no-store") && page.contains("frame-ancestors 'none'"));
+    assert!(page.contains("\"cells\":6"));
+    fs::write(home.path().join("v.toml"), DESIGN.replace("a </script> V", "changed")).unwrap();
+    assert!(server.ask("POST", "run", "", "7").starts_with("HTTP/1.1 202"));
+    server.wait();
+    let page = server.ask("GET", "", "", "");
+    assert!(page.contains("<title>changed ·") && page.contains("\"cells\":7"));
+    // What is wrong with the design is said, and the page that was there stays.
+    fs::write(home.path().join("v.toml"), "[connector]\nfamily = \"w-face\"\n").unwrap();
+    assert!(server.ask("POST", "run", "", "").starts_with("HTTP/1.1 202"));
+    server.wait();
+    let progress = server.ask("GET", "progress", "", "");
+    assert!(progress.contains("\"failed\"") && progress.contains("w-face"), "{progress}");
+    assert!(server.ask("GET", "", "", "").contains("<title>changed ·"));
+    assert!(server.ask("POST", "run", "", "many").starts_with("HTTP/1.1 400"));
+}
+
+#[test]
+fn whoever_should_not_ask_is_refused() {
+    let home = home();
+    let server = Server::start(home.path());
+    let Server { port, token, .. } = &server;
+    let status = |text: &str| text.split(' ').nth(1).unwrap_or("closed").to_owned();
+    let get = |path: &str, host: &str, more: &str| {
+        status(&server.raw(format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n{more}\r\n").as_bytes()))
+    };
+    let here = format!("127.0.0.1:{port}");
+    let own = format!("/{token}/");
+    assert_eq!(get(&own, &here, ""), "200");
+    assert_eq!(get(&own, &here, &format!("Origin: http://{here}\r\n")), "200");
+    // No token, another token, a name that leads here, another page.
+    assert_eq!(get("/", &here, ""), "404");
+    assert_eq!(get(&format!("/{}/", "0".repeat(32)), &here, ""), "404");
+    assert_eq!(get(&own, &format!("example.org:{port}"), ""), "403");
+    assert_eq!(get(&own, &here, "Origin: http://example.org\r\n"), "403");
+    assert_eq!(get(&own, &here, "Origin: null\r\n"), "403");
+    // Names are compared, never opened.
+    for path in ["../v.toml", "../../../../etc/passwd", "%2e%2e/v.toml", "v.toml", "..\\v.toml"] {
+        assert_eq!(get(&format!("{own}{path}"), &here, ""), "404", "{path}");
+    }
+    assert_eq!(get(&format!("/{token}/../v.toml"), &here, ""), "404");
+    // Too long a head, too long a body, no request at all.
+    assert_eq!(get(&own, &here, &format!("X: {}\r\n", "x".repeat(20_000))), "413");
+    assert_eq!(status(&server.ask("POST", "run", "", &"1".repeat(300))), "413");
+    assert_eq!(status(&server.raw(b"\x16\x03\x01\x00\r\n\r\n")), "400");
+    assert_eq!(status(&server.ask("DELETE", "run", "", "")), "405");
+    // It serves on.
+    assert_eq!(get(&own, &here, ""), "200");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_it_also_while_it_computes() {
+    let home = home();
+    let mut server = Server::start(home.path());
+    let ended =
+        std::process::Command::new("kill").args(["-INT", &server.child.id().to_string()]).status().unwrap();
+    assert!(ended.success());
+    assert_eq!(server.child.wait().unwrap().code(), Some(130));
+    assert!(TcpStream::connect(("127.0.0.1", server.port)).is_err());
+}

@@ -1,0 +1,120 @@
+//! Exact motions in a page: the core of the library behind plain functions that any WebAssembly host can call.
+//!
+//! ```text
+//!   input(n) ─▶ where n bytes go      the page writes there:  design (JSON) · fixed half · moving half   (Half::to_bytes)
+//!   load(design, fixed) ─▶ 0 or 1     lengths of the first two; 1: output is what is wrong
+//!   trace(x, y, roll, pitch, yaw, friction) ─▶ 0 or 1
+//!   output() · output_length()        the JSON of `catchment trace`, or what is wrong, UTF-8
+//! ```
+//!
+//! All numbers of a trace are those of the library, computed by the same code. Not promised: the last bits, where the sines and
+//! cosines of another machine round otherwise. Memory is handed over by place and length in safe code; a panic ends the
+//! module, and the page starts another.
+
+use catchment::connector::Half;
+use catchment::design::Design;
+use catchment::method::descent::Settings;
+use catchment::pose::PoseError;
+use catchment::problem::Problem;
+use catchment::report::TraceReport;
+use std::fmt::Display;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What the page gave, what it gets, and the problem that it asks about.
+struct Desk {
+    input: Vec<u8>,
+    output: Vec<u8>,
+    problem: Option<Problem>,
+}
+
+static DESK: Mutex<Desk> = Mutex::new(Desk { input: Vec::new(), output: Vec::new(), problem: None });
+
+fn desk() -> MutexGuard<'static, Desk> {
+    DESK.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Done; the output has what was asked for.
+const DONE: u32 = 0;
+/// Not done; the output says why.
+const REFUSED: u32 = 1;
+
+impl Desk {
+    fn answer(&mut self, said: Result<String, String>) -> u32 {
+        let (text, status) = match said {
+            Ok(text) => (text, DONE),
+            Err(text) => (text, REFUSED),
+        };
+        self.output = text.into_bytes();
+        status
+    }
+}
+
+fn told(error: impl Display) -> String {
+    error.to_string()
+}
+
+/// The problem that the input holds.
+fn problem(input: &[u8], design: usize, fixed: usize) -> Result<Problem, String> {
+    let cut = || format!("the input has {} bytes, fewer than announced", input.len());
+    let (design, halves) = input.split_at_checked(design).ok_or_else(cut)?;
+    let (fixed, moving) = halves.split_at_checked(fixed).ok_or_else(cut)?;
+    let design: Design = serde_json::from_slice(design).map_err(told)?;
+    let [fixed, moving] = [fixed, moving].map(Half::from_bytes);
+    Problem::of_halves(design, fixed.map_err(told)?, moving.map_err(told)?).map_err(told)
+}
+
+/// Where `length` bytes of input go.
+#[expect(unsafe_code, reason = "a name for the page to call by")]
+#[unsafe(no_mangle)]
+pub extern "C" fn input(length: usize) -> usize {
+    let mut desk = desk();
+    desk.input = vec![0; length];
+    desk.input.as_ptr().addr()
+}
+
+/// Takes the problem that the input holds: the design in its first bytes, then the halves.
+#[expect(unsafe_code, reason = "a name for the page to call by")]
+#[unsafe(no_mangle)]
+pub extern "C" fn load(design: usize, fixed: usize) -> u32 {
+    let mut desk = desk();
+    let input = std::mem::take(&mut desk.input);
+    match problem(&input, design, fixed) {
+        Ok(problem) => {
+            desk.problem = Some(problem);
+            desk.answer(Ok(String::new()))
+        }
+        Err(error) => desk.answer(Err(error)),
+    }
+}
+
+/// Follows a pose error, in D and radians, to its end.
+#[expect(unsafe_code, reason = "a name for the page to call by")]
+#[unsafe(no_mangle)]
+pub extern "C" fn trace(x: f64, y: f64, roll: f64, pitch: f64, yaw: f64, friction: f64) -> u32 {
+    let mut desk = desk();
+    let start = PoseError { x, y, roll, pitch, yaw };
+    let traced = || -> Result<String, String> {
+        let problem = desk.problem.as_ref().ok_or("no problem was loaded")?;
+        if !start.to_array().into_iter().all(f64::is_finite) {
+            return Err("a pose error is no number".to_owned());
+        }
+        let settings = Settings::with_friction(friction).map_err(told)?;
+        TraceReport::follow(problem, &settings, start).1.to_json().map_err(told)
+    };
+    let said = traced();
+    desk.answer(said)
+}
+
+/// Where the output is.
+#[expect(unsafe_code, reason = "a name for the page to call by")]
+#[unsafe(no_mangle)]
+pub extern "C" fn output() -> usize {
+    desk().output.as_ptr().addr()
+}
+
+/// How many bytes it has.
+#[expect(unsafe_code, reason = "a name for the page to call by")]
+#[unsafe(no_mangle)]
+pub extern "C" fn output_length() -> usize {
+    desk().output.len()
+}

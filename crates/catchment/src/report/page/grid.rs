@@ -1,0 +1,91 @@
+//! Outcomes packed for a page.
+//!
+//! ```text
+//!   cells, the first axis fastest ──▶ chunks of whole leading axes ──▶ each cell ⊕ the one a row before ──▶ deflate
+//! ```
+//!
+//! A row is one line of the first axis. Where outcomes do not change from row to row zeros are left, of which deflate leaves
+//! nothing. Every chunk is read without the others, so that a page unpacks what it shows.
+
+use super::{PageError, deflated};
+use crate::acceptance::Acceptance;
+use crate::advice::Advice;
+use crate::exec::Exec;
+use crate::merit::MeritError;
+use rayon::prelude::*;
+
+/// Most cells of a chunk, unless a row has more.
+const CHUNK_CELLS: usize = 1 << 20;
+
+/// A grid of outcomes in chunks.
+pub(super) struct Chunks {
+    /// Cells of every chunk but the last, which may have fewer.
+    pub(super) cells: usize,
+    /// Each of them.
+    pub(super) packed: Vec<Vec<u8>>,
+}
+
+/// All outcomes over a grid.
+pub(super) fn packed(acceptance: &Acceptance, exec: &Exec) -> Result<Chunks, PageError> {
+    let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
+    // Before they are packed and, at worst, after: what does not compress stays as it is.
+    let needed = 2 * acceptance.outcomes.len() as u64;
+    exec.ensure_fits("the outcomes of a page", needed, |_| vec![Advice::MoreMemory])?;
+    let shape = grid.shape();
+    let row = shape.first().copied().unwrap_or(1);
+    let cells = chunk_cells(&shape);
+    let pack = |chunk: &[crate::acceptance::Outcome]| -> Result<Vec<u8>, PageError> {
+        exec.check()?;
+        let code = |k: usize| chunk[k] as u8;
+        let bytes: Vec<u8> =
+            (0..chunk.len()).map(|k| if k < row { code(k) } else { code(k) ^ code(k - row) }).collect();
+        Ok(deflated(&bytes)?)
+    };
+    let packed =
+        exec.install(|| acceptance.outcomes.par_chunks(cells).map(pack).collect::<Result<_, _>>())?;
+    Ok(Chunks { cells, packed })
+}
+
+/// Whole leading axes, and as many steps of the next one as fit.
+fn chunk_cells(shape: &[usize]) -> usize {
+    let mut cells = 1;
+    for length in shape {
+        if cells * length > CHUNK_CELLS {
+            // A row stays whole.
+            return if cells == 1 { *length } else { cells * (CHUNK_CELLS / cells) };
+        }
+        cells *= length;
+    }
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose::Dof;
+    use crate::report::schema::testing::{blob, design};
+    use flate2::read::ZlibDecoder;
+    use std::io::Read;
+
+    #[test]
+    fn chunks_are_of_whole_rows() {
+        assert_eq!(chunk_cells(&[30; 5]), 810_000);
+        assert_eq!(chunk_cells(&[200, 200]), 40_000);
+        assert_eq!(chunk_cells(&[3 << 20]), 3 << 20);
+        assert_eq!(chunk_cells(&[100; 4]), 1_000_000);
+        assert_eq!(chunk_cells(&[1000, 5000]), 1000 * 1048);
+    }
+
+    #[test]
+    fn what_is_packed_is_what_was_decided() {
+        let acceptance = blob(&design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect()), 9);
+        let Chunks { cells, packed } = packed(&acceptance, &Exec::new()).unwrap();
+        assert_eq!((cells, packed.len()), (729, 1));
+        let mut codes = Vec::new();
+        ZlibDecoder::new(&packed[0][..]).read_to_end(&mut codes).unwrap();
+        for k in 9..codes.len() {
+            codes[k] ^= codes[k - 9];
+        }
+        assert_eq!(codes, acceptance.outcomes.iter().map(|outcome| *outcome as u8).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,119 @@
+//! What a page is made of: a result that was just computed or one that was stored, its halves, and the studies beside it.
+
+use super::Page;
+use crate::acceptance::Acceptance;
+#[cfg(feature = "zarr")]
+use crate::design::{Design, hex};
+use crate::exec::{Cancelled, Exec};
+use crate::problem::Problem;
+use crate::report::{JamsReport, Report, WindowReport};
+use crate::run::Answer;
+use crate::run::jams::{self, JamsError};
+use crate::study::window::{self, WindowError};
+
+/// A page in parts.
+#[derive(Debug, Clone)]
+pub struct Parts {
+    /// The run.
+    pub report: Report,
+    /// Its outcomes.
+    pub acceptance: Acceptance,
+    /// What was decided, where its halves can be had.
+    pub problem: Option<Problem>,
+    /// Where it jams.
+    pub jams: Option<JamsReport>,
+    /// The window.
+    pub window: Option<WindowReport>,
+    /// What a person should know of the page.
+    pub notes: Vec<String>,
+}
+
+/// What is studied beside a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Studies {
+    /// Where it jams.
+    pub jams: bool,
+    /// The largest box that docks.
+    pub window: bool,
+}
+
+impl Parts {
+    /// Of an answer.
+    pub fn of(answer: &Answer) -> Self {
+        let (report, acceptance) = (answer.report(), answer.acceptance.clone());
+        let problem = Some(answer.problem.clone());
+        Self { report, acceptance, problem, jams: None, window: None, notes: Vec::new() }
+    }
+
+    /// Of a result that was stored: its folder or its group. Halves that come from files are read again; where they cannot be, or are others by
+    /// now, the page has none and says so.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    #[cfg(feature = "zarr")]
+    pub fn stored(path: &std::path::Path, exec: &Exec) -> Result<Self, crate::report::zarr::ZarrError> {
+        use crate::report::folder::RESULT;
+        let inner = path.join(RESULT);
+        let (report, acceptance) =
+            crate::report::zarr::read(if inner.is_dir() { &inner } else { path }, exec)?;
+        let mut parts =
+            Self { report, acceptance, problem: None, jams: None, window: None, notes: Vec::new() };
+        match again(&parts.report.design) {
+            Ok(problem) => parts.problem = Some(problem),
+            Err(why) => parts.notes.push(why),
+        }
+        Ok(parts)
+    }
+
+    /// Adds studies. One that finds nothing leaves a note.
+    ///
+    /// # Errors
+    /// It was asked to stop.
+    pub fn study(&mut self, studies: Studies, exec: &Exec) -> Result<(), Cancelled> {
+        let Some(problem) = &self.problem else { return Ok(()) };
+        let design = problem.design();
+        if studies.jams {
+            match jams::run(problem, &jams::Settings::default(), exec) {
+                Ok(found) => self.jams = Some(JamsReport::new(design, &found, Vec::new(), None)),
+                Err(JamsError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(why) => self.notes.push(format!("no jams: {why}")),
+            }
+        }
+        if studies.window {
+            match window::run(problem, &window::Settings::default(), exec) {
+                Ok(found) => self.window = Some(WindowReport::new(design, &found, Vec::new(), None)),
+                Err(WindowError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(why) => self.notes.push(format!("no window: {why}")),
+            }
+        }
+        Ok(())
+    }
+
+    /// The page.
+    pub fn page(&self) -> Page<'_> {
+        let Self { report, acceptance, problem, jams, window, notes } = self;
+        Page {
+            report,
+            acceptance,
+            halves: problem.as_ref().map(Problem::connector),
+            jams: jams.as_ref(),
+            window: window.as_ref(),
+            notes: notes.clone(),
+            is_served: false,
+        }
+    }
+}
+
+/// The problem of a stored design, if it still is the same; else what to say.
+#[cfg(feature = "zarr")]
+fn again(design: &Design) -> Result<Problem, String> {
+    let without = "the page has no halves, motions, jams and window";
+    let problem = Problem::of(design.clone()).map_err(|error| {
+        let first = error.to_string().lines().next().unwrap_or_default().to_owned();
+        format!("{without}: they cannot be built again from what the result says: {first}")
+    })?;
+    match design.digest() {
+        Some(digest) if hex(&digest) == problem.digest() => Ok(problem),
+        _ => Err(format!("{without}: their files are no longer what the result was computed from")),
+    }
+}

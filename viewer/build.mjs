@@ -1,0 +1,33 @@
+// Builds the viewer into the folder of the library that ships it; with --compare says whether what lies there is what is built.
+//
+//     node build.mjs             src/*.ts ──▶ ../crates/catchment/src/report/page/bundle/{viewer.js, worker.js, viewer.css}
+//     node build.mjs --compare   exit code 1 unless the same bytes lie there
+import { build } from "esbuild";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+
+const here = (path) => fileURLToPath(new URL(path, import.meta.url));
+const bundle = here("../crates/catchment/src/report/page/bundle/");
+const compare = process.argv.includes("--compare");
+const shared = { bundle: true, minify: true, write: false, target: "es2022", legalComments: "none", charset: "ascii", logLevel: "warning" };
+const banner = "/* catchment viewer; holds three.js, MIT, Copyright 2010-2026 three.js authors */";
+const built = await Promise.all([
+    build({ ...shared, entryPoints: [here("src/main.ts")], outfile: "viewer.js", format: "iife", banner: { js: banner } }),
+    build({ ...shared, entryPoints: [here("src/worker.ts")], outfile: "worker.js", format: "iife" }),
+    build({ ...shared, entryPoints: [here("src/style/viewer.css")], outfile: "viewer.css" }),
+]);
+let differs = false;
+for (const file of built.flatMap((result) => result.outputFiles)) {
+    const name = file.path.split("/").pop();
+    const bytes = Buffer.from(file.contents);
+    if (compare) {
+        if (!existsSync(bundle + name) || !readFileSync(bundle + name).equals(bytes)) {
+            console.error(`${name} is not what viewer/src builds: run \`npm run build\` in viewer/ and commit it`);
+            differs = true;
+        }
+    } else {
+        writeFileSync(bundle + name, bytes);
+        console.log(`${name} ${bytes.length}`);
+    }
+}
+process.exit(differs ? 1 : 0);

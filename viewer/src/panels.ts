@@ -1,0 +1,105 @@
+// What the reports say: figures of merit with their intervals, the window, the jams, doubts.
+
+import { make } from "./dom";
+import { grouped, percent, tidy, type Units } from "./format";
+import { AXES, OUTCOMES, listed, type Jam, type Page, type Pose } from "./page";
+
+const row = (name: string, value: string, more = "") =>
+    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value, ...(more ? [make("small", {}, more)] : [])));
+
+/** A table whose first column names the rows. */
+const table = (head: string[], rows: string[][], caption: string) =>
+    make("table", { class: "grid" }, make("caption", {}, caption),
+        make("thead", {}, make("tr", {}, ...head.map((name) => make("th", { scope: "col" }, name)))),
+        make("tbody", {}, ...rows.map(([name, ...cells]) => make("tr", {}, make("th", { scope: "row" }, name), ...cells.map((text) => make("td", {}, text))))));
+
+const card = (id: string, title: string, ...children: (Node | string)[]) =>
+    make("section", { class: "card", id, "aria-labelledby": `${id}-title` }, make("h2", { id: `${id}-title` }, title), ...children);
+
+/** Digits enough for an interval. */
+const interval = ([lo, hi]: [number, number]) => {
+    const digits = Math.max(0, Math.min(6, 1 - Math.floor(Math.log10(Math.max(1e-12, hi - lo)))));
+    return `${lo.toFixed(digits)} … ${hi.toFixed(digits)}`;
+};
+
+export function merits({ report }: Page, units: Units): HTMLElement {
+    const { acceptance, onaa, centered, tolerances, success } = report;
+    const total = OUTCOMES.reduce((sum, outcome) => sum + acceptance.outcomes[outcome], 0) || 1;
+    const bar = make("div", { class: "bar", role: "img", "aria-label": OUTCOMES.map((o) => `${o} ${percent(acceptance.outcomes[o] / total)}`).join(", ") },
+        ...OUTCOMES.map((outcome) => make("i", { style: `flex-grow:${acceptance.outcomes[outcome]};background:var(--${outcome})` })));
+    const legend = make("p", { class: "legend" }, ...OUTCOMES.filter((outcome) => acceptance.outcomes[outcome] > 0).map((outcome) =>
+        make("span", {}, make("i", { style: `background:var(--${outcome})` }), `${outcome} ${percent(acceptance.outcomes[outcome] / total)}`)));
+    const rows = [
+        row("Sum", `${tidy4(acceptance.sum)} ${acceptance.unit}`, acceptance.sum_ci95 ? `95 %: ${interval(acceptance.sum_ci95)}` : ""),
+        row("share of the error box", percent(acceptance.fraction, 2)),
+    ];
+    if (acceptance.sum_bracket) rows.push(row("of the cells", tidy4(acceptance.sum_grid), `one cell of doubt: ${acceptance.sum_bracket.map(tidy4).join(" … ")}`));
+    if (onaa) rows.push(row("ONAA edge", onaa.edge.toFixed(4), "largest box of equal shares that docks"));
+    if (centered) rows.push(row("centred edge", `${centered.reaches_border ? "≥ " : ""}${centered.edge.toFixed(4)}`, "the same, around zero"));
+    if (success) rows.push(row("success", percent(success.probability, 2), success.ci95 ? `95 %: ${success.ci95.map((share) => percent(share, 2)).join(" … ")}` : ""));
+    const alone = table(["each error alone", "below", "above", "±"],
+        tolerances.map((t) => [
+            t.axis,
+            `${t.minus_reaches_border ? "≥ " : ""}${units.error(t.axis, t.minus)}`,
+            `${t.plus_reaches_border ? "≥ " : ""}${units.error(t.axis, t.plus)}`,
+            units.error(t.axis, t.half_cell),
+        ]), "How far each error may go while the others are 0");
+    return card("merits", "Figures of merit", bar, legend, make("table", { class: "facts" }, make("tbody", {}, ...rows)), ...(tolerances.length ? [alone] : []));
+}
+
+const tidy4 = (value: number) => (value === 0 ? "0" : Math.abs(value) < 1e-3 ? value.toExponential(2) : String(Number(value.toPrecision(4))));
+
+export function windowCard({ window: found }: Page, units: Units, show: (pose: Pose) => void): HTMLElement | null {
+    if (!found) return null;
+    const rows = found.sides.map((side) => [
+        side.axis + (side.axis === found.tightest ? " (tightest)" : ""),
+        `± ${units.error(side.axis, side.half_width)}`,
+        `± ${units.error(side.axis, side.alone)}${side.alone_reaches_border ? " *" : ""}`,
+        `± ${units.error(side.axis, side.beside)}${side.beside_reaches_border ? " *" : ""}`,
+    ]);
+    const children: Node[] = [table(["error", "all at once", "alone", "others in it"], rows, "All errors within the window dock")];
+    if (found.sides.some((side) => side.alone_reaches_border || side.beside_reaches_border)) children.push(make("p", { class: "hint" }, "* the error box ends there"));
+    const { motions, failing_at_most } = found.certificate;
+    if (motions > 0)
+        children.push(make("p", {}, `None of ${grouped(motions)} random poses in it failed: at most ${percent(failing_at_most, 4)} of it does (95 % confidence).`));
+    if (found.worst) {
+        const pose = listed(found.worst.error);
+        children.push(make("p", {}, `The nearest pose that does not dock: ${units.pose(pose)} (${found.worst.outcome}). `,
+            make("button", { type: "button", onclick: () => show(pose) }, "play it")));
+    }
+    return card("window", "Window", ...children);
+}
+
+const drawn = ({ kind, name }: { kind: string; name: string }) => (name.startsWith(kind) ? name : `${kind} ${name}`);
+
+export function jamsCard({ jams }: Page, units: Units, show: (pose: Pose, jam: Jam) => void): HTMLElement | null {
+    if (!jams) return null;
+    const items = jams.jams.slice(0, 12).map((jam) => {
+        const pose = listed(jam.pose);
+        const contacts = [...new Set(jam.contacts.map((contact) => `${drawn(contact.moving)} on ${drawn(contact.fixed)}`))];
+        const held = jam.examined?.way_out
+            ? `${jam.examined.firmness}; out by a lift of at most ${units.size(jam.examined.way_out.climb_at_most_d)} (then ${jam.examined.way_out.to})`
+            : (jam.examined?.firmness ?? "");
+        return make("li", {}, make("button", { type: "button", class: "jam", onclick: () => show(pose, jam) },
+            make("b", {}, `${percent(jam.of_box.share)} of the box`),
+            make("small", {}, `95 %: ${jam.of_box.ci95.map((share) => percent(share)).join(" … ")}${jam.places > 1 ? `, at ${jam.places} mirrored places` : ""}`),
+            make("span", {}, `rests ${units.size(jam.above_mated_d)} high at ${units.pose(pose)}`),
+            make("span", {}, contacts.slice(0, 3).join("; ") + (contacts.length > 3 ? `; and ${contacts.length - 3} more` : "")),
+            ...(held ? [make("span", {}, held)] : [])));
+    });
+    const hint = make("p", { class: "hint" }, `Of ${grouped(jams.motions)} random poses, followed exactly. Click one to see it.`);
+    return card("jams", "Where it jams", ...(items.length ? [hint, make("ol", { class: "jams" }, ...items)] : [make("p", {}, "No random pose jammed.")]));
+}
+
+export function doubts({ report, notes }: Page): HTMLElement | null {
+    const said = [...report.warnings.map(({ message }) => message), ...notes];
+    return said.length ? card("doubts", "To keep in mind", make("ul", {}, ...said.map((text) => make("li", {}, text)))) : null;
+}
+
+/** What it is a result of. */
+export function summary({ report }: Page, units: Units): string {
+    const cells = report.axes.map((axis) => axis.cells).join(" × ");
+    const width = report.design.unit ? `, D = ${tidy(report.design.width)} ${report.design.unit}` : "";
+    const free = AXES.filter((axis) => report.design.alignment.free.includes(axis)).join(", ");
+    return `free: ${free} · ${report.method}, ${cells} cells${width} · centre of rotation ${units.size(report.design.alignment.center_of_rotation)} before the face`;
+}

@@ -1,0 +1,129 @@
+// The page of `catchment report`, driven as a person drives it.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { catchment, launch, motion, open, written } from "./browser.mjs";
+
+let browser;
+before(async () => void (browser = await launch()));
+after(() => browser?.close());
+
+const AXES = ["x", "y", "roll", "pitch", "yaw"];
+/** The last bits of sines may differ between this machine's library and the page's own. */
+const CLOSE = 1e-9;
+
+function alike(a, b, place = "") {
+    if (typeof a === "number" && typeof b === "number") assert.ok(Math.abs(a - b) <= CLOSE * Math.max(1, Math.abs(b)), `${place}: ${a} and ${b}`);
+    else if (a !== null && typeof a === "object") {
+        assert.deepEqual(Object.keys(a), Object.keys(b), place);
+        for (const key of Object.keys(a)) alike(a[key], b[key], `${place}.${key}`);
+    } else assert.equal(a, b, place);
+}
+
+/** What the program says of the pose that a motion starts from. */
+function traced(design, { start }) {
+    const pose = AXES.filter((axis) => start[axis] !== 0).map((axis) => `${axis}=${start[axis]}`).join(",") || "x=0";
+    return JSON.parse(catchment("trace", `designs/${design}.toml`, "--pose", pose, "--json"));
+}
+
+for (const [design, ...given] of [["v-face", "--resolution", "30"], ["x-face-3d", "--resolution", "8", "--leave-out", "window"]]) {
+    test(`${design}: clicks play the motions of trace; nothing is asked for elsewhere`, async () => {
+        const { page, said } = await open(browser, written(design, ...given));
+        let shown = await page.evaluate(() => window.catchment.motion());
+        const outcomes = new Set();
+        for (const [u, v] of [[0.6, 0.45], [0.85, 0.3], [0.16, 0.88], [0.4, 0.6]]) {
+            const canvas = page.locator("canvas.slice").first();
+            const { width, height } = await canvas.boundingBox();
+            await canvas.click({ position: { x: 46 + u * (width - 56), y: 8 + v * (height - 42) } });
+            const found = await motion(page, shown);
+            shown = await page.evaluate(() => window.catchment.motion());
+            alike(found, traced(design, found), design);
+            outcomes.add(found.outcome);
+            assert.equal(await page.locator("#verdict").getAttribute("data-outcome"), found.outcome);
+        }
+        assert.ok(outcomes.size > 1, [...outcomes].join());
+        // The motion plays to its end by itself.
+        await page.locator(".play").click();
+        await page.waitForFunction(() => Number(document.querySelector(".time").value) > 0);
+        assert.deepEqual(said.errors, []);
+        assert.equal(said.asked.length, 1, said.asked.join());
+    });
+}
+
+test("sliders, pickers and keys do what they say", async () => {
+    const { page, said } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
+    let shown = await page.evaluate(() => window.catchment.motion());
+    await page.locator("#number-x").fill("0.2");
+    await page.locator("#number-x").press("Enter");
+    let found = await motion(page, shown);
+    assert.ok(Math.abs(found.start.x - 0.2) < 1e-12);
+    shown = await page.evaluate(() => window.catchment.motion());
+    await page.locator("h1").click();
+    await page.keyboard.press("5");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "slider-yaw");
+    await page.keyboard.press("ArrowRight");
+    found = await motion(page, shown);
+    assert.ok(found.start.yaw > 0);
+
+    const picture = (name) => page.locator(name).first().evaluate((canvas) => canvas.toDataURL());
+    let old = await picture("canvas.slice");
+    await page.locator("select[data-slice='1']").first().selectOption({ label: "yaw" });
+    await page.waitForFunction((before) => document.querySelector("canvas.slice").toDataURL() !== before, old);
+    old = await picture("canvas.volume");
+    await page.locator("figure.volume select").nth(3).selectOption({ label: "yaw" });
+    await page.waitForFunction((before) => document.querySelector("canvas.volume").toDataURL() !== before, old);
+
+    old = await picture("canvas.stage");
+    await page.locator("h1").click();
+    await page.keyboard.press("s");
+    await page.waitForFunction((before) => document.querySelector("canvas.stage").toDataURL() !== before, old);
+    assert.equal(await page.locator("#section").inputValue(), "y");
+    const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const light = await paper();
+    await page.keyboard.press("t");
+    assert.notEqual(await paper(), light);
+    await page.keyboard.press("?");
+    assert.ok(await page.locator("#help").isVisible());
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("0");
+    await page.waitForFunction(() => window.catchment.pose().every((value) => value === 0));
+
+    // A cell to the right in a slice, by the keyboard alone.
+    await page.locator("canvas.slice").first().focus();
+    await page.keyboard.press("ArrowRight");
+    await page.waitForFunction(() => window.catchment.pose().some((value) => value !== 0));
+    assert.deepEqual(said.errors, []);
+});
+
+test("slices show the cells of the result", async () => {
+    const { page } = await open(browser, written("v-face", "--resolution", "30"));
+    const data = JSON.parse(readFileSync(written("v-face", "--resolution", "30"), "utf8").match(/id="data">(.*?)<\/script>/s)[1]);
+    const told = data.report.acceptance.outcomes;
+    const counted = await page.evaluate(() => {
+        const canvas = document.querySelector("canvas.slice");
+        const pen = canvas.getContext("2d");
+        const ratio = canvas.width / canvas.clientWidth;
+        const [w, h] = [canvas.clientWidth - 56, canvas.clientHeight - 42];
+        const style = getComputedStyle(document.documentElement);
+        const named = Object.fromEntries(["aligned", "jammed", "missed", "undecided"].map((name) => [style.getPropertyValue(`--${name}`).trim(), name]));
+        const counts = { aligned: 0, jammed: 0, missed: 0, undecided: 0, other: 0 };
+        for (let j = 0; j < 30; j++)
+            for (let i = 0; i < 30; i++) {
+                const [r, g, b] = pen.getImageData((46 + ((i + 0.27) * w) / 30) * ratio, (8 + ((j + 0.27) * h) / 30) * ratio, 1, 1).data;
+                counts[named[`#${[r, g, b].map((v) => v.toString(16).padStart(2, "0")).join("")}`] ?? "other"]++;
+            }
+        return counts;
+    });
+    // Frames and numbers of jams cover some cells.
+    assert.ok(counted.other < 60, JSON.stringify(counted));
+    for (const name of ["aligned", "jammed", "missed"]) assert.ok(Math.abs(counted[name] - told[name]) <= counted.other, `${name}: ${JSON.stringify(counted)} ${JSON.stringify(told)}`);
+});
+
+test("a jam that is clicked is shown where it rests", async () => {
+    const { page } = await open(browser, written("v-face", "--resolution", "30"));
+    const shown = await page.evaluate(() => window.catchment.motion());
+    await page.locator("button.jam").first().click();
+    const found = await motion(page, shown);
+    assert.equal(found.outcome, "jammed");
+    assert.match(await page.locator("#verdict").textContent(), /Jams: at rest on \d+ contact/);
+});
