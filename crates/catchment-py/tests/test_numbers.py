@@ -77,7 +77,7 @@ def test_poses_end_where_the_program_says(method: str, count: int, tmp_path: obj
     told = json.loads(program("outcome", "designs/x-face-3d.toml", "--poses", table, "--method", method, "--json"))
     ends = problem.follow_many(poses, method=method)
     assert [catchment.OUTCOMES[code] for code in ends.outcomes] == [pose["outcome"] for pose in told["poses"]]
-    finals = [[pose["final_error"][axis] for axis in ("x", "y", "roll", "pitch", "yaw")] for pose in told["poses"]]
+    finals = [[pose["final"][axis] for axis in ("x", "y", "roll", "pitch", "yaw")] for pose in told["poses"]]
     assert np.array_equal(ends.errors, np.array(finals))
     assert len(set(ends.outcomes)) > 1
     one = problem.follow(poses[7], method=method)

@@ -51,7 +51,7 @@ def test_a_file_that_is_not_there_is_said() -> None:
         ({"budget": -1.0}, "seconds"),
         ({"error_sigma": {"x": "1 furlong"}}, "error_sigma"),
         ({"error_sigma": {"x": 1}, "error_uniform": {"x": 1}}, "leave out one"),
-        ({"method": "partition", "settings": {"slices": 0}}, "slices"),
+        ({"settings": {"friction": "much"}}, "invalid type"),
         ({"require": "onaa.edge"}, "require"),
     ],
 )
@@ -91,6 +91,11 @@ def test_no_answer_is_an_error_with_its_reason() -> None:
         catchment.load("designs/v-face.toml").window(fix={"x": 0.99, "pitch": "85 deg"})
     with pytest.raises(catchment.ArgumentError, match="both given"):
         catchment.load("designs/v-face.toml").window(fix={"x": 0.1}, proportions={"x": 1.0})
+
+
+def test_settings_that_are_out_of_range_are_refused() -> None:
+    with pytest.raises(catchment.ComputeError, match="slices must be at least 2"):
+        catchment.load("designs/v-face.toml").run(method="partition", settings={"slices": 0})
 
 
 def test_a_sweep_names_its_key() -> None:

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from ._arguments import Asked, Changes, Expected, How
 
+__all__ = ["Answer", "Problem", "Sweep", "Told", "__version__", "compare", "methods", "program", "read_text"]
+
 __version__: str
 
 def read_text(path: str) -> str:

@@ -9,6 +9,7 @@ digests of all that the figures depend on.
 from __future__ import annotations
 
 import json
+import pickle
 from functools import lru_cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -49,6 +50,11 @@ def _part(problem: Problem, plan: str, number: int, of: int) -> str:
     return problem._native.part(plan, number, of, how(threads=1))
 
 
+def _there(client: Client, problem: Problem) -> Any:
+    """The problem on the workers: made by a task of its own, so that it comes back where it was lost with a worker."""
+    return client.submit(pickle.loads, pickle.dumps(problem), pure=False, retries=RETRIES)
+
+
 def _tell(run_how: How, done: int, count: int, stage: str) -> None:
     if run_how["progress"] is not None and count:
         run_how["progress"](done / count, stage)
@@ -73,7 +79,7 @@ def designs(
     run_how: How,
 ) -> list[list[tuple[str, str]]]:
     """The designs that are not kept yet, of all sweeps at once: their keys and figures."""
-    there = client.scatter(problem, broadcast=True)
+    there = _there(client, problem)
     found: list[list[tuple[str, str]]] = [[] for _ in sweeps]
     futures: dict[Any, Any] = {}
     for which, ((axes, asked, expected, _), sweep) in enumerate(zip(plans, sweeps)):
@@ -95,7 +101,7 @@ def parts(client: Client, problem: Problem, plan: str, count: int | None, run_ho
     """The parts of a run."""
     threads = sum(client.nthreads().values())
     of = count or max(1, PARTS_PER_THREAD * threads)
-    there = client.scatter(problem, broadcast=True)
+    there = _there(client, problem)
     futures = {
         client.submit(_part, there, plan, number, of, pure=False, retries=RETRIES): number for number in range(of)
     }
