@@ -32,6 +32,18 @@ pub(crate) struct Changes {
 }
 
 impl Changes {
+    /// What is changed: its name, and the key that it stands for.
+    pub(crate) fn keys(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        [
+            ("free", "alignment.free", self.free.is_some()),
+            ("cor", "alignment.center_of_rotation", self.cor.is_some()),
+            ("aspect_ratio", "connector.aspect_ratio", self.aspect_ratio.is_some()),
+            ("rotation_length", "alignment.rotation_length", self.rotation_length.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(name, key, is_given)| is_given.then_some((name, key)))
+    }
+
     /// The draft with them.
     pub(crate) fn apply(&self, mut draft: Draft) -> Result<Draft, ProblemError> {
         if let Some(free) = &self.free {

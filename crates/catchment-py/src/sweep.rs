@@ -70,8 +70,14 @@ impl Sweep {
         output: Option<PathBuf>,
     ) -> PyResult<Self> {
         let plan = || -> Result<Plan, Refusal> {
-            let axes = over.iter().map(|axis| axis.parse::<Axis>()).collect::<Result<_, _>>();
+            let axes = over.iter().map(|axis| axis.parse::<Axis>()).collect::<Result<Vec<_>, _>>();
             let axes = axes.map_err(|error| Refusal::argument("over", error))?;
+            if let Some((name, _)) =
+                problem.changes.keys().find(|(_, key)| axes.iter().any(|axis| axis.key == *key))
+            {
+                let message = format!("{name} was replaced in the problem, and is varied; do one of both");
+                return Err(Refusal::argument("over", message));
+            }
             let run = asked.run(&problem.inner, &expected)?;
             if let Some(path) = &output {
                 StudyFolder { path, name: "sweep" }.check()?;

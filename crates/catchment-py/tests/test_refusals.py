@@ -106,6 +106,8 @@ def test_a_sweep_names_its_key() -> None:
         catchment.sweep(problem, {"aspect_ratio": []})
     with pytest.raises(catchment.DesignError):
         catchment.sweep(problem, {"aspect_ratio": [-1]})
+    with pytest.raises(catchment.ArgumentError, match="cor was replaced"):
+        catchment.sweep(problem.replace(cor=0.5), {"cor": [0, 1]})
 
 
 def test_all_refusals_are_one_kind() -> None:

@@ -35,8 +35,8 @@ Plan = tuple[list[str], Asked, Expected, "str | None"]
 
 @lru_cache(maxsize=4)
 def _sweep(problem: Problem, plan: str) -> _catchment.Sweep:
-    """The sweep on this worker, read once."""
-    axes, asked, expected = json.loads(plan)
+    """The sweep on this worker, read once. The plan has the design's text, too: equal problems may be written differently."""
+    axes, asked, expected = json.loads(plan)[:3]
     return _catchment.Sweep(problem._native, axes, asked, expected, None)
 
 
@@ -83,7 +83,7 @@ def designs(
     found: list[list[tuple[str, str]]] = [[] for _ in sweeps]
     futures: dict[Any, Any] = {}
     for which, ((axes, asked, expected, _), sweep) in enumerate(zip(plans, sweeps)):
-        plan = json.dumps([axes, asked, expected])
+        plan = json.dumps([axes, asked, expected, problem._path, problem._text, problem._changes])
         for number in sweep.missing():
             future = client.submit(_design, there, plan, number, pure=False, retries=RETRIES)
             futures[future] = which
