@@ -21,6 +21,10 @@ bench *filter:
 run *arguments:
     cargo run --locked --release -- {{ arguments }}
 
+# the Python wheel of this system, into target/wheels
+wheel:
+    crates/catchment-py/wheel
+
 # the library's documentation in a browser
 docs:
     cargo doc --locked --workspace --no-deps --all-features --open

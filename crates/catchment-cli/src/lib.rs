@@ -1,7 +1,7 @@
 //! The `catchment` command: typed arguments → meaning → library → print.
 //!
 //! Data goes to stdout, everything else to stderr. Exit codes: see [`ExitStatus`]. It is a library so that the fuzzer reads
-//! command lines as the program does; nothing here is promised to others.
+//! command lines as the program does, and Python's wheel has the program; nothing here is promised to others.
 
 mod advice;
 mod args;
@@ -28,8 +28,13 @@ use std::ffi::OsString;
 
 /// Does what the command line of this process says.
 pub fn run() -> ExitStatus {
+    run_words(std::env::args_os())
+}
+
+/// Does what a command line says; its first word is the name of the program.
+pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitStatus {
     signals::outlive_file_limits();
-    bug::caught(|| match Cli::try_parse() {
+    bug::caught(|| match Cli::try_parse_from(words) {
         Ok(cli) => cli.command.run().unwrap_or_else(failure::Failure::show),
         Err(usage) => usage::tell(usage),
     })

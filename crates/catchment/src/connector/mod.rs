@@ -39,7 +39,9 @@ pub use source::{FileBytes, Read, Source, UnitProblem};
 pub use step::StepProblem;
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
-use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, FileSpec, HalfSpec, OwnSpec};
+use crate::design::{
+    ConnectorSpec, Contents, Design, FamilySpec, FileSpec, FilesInMemory, HalfSpec, OwnSpec,
+};
 use crate::exec::Exec;
 use crate::pose::{Mount, PoseError};
 use glam::{DAffine3, DVec3};
@@ -132,9 +134,13 @@ impl Connector {
         Self::build_with(design, &source::disk::read)
     }
 
-    /// The same, given up where a stop is asked for.
-    pub(crate) fn build_on(design: &Design, exec: &Exec) -> Result<Self, Vec<Problem>> {
-        Self::build_within(design, &source::disk::read, exec)
+    /// The same with some of the files in memory, given up where a stop is asked for.
+    pub(crate) fn build_on(
+        design: &Design,
+        files: &FilesInMemory,
+        exec: &Exec,
+    ) -> Result<Self, Vec<Problem>> {
+        Self::build_within(design, &source::beside(files), exec)
     }
 
     /// Builds the halves of a design; `read` gives the mesh files.
@@ -166,9 +172,14 @@ impl Connector {
     }
 
     /// Own halves of any size beside D, and the larger lateral extent of either as drawn.
-    pub(crate) fn unsized_on(own: &OwnSpec, mount: Mount, exec: &Exec) -> Result<(Self, f64), Vec<Problem>> {
+    pub(crate) fn unsized_on(
+        own: &OwnSpec,
+        mount: Mount,
+        files: &FilesInMemory,
+        exec: &Exec,
+    ) -> Result<(Self, f64), Vec<Problem>> {
         let half = |spec: &HalfSpec, side| -> Sourced {
-            Source::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)
+            Source::of(spec, side, &source::beside(files))?.build(side, Size::Any, exec)
         };
         let halves = [half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)];
         let wide = |built: &source::Built| {

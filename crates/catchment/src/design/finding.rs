@@ -1,9 +1,14 @@
 //! What is wrong, where it stands, and what to do about it: data, for whoever shows it.
 
 use super::line_column;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Files that a program has in memory, by their paths.
+pub type FilesInMemory = Arc<BTreeMap<PathBuf, Vec<u8>>>;
 
 /// The text of a file that a person wrote, and the name to show it under.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -12,12 +17,22 @@ pub struct SourceText {
     pub path: PathBuf,
     /// Its text.
     pub text: String,
+    /// Files that it names and that are in memory, by the paths that the design has of them; all others are on disk.
+    pub files: FilesInMemory,
 }
 
 impl SourceText {
     /// A text and the name to show it under.
     pub fn new(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
-        Self { path: path.into(), text: text.into() }
+        Self { path: path.into(), text: text.into(), files: FilesInMemory::default() }
+    }
+
+    /// The same with files in memory; their paths are relative to the folder of the text.
+    #[must_use]
+    pub fn with_files(mut self, files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) -> Self {
+        let folder = self.path.parent().unwrap_or_else(|| Path::new(""));
+        self.files = Arc::new(files.into_iter().map(|(path, bytes)| (folder.join(path), bytes)).collect());
+        self
     }
 
     /// Line and column of a byte, both from 1.

@@ -5,7 +5,8 @@ use crate::connector::Connector;
 use crate::contact::mated::{self, MatedProblem};
 use crate::contact::{Pair, face, settle};
 use crate::design::{
-    Complaint, ConnectorSpec, Design, Finding, Findings, SourceText, Sources, Width, load, read_as,
+    Complaint, ConnectorSpec, Design, FilesInMemory, Finding, Findings, SourceText, Sources, Width, load,
+    read_as,
 };
 use crate::exec::Exec;
 use std::path::Path;
@@ -16,12 +17,14 @@ pub struct Draft {
     design: Design,
     source: Option<SourceText>,
     places: Sources,
+    /// Files that are in memory and not on disk.
+    pub(super) files: FilesInMemory,
 }
 
 impl From<Design> for Draft {
     /// A design without a text: what is wrong with it has no place.
     fn from(design: Design) -> Self {
-        Self { design, source: None, places: Sources::default() }
+        Self { design, source: None, places: Sources::default(), files: FilesInMemory::default() }
     }
 }
 
@@ -65,7 +68,8 @@ impl Draft {
         let folder = source.path.parent().unwrap_or_else(|| Path::new(""));
         match read_as(&source.text, folder, width) {
             Ok((file, is_used)) => {
-                Ok((Self { design: file.design, places: file.sources, source: Some(source) }, is_used))
+                let files = source.files.clone();
+                Ok((Self { design: file.design, places: file.sources, source: Some(source), files }, is_used))
             }
             Err(problems) => {
                 let place = |problem: crate::design::Problem| Finding {
@@ -87,6 +91,11 @@ impl Draft {
     /// The text it was read from.
     pub const fn source(&self) -> Option<&SourceText> {
         self.source.as_ref()
+    }
+
+    /// This one with the files in memory of another.
+    pub(super) fn beside(self, other: &Self) -> Self {
+        Self { files: other.files.clone(), ..self }
     }
 
     /// The design with something changed. A refused change is reported beside the key that forbids it, with `what`, the
@@ -137,7 +146,7 @@ impl Draft {
     /// As [`Draft::build`].
     pub fn build_on(self, exec: &Exec) -> Result<Problem, ProblemError> {
         exec.report(0.0, "halves");
-        match Connector::build_on(&self.design, exec) {
+        match Connector::build_on(&self.design, &self.files, exec) {
             Ok(connector) => {
                 let connector = match &self.design.connector {
                     ConnectorSpec::Own(own) => {

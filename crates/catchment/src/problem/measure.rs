@@ -40,10 +40,11 @@ fn of(draft: Draft, exec: &Exec) -> Result<(f64, WidthFrom), ProblemError> {
     let ConnectorSpec::Own(own) = &draft.design().connector else {
         return Ok((draft.design().width, WidthFrom::Written));
     };
-    let (connector, widest) = match Connector::unsized_on(own, draft.design().alignment.mount, exec) {
-        Ok(built) => built,
-        Err(problems) => return Err(draft.unbuilt(&problems).into()),
-    };
+    let (connector, widest) =
+        match Connector::unsized_on(own, draft.design().alignment.mount, &draft.files, exec) {
+            Ok(built) => built,
+            Err(problems) => return Err(draft.unbuilt(&problems).into()),
+        };
     // The height without any error does not depend on the alignment problem.
     let lift = Pair::new(&connector, &Alignment::new(DofSet::EMPTY, Mount::X)).mated_height();
     let found = lift.is_finite().then(|| width::default(&connector.fixed, &connector.moving, lift, widest));

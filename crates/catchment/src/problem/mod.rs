@@ -89,7 +89,7 @@ impl Problem {
         if !settles && design.connector == own.connector && design.alignment.mount == own.alignment.mount {
             return Draft::from(design).with_halves(self.connector().clone(), &Exec::new());
         }
-        Self::of(design)
+        Draft::from(design).beside(&self.0.draft).build()
     }
 
     fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {

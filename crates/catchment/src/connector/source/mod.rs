@@ -20,7 +20,9 @@ pub(super) use unit::scale;
 
 use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Ready, Triangle};
 use super::{Half, Problem, Side, Size, Surface, convex_hull, family, obj, part, ply, step, stl, threemf};
-use crate::design::{FamilySpec, FileSpec, HalfSpec, MeshContent, Meshed, PartSpec, ShapeSpec, Treatment};
+use crate::design::{
+    FamilySpec, FileSpec, FilesInMemory, HalfSpec, MeshContent, Meshed, PartSpec, ShapeSpec, Treatment,
+};
 use crate::exec::Exec;
 use glam::DVec3;
 use std::io;
@@ -48,6 +50,17 @@ impl FileBytes {
 
 /// Gives the first bytes of a file, at most as many as the second argument says.
 pub type Read<'a> = &'a dyn Fn(&Path, u64) -> io::Result<FileBytes>;
+
+/// Reads files that are in memory, and all others from disk.
+pub(super) fn beside(files: &FilesInMemory) -> impl Fn(&Path, u64) -> io::Result<FileBytes> {
+    move |path, most| match files.get(path) {
+        Some(bytes) => {
+            let most = bytes.len().min(usize::try_from(most).unwrap_or(usize::MAX));
+            Ok(FileBytes { bytes: bytes[..most].to_vec(), size: bytes.len() as u64 })
+        }
+        None => disk::read(path, most),
+    }
+}
 
 /// What a mesh file holds.
 #[derive(Debug, Clone)]

@@ -244,6 +244,44 @@ pub(super) fn rests_told(
     each(pair, domain, Until::AtRest, settings, exec, finished)
 }
 
+/// Poses that lie in an array, and where what becomes of them goes: row k of all three is of pose k. Nothing is copied.
+#[derive(Debug)]
+pub struct Rows<'a> {
+    /// The pose errors, in the order of [`Dof::ALL`](crate::pose::Dof::ALL), in D and radians.
+    pub poses: &'a [[f64; 5]],
+    /// Receives the last pose errors, likewise.
+    pub ends: &'a mut [[f64; 5]],
+    /// Receives the codes of the outcomes.
+    pub outcomes: &'a mut [u8],
+}
+
+/// The same as [`rests`] for poses that lie in an array. Where the three have unlike lengths, the shortest counts.
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop; checked before every pose. What was written until then means nothing.
+pub fn rests_of_rows(pair: &Pair, rows: Rows<'_>, settings: &Settings, exec: &Exec) -> Result<(), Cancelled> {
+    let Rows { poses, ends, outcomes } = rows;
+    let count = poses.len();
+    let done = AtomicUsize::new(0);
+    let between = count.div_ceil(REPORTS).min(MOST_BETWEEN);
+    exec.install(|| {
+        (poses, ends, outcomes).into_par_iter().try_for_each_init(
+            || Motion::new(pair, settings).homing(),
+            |motion, (pose, end, code)| {
+                exec.check()?;
+                let pose = PoseError::from_array(*pose);
+                let (outcome, error) = motion.follow(&pose, Until::AtRest, &mut Unwatched);
+                (*end, *code) = (error.to_array(), outcome as u8);
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                if done.is_multiple_of(between) {
+                    exec.report(done as f64 / count as f64, "descents");
+                }
+                Ok(())
+            },
+        )
+    })
+}
+
 fn each(
     pair: &Pair,
     domain: Domain,

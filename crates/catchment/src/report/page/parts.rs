@@ -9,7 +9,7 @@ use crate::problem::Problem;
 use crate::report::{JamsReport, Report, WindowReport};
 use crate::run::Answer;
 use crate::run::jams::{self, JamsError};
-use crate::study::window::{self, WindowError};
+use crate::run::window::{self, WindowError};
 
 /// A page in parts.
 #[derive(Debug, Clone)]

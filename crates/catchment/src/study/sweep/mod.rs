@@ -47,7 +47,7 @@ pub struct Settings {
 }
 
 /// The designs of a sweep, read and not yet built.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Plan {
     settings: Settings,
     base: Design,
@@ -270,7 +270,7 @@ impl Plan {
                 source.path.file_name().unwrap_or_default().display(),
                 values.collect::<Vec<_>>().join(", ")
             ));
-            Ok(change(Draft::read(SourceText { path, text })?)?)
+            Ok(change(Draft::read(SourceText { path, text, files: source.files.clone() })?)?)
         });
         let drafts = drafts.collect::<Result<_, SweepError>>()?;
         Ok(Self { settings, base, drafts })
@@ -289,6 +289,26 @@ impl Plan {
     /// The design as its file has it.
     pub const fn base(&self) -> &Design {
         &self.base
+    }
+
+    /// One design, in the order of the combinations, and the key that [`Keep`] has it under: a part of [`Plan::run`] that may be computed
+    /// elsewhere. `None` where the halves do not build, which takes no time to find out again.
+    ///
+    /// # Errors
+    /// As [`Plan::run`].
+    pub fn design(&self, number: usize, exec: &Exec) -> Result<Option<(String, Found)>, SweepError> {
+        let Ok(problem) = self.drafts[number].clone().build() else { return Ok(None) };
+        let key = key(&problem, &self.settings.run).map_err(SweepError::Keep)?;
+        one(&self.drafts[number], &self.settings.run, &Nowhere, exec).map(|found| Some((key, found)))
+    }
+
+    /// The key that [`Keep`] has a design under; `None` where its halves do not build.
+    ///
+    /// # Errors
+    /// None at present: every run has a JSON form.
+    pub fn key(&self, number: usize) -> Result<Option<String>, SweepError> {
+        let Ok(problem) = self.drafts[number].clone().build() else { return Ok(None) };
+        key(&problem, &self.settings.run).map(Some).map_err(SweepError::Keep)
     }
 
     /// Computes every design, but for those that `keep` has already, and keeps each as soon as it is finished.

@@ -1,0 +1,7 @@
+"""`python -m catchment` is the `catchment` command."""
+
+import sys
+
+from ._program import main
+
+sys.exit(main())

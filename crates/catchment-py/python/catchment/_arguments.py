@@ -1,0 +1,145 @@
+"""Arguments as people write them, in the words of the library: `5`, `"5 mm"`, `{"x": "1 mm", "yaw": 0.1}`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict, Union
+
+from ._errors import ArgumentError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+#: A length in D or with a unit ("5 mm"); an angle in radians or with a unit ("10 deg").
+Quantity: TypeAlias = Union[float, str]
+#: Errors by their names, or as written on the command line: "x=1 mm,yaw=2 deg".
+Errors: TypeAlias = Union[str, Mapping[str, Quantity]]
+#: One pose error: as `Errors`, or five numbers x, y, roll, pitch, yaw in D and radians.
+Pose: TypeAlias = Union[str, Mapping[str, Quantity], "NDArray[np.float64]", Iterable[float]]
+#: Cells per axis: 30, "x=40,yaw=24", {"x": 40, "yaw": 24}.
+Cells: TypeAlias = Union[int, str, Mapping[str, int]]
+#: Shows progress: True for a bar of tqdm, or a function of the share that is done and the name of the stage.
+Progress: TypeAlias = Union[bool, Callable[[float, str], object]]
+
+#: The five errors, in the order of all arrays.
+AXES = ("x", "y", "roll", "pitch", "yaw")
+
+
+class How(TypedDict):
+    """How to run: changes no bit of a result."""
+
+    threads: int
+    memory: int | None
+    progress: Callable[[float, str], object] | None
+
+
+class Changes(TypedDict):
+    """What is changed in a design."""
+
+    free: str | None
+    cor: str | None
+    aspect_ratio: float | None
+    rotation_length: str | None
+
+
+class Expected(TypedDict):
+    """Errors that a robot makes."""
+
+    error_sigma: str | None
+    error_uniform: str | None
+
+
+class Asked(TypedDict):
+    """What a run is asked for."""
+
+    method: str
+    settings: str
+    resolution: str | None
+    poses: int | None
+    samples: int | None
+    budget_s: float | None
+    tolerance: float | None
+    seed: int
+    require: list[str]
+    heights: bool
+
+
+def quantity(value: Quantity) -> str:
+    """A number with all its digits, or as written."""
+    return value if isinstance(value, str) else repr(float(value))
+
+
+def errors(value: Errors | None) -> str | None:
+    """Errors by name, as the library reads them."""
+    if value is None or isinstance(value, str):
+        return value
+    return ",".join(f"{name}={quantity(size)}" for name, size in value.items())
+
+
+def cells(value: Cells | None) -> str | None:
+    """A resolution, as the library reads it."""
+    if isinstance(value, Mapping):
+        return ",".join(f"{name}={int(number)}" for name, number in value.items())
+    return None if value is None else str(value)
+
+
+def free(value: str | Iterable[str] | None) -> str | None:
+    """Names of errors, as the library reads them."""
+    return value if value is None or isinstance(value, str) else ",".join(value)
+
+
+def settings(value: Mapping[str, object] | None) -> str:
+    """Settings of a method as JSON."""
+    try:
+        return json.dumps(dict(value or {}))
+    except TypeError as error:
+        raise ArgumentError(f"settings: {error}; give numbers, texts and lists") from None
+
+
+def changes(
+    free_: str | Iterable[str] | None,
+    cor: Quantity | None,
+    aspect_ratio: float | None,
+    rotation_length: Quantity | None,
+) -> Changes:
+    """What is changed in a design."""
+    return Changes(
+        free=free(free_),
+        cor=None if cor is None else quantity(cor),
+        aspect_ratio=None if aspect_ratio is None else float(aspect_ratio),
+        rotation_length=None if rotation_length is None else quantity(rotation_length),
+    )
+
+
+def require(value: str | Iterable[str]) -> list[str]:
+    """Requirements."""
+    return [value] if isinstance(value, str) else list(value)
+
+
+def how(threads: int = 0, memory: int | None = None, progress: Progress = False) -> How:
+    """How to run."""
+    shown: Callable[[float, str], object] | None
+    if progress is True:
+        shown = bar()
+    else:
+        shown = progress or None
+    return How(threads=threads, memory=memory, progress=shown)
+
+
+def bar() -> Callable[[float, str], object]:
+    """A progress bar, of tqdm: in a notebook one of the notebook."""
+    try:
+        tqdm: Any = import_module("tqdm.auto").tqdm
+    except ImportError:
+        raise ArgumentError("progress: a bar needs tqdm: pip install 'catchment[progress]'") from None
+    shown = tqdm(total=100.0, bar_format="{desc:16} {bar} {percentage:3.0f} %", leave=False)
+
+    def show(fraction: float, stage: str) -> None:
+        shown.set_description_str(stage, refresh=False)
+        shown.n = 100.0 * fraction
+        shown.refresh()
+
+    return show

@@ -1,0 +1,412 @@
+"""Problems: from design files, from their text, and from meshes in memory."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _catchment, _meshes
+from ._arguments import (
+    AXES,
+    Asked,
+    Cells,
+    Changes,
+    Errors,
+    Expected,
+    Pose,
+    Progress,
+    Quantity,
+    cells,
+    changes,
+    errors,
+    free as names,
+    how,
+    quantity,
+    require as requirements,
+    settings as as_json,
+)
+from ._errors import ArgumentError
+from ._results import End, Ends, Picture, Report, Result
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+NOTHING = Changes(free=None, cor=None, aspect_ratio=None, rotation_length=None)
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    free: str | Iterable[str] | None = None,
+    cor: Quantity | None = None,
+    aspect_ratio: float | None = None,
+    rotation_length: Quantity | None = None,
+) -> Problem:
+    """The problem of a design file.
+
+    free, cor, aspect_ratio, rotation_length: instead of what the file says, as `Problem.replace` has them.
+    Raises DesignError with line, column and advice of everything that is wrong, GeometryError where the halves do not fit.
+    """
+    place = os.fspath(path)
+    given = changes(free, cor, aspect_ratio, rotation_length)
+    return Problem._made(place, _catchment.read_text(place), [], given)
+
+
+class Problem:
+    """An alignment problem: two halves, which errors are free and how far, checked once.
+
+    It never changes; `replace` makes another. It can be pickled, with the meshes that it came from.
+
+    From two meshes, each a trimesh or (vertices, faces) with vertices (n, 3) in `unit` and faces (m, 3) counter-clockwise
+    seen from outside:
+
+    >>> Problem(fixed=socket, moving=plug, width=50.0, unit="mm", cor=0.5)
+
+    width: D, the length that all results are in, in `unit`; left out it is measured where the halves touch.
+    drawn: "facing": each half in a frame of its own, facing +z; "assembled": both in one frame, docked, and `approach` is
+    the direction in which the moving half comes ("-z").
+    face_height: z of the face centre in each half's own frame, in `unit`; found where it is left out.
+    cor: centre of rotation in front of the face centre; rotation_length: how far one radian counts as; both in D or with a unit.
+    error_box: half-widths of the errors to consider, such as {"x": "20 mm", "yaw": "30 deg"}.
+    """
+
+    _native: _catchment.Problem
+    _path: str
+    _text: str
+    _files: list[tuple[str, bytes]]
+    _changes: Changes
+
+    def __init__(
+        self,
+        *,
+        fixed: _meshes.Mesh,
+        moving: _meshes.Mesh,
+        width: float | None = None,
+        unit: str = "mm",
+        name: str = "from meshes",
+        free: str | Iterable[str] | None = None,
+        cor: Quantity | None = None,
+        rotation_length: Quantity | None = None,
+        error_box: Mapping[str, Quantity] | None = None,
+        drawn: str | None = None,
+        approach: str | None = None,
+        face_height: float | None = None,
+        settle: bool | None = None,
+    ) -> None:
+        files = [("fixed.ply", _meshes.ply(fixed, "fixed")), ("moving.ply", _meshes.ply(moving, "moving"))]
+        connector = {
+            "width": None if width is None else float(width),
+            "unit": unit,
+            "drawn": drawn,
+            "approach": approach,
+            "face_height": None if face_height is None else float(face_height),
+            "settle": settle,
+        }
+        alignment: dict[str, object] = {"center_of_rotation": cor, "rotation_length": rotation_length}
+        if free is not None:
+            alignment["free"] = [word.strip() for word in (names(free) or "").split(",")]
+        lines = [f"name = {json.dumps(name)}", "[connector]", *_keys(connector)]
+        lines += [f'{half} = {{ mesh = "{half}.ply", unit = {json.dumps(unit)} }}' for half in ("fixed", "moving")]
+        lines += ["[alignment]", *_keys(alignment), "[errors]", *_keys(error_box or {})]
+        self._make(f"{name}.toml".replace("/", "-"), "\n".join(lines) + "\n", files, NOTHING)
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "design.toml") -> Problem:
+        """The problem of a design file's text; `name` is what messages call it, and meshes are looked for beside it."""
+        return cls._made(name, text, [], NOTHING)
+
+    @classmethod
+    def _made(cls, path: str, text: str, files: list[tuple[str, bytes]], given: Changes) -> Problem:
+        problem = cls.__new__(cls)
+        problem._make(path, text, files, given)
+        return problem
+
+    def _make(self, path: str, text: str, files: list[tuple[str, bytes]], given: Changes) -> None:
+        self._path, self._text, self._files, self._changes = path, text, files, given
+        self._native = _catchment.Problem(path, text, files, given, how())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Problem._made, (self._path, self._text, self._native.files(), self._changes)
+
+    def replace(
+        self,
+        *,
+        free: str | Iterable[str] | None = None,
+        cor: Quantity | None = None,
+        aspect_ratio: float | None = None,
+        rotation_length: Quantity | None = None,
+    ) -> Problem:
+        """This problem with something else in it.
+
+        free: the errors that are free, such as "x,y,yaw"; the others are locked.
+        cor: centre of rotation in front of the face centre, in D or with a unit ("5 mm").
+        aspect_ratio: H/D, height of the mating profile over the width; of families.
+        rotation_length: rho, how far one radian counts as when motion is damped, in D or with a unit.
+        """
+        given = changes(free, cor, aspect_ratio, rotation_length)
+        both = Changes(
+            free=given["free"] or self._changes["free"],
+            cor=given["cor"] or self._changes["cor"],
+            aspect_ratio=self._changes["aspect_ratio"] if aspect_ratio is None else given["aspect_ratio"],
+            rotation_length=given["rotation_length"] or self._changes["rotation_length"],
+        )
+        return Problem._made(self._path, self._text, self._files, both)
+
+    @property
+    def name(self) -> str:
+        """What the design is called."""
+        return self._native.name()
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of all that may change an answer: equal digests, equal answers."""
+        return self._native.digest()
+
+    @property
+    def design(self) -> dict[str, Any]:
+        """The design, resolved: lengths in D, angles in radians."""
+        read: dict[str, Any] = json.loads(self._native.design())
+        return read
+
+    @property
+    def text(self) -> str:
+        """The text of the design file."""
+        return self._text
+
+    @property
+    def error_box(self) -> dict[str, float]:
+        """Half-widths of the errors considered, of those that are free, in D and radians."""
+        return dict(self._native.error_box())
+
+    @property
+    def doubts(self) -> list[str]:
+        """What speaks against the mated pose, as sentences; empty where nothing does."""
+        return self._native.doubts()
+
+    @property
+    def picture(self) -> Picture:
+        """Both halves as they were understood: apart in space, mated in section."""
+        return Picture(*self._native.picture())
+
+    def __repr__(self) -> str:
+        box = ", ".join(f"{name} ±{size:.4g}" for name, size in self.error_box.items())
+        return f"<Problem {self.name!r}: {box} [D, rad]>"
+
+    def _repr_png_(self) -> bytes:
+        return self.picture.png
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Problem) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    def _pose(self, pose: Pose) -> list[float]:
+        """Five numbers of a pose error."""
+        if isinstance(pose, (str, Mapping)):
+            written = errors(pose) or ""
+            return self._native.pose(written) if written else [0.0] * 5
+        row = [float(value) for value in pose]
+        if len(row) != 5:
+            raise ArgumentError(f"pose: five numbers x, y, roll, pitch, yaw in D and radians are wanted, not {len(row)}")
+        return row
+
+    def run(
+        self,
+        *,
+        method: str = "confluence",
+        settings: Mapping[str, object] | None = None,
+        resolution: Cells | None = None,
+        poses: int | None = None,
+        samples: int | None = None,
+        budget: float | None = None,
+        tolerance: float | None = None,
+        seed: int = 1,
+        error_sigma: Errors | None = None,
+        error_uniform: Errors | None = None,
+        require: str | Iterable[str] = (),
+        heights: bool = False,
+        client: Client | None = None,
+        parts: int | None = None,
+        threads: int = 0,
+        memory: int | None = None,
+        progress: Progress = False,
+    ) -> Result:
+        """The area of acceptance: which pose errors contact corrects.
+
+        method: how outcomes are decided; `catchment.methods()` lists them. settings: those of the method,
+        such as {"friction": 0.2}.
+        resolution: cells per axis of the error grid: 30, {"x": 40, "yaw": 24}. poses: instead of a grid, so many random poses.
+        samples: random poses followed exactly to correct the Sum, 0 for none; or budget: as many as can be followed in
+        these seconds; or tolerance: until the 95 % interval is ± this share of the Sum.
+        error_sigma, error_uniform: errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds `success`.
+        require: what must hold of the report, such as "onaa.edge>=0.3"; `Result.unmet` says what does not.
+        heights: keep the heights of first contact.
+        client: a dask.distributed.Client: parts of the grid (or of the random poses) are decided on its workers, by methods
+        that decide each pose by itself (descent, drop); parts: into how many.
+        threads (0: one per core), memory (bytes), progress (True, or a function of the share and the stage): change no bit.
+        Ctrl-C ends it with KeyboardInterrupt.
+        """
+        asked = Asked(
+            method=method,
+            settings=as_json(settings),
+            resolution=cells(resolution),
+            poses=poses,
+            samples=samples,
+            budget_s=budget,
+            tolerance=tolerance,
+            seed=seed,
+            require=requirements(require),
+            heights=heights,
+        )
+        plan = self._native.plan(asked, _expected(error_sigma, error_uniform))
+        run_how = how(threads, memory, progress)
+        if client is not None:
+            from . import _cluster
+
+            found = _cluster.parts(client, self, plan, parts, run_how)
+            return Result(self, plan, self._native.merge(plan, found, run_how))
+        return Result(self, plan, self._native.run(plan, run_how))
+
+    def follow(
+        self,
+        pose: Pose,
+        *,
+        method: str = "descent",
+        settings: Mapping[str, object] | None = None,
+    ) -> End:
+        """Where one pose error comes to rest, by exact quasi-static motion.
+
+        pose: "x=5 mm,pitch=10 deg", {"x": "5 mm", "pitch": 0.2}, or x, y, roll, pitch, yaw in D and radians.
+        settings: such as {"friction": 0.2}.
+        """
+        outcome, end = self._native.follow(self._pose(pose), method, as_json(settings), how())
+        return End(outcome, np.asarray(end))
+
+    def follow_many(
+        self,
+        poses: ArrayLike,
+        *,
+        method: str = "descent",
+        settings: Mapping[str, object] | None = None,
+        threads: int = 0,
+        memory: int | None = None,
+        progress: Progress = False,
+    ) -> Ends:
+        """Where every pose error of an array comes to rest, on all threads.
+
+        poses: (n, 5): x, y in D, roll, pitch, yaw in radians; 0 where the design locks. A contiguous array of float64 is read where
+        it lies; it must not be written to meanwhile.
+        Returns outcomes (n,) and errors (n, 5).
+        """
+        rows = np.ascontiguousarray(poses, dtype=np.float64)
+        if rows.ndim != 2 or rows.shape[1] != 5:
+            raise ArgumentError(
+                f"poses: an array of shape (n, 5) is wanted, {', '.join(AXES)} of each pose, not {rows.shape}"
+            )
+        return Ends(*self._native.follow_many(rows, method, as_json(settings), how(threads, memory, progress)))
+
+    def trace(self, pose: Pose, *, friction: float = 0.0) -> Report:
+        """The way of one pose error, from first contact to where it rests, with its picture."""
+        return Report._of(self._native.trace(self._pose(pose), friction, how()))
+
+    def window(
+        self,
+        *,
+        fix: Errors | None = None,
+        proportions: Errors | None = None,
+        motions: int | None = None,
+        seed: int = 1,
+        friction: float = 0.0,
+        threads: int = 0,
+        memory: int | None = None,
+        progress: Progress = False,
+    ) -> Report:
+        """The largest box of errors around zero that all dock: what a datasheet may say. `report["window"]`.
+
+        fix: half-widths that are given ({"x": "2 mm"}); the others grow. proportions: of those that are not given; what is
+        not named does not occur. Without them: the proportions of the error box.
+        motions: random poses of the certificate.
+        """
+        run_how = how(threads, memory, progress)
+        return Report._of(self._native.window(errors(fix), errors(proportions), motions, seed, friction, run_how))
+
+    def jams(
+        self,
+        *,
+        motions: int | None = None,
+        seed: int = 1,
+        examine: int = 6,
+        resolution: Cells | None = None,
+        friction: float = 0.0,
+        error_sigma: Errors | None = None,
+        error_uniform: Errors | None = None,
+        threads: int = 0,
+        memory: int | None = None,
+        progress: Progress = False,
+    ) -> Report:
+        """Where it jams instead of docking, on which features, how firmly. `report["jams"]`.
+
+        motions: random poses that are followed. examine: how many jams are looked at closely.
+        """
+        expected = _expected(error_sigma, error_uniform)
+        run_how = how(threads, memory, progress)
+        return Report._of(self._native.jams(motions, seed, examine, cells(resolution), friction, expected, run_how))
+
+    def zraa(self, *, threads: int = 0, memory: int | None = None, progress: Progress = False) -> Report:
+        """Offsets that are corrected by sliding alone, all rotations locked, exactly. `report["area_d2"]` or `report["from_d"]`."""
+        return Report._of(self._native.zraa(how(threads, memory, progress)))
+
+
+def _expected(error_sigma: Errors | None, error_uniform: Errors | None) -> Expected:
+    return Expected(error_sigma=errors(error_sigma), error_uniform=errors(error_uniform))
+
+
+def _keys(table: Mapping[str, object]) -> list[str]:
+    """Lines of a TOML table; what is None is left out."""
+    lines = []
+    for key, value in table.items():
+        if isinstance(value, str):
+            lines.append(f"{key} = {json.dumps(value)}")
+        elif isinstance(value, (bool, list)):
+            lines.append(f"{key} = {json.dumps(value)}")
+        elif value is not None:
+            lines.append(f"{key} = {quantity(value)}")  # type: ignore[arg-type]
+    return lines
+
+
+def compare(
+    first: Problem | str | os.PathLike[str],
+    second: Problem | str | os.PathLike[str] | None = None,
+    *,
+    methods: Iterable[str] | str | None = None,
+    resolution: Cells | None = None,
+    threads: int = 0,
+    memory: int | None = None,
+    progress: Progress = False,
+) -> Report:
+    """Two acceptances beside each other: where they differ, and by how much. `report["comparison"]`.
+
+    first, second: problems, or folders (or NAME.zarr) of stored results. One problem alone is decided by two methods.
+    methods: of every problem, in their order, such as "descent,flood"; one counts for both.
+    """
+    sides = [first, first if second is None else second]
+    chosen = methods.split(",") if isinstance(methods, str) else list(methods or [])
+    problems = sum(isinstance(side, Problem) for side in sides)
+    if second is None and len(chosen) != 2:
+        raise ArgumentError('compare: one problem is compared with itself by two methods, such as methods="descent,flood"')
+    if len(chosen) > problems:
+        raise ArgumentError(f"compare: {len(chosen)} methods for {problems} problems; stored results have theirs already")
+    rest, common = iter(chosen), chosen[0] if chosen else "confluence"
+    subjects: list[str | tuple[str, _catchment.Problem, str, str]] = []
+    for side in sides:
+        if isinstance(side, Problem):
+            subjects.append((side._path, side._native, next(rest, common), "{}"))
+        else:
+            subjects.append(os.fspath(side))
+    return Report._of(_catchment.compare((subjects[0], subjects[1]), cells(resolution), how(threads, memory, progress)))

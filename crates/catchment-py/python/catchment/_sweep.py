@@ -1,0 +1,134 @@
+"""Sweeps: one design with keys of its file replaced, every combination computed, here or on a cluster."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, overload
+
+from . import _catchment
+from ._arguments import (
+    Asked,
+    Cells,
+    Errors,
+    Progress,
+    Quantity,
+    cells,
+    how,
+    quantity,
+    settings as as_json,
+)
+from ._errors import ArgumentError
+from ._problem import Problem, _expected
+from ._results import Report
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+
+@overload
+def sweep(
+    problem: Problem,
+    over: Mapping[str, str | Iterable[Quantity]],
+    *,
+    seed: int = 1,
+    method: str = ...,
+    settings: Mapping[str, object] | None = ...,
+    resolution: Cells | None = ...,
+    samples: int | None = ...,
+    tolerance: float | None = ...,
+    error_sigma: Errors | None = ...,
+    error_uniform: Errors | None = ...,
+    output: str | os.PathLike[str] | None = ...,
+    client: Client | None = ...,
+    threads: int = ...,
+    memory: int | None = ...,
+    progress: Progress = ...,
+) -> Report: ...
+@overload
+def sweep(
+    problem: Problem,
+    over: Mapping[str, str | Iterable[Quantity]],
+    *,
+    seed: Iterable[int],
+    method: str = ...,
+    settings: Mapping[str, object] | None = ...,
+    resolution: Cells | None = ...,
+    samples: int | None = ...,
+    tolerance: float | None = ...,
+    error_sigma: Errors | None = ...,
+    error_uniform: Errors | None = ...,
+    output: str | os.PathLike[str] | None = ...,
+    client: Client | None = ...,
+    threads: int = ...,
+    memory: int | None = ...,
+    progress: Progress = ...,
+) -> list[Report]: ...
+def sweep(
+    problem: Problem,
+    over: Mapping[str, str | Iterable[Quantity]],
+    *,
+    seed: int | Iterable[int] = 1,
+    method: str = "confluence",
+    settings: Mapping[str, object] | None = None,
+    resolution: Cells | None = None,
+    samples: int | None = None,
+    tolerance: float | None = None,
+    error_sigma: Errors | None = None,
+    error_uniform: Errors | None = None,
+    output: str | os.PathLike[str] | None = None,
+    client: Client | None = None,
+    threads: int = 0,
+    memory: int | None = None,
+    progress: Progress = False,
+) -> Report | list[Report]:
+    """Design parameters varied: every combination of values, computed and compared. `report["designs"]`.
+
+    over: keys of the design file and their values: {"aspect_ratio": [0.5, 1, 2], "cor": "-1..1/5"}; the last key changes
+    fastest. A key is its path ("errors.x"), or its last word where no other key has it.
+    seed: of the random poses; several seeds give a report each.
+    output: a folder for report, table, pictures and a Zarr group, written when all is done. Until then finished designs are
+    kept beside it: the same call goes on from there. Several seeds: a folder seed-1, seed-2 … each in it.
+    client: a dask.distributed.Client: designs are computed on its workers, a task each; what a lost worker had is computed
+    again elsewhere. The report is that of one machine, byte for byte but for `timing`.
+    Everything else as in `Problem.run`.
+    """
+    axes = [f"{key}={values if isinstance(values, str) else _values(key, values)}" for key, values in over.items()]
+    expected = _expected(error_sigma, error_uniform)
+    seeds = [seed] if isinstance(seed, int) else list(seed)
+    place = None if output is None else os.fspath(output)
+    if place is not None and not isinstance(seed, int):
+        os.makedirs(place, exist_ok=True)
+    plans = []
+    for number in seeds:
+        asked = Asked(
+            method=method,
+            settings=as_json(settings),
+            resolution=cells(resolution),
+            poses=None,
+            samples=samples,
+            budget_s=None,
+            tolerance=tolerance,
+            seed=number,
+            require=[],
+            heights=False,
+        )
+        own = place if place is None or isinstance(seed, int) else os.path.join(place, f"seed-{number}")
+        plans.append((axes, asked, expected, own))
+    sweeps = [_catchment.Sweep(problem._native, *plan) for plan in plans]
+    run_how = how(threads, memory, progress)
+    found: list[list[tuple[str, str]]] = [[] for _ in sweeps]
+    if client is not None:
+        from . import _cluster
+
+        found = _cluster.designs(client, problem, plans, sweeps, run_how)
+    reports = [Report._of(one.run(elsewhere, run_how)) for one, elsewhere in zip(sweeps, found)]
+    return reports[0] if isinstance(seed, int) else reports
+
+
+def _values(key: str, values: Iterable[Quantity]) -> str:
+    """Values as a person writes them; whole numbers stay whole."""
+    written = [str(value) if isinstance(value, (str, int)) else quantity(value) for value in values]
+    if not written:
+        raise ArgumentError(f"over: {key} has no values")
+    return ",".join(written)

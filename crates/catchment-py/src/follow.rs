@@ -1,0 +1,106 @@
+//! Single poses and arrays of them, followed exactly.
+
+use crate::plan::method;
+use crate::problem::Problem;
+use crate::refusal::Refusal;
+use crate::told::Told;
+use crate::work::{How, work};
+use catchment::acceptance::Reason;
+use catchment::method::Method;
+use catchment::method::descent::{self, Rows};
+use catchment::pose::PoseError;
+use catchment::poses::{check_rows, parse_pose};
+use catchment::report::schema::WarningReport;
+use catchment::report::{TraceReport, figure};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+/// Outcome codes, and last pose errors.
+type Ends<'py> = (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray2<f64>>);
+
+#[pymethods]
+impl Problem {
+    /// A pose error as a person writes it, in D and radians.
+    fn pose(&self, py: Python<'_>, text: &str) -> PyResult<[f64; 5]> {
+        let read = parse_pose(text, self.inner.design());
+        read.map(PoseError::to_array).map_err(|findings| Refusal::of_argument("pose", findings).raise(py))
+    }
+
+    /// Where one pose ends: its outcome and the last pose error.
+    fn follow(
+        &self,
+        py: Python<'_>,
+        pose: [f64; 5],
+        name: &str,
+        settings: &str,
+        how: How,
+    ) -> PyResult<(&'static str, [f64; 5])> {
+        work(py, &how, |exec| {
+            check_rows(&[pose], self.inner.design())?;
+            let by = method(name, settings)?;
+            let (_, ends) = self.inner.follow_by(&by, &[PoseError::from_array(pose)], exec)?;
+            let end = ends.first().ok_or_else(|| Refusal::Compute("the pose has no end".to_owned()))?;
+            Ok((end.outcome.name(), end.error.to_array()))
+        })
+    }
+
+    /// Where every row of an array ends. Nothing is copied: poses are read where they lie, and the two arrays that come back
+    /// are those that were written into.
+    fn follow_many<'py>(
+        &self,
+        py: Python<'py>,
+        poses: PyReadonlyArray2<'py, f64>,
+        name: &str,
+        settings: &str,
+        how: How,
+    ) -> PyResult<Ends<'py>> {
+        let refused = |message: &str| Refusal::argument("poses", message).raise(py);
+        let &[count, 5] = poses.shape() else {
+            return Err(refused("an array of shape (n, 5) is wanted: x, y, roll, pitch, yaw of each pose"));
+        };
+        let numbers = poses.as_slice().map_err(|_| refused("the array is not contiguous"))?;
+        let (rows, _) = numbers.as_chunks::<5>();
+        let (mut ends, mut outcomes) = (vec![0.0; numbers.len()], vec![0; count]);
+        work(py, &how, |exec| {
+            check_rows(rows, self.inner.design())?;
+            let by = method(name, settings)?;
+            let (into, _) = ends.as_chunks_mut::<5>();
+            self.rows(&by, Rows { poses: rows, ends: into, outcomes: &mut outcomes }, exec)
+        })?;
+        let ends = PyArray1::from_vec(py, ends).reshape([count, 5])?;
+        Ok((PyArray1::from_vec(py, outcomes), ends))
+    }
+
+    /// The way of one pose, from first contact to where it rests.
+    fn trace(&self, py: Python<'_>, pose: [f64; 5], friction: f64, how: How) -> PyResult<Told> {
+        work(py, &how, |_| {
+            let problem = &self.inner;
+            check_rows(&[pose], problem.design())?;
+            let settings = descent::Settings::with_friction(friction)
+                .map_err(|error| Refusal::argument("friction", error))?;
+            let error = PoseError::from_array(pose);
+            let path = descent::trace(problem.pair(), &error, &settings);
+            let doubts = problem.objections().iter().map(WarningReport::note).collect();
+            let end = path.waypoints.last().map(|waypoint| waypoint.error);
+            let reason = end.and_then(|end| Reason::of(problem, path.outcome, &end));
+            let report = TraceReport::new(problem.design(), &settings, error, &path, reason, doubts);
+            let picture = figure::trajectory(problem.design(), problem.connector(), &path);
+            Told::new(report.to_json()?, report.table(), &report.records())?.with(picture)
+        })
+    }
+}
+
+impl Problem {
+    /// Exact motions write where they end; other methods hand their ends over.
+    fn rows(&self, by: &Method, rows: Rows<'_>, exec: &catchment::exec::Exec) -> Result<(), Refusal> {
+        if by.name() == "descent" {
+            return Ok(descent::rests_of_rows(self.inner.pair(), rows, &by.motions(), exec)?);
+        }
+        let poses: Vec<PoseError> = rows.poses.iter().map(|row| PoseError::from_array(*row)).collect();
+        let (_, found) = self.inner.follow_by(by, &poses, exec)?;
+        for ((end, code), found) in rows.ends.iter_mut().zip(rows.outcomes).zip(found) {
+            (*end, *code) = (found.error.to_array(), found.outcome as u8);
+        }
+        Ok(())
+    }
+}

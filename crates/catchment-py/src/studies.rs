@@ -1,0 +1,148 @@
+//! Studies of one problem, and two beside each other: each tells the report of its command.
+
+use crate::plan::{Expected, method, resolution};
+use crate::problem::Problem;
+use crate::refusal::Refusal;
+use crate::told::Told;
+use crate::work::{How, work};
+use catchment::exec::Stopwatch;
+use catchment::method::zraa::{self, Nilsson, Square};
+use catchment::pose::PoseError;
+use catchment::poses::parse_sizes;
+use catchment::report::compare::{Subject, compare as compared};
+use catchment::report::schema::{Timing, WarningReport};
+use catchment::report::{JamsReport, WindowReport, ZraaReport, figure};
+use catchment::run::window;
+use catchment::run::{Run, jams};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// How long it took, on how many threads.
+fn timing(started: &Stopwatch, exec: &catchment::exec::Exec) -> Timing {
+    Timing { total_s: started.seconds(), threads: exec.threads() }
+}
+
+fn doubts(problem: &catchment::problem::Problem) -> Vec<WarningReport> {
+    problem.objections().iter().map(WarningReport::note).collect()
+}
+
+#[pymethods]
+impl Problem {
+    /// The largest box of errors that all dock.
+    #[expect(clippy::too_many_arguments, reason = "Python's package gives each its name")]
+    fn window(
+        &self,
+        py: Python<'_>,
+        fix: Option<String>,
+        proportions: Option<String>,
+        motions: Option<usize>,
+        seed: u64,
+        friction: f64,
+        how: How,
+    ) -> PyResult<Told> {
+        work(py, &how, |exec| {
+            let started = Stopwatch::start();
+            let problem = &self.inner;
+            let sizes = |name: &str, text: &Option<String>| {
+                let read = text.as_ref().map(|text| parse_sizes(text, problem.design())).transpose();
+                read.map_err(|findings| Refusal::of_argument(name, findings))
+            };
+            let fixed = sizes("fix", &fix)?.unwrap_or_default();
+            let proportions = sizes("proportions", &proportions)?;
+            if let Some(both) = problem.alignment().free.iter().find(|axis| {
+                let is_given = |sizes: &[Option<f64>; 5]| sizes[axis.index()].is_some();
+                is_given(&fixed) && proportions.as_ref().is_some_and(is_given)
+            }) {
+                let message = format!("{} is both given by fix and among the proportions", both.name());
+                return Err(Refusal::argument("fix", message));
+            }
+            let proportions =
+                proportions.map(|sizes| PoseError::from_array(sizes.map(Option::unwrap_or_default)));
+            let settings = window::Settings { fixed, proportions, motions, seed, friction };
+            let found = window::run(problem, &settings, exec)?;
+            let report =
+                WindowReport::new(problem.design(), &found, doubts(problem), Some(timing(&started, exec)));
+            Told::new(report.to_json()?, report.table(), &report.records())
+        })
+    }
+
+    /// Where it jams instead of docking, and on which features.
+    #[expect(clippy::too_many_arguments, reason = "Python's package gives each its name")]
+    fn jams(
+        &self,
+        py: Python<'_>,
+        motions: Option<usize>,
+        seed: u64,
+        examine: usize,
+        cells: Option<String>,
+        friction: f64,
+        expected: Expected,
+        how: How,
+    ) -> PyResult<Told> {
+        work(py, &how, |exec| {
+            let started = Stopwatch::start();
+            let problem = &self.inner;
+            let errors = expected.distribution(problem)?;
+            let resolution = resolution(cells.as_deref())?;
+            let settings = jams::Settings { motions, seed, errors, examined: examine, friction, resolution };
+            let found = jams::run(problem, &settings, exec)?;
+            let report =
+                JamsReport::new(problem.design(), &found, doubts(problem), Some(timing(&started, exec)));
+            let told = Told::new(report.to_json()?, report.table(), &report.records())?;
+            told.with(figure::jams(&report, problem.connector()))
+        })
+    }
+
+    /// Offsets that are corrected by sliding alone, exactly.
+    fn zraa(&self, py: Python<'_>, how: How) -> PyResult<Told> {
+        work(py, &how, |exec| {
+            let problem = &self.inner;
+            let found = zraa::run(problem.pair(), &zraa::Settings::default(), exec)?;
+            let square = Square::of(&found, exec)?;
+            let nilsson = Nilsson::beside(&found, problem.pair());
+            let report = ZraaReport::new(problem.design(), &found, &square, nilsson.as_ref());
+            let told = Told::new(report.to_json()?, report.table(), &report.records())?;
+            told.with(Ok(figure::region(problem.design(), &found, &square)))
+        })
+    }
+}
+
+/// A problem with its name and method and settings, or a stored result.
+#[derive(FromPyObject)]
+pub(crate) enum Side<'py> {
+    /// Where a result lies.
+    Stored(PathBuf),
+    /// Its name for people, the problem, the method and its settings.
+    Fresh(String, PyRef<'py, Problem>, String, String),
+}
+
+/// Two acceptances beside each other.
+#[pyfunction]
+pub(crate) fn compare(
+    py: Python<'_>,
+    sides: [Side<'_>; 2],
+    cells: Option<String>,
+    how: How,
+) -> PyResult<Told> {
+    let subject = |side: &Side<'_>| -> Result<Subject, Refusal> {
+        Ok(match side {
+            Side::Stored(path) => Subject::Stored(path.clone()),
+            Side::Fresh(source, problem, name, settings) => {
+                let method = method(name, settings)?;
+                method.applies_to(problem.inner.design())?;
+                let (problem, run) = (Box::new(problem.inner.clone()), Box::new(Run::by(method)));
+                Subject::Fresh { source: source.clone(), problem, run }
+            }
+        })
+    };
+    let subjects = || -> Result<[Subject; 2], Refusal> { Ok([subject(&sides[0])?, subject(&sides[1])?]) };
+    let subjects = subjects().map_err(|refusal| refusal.raise(py))?;
+    work(py, &how, |exec| {
+        let found = compared(subjects, resolution(cells.as_deref())?, true, exec)?;
+        let told = Told::new(found.report.to_json()?, found.report.table(), &found.report.records())?;
+        match found.picture {
+            Some(picture) => told.with(picture),
+            None => Ok(told),
+        }
+    })
+}

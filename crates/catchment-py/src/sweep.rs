@@ -1,0 +1,174 @@
+//! A sweep, whole or design by design: what is found elsewhere is put together here, to the bytes of one machine.
+//!
+//! ```text
+//!   Sweep ──▶ key(k) ──▶ kept? ──no──▶ design(k), anywhere ──▶ (key, JSON) ──▶ keep ──▶ report()
+//! ```
+
+use crate::plan::{Asked, Expected};
+use crate::problem::Problem;
+use crate::refusal::Refusal;
+use crate::told::Told;
+use crate::work::{How, work};
+use catchment::exec::{Exec, Stopwatch};
+use catchment::report::folder::{StudyFolder, encode};
+use catchment::report::schema::Timing;
+use catchment::report::{Parts, SweepReport, figure};
+use catchment::study::sweep::{Axis, Found, Keep, Nowhere, Plan, Settings, SweepError};
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+use std::io;
+use std::path::PathBuf;
+
+/// The designs of a sweep, read and not yet computed.
+#[pyclass(frozen, module = "catchment._catchment")]
+pub(crate) struct Sweep {
+    plan: Plan,
+    parts: Option<Parts>,
+    output: Option<PathBuf>,
+}
+
+/// What was found elsewhere, and what is kept beside the result.
+struct Both<'a> {
+    found: BTreeMap<String, Found>,
+    kept: Option<&'a Parts>,
+}
+
+impl Keep for Both<'_> {
+    fn find(&self, key: &str) -> Option<Found> {
+        self.found.get(key).cloned().or_else(|| self.kept?.find(key))
+    }
+
+    fn keep(&self, key: &str, found: &Found) -> io::Result<()> {
+        self.kept.map_or(Ok(()), |kept| kept.keep(key, found))
+    }
+}
+
+/// Why there is no sweep, at the argument that it is about.
+fn refused(error: SweepError) -> Refusal {
+    match error {
+        SweepError::Problem(error) => error.into(),
+        SweepError::Run(error) => error.into(),
+        SweepError::NotApplicable(error) => error.into(),
+        SweepError::Cancelled(_) => Refusal::Cancelled,
+        SweepError::Key { .. }
+        | SweepError::TwoAxes { .. }
+        | SweepError::NoAxis
+        | SweepError::TooMany { .. } => Refusal::argument("over", error),
+        error => error.into(),
+    }
+}
+
+#[pymethods]
+impl Sweep {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        problem: &Problem,
+        over: Vec<String>,
+        asked: Asked,
+        expected: Expected,
+        output: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let plan = || -> Result<Plan, Refusal> {
+            let axes = over.iter().map(|axis| axis.parse::<Axis>()).collect::<Result<Vec<_>, _>>();
+            let axes = axes.map_err(|error| Refusal::argument("over", error))?;
+            if let Some((name, _)) =
+                problem.changes.keys().find(|(_, key)| axes.iter().any(|axis| axis.key == *key))
+            {
+                let message = format!("{name} was replaced in the problem, and is varied; do one of both");
+                return Err(Refusal::argument("over", message));
+            }
+            let run = asked.run(&problem.inner, &expected)?;
+            if let Some(path) = &output {
+                StudyFolder { path, name: "sweep" }.check()?;
+            }
+            let settings = Settings { axes, run };
+            Plan::new(&problem.source, settings, |draft| problem.changes.apply(draft)).map_err(refused)
+        };
+        let plan = plan().map_err(|refusal| refusal.raise(py))?;
+        let parts = output.as_deref().map(Parts::beside);
+        Ok(Self { plan, parts, output })
+    }
+
+    fn __len__(&self) -> usize {
+        self.plan.len()
+    }
+
+    /// The numbers of the designs that are not kept yet.
+    fn missing(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
+        let Some(parts) = &self.parts else { return Ok((0..self.plan.len()).collect()) };
+        let missing = |number: &usize| match self.plan.key(*number) {
+            Ok(Some(key)) => Ok(parts.find(&key).is_none()),
+            Ok(None) => Ok(false),
+            Err(error) => Err(error),
+        };
+        let numbers = (0..self.plan.len()).map(|number| missing(&number).map(|is| is.then_some(number)));
+        let numbers = py.detach(|| numbers.collect::<Result<Vec<_>, _>>());
+        Ok(numbers.map_err(|error| refused(error).raise(py))?.into_iter().flatten().collect())
+    }
+
+    /// Computes one design: its key and its figures as JSON; none where its halves do not build.
+    fn design(&self, py: Python<'_>, number: usize, how: How) -> PyResult<Option<(String, String)>> {
+        if number >= self.plan.len() {
+            let message = format!("there is no design {number} of {}", self.plan.len());
+            return Err(Refusal::argument("number", message).raise(py));
+        }
+        work(py, &how, |exec| match self.plan.design(number, exec).map_err(refused)? {
+            Some((key, found)) => Ok(Some((key, serde_json::to_string(&found)?))),
+            None => Ok(None),
+        })
+    }
+
+    /// Keeps what was found elsewhere, where results are kept.
+    fn keep(&self, py: Python<'_>, key: &str, found: &str) -> PyResult<()> {
+        let keep = || -> Result<(), Refusal> {
+            let found: Found = serde_json::from_str(found)?;
+            Ok(self.parts.as_ref().map_or(Ok(()), |parts| parts.keep(key, &found))?)
+        };
+        keep().map_err(|refusal| refusal.raise(py))
+    }
+
+    /// Computes what neither `found` nor the folder has, and tells the whole.
+    fn run(&self, py: Python<'_>, found: Vec<(String, String)>, how: How) -> PyResult<Told> {
+        work(py, &how, |exec| {
+            let started = Stopwatch::start();
+            let read =
+                |(key, found): (String, String)| Ok::<_, Refusal>((key, serde_json::from_str(&found)?));
+            let found = found.into_iter().map(read).collect::<Result<BTreeMap<String, Found>, _>>()?;
+            let keep = Both { found, kept: self.parts.as_ref() };
+            let is_nothing = keep.found.is_empty() && keep.kept.is_none();
+            let keep: &dyn Keep = if is_nothing { &Nowhere } else { &keep };
+            let base = self.plan.base().clone();
+            let found = self.plan.clone().run(keep, exec).map_err(refused)?;
+            let timing = Timing { total_s: started.seconds(), threads: exec.threads() };
+            let report = SweepReport::new(&base, found, Some(timing));
+            let map = figure::sweep_map(&report);
+            let told = Told::new(report.to_json()?, report.table(), &report.records())?;
+            if let Some(path) = &self.output {
+                self.save(&report, path, exec)?;
+            }
+            match map {
+                Some(map) => told.with(Ok(map)),
+                None => Ok(told),
+            }
+        })
+    }
+}
+
+impl Sweep {
+    /// Writes what the command line writes.
+    fn save(&self, report: &SweepReport, path: &std::path::Path, exec: &Exec) -> Result<(), Refusal> {
+        let mut drawn = Vec::new();
+        drawn.extend(figure::sweep_map(report).map(|picture| ("sweep", picture)));
+        drawn.extend(figure::sweep_outlines(report)?.map(|picture| ("outlines", picture)));
+        let pictures = encode(&drawn, exec)?;
+        let folder = StudyFolder { path, name: "sweep" };
+        folder.write(&report.to_json()?, &report.records(), pictures, exec, |into| {
+            report.save_group(into, exec)
+        })?;
+        if let Some(parts) = &self.parts {
+            parts.clear();
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,56 @@
+//! A report in every form that it is told in.
+
+use crate::refusal::Refusal;
+use catchment::report::csv;
+use catchment::report::figure::{FigureError, Picture};
+use pyo3::prelude::*;
+
+/// Pixels per unit of a picture: as the command line draws them.
+pub(crate) const PNG_SCALE: f32 = 2.0;
+
+/// JSON, the table for eyes, the records for programs and the picture of one report.
+#[pyclass(frozen, module = "catchment._catchment")]
+pub(crate) struct Told {
+    /// The report, as the command line prints it.
+    #[pyo3(get)]
+    json: String,
+    /// For eyes.
+    #[pyo3(get)]
+    table: String,
+    /// For programs.
+    #[pyo3(get)]
+    csv: String,
+    picture: Option<Picture>,
+}
+
+impl Told {
+    /// Of a report without a picture.
+    pub(crate) fn new(json: String, table: String, records: &[Vec<String>]) -> Result<Self, Refusal> {
+        let csv = String::from_utf8_lossy(&csv(records)?).into_owned();
+        Ok(Self { json, table, csv, picture: None })
+    }
+
+    /// The same with its picture, where there is something to draw.
+    pub(crate) fn with(mut self, picture: Result<Picture, FigureError>) -> Result<Self, Refusal> {
+        self.picture = match picture {
+            Ok(picture) => Some(picture),
+            Err(FigureError::Empty { .. }) => None,
+            Err(error) => return Err(error.into()),
+        };
+        Ok(self)
+    }
+}
+
+#[pymethods]
+impl Told {
+    /// The picture as SVG.
+    fn svg(&self) -> Option<&str> {
+        self.picture.as_ref().map(Picture::svg)
+    }
+
+    /// The picture as PNG.
+    fn png(&self, py: Python<'_>) -> PyResult<Option<Vec<u8>>> {
+        let drawn = py.detach(|| self.picture.as_ref().map(|picture| picture.png(PNG_SCALE)).transpose());
+        drawn.map_err(|error| Refusal::from(error).raise(py))
+    }
+}

@@ -1,0 +1,112 @@
+"""The command of the wheel, Ctrl-C, types, and the lines of the README."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import PROGRAM, ROOT, bytes_of, program
+
+import catchment
+
+PACKAGE = Path(catchment.__file__).parent
+
+
+def test_the_wheel_puts_the_command_on_the_path() -> None:
+    own = str(Path(sys.executable).with_name("catchment"))
+    done = subprocess.run([own, "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout == f"catchment {catchment.__version__}\n"
+    module = subprocess.run([sys.executable, "-m", "catchment", "--version"], capture_output=True, text=True, check=True)
+    assert module.stdout == done.stdout
+    for words, code in ((["run", "no-such.toml"], 2), (["no-such-command"], 2)):
+        done = subprocess.run([own, *words], capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stdout) == (code, "") and done.stderr
+    unmet = ["run", "designs/v-face.toml", "--resolution", "9", "--require", "onaa.edge>=1"]
+    assert subprocess.run([own, *unmet], capture_output=True, check=False).returncode == 1
+
+
+#: More work than a test has time for; says when it has begun.
+LONG = """
+import catchment
+problem = catchment.load("designs/x-face-3d.toml")
+try:
+    problem.run(resolution=40, samples=0, progress=lambda share, stage: print("begun", flush=True))
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT for one process")
+@pytest.mark.parametrize("what", ["python", "program"])
+def test_ctrl_c_ends_it(what: str) -> None:
+    own = str(Path(sys.executable).with_name("catchment"))
+    words = {
+        "python": [sys.executable, "-c", LONG],
+        "program": [own, "run", "designs/x-face-3d.toml", "--resolution", "40", "--samples", "0"],
+    }[what]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT)
+    assert process.stdout is not None
+    if what == "python":
+        assert process.stdout.readline() == "begun\n"
+    else:
+        # It has begun when it listens to the signal by itself.
+        listens(process.pid)
+    process.send_signal(signal.SIGINT)
+    said, complaint = process.communicate(timeout=120)
+    if what == "python":
+        assert said.endswith("stopped\n") and process.returncode == 0, complaint
+    else:
+        assert process.returncode == 130 and "interrupted" in complaint, complaint
+
+
+def listens(process: int) -> None:
+    """Waits until a process has a thread that waits for signals."""
+    while True:
+        names = [task.joinpath("comm") for task in Path(f"/proc/{process}/task").iterdir()]
+        if any(name.read_text().strip() == "signals" for name in names if name.exists()):
+            return
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md", "crates/catchment-py/README.md"])
+def test_the_lines_of_the_pages_run(page: str) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    assert blocks
+    names: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block, page, "exec"), names)
+    result = names["result"]
+    assert isinstance(result, catchment.Result)
+    if page == "README.md":
+        assert bytes_of(result.json) == bytes_of(program("run", "designs/v-face.toml", "--json"))
+
+
+def test_types_are_whole() -> None:
+    api = pytest.importorskip("mypy.api")
+    # From its source: what is beside an installed package is not judged.
+    source = str(ROOT / "crates" / "catchment-py" / "python" / "catchment")
+    said, complaint, code = api.run(["--strict", "--no-incremental", "--cache-dir", os.devnull, source])
+    assert code == 0, said + complaint
+    assert (PACKAGE / "py.typed").exists()
+
+
+def test_stubs_say_what_is_compiled() -> None:
+    stubtest = pytest.importorskip("mypy.stubtest")
+    words = ["catchment._catchment", "--ignore-disjoint-bases", "--concise"]
+    assert stubtest.test_stubs(stubtest.parse_options(words)) == 0
+
+
+def test_every_public_name_says_what_it_is() -> None:
+    for name in catchment.__all__:
+        if name not in ("OUTCOMES", "__version__"):
+            assert getattr(catchment, name).__doc__, name
+    for kind in (catchment.Problem, catchment.Result, catchment.Report):
+        for name, member in vars(kind).items():
+            if not name.startswith("_"):
+                assert member.__doc__, f"{kind.__name__}.{name}"
+
+
+def test_the_program_is_the_one_beside_this_python() -> None:
+    assert Path(PROGRAM).exists()

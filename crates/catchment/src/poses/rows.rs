@@ -1,0 +1,59 @@
+//! Pose errors as rows of numbers, which other programs have in memory.
+
+use super::written::resolve;
+use super::{Fault, Found, OffsetsAt};
+use crate::design::{Design, Findings, Quantity, Unit};
+
+/// Refuses rows that cannot be tried, as a table of them would be: numbers that are none, out of range, or of errors that the design locks.
+/// Each row has the five errors in the order of [`Dof::ALL`](crate::pose::Dof::ALL), of the face centre, in D and radians.
+///
+/// # Errors
+/// The first rows that are wrong, each by its number from 0, and how many more are.
+pub fn check_rows(rows: &[[f64; 5]], design: &Design) -> Result<(), Findings> {
+    let mut found = Found::default();
+    for (number, row) in rows.iter().enumerate() {
+        if row.iter().any(|value| !value.is_finite()) {
+            let fault = Fault::new(format!("row {number} holds a value that is no number"), "leave it out");
+            found.push(fault, || None);
+            continue;
+        }
+        let written = row.map(|value| Some(Quantity { value, unit: Unit::Bare }));
+        if let Err(faults) = resolve(&written, OffsetsAt::Face, design) {
+            for (_, Fault { message, help }) in faults {
+                found.push(Fault { message: format!("row {number}: {message}"), help }, || None);
+            }
+        }
+    }
+    found.refuse()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn rows_are_refused_as_tables_are() {
+        let text = "[connector]\nfamily = \"pyramid\"\n[alignment]\nfree = [\"x\", \"pitch\"]\n";
+        let design = crate::design::read(text, Path::new("")).unwrap().design;
+        assert_eq!(check_rows(&[[0.2, 0.0, 0.0, 0.3, 0.0], [0.0; 5]], &design), Ok(()));
+        let wrong = [
+            [0.0; 5],
+            [f64::NAN, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.1],
+            [101.0, 0.0, 0.0, 4.0, 0.0],
+        ];
+        let said: Vec<String> = check_rows(&wrong, &design)
+            .unwrap_err()
+            .list
+            .into_iter()
+            .map(|finding| finding.message)
+            .collect();
+        assert!(said[0].starts_with("row 1 holds a value that is no number"), "{said:?}");
+        assert!(said[1].starts_with("row 2: yaw = 0.1, but yaw is locked"), "{said:?}");
+        assert!(said[2].contains("x = 101 is out of range") && said[3].contains("pitch = 4"), "{said:?}");
+        // The list ends, the count does not.
+        let many = check_rows(&[[200.0, 0.0, 0.0, 0.0, 0.0]; 50], &design).unwrap_err();
+        assert_eq!(many.list.len() + many.omitted, 50);
+    }
+}
