@@ -36,9 +36,9 @@ if [[ -z $source ]]; then
     source=$work/usr/src/rustc-$version/library
 fi
 
-# No path of this machine stands in the module; no random numbers are asked of the browser.
+# No path of this machine stands in the module.
 home=${CARGO_HOME:-$HOME/.cargo}
-export RUSTFLAGS="--remap-path-prefix=$source=std --remap-path-prefix=$PWD=catchment --remap-path-prefix=$home=cargo --cfg getrandom_backend=\"unsupported\""
+export RUSTFLAGS="--remap-path-prefix=$source=std --remap-path-prefix=$PWD=catchment --remap-path-prefix=$home=cargo"
 export RUSTC_BOOTSTRAP=1 __CARGO_TESTS_ONLY_SRC_ROOT=$source CARGO_TARGET_DIR=$work
 cargo build --quiet --locked -Zbuild-std=std,panic_abort --target "$target" -p catchment-wasm --profile page ||
     cannot 'the module does not build here'

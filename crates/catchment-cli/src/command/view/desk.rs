@@ -125,7 +125,7 @@ impl Desk {
         match found {
             Ok(page) => state.page = Some(page),
             Err(failure) => {
-                state.failed = Some(failure.text().lines().map(printable).collect::<Vec<_>>().join("\n"))
+                state.failed = Some(failure.text().lines().map(printable).collect::<Vec<_>>().join("\n"));
             }
         }
     }

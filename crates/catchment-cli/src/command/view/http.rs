@@ -47,7 +47,7 @@ pub(super) struct Gate {
 
 impl Gate {
     /// Lets a request in, its path below the token.
-    pub(super) fn admit(&self, mut request: Request) -> Result<Request, Response> {
+    pub(super) fn admit(&self, request: Request) -> Result<Request, Response> {
         let own =
             |name: &str| ["127.0.0.1", "localhost"].iter().any(|own| name == format!("{own}:{}", self.port));
         if request.host.len() != 1 || !own(&request.host[0]) {
@@ -61,8 +61,8 @@ impl Gate {
         let (before, token, rest) = (parts.next(), parts.next().unwrap_or_default(), parts.next());
         match (before, rest) {
             (Some(""), Some(rest)) if same(token, &self.token) => {
-                request.path = rest.to_owned();
-                Ok(request)
+                let path = rest.to_owned();
+                Ok(Request { path, ..request })
             }
             _ => Err(Response::text(404, "there is nothing here; open the address that was printed")),
         }
