@@ -135,7 +135,7 @@ def test_a_pickle_needs_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     # And once more, from what is in memory alone; also where something in it is changed.
     assert pickle.loads(pickle.dumps(again)) == problem
     assert again.replace(cor=0.5).digest != problem.digest
-    report = catchment.sweep(again, {"cor": [0, 0.5]}, resolution=3, samples=10)
+    report = catchment.sweep(again, {"rho": [0.4, 0.5]}, resolution=3, samples=10)
     assert len(report["designs"]) == 2 and all("figures" in trial for trial in report["designs"])
 
 
