@@ -6,29 +6,22 @@ use catchment::prelude::*;
 use catchment::report::CheckReport;
 use std::path::Path;
 
-fn every_design_is_mated(folder: &str, least: usize) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
-    let mut files: Vec<_> = std::fs::read_dir(&folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
-        .collect();
-    files.sort();
-    assert!(files.len() >= least, "{files:?}");
-    for file in files {
-        let problem = Problem::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
-        assert_eq!(problem.doubts(), [], "{}", file.display());
-    }
-}
-
 #[test]
 fn every_committed_design_is_mated() {
-    every_design_is_mated("designs", 8);
-}
-
-#[test]
-fn every_design_of_the_gallery_is_mated() {
-    every_design_is_mated("designs/gallery", 15);
+    for (folder, least) in [("designs", 8), ("designs/gallery", 15)] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
+        let mut files: Vec<_> = std::fs::read_dir(&folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+            .collect();
+        files.sort();
+        assert!(files.len() >= least, "{files:?}");
+        for file in files {
+            let problem = Problem::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+            assert_eq!(problem.doubts(), [], "{}", file.display());
+        }
+    }
 }
 
 #[test]

@@ -208,7 +208,9 @@ fn packed(json: &str, numbers: Vec<u8>) -> Vec<u8> {
     let length = 12 + 8 + text.len() + 8 + numbers.len();
     let mut file = Vec::with_capacity(length);
     let word = |file: &mut Vec<u8>, value: u32| file.extend_from_slice(&value.to_le_bytes());
-    [MAGIC, VERSION, length as u32].into_iter().for_each(|value| word(&mut file, value));
+    for value in [MAGIC, VERSION, length as u32] {
+        word(&mut file, value);
+    }
     for (kind, bytes) in [(JSON, text), (BIN, numbers)] {
         word(&mut file, bytes.len() as u32);
         word(&mut file, kind);

@@ -58,7 +58,7 @@ struct Surface<'a> {
     /// The number of the point at every corner of a cell, where it is used.
     numbers: Vec<Option<std::num::NonZeroU32>>,
     points: Vec<[f64; 3]>,
-    corners: Vec<[i64; 4]>,
+    corners: Vec<[usize; 4]>,
     beyond: Vec<u8>,
     heights: Vec<f32>,
 }
@@ -113,18 +113,18 @@ impl<'a> Surface<'a> {
     }
 
     /// The number of the point at a corner of the lattice.
-    fn point(&mut self, corner: [usize; 3]) -> i64 {
+    fn point(&mut self, corner: [usize; 3]) -> usize {
         let [nx, ny, _] = self.view.shape();
         let place = corner[0] + (nx + 1) * (corner[1] + (ny + 1) * corner[2]);
         if let Some(number) = self.numbers[place] {
-            return i64::from(number.get()) - 1;
+            return number.get() as usize - 1;
         }
         let (origin, spacing) = self.view.lattice();
         self.points.push(std::array::from_fn(|k| origin[k] + corner[k] as f64 * spacing[k]));
         let count = self.points.len();
         // As many corners as have a number of 32 bits do not fit beside what a grid may have.
         self.numbers[place] = u32::try_from(count).ok().and_then(std::num::NonZeroU32::new);
-        count as i64 - 1
+        count - 1
     }
 
     fn file(self) -> Vec<u8> {
@@ -143,7 +143,7 @@ impl<'a> Surface<'a> {
         file.tag("</CellData>\n<Points>");
         file.array("places", self.points);
         file.tag("</Points>\n<Polys>");
-        let faces = self.corners.len() as i64;
+        let faces = self.corners.len();
         file.array("connectivity", self.corners.into_iter().flatten().map(|corner| [corner]));
         file.array("offsets", (1..=faces).map(|face| [4 * face]));
         file.tag("</Polys>\n</Piece>");

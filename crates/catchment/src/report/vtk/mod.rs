@@ -1,4 +1,4 @@
-//! The accepted set, and motions, as files of VTK: ParaView, pyvista, the `vtk` package.
+//! The accepted set, and motions, as files of VTK: ParaView, `pyvista`, the `vtk` package.
 //!
 //! ```text
 //!   acceptance ──▶ View (up to three of the axes, the others at a value) ──▶ image    .vti, every cell with its outcome

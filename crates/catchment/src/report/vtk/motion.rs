@@ -54,29 +54,29 @@ struct Motion {
     errors: Vec<PoseError>,
     travelled: Vec<f64>,
     normals: Vec<[f64; 3]>,
-    verts: Vec<Vec<i64>>,
-    lines: Vec<Vec<i64>>,
-    polys: Vec<(u8, Vec<i64>)>,
+    verts: Vec<Vec<usize>>,
+    lines: Vec<Vec<usize>>,
+    polys: Vec<(u8, Vec<usize>)>,
 }
 
 impl Motion {
-    fn point(&mut self, place: DVec3, of: Option<(usize, &WaypointReport)>, normal: [f64; 3]) -> i64 {
+    fn point(&mut self, place: DVec3, of: Option<(usize, &WaypointReport)>, normal: [f64; 3]) -> usize {
         self.places.push(place.to_array());
-        self.waypoints.push(of.map_or(-1, |(k, _)| k as i64));
+        self.waypoints.push(of.map_or(-1, |(k, _)| i64::try_from(k).unwrap_or(i64::MAX)));
         self.errors.push(of.map_or_else(PoseError::default, |(_, waypoint)| waypoint.error));
         self.travelled.push(of.map_or(0.0, |(_, waypoint)| waypoint.travelled_d));
         self.normals.push(normal);
-        self.places.len() as i64 - 1
+        self.places.len() - 1
     }
 
     fn half(&mut self, half: &Half, part: u8, place: impl Fn(DVec3) -> DVec3) {
         for surface in &half.surfaces {
-            let first = self.places.len() as i64;
+            let first = self.places.len();
             for vertex in &surface.vertices {
                 self.point(place(*vertex), None, [0.0; 3]);
             }
             let facets = surface.facets.iter();
-            let corners = facets.map(|f| f.corners.iter().map(|c| first + i64::from(*c)).collect());
+            let corners = facets.map(|f| f.corners.iter().map(|c| first + *c as usize).collect());
             self.polys.extend(corners.map(|corners| (part, corners)));
         }
     }
@@ -109,10 +109,10 @@ impl Motion {
         let polys = self.polys.into_iter().map(|(_, corners)| corners).collect();
         for (name, cells) in [("Verts", self.verts), ("Lines", self.lines), ("Polys", polys)] {
             let ends = cells.iter().scan(0, |end, cell| {
-                *end += cell.len() as i64;
+                *end += cell.len();
                 Some([*end])
             });
-            let ends: Vec<[i64; 1]> = ends.collect();
+            let ends: Vec<[usize; 1]> = ends.collect();
             file.tag(&format!("<{name}>"));
             file.array("connectivity", cells.into_iter().flatten().map(|corner| [corner]));
             file.array("offsets", ends);

@@ -40,8 +40,8 @@ fn four() -> (Acceptance, Vec<f32>) {
     (acceptance, heights)
 }
 
-fn axes(dofs: &[Dof]) -> Option<DofSet> {
-    Some(dofs.iter().copied().collect())
+fn axes(dofs: &[Dof]) -> DofSet {
+    dofs.iter().copied().collect()
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn an_image_holds_the_section_and_the_share_of_all() {
     let (acceptance, heights) = four();
     let grid = acceptance.grid().unwrap();
     let at = PoseError { roll: 0.5, ..PoseError::default() };
-    let view = View::new(&acceptance, Some(&heights), axes(&[Dof::X, Dof::Y, Dof::Yaw]), &at).unwrap();
+    let view = View::new(&acceptance, Some(&heights), Some(axes(&[Dof::X, Dof::Y, Dof::Yaw])), &at).unwrap();
     let read = Read::of(&image(&view, &Exec::new()).unwrap());
     let roll = grid.axes[2].cell_of(0.5).unwrap();
     let (outcomes, shares, read_heights) = (read.array("outcome"), read.array("share"), read.array("height"));
@@ -85,13 +85,13 @@ fn a_border_is_closed_and_encloses_the_accepted_cells() {
     let (acceptance, _) = four();
     let grid = acceptance.grid().unwrap();
     let view =
-        View::new(&acceptance, None, axes(&[Dof::X, Dof::Roll, Dof::Yaw]), &PoseError::default()).unwrap();
+        View::new(&acceptance, None, Some(axes(&[Dof::X, Dof::Roll, Dof::Yaw])), &PoseError::default())
+            .unwrap();
     let (corners, faces, read) = faces(&view);
     // The flux of (x, y, z)/3 through it.
     let volume: f64 = faces
         .iter()
-        .map(|f| [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|k| corners[f[k]])))
-        .flatten()
+        .flat_map(|f| [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|k| corners[f[k]])))
         .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
         .sum();
     let accepted = view.cells().filter(|cell| acceptance.outcomes[*cell] == Outcome::Aligned).count();
@@ -133,7 +133,7 @@ fn two_axes_give_the_cells_themselves() {
 fn what_cannot_be_shown_is_refused() {
     let (acceptance, _) = four();
     let refused = |dofs: &[Dof], at: PoseError| {
-        View::new(&acceptance, None, axes(dofs), &at).map(|_| ()).unwrap_err().to_string()
+        View::new(&acceptance, None, Some(axes(dofs)), &at).map(|_| ()).unwrap_err().to_string()
     };
     let zero = PoseError::default();
     assert_eq!(refused(&[Dof::Pitch], zero), "pitch is no axis of the grid; it has x, y, roll, yaw");
@@ -147,7 +147,7 @@ fn what_cannot_be_shown_is_refused() {
     assert!(refused(&[Dof::Roll], PoseError { roll: 0.1, ..zero }).contains("takes no value"));
     let pitched = PoseError { pitch: 0.1, ..zero };
     assert!(refused(&[Dof::X], pitched).starts_with("pitch is no axis"));
-    let line = View::new(&acceptance, None, axes(&[Dof::X]), &zero).unwrap();
+    let line = View::new(&acceptance, None, Some(axes(&[Dof::X])), &zero).unwrap();
     assert!(matches!(border(&line, &Exec::new()), Err(ViewError::OneAxis)));
     let all = View::new(&acceptance, None, None, &zero).unwrap();
     let small = Exec::new().with_memory_budget(100);

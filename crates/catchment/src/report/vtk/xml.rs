@@ -25,6 +25,14 @@ macro_rules! numbers {
 
 numbers!(u8, "UInt8"; i64, "Int64"; f32, "Float32"; f64, "Float64");
 
+/// Counts and places of points, which VTK wants signed.
+impl Number for usize {
+    const KIND: &'static str = "Int64";
+    fn put(self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&(self as u64).to_le_bytes());
+    }
+}
+
 /// A file that is being written.
 #[derive(Debug)]
 pub(super) struct File {
