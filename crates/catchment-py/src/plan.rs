@@ -83,6 +83,10 @@ pub(crate) struct Asked {
     require: Vec<String>,
     #[pyo3(item)]
     heights: bool,
+    #[pyo3(item)]
+    jams: bool,
+    #[pyo3(item)]
+    window: bool,
 }
 
 /// The smallest tolerance: 10¹⁰ descents would not reach it.
@@ -136,6 +140,8 @@ impl Asked {
             errors: expected.distribution(problem)?,
             requirements: self.require.iter().map(requirement).collect::<Result<_, _>>()?,
             heights: self.heights,
+            jams: self.jams,
+            window: self.window,
         })
     }
 }

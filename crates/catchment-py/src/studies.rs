@@ -89,7 +89,7 @@ impl Problem {
             let report =
                 JamsReport::new(problem.design(), &found, doubts(problem), Some(timing(&started, exec)));
             let told = Told::new(report.to_json()?, report.table(), &report.records())?;
-            told.with(figure::jams(&report, problem.connector()))
+            told.with(figure::jams(&report.design, &report.found, problem.connector()))
         })
     }
 

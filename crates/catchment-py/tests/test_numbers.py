@@ -18,6 +18,11 @@ import catchment
         ("v-face", ["--resolution", "31", "--seed", "7"], {"resolution": 31, "seed": 7}),
         ("x-face", ["--samples", "500"], {"samples": 500}),
         ("s-face", ["--method", "flood"], {"method": "flood"}),
+        (
+            "s-face",
+            ["--free", "x", "--resolution", "21", "--window", "--jams"],
+            {"resolution": 21, "window": True, "jams": True},
+        ),
         ("pyramid-stl", ["--resolution", "5", "--samples", "200"], {"resolution": 5, "samples": 200}),
         (
             "x-face-3d",
@@ -40,7 +45,8 @@ def test_a_run_is_that_of_the_program(design: str, options: list[str], arguments
     if "--error-sigma" in options and catchment.load(path).design["unit"] is None:
         options = [word.replace(" mm", " D").replace("x=1", "x=0.02") for word in options]
         arguments = arguments | {"error_sigma": {"x": "0.02 D", "yaw": "2 deg"}}
-    result = catchment.load(path).run(**arguments)  # type: ignore[arg-type]
+    free = options[options.index("--free") + 1] if "--free" in options else None
+    result = catchment.load(path, free=free).run(**arguments)  # type: ignore[arg-type]
     assert bytes_of(result.json) == bytes_of(program("run", path, "--json", *options))
 
 

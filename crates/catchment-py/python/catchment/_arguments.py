@@ -65,6 +65,8 @@ class Asked(TypedDict):
     seed: int
     require: list[str]
     heights: bool
+    jams: bool
+    window: bool
 
 
 def quantity(value: Quantity) -> str:

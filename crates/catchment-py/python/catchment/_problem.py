@@ -231,6 +231,8 @@ class Problem:
         error_uniform: Errors | None = None,
         require: str | Iterable[str] = (),
         heights: bool = False,
+        jams: bool = False,
+        window: bool = False,
         client: Client | None = None,
         parts: int | None = None,
         threads: int = 0,
@@ -246,7 +248,8 @@ class Problem:
         these seconds; or tolerance: until the 95 % interval is ± this share of the Sum.
         error_sigma, error_uniform: errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds `success`.
         require: what must hold of the report, such as "onaa.edge>=0.3"; `Result.unmet` says what does not.
-        heights: keep the heights of first contact.
+        heights: keep the heights of first contact. jams: also where poses jam, and on what; window: also the largest box of
+        errors that all dock; both stand in the report.
         client: a dask.distributed.Client: parts of the grid (or of the random poses) are decided on its workers, by methods
         that decide each pose by itself (descent, drop); parts: into how many.
         threads (0: one per core), memory (bytes), progress (True, or a function of the share and the stage): change no bit.
@@ -263,6 +266,8 @@ class Problem:
             seed=seed,
             require=requirements(require),
             heights=heights,
+            jams=jams,
+            window=window,
         )
         plan = self._native.plan(asked, _expected(error_sigma, error_uniform))
         run_how = how(threads, memory, progress)

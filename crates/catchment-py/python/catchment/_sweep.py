@@ -112,6 +112,8 @@ def sweep(
             seed=number,
             require=[],
             heights=False,
+            jams=False,
+            window=False,
         )
         own = place if place is None or isinstance(seed, int) else os.path.join(place, f"seed-{number}")
         plans.append((axes, asked, expected, own))
