@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # The core of the library as WebAssembly, for the pages: crates/catchment-wasm ──▶ bundle/motions.wasm.z
 #
-#     viewer/wasm.sh              builds it anew
-#     viewer/wasm.sh --compare    says whether what lies there is what is built: exit code 1 if not, 3 if it cannot be built here
+#     viewer/wasm.sh
 #
+# Another folder, or another compiler, writes other bytes: that the module is the library's is asked of its motions (tests/page.test.mjs).
 # The standard library for wasm32-unknown-unknown is compiled with it: by a target of rustup, or from its source, which is rustup's rust-src or
 # Debian's package of the very same version of Rust (it is fetched with apt-get, unpacked into target/ and not installed).
 set -euo pipefail
@@ -44,16 +44,9 @@ cargo build --quiet --locked -Zbuild-std=std,panic_abort --target "$target" -p c
     cannot 'the module does not build here'
 built=$work/$target/page/catchment_wasm.wasm
 
-if [[ ${1:-} == --compare ]]; then
-    node -e '
-        const { readFileSync } = require("fs"), { inflateSync } = require("zlib"), [built, lies] = process.argv.slice(1);
-        process.exit(inflateSync(readFileSync(lies)).equals(readFileSync(built)) ? 0 : 1);
-    ' "$built" "$bundle" || { echo "wasm: $bundle is not what the library builds: run viewer/wasm.sh and commit it" >&2; exit 1; }
-else
-    node -e '
-        const { readFileSync, writeFileSync } = require("fs"), { deflateSync } = require("zlib"), [built, lies] = process.argv.slice(1);
-        const module = readFileSync(built), packed = deflateSync(module, { level: 9 });
-        writeFileSync(lies, packed);
-        console.log(`${lies}: ${module.length} bytes, ${packed.length} packed`);
-    ' "$built" "$bundle"
-fi
+node -e '
+    const { readFileSync, writeFileSync } = require("fs"), { deflateSync } = require("zlib"), [built, lies] = process.argv.slice(1);
+    const module = readFileSync(built), packed = deflateSync(module, { level: 9 });
+    writeFileSync(lies, packed);
+    console.log(`${lies}: ${module.length} bytes, ${packed.length} packed`);
+' "$built" "$bundle"
