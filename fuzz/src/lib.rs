@@ -23,7 +23,9 @@ impl Limited {
 
     fn give_back(&self, bytes: usize) {
         // Not below zero after the panic above.
-        let _ = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |held| Some(held.saturating_sub(bytes)));
+        let _ = self
+            .0
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |held| Some(held.saturating_sub(bytes)));
     }
 }
 

@@ -47,7 +47,15 @@ def test_ctrl_c_ends_it(what: str) -> None:
         "python": [sys.executable, "-c", LONG],
         "program": [own, "run", "designs/x-face-3d.toml", "--resolution", "40", "--samples", "0"],
     }[what]
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT)
+    # What is begun in the background of a script ignores SIGINT, and so do its children: not here.
+    process = subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     assert process.stdout is not None
     if what == "python":
         assert process.stdout.readline() == "begun\n"
