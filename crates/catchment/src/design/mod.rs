@@ -32,6 +32,7 @@ mod read;
 mod read_half;
 mod reader;
 mod schema;
+mod section;
 mod template;
 #[cfg(test)]
 mod tests;

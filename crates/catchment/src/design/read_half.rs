@@ -4,7 +4,7 @@ use super::complaint::Complaint;
 use super::keys::{self, Key, Table};
 use super::quantity::Scale;
 use super::read::Walk;
-use super::reader::Section;
+use super::section::Section;
 use super::{FileSpec, FileUnit, HalfSpec, OutlineSpec, PartSpec, Placement, ShapeSpec, Treatment};
 use toml::Spanned;
 use toml::de::DeValue;

@@ -18,6 +18,7 @@
 pub mod certified;
 pub mod confluence;
 pub mod correction;
+mod cost;
 pub mod descent;
 mod door;
 #[cfg(feature = "drop")]
@@ -26,37 +27,12 @@ pub mod flood;
 pub mod kinematic;
 mod metric;
 pub mod partition;
+mod registry;
 pub mod transport;
 pub mod zraa;
 
+pub use cost::{affordable, ensure_fits};
 pub use door::{
-    ByProducts, Cost, Decide, DecideError, Decided, Doubts, Entry, Finished, Follow, Info, Method,
-    MethodError, NotApplicable, affordable, ensure_fits,
+    ByProducts, Cost, Decide, DecideError, Decided, Doubts, Finished, Follow, Info, NotApplicable,
 };
-
-/// Every method, the default first.
-pub static REGISTRY: &[Entry] = &[
-    confluence::door::ENTRY,
-    descent::door::ENTRY,
-    flood::door::ENTRY,
-    flood::door::ENTRY_STEEPEST,
-    flood::meyer::door::ENTRY,
-    partition::door::ENTRY,
-    kinematic::door::ENTRY,
-    certified::door::ENTRY,
-    #[cfg(feature = "drop")]
-    drop::door::ENTRY,
-    transport::door::ENTRY,
-];
-
-impl Method {
-    /// Every registered method with its default settings, the default method first.
-    pub fn all() -> impl ExactSizeIterator<Item = Self> {
-        REGISTRY.iter().map(Entry::method)
-    }
-
-    /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
-    pub fn on_grids() -> Vec<Self> {
-        REGISTRY.iter().filter(|entry| entry.info.on_grids).map(Entry::method).collect()
-    }
-}
+pub use registry::{Entry, Method, MethodError, REGISTRY};

@@ -6,9 +6,8 @@ use crate::contact::{Pair, Seat};
 use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::Grid;
-use crate::method::door::{
-    ByProducts, Cost, Decide, DecideError, Decided, Entry, Info, NotApplicable, grid_of,
-};
+use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, NotApplicable, grid_of};
+use crate::method::registry::Entry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

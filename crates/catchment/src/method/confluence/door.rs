@@ -5,10 +5,10 @@ use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
+use crate::method::cost::{DESCENT_SECONDS, affordable};
 use crate::method::descent;
-use crate::method::door::{
-    ByProducts, Cost, DESCENT_SECONDS, Decide, DecideError, Decided, Entry, Info, affordable, grid_of,
-};
+use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
+use crate::method::registry::Entry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

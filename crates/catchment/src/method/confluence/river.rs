@@ -13,9 +13,9 @@ use crate::acceptance::{Outcome, Stream};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Relief;
+use crate::method::affordable;
 use crate::method::correction::wilson95;
 use crate::method::descent::Follower;
-use crate::method::door::affordable;
 use crate::pose::Dof;
 use rayon::prelude::*;
 

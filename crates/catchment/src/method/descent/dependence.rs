@@ -12,8 +12,8 @@ use super::{Settings, run};
 use crate::acceptance::{Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
+use crate::method::affordable;
 use crate::method::correction::wilson95;
-use crate::method::door::affordable;
 
 /// Poses of simple halves: one change among them is 0.3 %, the interval of none ends at 1.3 %. A second or less.
 const SIMPLE: f64 = 300.0;

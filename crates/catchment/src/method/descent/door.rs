@@ -5,10 +5,9 @@ use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
-use crate::method::door::{
-    Cost, DESCENT_SECONDS, Decide, DecideError, Decided, Entry, Finished, Follow, Info, POSE_BYTES,
-    affordable,
-};
+use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable};
+use crate::method::door::{Cost, Decide, DecideError, Decided, Finished, Follow, Info};
+use crate::method::registry::Entry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

@@ -5,8 +5,10 @@ use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
+use crate::method::cost::POSE_BYTES;
 use crate::method::descent::End;
-use crate::method::door::{Cost, Decide, DecideError, Decided, Entry, Finished, Follow, Info, POSE_BYTES};
+use crate::method::door::{Cost, Decide, DecideError, Decided, Finished, Follow, Info};
+use crate::method::registry::Entry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

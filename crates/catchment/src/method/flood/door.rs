@@ -5,7 +5,8 @@ use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, LandscapeError, Resolution};
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Entry, Info, Method, grid_of};
+use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
+use crate::method::registry::{Entry, Method};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

@@ -6,7 +6,8 @@ use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
 use crate::method::descent;
-use crate::method::door::{Cost, Decide, DecideError, Decided, Doubts, Entry, Info, MOTIONS, grid_of};
+use crate::method::door::{Cost, Decide, DecideError, Decided, Doubts, Info, grid_of};
+use crate::method::registry::{Entry, MOTIONS};
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

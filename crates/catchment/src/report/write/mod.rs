@@ -21,6 +21,8 @@ mod disk;
 #[cfg(test)]
 pub(crate) mod faults;
 mod manifest;
+#[cfg(test)]
+mod stops;
 mod temporary;
 #[cfg(test)]
 mod tests;

@@ -5,8 +5,9 @@ use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, Landscape, Resolution};
-use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Entry, Info, grid_of};
+use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
 use crate::method::flood::{FloodError, docks};
+use crate::method::registry::Entry;
 use crate::problem::Problem;
 use serde_json::{Value, json};
 

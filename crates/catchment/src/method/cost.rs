@@ -1,0 +1,80 @@
+//! What decisions take, estimated before they are made.
+
+use super::descent::End;
+use crate::acceptance::Outcome;
+use crate::advice::Advice;
+use crate::contact::Pair;
+use crate::exec::{Exec, OutOfBudget};
+use crate::landscape::Resolution;
+
+/// Seconds of one descent between simple halves, on one core: what cost estimates count in.
+pub(super) const DESCENT_SECONDS: f64 = 1e-4;
+
+/// Bytes per pose while poses are decided one by one: the end and the outcome of each, and the ends once more while the
+/// parts of the threads are put together.
+pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
+
+/// How many descents can be afforded, as a share of what simple halves allow: the time of a descent grows with about the cube of the
+/// number of facets, and where the trees are asked as measured of funnels of 600 to 6000 facets.
+pub fn affordable(pair: &Pair) -> f64 {
+    const SIMPLE: f64 = 64.0;
+    let facets = |half: &crate::connector::Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
+    let facets = (facets(&pair.fixed) + facets(&pair.moving)) as f64;
+    let listed = (SIMPLE / facets.max(SIMPLE)).powi(3);
+    if pair.asks_trees() { listed.max(by_trees(facets)) } else { listed }
+}
+
+/// The same of halves that are searched by trees, by the number of their facets.
+fn by_trees(facets: f64) -> f64 {
+    /// Seconds of a descent of so many facets, and with which power of their number they grow.
+    const SECONDS: f64 = 4e-3;
+    const MEASURED: f64 = 600.0;
+    const POWER: f64 = 0.71;
+    (DESCENT_SECONDS / SECONDS * (MEASURED / facets).powf(POWER)).min(1.0)
+}
+
+/// Refuses what would not fit into memory, with the resolution that would.
+pub fn ensure_fits(
+    what: &'static str,
+    needed: u64,
+    per_cell: u64,
+    axes: usize,
+    exec: &Exec,
+) -> Result<(), OutOfBudget> {
+    exec.ensure_fits(what, needed, |budget| {
+        let fits = Resolution::largest_that_fits(budget, per_cell, axes);
+        vec![Advice::AtMostResolution(fits), Advice::MoreMemory]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::connector::Connector;
+    use crate::design::family::Cone;
+    use crate::design::{Alignment, FamilySpec};
+    use crate::pose::{DofSet, Mount};
+
+    #[test]
+    fn halves_of_many_facets_are_searched_and_not_listed() {
+        let share = |chord_error: f64| {
+            let spec = FamilySpec::Cone(Cone { chord_error, ..Cone::default() });
+            let connector = Connector::of_family(&spec, Mount::X).unwrap();
+            affordable(&Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X)))
+        };
+        // Hundreds of facets take milliseconds: by the cube of their number it would be a tenth of a second and more.
+        let (coarse, fine) = (share(1e-2), share(1e-5));
+        assert!(coarse > fine, "{coarse} {fine}");
+        let milliseconds = |share: f64| 1e3 * DESCENT_SECONDS / share;
+        assert!((2.0..10.0).contains(&milliseconds(fine)), "{}", milliseconds(fine));
+    }
+
+    #[test]
+    fn the_time_of_a_descent_is_the_measured_one() {
+        let milliseconds = |facets: f64| 1e3 * DESCENT_SECONDS / by_trees(facets);
+        assert!((milliseconds(600.0) - 4.0).abs() < 1e-9);
+        // Ten times as many facets take 10^0.71 times as long.
+        assert!((milliseconds(6000.0) / milliseconds(600.0) - 5.13).abs() < 0.01);
+        assert_eq!(by_trees(1.0), 1.0);
+    }
+}

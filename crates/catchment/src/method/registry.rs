@@ -1,0 +1,238 @@
+//! The methods by their names: every one in a line, and any of them as a value that is read, changed and stored.
+
+use super::door::{Decide, Info};
+use crate::design::nearest;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value, json};
+use std::fmt;
+use std::ops::Deref;
+use std::str::FromStr;
+use std::sync::Arc;
+
+/// Every method, the default first.
+pub static REGISTRY: &[Entry] = &[
+    super::confluence::door::ENTRY,
+    super::descent::door::ENTRY,
+    super::flood::door::ENTRY,
+    super::flood::door::ENTRY_STEEPEST,
+    super::flood::meyer::door::ENTRY,
+    super::partition::door::ENTRY,
+    super::kinematic::door::ENTRY,
+    super::certified::door::ENTRY,
+    #[cfg(feature = "drop")]
+    super::drop::door::ENTRY,
+    super::transport::door::ENTRY,
+];
+
+/// A line of the registry.
+#[derive(Debug)]
+pub struct Entry {
+    /// What is known of the method.
+    pub info: &'static Info,
+    read: fn(Value) -> Result<Method, serde_json::Error>,
+}
+
+impl Entry {
+    /// The line of a method whose settings are read as `M`, missing ones being those of `{}`.
+    pub const fn of<M: Decide + DeserializeOwned + 'static>(info: &'static Info) -> Self {
+        Self::by(info, |settings| Ok(Method::new(serde_json::from_value::<M>(settings)?)))
+    }
+
+    /// The line of a method whose settings are read by `read`.
+    pub const fn by(info: &'static Info, read: fn(Value) -> Result<Method, serde_json::Error>) -> Self {
+        Self { info, read }
+    }
+
+    /// The method with its default settings.
+    ///
+    /// # Panics
+    /// If a registered method cannot be read from no settings at all, which a test of the registry rules out.
+    pub fn method(&self) -> Method {
+        match (self.read)(json!({})) {
+            Ok(method) => method,
+            Err(error) => panic!("{} has no default settings: {error}", self.info.name),
+        }
+    }
+}
+
+/// Under this name a method has the settings of the motions that it follows.
+pub(super) const MOTIONS: &str = "descent";
+
+/// Any of the registered methods, with its settings.
+///
+/// As text its name; as JSON `{"name": …, "settings": {…}}`, settings that are missing being the defaults.
+#[derive(Debug, Clone)]
+pub struct Method(Arc<dyn Decide>);
+
+impl Method {
+    /// Every registered method with its default settings, the default method first.
+    pub fn all() -> impl ExactSizeIterator<Item = Self> {
+        REGISTRY.iter().map(Entry::method)
+    }
+
+    /// Those whose answer depends on nothing but the grid and its resolution: what studies of resolution compare.
+    pub fn on_grids() -> Vec<Self> {
+        REGISTRY.iter().filter(|entry| entry.info.on_grids).map(Entry::method).collect()
+    }
+
+    /// A method of one's own making, registered or not.
+    pub fn new(method: impl Decide + 'static) -> Self {
+        Self(Arc::new(method))
+    }
+
+    /// The lower-case name used in files, reports and options.
+    pub fn name(&self) -> &'static str {
+        self.info().name
+    }
+
+    /// This method with some of its settings changed.
+    ///
+    /// # Errors
+    /// A setting that it does not have, that does not read, or that nothing can be decided with.
+    pub fn with(&self, changes: &Map<String, Value>) -> Result<Self, MethodError> {
+        if changes.is_empty() {
+            return Ok(self.clone());
+        }
+        let mut settings = match self.settings() {
+            Value::Object(settings) => settings,
+            _ => Map::new(),
+        };
+        for (key, value) in changes {
+            // Also of the motions that it follows.
+            let motions = settings.get_mut(MOTIONS).and_then(Value::as_object_mut);
+            if let Some(motions) = motions.filter(|motions| motions.contains_key(key)) {
+                motions.insert(key.clone(), value.clone());
+                continue;
+            }
+            if !settings.contains_key(key) {
+                let owners = REGISTRY.iter().filter(|e| e.method().has(key));
+                return Err(MethodError::NoSuchSetting {
+                    method: self.name(),
+                    setting: key.clone(),
+                    owners: owners.map(|entry| entry.info.name).collect(),
+                });
+            }
+            settings.insert(key.clone(), value.clone());
+        }
+        let method = Self::read(self.name(), Value::Object(settings))?;
+        method
+            .check()
+            .map_err(|error| MethodError::Refused { method: method.name(), reason: error.to_string() })?;
+        Ok(method)
+    }
+
+    /// Whether it has a setting of this name, or its motions have.
+    pub fn has(&self, setting: &str) -> bool {
+        let settings = self.settings();
+        settings.get(setting).or_else(|| settings.get(MOTIONS)?.get(setting)).is_some()
+    }
+
+    fn read(name: &str, settings: Value) -> Result<Self, MethodError> {
+        let Some(entry) = REGISTRY.iter().find(|entry| entry.info.name == name) else {
+            let names = REGISTRY.iter().map(|entry| entry.info.name);
+            let meant = nearest(name, names.clone()).map(str::to_owned);
+            return Err(MethodError::Unknown { name: name.to_owned(), known: names.collect(), meant });
+        };
+        (entry.read)(settings)
+            .map_err(|error| MethodError::Refused { method: entry.info.name, reason: error.to_string() })
+    }
+}
+
+impl Deref for Method {
+    type Target = dyn Decide;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.0
+    }
+}
+
+impl PartialEq for Method {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name() && self.settings() == other.settings()
+    }
+}
+
+impl Default for Method {
+    /// The first of the registry.
+    fn default() -> Self {
+        REGISTRY[0].method()
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Method {
+    type Err = MethodError;
+
+    fn from_str(name: &str) -> Result<Self, MethodError> {
+        Self::read(name, json!({}))
+    }
+}
+
+/// The form of a method in JSON.
+#[derive(Serialize, Deserialize)]
+struct Written {
+    name: String,
+    #[serde(default = "Value::default")]
+    settings: Value,
+}
+
+impl Serialize for Method {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Written { name: self.name().to_owned(), settings: self.settings() }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Method {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let Written { name, settings } = Written::deserialize(deserializer)?;
+        let settings = if settings.is_null() { json!({}) } else { settings };
+        let method = Self::read(&name, settings).map_err(serde::de::Error::custom)?;
+        method.check().map_err(serde::de::Error::custom)?;
+        Ok(method)
+    }
+}
+
+/// Why there is no such method.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum MethodError {
+    /// Nothing of that name is registered.
+    #[error("there is no method `{name}`; {}", match meant {
+        Some(meant) => format!("did you mean {meant}?"),
+        None => format!("there are {}", known.join(", ")),
+    })]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<&'static str>,
+        /// The nearest of these.
+        meant: Option<String>,
+    },
+    /// A setting of other methods, or of none.
+    #[error("`{setting}` is {}; {method} has none", match owners.as_slice() {
+        [] => "no setting of any method".to_owned(),
+        owners => format!("a setting of {}", owners.join(" and ")),
+    })]
+    NoSuchSetting {
+        /// The method.
+        method: &'static str,
+        /// What was to be set.
+        setting: String,
+        /// The methods that have it.
+        owners: Vec<&'static str>,
+    },
+    /// A setting that does not read, or is out of its range.
+    #[error("{method}: {reason}")]
+    Refused {
+        /// The method.
+        method: &'static str,
+        /// Why.
+        reason: String,
+    },
+}
