@@ -45,4 +45,29 @@ export class Sliders {
     }
 }
 
+/** The coefficient of friction of the motions: that of the result, until another one is asked for. */
+export class Friction {
+    readonly element: HTMLElement;
+    private readonly number: HTMLInputElement;
+
+    constructor(private readonly decided: number, changed: () => void) {
+        this.number = make("input", { type: "number", id: "friction", min: 0, max: 10, step: 0.05, value: decided, "aria-label": "coefficient of friction of the motions",
+            onchange: () => {
+                if (!this.number.checkValidity() || this.number.value === "") this.number.value = String(decided);
+                changed();
+            } });
+        this.element = make("label", { class: "friction", title: "coefficient of friction of the motions that are played" }, "μ ", this.number);
+    }
+
+    get value(): number {
+        return Number(this.number.value);
+    }
+
+    /** What is to be said where the motion is not of the set beside it. */
+    get remark(): string {
+        const of = (coefficient: number) => (coefficient === 0 ? "without friction" : `with friction ${tidy(coefficient)}`);
+        return this.value === this.decided ? "" : ` This motion is ${of(this.value)}, the set ${of(this.decided)}.`;
+    }
+}
+
 const plain = (value: number) => tidy(value).replace("−", "-");

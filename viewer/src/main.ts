@@ -1,7 +1,7 @@
 // The page: what it shows, and what happens when a pose is chosen. It draws results; motions come from the library itself (worker).
 
 import { Helper, latest } from "./asking";
-import { Sliders } from "./controls";
+import { Friction, Sliders } from "./controls";
 import { make } from "./dom";
 import { Units } from "./format";
 import { decoded, inflated } from "./grid";
@@ -33,6 +33,7 @@ const verdict = make("p", { class: "verdict", id: "verdict", role: "status", "ar
 let stage: Stage | null = null;
 let mated = 0;
 const player = new Player((error, height, touches) => stage?.place(error, height, touches, locked));
+const friction = new Friction(page.friction, () => void follow());
 const sliders = new Sliders(units, design, axes, (chosen) => choose(chosen, false));
 
 const marks = (): Marks => ({
@@ -59,7 +60,7 @@ const follow = latest(async () => {
     if (!packed[2]) return;
     const asked = pose;
     try {
-        const found = await helper.ask<"follow">({ ask: "follow", pose: asked, friction: 0 });
+        const found = await helper.ask<"follow">({ ask: "follow", pose: asked, friction: friction.value });
         if (asked === pose) show(found.trace, found.json);
     } catch (error) {
         tell("undecided", String(error instanceof Error ? error.message : error));
@@ -75,7 +76,7 @@ function show(trace: Trace, told: string) {
     json = told;
     if (trace.waypoints.length === 0) stage?.place(listed(trace.start), mated, [], locked);
     player.take(trace);
-    tell(trace.outcome, ending(trace, mated, units));
+    tell(trace.outcome, ending(trace, mated, units) + friction.remark);
     if (play) player.play();
 }
 
@@ -113,7 +114,7 @@ function build() {
     const canvas = make("canvas", { tabindex: 0, class: "stage", "aria-label": "the two halves; arrows turn them, + and − zoom" });
     const section = sectionPicker();
     const halves = make("section", { class: "card", id: "halves" },
-        make("div", { class: "bar-of-tools" }, make("h2", {}, "The halves"), section,
+        make("div", { class: "bar-of-tools" }, make("h2", {}, "The halves"), section, friction.element,
             make("button", { type: "button", onclick: () => examine([0, 0, 0, 0, 0]) }, "mated"),
             make("button", { type: "button", onclick: save, title: "the motion as `catchment trace --json` has it" }, "save motion")),
         canvas, player.element, verdict, sliders.element);
@@ -151,14 +152,14 @@ async function begin() {
         } catch (error) {
             canvas.replaceWith(make("p", { class: "hint" }, `This browser draws nothing in space (${error instanceof Error ? error.message : error}).`));
         }
-        const home = await helper.ask<"follow">({ ask: "follow", pose, friction: 0 });
+        const home = await helper.ask<"follow">({ ask: "follow", pose, friction: friction.value });
         mated = home.trace.waypoints.at(-1)?.height_d ?? 0;
         show(home.trace, home.json);
         stage?.frame();
     } else {
         canvas.remove();
         player.element.remove();
-        halves.querySelectorAll("select, button").forEach((tool) => tool.remove());
+        halves.querySelectorAll("select, button, .friction").forEach((tool) => tool.remove());
         tell("undecided", page.notes[0] ?? "This page holds no halves.");
     }
     try {

@@ -75,6 +75,8 @@ export interface Page {
     report: Run;
     jams: Jams | null;
     window: Window | null;
+    /** The coefficient of friction that the outcomes were decided with. */
+    friction: number;
     notes: string[];
     served: boolean;
     chunk_cells: number;

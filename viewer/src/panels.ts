@@ -72,7 +72,7 @@ export function windowCard({ window: found }: Page, units: Units, show: (pose: P
 
 const drawn = ({ kind, name }: { kind: string; name: string }) => (name.startsWith(kind) ? name : `${kind} ${name}`);
 
-export function jamsCard({ jams }: Page, units: Units, show: (pose: Pose, jam: Jam) => void): HTMLElement | null {
+export function jamsCard({ jams, report }: Page, units: Units, show: (pose: Pose, jam: Jam) => void): HTMLElement | null {
     if (!jams) return null;
     const items = jams.jams.slice(0, 12).map((jam) => {
         const pose = listed(jam.pose);
@@ -88,7 +88,10 @@ export function jamsCard({ jams }: Page, units: Units, show: (pose: Pose, jam: J
             ...(held ? [make("span", {}, held)] : [])));
     });
     const hint = make("p", { class: "hint" }, `Of ${grouped(jams.motions)} random poses, followed exactly. Click one to see it.`);
-    return card("jams", "Where it jams", ...(items.length ? [hint, make("ol", { class: "jams" }, ...items)] : [make("p", {}, "No random pose jammed.")]));
+    const { outcomes, cells } = report.acceptance;
+    const labelled = outcomes.jammed > 0 ? ` Jammed cells (${percent(outcomes.jammed / (cells || 1), 2)}) are centres on a ridge, or jams thinner than these poses meet.` : "";
+    const none = make("p", {}, `None of ${grouped(jams.motions)} random poses jammed.${labelled}`);
+    return card("jams", "Where it jams", ...(items.length ? [hint, make("ol", { class: "jams" }, ...items)] : [none]));
 }
 
 export function doubts({ report, notes }: Page): HTMLElement | null {
@@ -97,9 +100,11 @@ export function doubts({ report, notes }: Page): HTMLElement | null {
 }
 
 /** What it is a result of. */
-export function summary({ report }: Page, units: Units): string {
+export function summary(page: Page, units: Units): string {
+    const { report } = page;
     const cells = report.axes.map((axis) => axis.cells).join(" × ");
     const width = report.design.unit ? `, D = ${tidy(report.design.width)} ${report.design.unit}` : "";
     const free = AXES.filter((axis) => report.design.alignment.free.includes(axis)).join(", ");
-    return `free: ${free} · ${report.method}, ${cells} cells${width} · centre of rotation ${units.size(report.design.alignment.center_of_rotation)} before the face`;
+    const friction = page.friction ? `, friction ${tidy(page.friction)}` : "";
+    return `free: ${free} · ${report.method}, ${cells} cells${friction}${width} · centre of rotation ${units.size(report.design.alignment.center_of_rotation)} before the face`;
 }

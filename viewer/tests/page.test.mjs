@@ -1,8 +1,10 @@
 // The page of `catchment report`, driven as a person drives it.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { spawn } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { catchment, launch, motion, open, written } from "./browser.mjs";
+import { catchment, home, launch, motion, open, program, root, written } from "./browser.mjs";
 
 let browser;
 before(async () => void (browser = await launch()));
@@ -21,9 +23,9 @@ function alike(a, b, place = "") {
 }
 
 /** What the program says of the pose that a motion starts from. */
-function traced(design, { start }) {
+function traced(design, { start }, ...given) {
     const pose = AXES.filter((axis) => start[axis] !== 0).map((axis) => `${axis}=${start[axis]}`).join(",") || "x=0";
-    return JSON.parse(catchment("trace", `designs/${design}.toml`, "--pose", pose, "--json"));
+    return JSON.parse(catchment("trace", `designs/${design}.toml`, "--pose", pose, "--json", ...given));
 }
 
 for (const [design, ...given] of [["v-face", "--resolution", "30"], ["x-face-3d", "--resolution", "8", "--leave-out", "window"]]) {
@@ -126,4 +128,43 @@ test("a jam that is clicked is shown where it rests", async () => {
     const found = await motion(page, shown);
     assert.equal(found.outcome, "jammed");
     assert.match(await page.locator("#verdict").textContent(), /Jams: at rest on \d+ contact/);
+});
+
+test("motions have the friction that is asked for, and the page says where the set has another", async () => {
+    const { page } = await open(browser, written("v-face", "--resolution", "30", "--friction", "0.2", "--leave-out", "window"));
+    assert.match(await page.locator("header").textContent(), /friction 0.2/);
+    let shown = await page.evaluate(() => window.catchment.motion());
+    await page.evaluate(() => window.catchment.choose([0.3, 0, 0, 0.4, 0]));
+    alike(await motion(page, shown), traced("v-face", { start: { x: 0.3, y: 0, roll: 0, pitch: 0.4, yaw: 0 } }, "--friction", "0.2"));
+    assert.doesNotMatch(await page.locator("#verdict").textContent(), /This motion is/);
+    shown = await page.evaluate(() => window.catchment.motion());
+    await page.locator("#friction").fill("0");
+    await page.locator("#friction").press("Enter");
+    alike(await motion(page, shown), traced("v-face", { start: { x: 0.3, y: 0, roll: 0, pitch: 0.4, yaw: 0 } }));
+    assert.match(await page.locator("#verdict").textContent(), /This motion is without friction, the set with friction 0.2/);
+});
+
+test("a served page computes a changed design again, and says what is wrong with it", async () => {
+    const path = join(home, "changed.toml");
+    const design = (name) => writeFileSync(path, readFileSync(join(root, "designs/v-face.toml"), "utf8").replace(/^name = .*$/m, `name = "${name}"`));
+    design("before");
+    const server = spawn(program, ["view", path, "--resolution", "20", "--leave-out", "window,jams"], { stdio: ["ignore", "pipe", "ignore"] });
+    try {
+        const address = await new Promise((done) => server.stdout.once("data", (told) => done(String(told).trim())));
+        const { page, said } = await open(browser, address);
+        assert.equal(await page.locator("h1").textContent(), "before");
+        design("after");
+        await page.locator(".again input").fill("26");
+        await page.locator("#again").click();
+        await page.waitForFunction(() => document.querySelector("h1")?.textContent === "after" && document.documentElement.dataset.ready);
+        assert.match(await page.locator("header").textContent(), /26 × 26 cells/);
+        writeFileSync(path, "schema = 1\n");
+        await page.locator("#again").click();
+        await page.waitForFunction(() => /connector/.test(document.querySelector(".again output").textContent));
+        assert.equal(await page.locator("h1").textContent(), "after");
+        assert.deepEqual(said.errors, []);
+        assert.ok(said.asked.every((url) => url.startsWith(new URL(address).origin)), said.asked.join());
+    } finally {
+        server.kill();
+    }
 });

@@ -6,6 +6,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::method_parser;
 use crate::output::{OutputArgs, to_stderr};
+use crate::setting::{Change, with_changes};
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::method::Method;
@@ -13,6 +14,7 @@ use catchment::problem::Problem;
 use catchment::report::page::{Parts, Studies};
 use catchment::run::{Over, Run};
 use clap::{Args, ValueEnum};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// A result as one page to click: a file to mail, which needs no network and no program
@@ -24,7 +26,8 @@ use std::path::PathBuf;
     catchment report design.toml -o page.html           computes what it shows\n  \
     catchment report out -o page.html                   of a result of `run -o`\n  \
     catchment report out -o page.html --leave-out window,jams\n  \
-    catchment report design.toml --resolution 24 -o page.html\n\n\
+    catchment report design.toml --resolution 24 -o page.html\n  \
+    catchment report design.toml --friction 0.2 -o page.html\n\n\
     Jams and window are computed beside the result, from its design. A result whose mesh files are gone or changed becomes a page \
     without halves, motions, jams and window, which says so. `catchment view` serves the same page and computes again on demand.")]
 pub(crate) struct ReportArgs {
@@ -48,6 +51,9 @@ pub(super) struct MadeArgs {
     /// Cells per axis of a design's error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
+    /// Coefficient of friction between the halves, of a design
+    #[arg(long, value_name = "MU")]
+    friction: Option<f64>,
     /// What is not computed beside the result
     #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
     leave_out: Vec<Study>,
@@ -69,9 +75,12 @@ impl MadeArgs {
     }
 
     /// The run of a design.
-    fn run(&self) -> Run {
+    fn run(&self) -> Result<Run, Failure> {
         let over = Over::Grid(self.resolution.unwrap_or_default());
-        Run { over, ..Run::by(self.method.clone().unwrap_or_default()) }
+        let change = |value| Change { option: "--friction", setting: "friction", value: Value::from(value) };
+        let changes: Vec<Change> = self.friction.map(change).into_iter().collect();
+        let method = with_changes(&self.method.clone().unwrap_or_default(), &changes)?;
+        Ok(Run { over, ..Run::by(method) })
     }
 
     /// What is studied beside it.
@@ -82,7 +91,7 @@ impl MadeArgs {
 
     /// The parts of the page of a problem.
     pub(super) fn parts(&self, problem: &Problem, exec: &Exec) -> Result<Parts, Failure> {
-        let answer = self.run().on(problem, exec).map_err(|error| refused(problem, error))?;
+        let answer = self.run()?.on(problem, exec).map_err(|error| refused(problem, error))?;
         let mut parts = Parts::of(&answer);
         parts.study(self.studies(), exec)?;
         Ok(parts)
@@ -96,9 +105,11 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
     }
     args.output.check()?;
     let parts = if args.path.is_dir() {
-        for (option, given) in
-            [("--method", args.made.method.is_some()), ("--resolution", args.made.resolution.is_some())]
-        {
+        for (option, given) in [
+            ("--method", args.made.method.is_some()),
+            ("--resolution", args.made.resolution.is_some()),
+            ("--friction", args.made.friction.is_some()),
+        ] {
             if given {
                 let message =
                     format!("{option}: {} is a result, which has been decided", args.path.display());

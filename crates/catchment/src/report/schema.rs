@@ -243,6 +243,14 @@ pub struct Timing {
     pub threads: usize,
 }
 
+impl RunBody {
+    /// The coefficient of friction of the motions that decided; 0 of methods that know none.
+    pub fn friction(&self) -> f64 {
+        let own = self.settings.get("friction").or_else(|| self.settings.get("descent")?.get("friction"));
+        own.and_then(serde_json::Value::as_f64).unwrap_or(0.0)
+    }
+}
+
 impl Report {
     /// Evaluates an acceptance. `settings` are those of the method that gave it. The doubts that the accepted set
     /// itself raises are added to the method's own.

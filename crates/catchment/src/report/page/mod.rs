@@ -94,6 +94,7 @@ impl Page<'_> {
             "report": told(self.report)?,
             "jams": self.jams.map(told).transpose()?,
             "window": self.window.map(told).transpose()?,
+            "friction": self.report.friction(),
             "notes": self.notes,
             "served": self.is_served,
             "chunk_cells": chunks.cells,

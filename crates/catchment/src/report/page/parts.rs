@@ -65,22 +65,22 @@ impl Parts {
         Ok(parts)
     }
 
-    /// Adds studies. One that finds nothing leaves a note.
+    /// Adds studies, with the friction of the run. One that finds nothing leaves a note.
     ///
     /// # Errors
     /// It was asked to stop.
     pub fn study(&mut self, studies: Studies, exec: &Exec) -> Result<(), Cancelled> {
         let Some(problem) = &self.problem else { return Ok(()) };
-        let design = problem.design();
+        let (design, friction) = (problem.design(), self.report.friction());
         if studies.jams {
-            match jams::run(problem, &jams::Settings::default(), exec) {
+            match jams::run(problem, &jams::Settings { friction, ..jams::Settings::default() }, exec) {
                 Ok(found) => self.jams = Some(JamsReport::new(design, &found, Vec::new(), None)),
                 Err(JamsError::Cancelled(cancelled)) => return Err(cancelled),
                 Err(why) => self.notes.push(format!("no jams: {why}")),
             }
         }
         if studies.window {
-            match window::run(problem, &window::Settings::default(), exec) {
+            match window::run(problem, &window::Settings { friction, ..window::Settings::default() }, exec) {
                 Ok(found) => self.window = Some(WindowReport::new(design, &found, Vec::new(), None)),
                 Err(WindowError::Cancelled(cancelled)) => return Err(cancelled),
                 Err(why) => self.notes.push(format!("no window: {why}")),
