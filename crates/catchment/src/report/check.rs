@@ -1,7 +1,7 @@
 //! A design file that was checked: the design as it is understood, or everything that is wrong with it.
 
 use super::envelope::{Body, Envelope};
-use super::text::line;
+use super::text::{self, line};
 use crate::connector::Origin;
 use crate::design::{
     ConnectorSpec, Design, Drawn, FileSpec, Finding, Findings, HalfSpec, OutlineSpec, OwnSpec,
@@ -183,7 +183,7 @@ fn shown(source: Option<&SourceText>) -> String {
 fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport>, ungendered: bool) {
     let alignment = &design.alignment;
     let length = |d: f64| match design.unit {
-        Some(unit) => format!("{d} D = {} {}", rounded(d * design.width), unit.symbol()),
+        Some(unit) => format!("{} D = {} {}", text::rounded(d), rounded(d * design.width), unit.symbol()),
         None => format!("{d} D"),
     };
     let mut row = |name: &str, value: &str| line(text, &format!("  {name:<20}{value}"));
@@ -233,7 +233,10 @@ fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport
             let counts = |(_, off): &(Dof, f64)| off.abs() > 1e-5;
             let amount = |(dof, off): (Dof, f64)| match design.unit {
                 _ if dof.is_rotation() => format!("{} {:.3} deg", dof.name(), off.to_degrees()),
-                Some(unit) => format!("{} {:.4} {}", dof.name(), off * design.width, unit.symbol()),
+                Some(unit) => {
+                    let off = text::length(off * design.width, design.width);
+                    format!("{} {off} {}", dof.name(), unit.symbol())
+                }
                 None => format!("{} {off:.5} D", dof.name()),
             };
             let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(counts);

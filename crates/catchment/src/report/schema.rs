@@ -244,10 +244,14 @@ pub struct Timing {
 }
 
 impl RunBody {
+    /// A number among the settings of the method, or of the motions that it follows.
+    pub(super) fn of_motions(&self, name: &str) -> Option<f64> {
+        self.settings.get(name).or_else(|| self.settings.get("descent")?.get(name))?.as_f64()
+    }
+
     /// The coefficient of friction of the motions that decided; 0 of methods that know none.
     pub fn friction(&self) -> f64 {
-        let own = self.settings.get("friction").or_else(|| self.settings.get("descent")?.get("friction"));
-        own.and_then(serde_json::Value::as_f64).unwrap_or(0.0)
+        self.of_motions("friction").unwrap_or(0.0)
     }
 }
 

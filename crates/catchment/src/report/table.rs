@@ -6,7 +6,9 @@ mod jams;
 mod seat;
 
 use super::schema::{AcceptanceReport, OnaaReport, Report, ToleranceReport};
-use super::text::{COLUMNS, grouped, line, percent, rounded, row, significant, with_error, wrapped};
+use super::text::{
+    COLUMNS, decimals, grouped, length, line, percent, rounded, row, significant, with_error, wrapped,
+};
 use super::window;
 use crate::advice::Advice;
 use crate::design::{ConnectorSpec, Design};
@@ -22,14 +24,11 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     heading(&mut text, &report.design);
     let method = format!("{}, {}", report.method, tried(report));
     row(&mut text, "method", &method);
-    let of_motions = |name: &str| {
-        let found = report.settings.get(name).or_else(|| report.settings.get("descent")?.get(name));
-        found.and_then(serde_json::Value::as_f64).filter(|value| *value > 0.0)
-    };
-    if let Some(friction) = of_motions("friction") {
+    let friction = report.friction();
+    if friction > 0.0 {
         row(&mut text, "friction", &format!("{friction} between the halves (Coulomb)"));
     }
-    if let Some(slope) = of_motions("slope_threshold") {
+    if let Some(slope) = report.of_motions("slope_threshold").filter(|slope| *slope > 0.0) {
         row(&mut text, "slope threshold", &format!("{slope}: motion ends where the height falls less"));
     }
     if let ConnectorSpec::Own(own) = &report.design.connector {
@@ -222,7 +221,8 @@ fn tolerances(text: &mut String, report: &Report) {
     for t in &report.tolerances {
         let angle = t.axis.is_rotation();
         let base = both(t, 1.0, 4);
-        let lengths = if angle { String::new() } else { both(t, report.design.width, 3) };
+        let lengths =
+            if angle { String::new() } else { both(t, report.design.width, decimals(report.design.width)) };
         let lengths = if unit.is_none() { String::new() } else { format!("{lengths:>22}") };
         let degrees = if angle { both(t, 1f64.to_degrees(), 2) } else { String::new() };
         line(text, &format!("  {:<9}{base:>22}{lengths}{degrees:>22}", t.axis.name()));
@@ -264,8 +264,11 @@ mod tests {
     use super::super::schema::testing::*;
     use super::*;
     use crate::acceptance::Warning;
+    use crate::contact::Play;
+    use crate::design::LengthUnit;
     use crate::exec::Exec;
     use crate::pose::{Dof, DofSet};
+    use crate::run::{Residual, Seating};
 
     fn text(free: DofSet, cells: usize) -> String {
         let design = design(free);
@@ -293,5 +296,25 @@ mod tests {
         let text = text([Dof::X].into_iter().collect(), 100);
         let row = text.lines().find(|l| l.starts_with("  x ")).unwrap();
         assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["x", "±0.6000", "±30.000"]);
+    }
+
+    /// A part of 16 mm whose design is in metres: nothing in it is 0.000 m.
+    #[test]
+    fn a_part_in_metres_has_its_digits() {
+        let mut design = design([Dof::X].into_iter().collect());
+        (design.width, design.unit) = (0.016, Some(LengthUnit::M));
+        let blob = blob(&design, 100);
+        let mut report = Report::new(&design, &blob, serde_json::Value::Null, None, &Exec::new()).unwrap();
+        let play = Play { axis: Dof::X, minus: 0.05, plus: 0.05 };
+        let off = Residual { axis: Dof::X, mean: 0.02, p95: 0.04, most: 0.05 };
+        report.seat =
+            Some(Seating { depth: 0.002, play: vec![play], poses: 11, residual: vec![off], deeper: None });
+        let text = table(&report);
+        let row = |start: &str| text.lines().find(|l| l.trim_start().starts_with(start)).unwrap();
+        assert_eq!(row("x  ").split_whitespace().collect::<Vec<_>>(), ["x", "±0.6000", "±0.00960"]);
+        assert!(row("seat").contains("within 0.00003 m of"), "{text}");
+        for told in ["±0.00080 m", "0.00032 m", "0.00064 m"] {
+            assert!(text.contains(told), "{text}");
+        }
     }
 }

@@ -9,7 +9,11 @@ const NAMES: usize = 17;
 
 /// A length in the design's unit, `width` being D in it: to a thousandth of D, of parts in metres too; without a minus before what is nothing.
 pub fn length(value: f64, width: f64) -> String {
-    let decimals = decimals(width);
+    fixed(value, decimals(width))
+}
+
+/// A number with so many decimals; rounding does not print as −0.000.
+pub fn fixed(value: f64, decimals: usize) -> String {
     let nothing = 0.5 * 0.1f64.powf(decimals as f64);
     format!("{:.decimals$}", if value.abs() < nothing { 0.0 } else { value })
 }

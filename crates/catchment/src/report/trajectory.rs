@@ -2,7 +2,7 @@
 
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
-use super::text::{line, number};
+use super::text::{decimals, fixed, line, number};
 use crate::acceptance::{Outcome, Reason};
 use crate::design::Design;
 use crate::method::descent::{self, Settings, Touch, Trajectory, Waypoint};
@@ -154,7 +154,9 @@ impl TraceReport {
     pub fn table(&self) -> String {
         let design = &self.design;
         let (width, symbol) = design.unit.map_or((1.0, "D"), |unit| (design.width, unit.symbol()));
-        let length = |value: f64| format!("{:.4}", tidy(value * width));
+        // A digit more than figures of merit have: neighbouring waypoints are to differ.
+        let decimals = decimals(width) + 1;
+        let length = |value: f64| fixed(value * width, decimals);
         let moves = |dof: &Dof| {
             design.alignment.free.contains(*dof)
                 || self.waypoints.iter().any(|w| w.error.to_array()[dof.index()].abs() > STILL)
@@ -172,7 +174,7 @@ impl TraceReport {
             cells.extend(w.time_s.map(|time| format!("{time:.4}")));
             cells.extend(dofs.iter().map(|dof| {
                 let value = w.error.to_array()[dof.index()];
-                if dof.is_rotation() { format!("{:.3}", tidy(value.to_degrees())) } else { length(value) }
+                if dof.is_rotation() { fixed(value.to_degrees(), 3) } else { length(value) }
             }));
             cells.extend([length(w.height_d), w.touches.len().to_string()]);
             lines.push(cells);
@@ -243,11 +245,6 @@ fn spread(waypoints: &[WaypointReport]) -> Vec<&WaypointReport> {
     chosen.retain(|k| *k < waypoints.len());
     chosen.dedup();
     chosen.into_iter().filter_map(|k| waypoints.get(k)).collect()
-}
-
-/// Rounding does not print as −0.0000.
-fn tidy(value: f64) -> f64 {
-    if value.abs() < 5e-5 { 0.0 } else { value }
 }
 
 #[cfg(test)]

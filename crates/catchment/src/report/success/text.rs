@@ -1,7 +1,7 @@
 //! Whether robots dock, for people: 80 columns, the design's unit and degrees.
 
 use super::super::table::heading;
-use super::super::text::{grouped, line, percent, row, significant, wrapped};
+use super::super::text::{self, grouped, line, percent, row, significant, wrapped};
 use super::{DockingReport, FirstReport, FitReport, SuccessesReport};
 use crate::pose::{Dof, PoseError};
 use crate::study::success::Factor;
@@ -187,7 +187,9 @@ impl SuccessesReport {
             return format!("{:.2}°", value.to_degrees());
         }
         match self.design.unit {
-            Some(unit) => format!("{:.3} {}", value * self.design.width, unit.symbol()),
+            Some(unit) => {
+                format!("{} {}", text::length(value * self.design.width, self.design.width), unit.symbol())
+            }
             None => format!("{value:.4} D"),
         }
     }

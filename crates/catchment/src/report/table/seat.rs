@@ -1,6 +1,6 @@
 //! The seat as text: how deep, how much play, how far off docked halves rest.
 
-use super::{line, row};
+use super::{length, line, row};
 use crate::design::Design;
 use crate::pose::Dof;
 use crate::run::Seating;
@@ -11,7 +11,7 @@ const NONE: f64 = 5e-4;
 /// A sharp seat takes a line, one with play a table.
 pub(super) fn lines(text: &mut String, found: &Seating, design: &Design) {
     let depth = match design.unit {
-        Some(unit) => format!("{:.3} {}", found.depth * design.width, unit.symbol()),
+        Some(unit) => format!("{} {}", length(found.depth * design.width, design.width), unit.symbol()),
         None => format!("{} D", found.depth),
     };
     let most = found.residual.iter().map(|residual| residual.most).fold(0.0, f64::max);
@@ -44,7 +44,7 @@ pub(super) fn lines(text: &mut String, found: &Seating, design: &Design) {
 fn amount(dof: Dof, value: f64, design: &Design) -> String {
     match (dof.is_rotation(), design.unit) {
         (true, _) => format!("{:.3}°", value.to_degrees()),
-        (false, Some(unit)) => format!("{:.3} {}", value * design.width, unit.symbol()),
+        (false, Some(unit)) => format!("{} {}", length(value * design.width, design.width), unit.symbol()),
         (false, None) => format!("{value:.4} D"),
     }
 }
