@@ -70,7 +70,7 @@ pub(crate) struct Cli {
 }
 
 /// A design file, and what to change in it for this run.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct DesignArgs {
     /// The design file
     #[arg(value_name = "DESIGN", value_hint = clap::ValueHint::FilePath)]

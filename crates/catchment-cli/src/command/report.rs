@@ -1,6 +1,7 @@
 //! `catchment report`: a result as one page to click.
 
 use super::run::{refused, resolution};
+use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -15,7 +16,6 @@ use catchment::report::page::{Parts, Studies};
 use catchment::run::{Over, Run};
 use clap::{Args, ValueEnum};
 use serde_json::Value;
-use std::path::PathBuf;
 
 /// A result as one page to click: a file to mail, which needs no network and no program
 ///
@@ -26,14 +26,16 @@ use std::path::PathBuf;
     catchment report design.toml -o page.html           computes what it shows\n  \
     catchment report out -o page.html                   of a result of `run -o`\n  \
     catchment report out -o page.html --leave-out window,jams\n  \
-    catchment report design.toml --resolution 24 -o page.html\n  \
+    catchment report design.toml --free x,y,yaw --resolution 24 -o page.html\n  \
     catchment report design.toml --friction 0.2 -o page.html\n\n\
     Jams and window are computed beside the result, from its design. A result whose mesh files are gone or changed becomes a page \
-    without halves, motions, jams and window, which says so. `catchment view` serves the same page and computes again on demand.")]
+    without halves, motions, jams and window, which says so. `catchment view` serves the same page and computes again on demand.",
+    mut_arg("path", |path| path.value_name("RESULT_OR_DESIGN")
+        .help("A design, a folder written by `run -o`, or its NAME.zarr")
+        .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct ReportArgs {
-    /// A design, a folder written by `run -o`, or its NAME.zarr
-    #[arg(value_name = "RESULT_OR_DESIGN", value_hint = clap::ValueHint::AnyPath)]
-    path: PathBuf,
+    #[command(flatten)]
+    design: DesignArgs,
     #[command(flatten)]
     made: MadeArgs,
     #[command(flatten)]
@@ -74,6 +76,17 @@ impl MadeArgs {
         Self { resolution: resolution.or(self.resolution), ..self.clone() }
     }
 
+    /// Options that say how a design is decided.
+    fn asked(&self) -> impl Iterator<Item = &'static str> {
+        [
+            ("--method", self.method.is_some()),
+            ("--resolution", self.resolution.is_some()),
+            ("--friction", self.friction.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(option, given)| given.then_some(option))
+    }
+
     /// The run of a design.
     fn run(&self) -> Result<Run, Failure> {
         let over = Over::Grid(self.resolution.unwrap_or_default());
@@ -104,25 +117,20 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help("a page is a file to open in a browser".to_owned(), Some(help)));
     }
     args.output.check()?;
-    let parts = if args.path.is_dir() {
-        for (option, given) in [
-            ("--method", args.made.method.is_some()),
-            ("--resolution", args.made.resolution.is_some()),
-            ("--friction", args.made.friction.is_some()),
-        ] {
-            if given {
-                let message =
-                    format!("{option}: {} is a result, which has been decided", args.path.display());
-                return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
-            }
+    let path = &args.design.path;
+    let parts = if path.is_dir() {
+        let asked = args.design.changed().map(|(option, _)| option).chain(args.made.asked()).next();
+        if let Some(option) = asked {
+            let message = format!("{option}: {} is a result, which has been decided", path.display());
+            return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
         }
         let running = args.exec.start()?;
-        let mut parts = Parts::stored(&args.path, &running.exec)?;
+        let mut parts = Parts::stored(path, &running.exec)?;
         parts.study(args.made.studies(), &running.exec)?;
         args.output.write(&parts.page().html(&running.exec)?)?;
         parts
     } else {
-        let problem = Problem::open(&args.path)?;
+        let problem = args.design.problem()?;
         let running = args.exec.start()?;
         let parts = args.made.parts(&problem, &running.exec)?;
         args.output.write(&parts.page().html(&running.exec)?)?;

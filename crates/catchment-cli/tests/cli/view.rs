@@ -39,6 +39,27 @@ fn a_page_of_a_result_is_that_of_its_design() {
     assert!(told.starts_with("exit 2\n") && told.contains("--force replaces it"), "{told}");
 }
 
+/// What is changed for a page is changed for everything in it.
+#[test]
+fn a_page_has_the_errors_and_the_friction_that_were_asked_for() {
+    let home = home();
+    let changes = ["--free", "x", "--cor", "0.2", "--friction", "0.1", "--resolution", "40"];
+    let told = run(home.path(), &[&["run", "v.toml", "-o", "out"], &changes[..]].concat());
+    assert!(told.starts_with("exit 0\n"), "{told}");
+    let fresh = [&["report", "v.toml", "-o", "fresh.html", "--leave-out", "window"], &changes[..]].concat();
+    for args in [&fresh[..], &["report", "out", "-o", "stored.html", "--leave-out", "window"]] {
+        let told = run(home.path(), args);
+        assert!(told.starts_with("exit 0\n"), "{told}");
+    }
+    let [stored, fresh] =
+        ["stored.html", "fresh.html"].map(|name| fs::read_to_string(home.path().join(name)).unwrap());
+    assert!(stored == fresh && stored.contains("\"friction\":0.1,"));
+    let data = stored.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    assert_eq!(data["report"]["design"]["alignment"]["free"], serde_json::json!(["x"]));
+    assert_eq!(data["jams"]["settings"]["friction"], 0.1);
+}
+
 /// A server, and where it is; ended with the test.
 struct Server {
     child: Child,

@@ -1,19 +1,18 @@
 //! What is served: the newest page, and the one that is being computed.
 
+use crate::args::DesignArgs;
 use crate::command::report::MadeArgs;
 use crate::failure::Failure;
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
-use catchment::problem::Problem;
 use catchment::report::printable;
 use serde_json::json;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The newest page, and how far the next one is.
 pub(super) struct Desk {
-    path: PathBuf,
+    design: DesignArgs,
     made: MadeArgs,
     threads: usize,
     state: Mutex<State>,
@@ -45,8 +44,8 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Desk {
-    pub(super) fn new(path: PathBuf, made: MadeArgs, threads: usize) -> Self {
-        Self { path, made, threads, state: Mutex::default(), stop: Mutex::default() }
+    pub(super) fn new(design: DesignArgs, made: MadeArgs, threads: usize) -> Self {
+        Self { design, made, threads, state: Mutex::default(), stop: Mutex::default() }
     }
 
     /// The newest page. Where the last one could not be computed, loading it asks again.
@@ -115,7 +114,7 @@ impl Desk {
                     }
                 }));
             *locked(&self.stop) = Some(exec.cancel_flag());
-            let parts = made.parts(&Problem::open(&self.path)?, &exec)?;
+            let parts = made.parts(&self.design.problem()?, &exec)?;
             let mut page = parts.page();
             page.is_served = true;
             Ok(page.html(&exec)?)

@@ -4,19 +4,18 @@ mod desk;
 mod http;
 
 use super::report::MadeArgs;
+use crate::args::DesignArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
 use crate::signals;
-use catchment::problem::Problem;
 use clap::Args;
 use desk::Desk;
 use http::{Request, Response};
 use std::hash::{BuildHasher, RandomState};
 use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -32,9 +31,8 @@ use std::time::Duration;
     catchment view design.toml --port 8080\n\n\
     Nothing is written. Whoever does not know the token, comes by another name of this machine, or from another page, is refused.")]
 pub(crate) struct ViewArgs {
-    /// The design file
-    #[arg(value_name = "DESIGN", value_hint = clap::ValueHint::FilePath)]
-    path: PathBuf,
+    #[command(flatten)]
+    design: DesignArgs,
     #[command(flatten)]
     made: MadeArgs,
     /// Port on 127.0.0.1; 0 for one that is free
@@ -51,7 +49,7 @@ const MOST_CONNECTIONS: usize = 32;
 
 pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     // What is wrong with the design is told here, where it has its place in the file.
-    Problem::open(&args.path)?;
+    args.design.problem()?;
     let running = args.exec.start()?;
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port)).map_err(|error| {
         let help = "name another --port, or none".to_owned();
@@ -60,7 +58,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     listener.set_nonblocking(true)?;
     let port = listener.local_addr()?.port();
     let token = token();
-    let desk = Arc::new(Desk::new(args.path.clone(), args.made.clone(), args.exec.threads()));
+    let desk = Arc::new(Desk::new(args.design.clone(), args.made.clone(), args.exec.threads()));
     desk.start(None);
     to_stdout(&format!("http://127.0.0.1:{port}/{token}/\n"))?;
     let gate = Arc::new(http::Gate { port, token });
