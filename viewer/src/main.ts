@@ -137,6 +137,9 @@ function build() {
     return { canvas, halves };
 }
 
+/** When what was asked for is on the screen. */
+const drawn = () => new Promise<void>((done) => requestAnimationFrame(() => setTimeout(done)));
+
 async function begin() {
     const { canvas, halves } = build();
     const chunks = Array.from({ length: page.chunks }, (_, k) => text(`outcomes-${k}`) ?? "");
@@ -162,12 +165,15 @@ async function begin() {
         halves.querySelectorAll("select, button, .friction").forEach((tool) => tool.remove());
         tell("undecided", page.notes[0] ?? "This page holds no halves.");
     }
+    await first;
+    await drawn();
+    // From here on a click is answered; the surface comes after it.
+    performance.mark("answers");
     try {
         volume?.open();
     } catch {
         volume?.element.remove();
     }
-    await first;
     await volume?.update();
     document.documentElement.dataset.ready = "true";
 }

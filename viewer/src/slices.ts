@@ -172,7 +172,9 @@ export class Slice {
         pen.textBaseline = "top";
         for (const value of ticks(units, across, Math.max(2, Math.floor(field.w / 60)))) {
             const x = px(value);
-            pen.fillText(tidy(units.shown(across.axis, value)), x, field.y + field.h + 5);
+            const label = tidy(units.shown(across.axis, value));
+            // The last one stays inside of the picture.
+            pen.fillText(label, Math.min(x, pen.canvas.clientWidth - pen.measureText(label).width / 2 - 1), field.y + field.h + 5);
             pen.fillRect(x - 0.5, field.y + field.h, 1, 4);
         }
         pen.fillText(`${across.axis} [${units.unit(across.axis)}]`, field.x + field.w / 2, field.y + field.h + 19);

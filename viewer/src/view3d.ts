@@ -4,19 +4,31 @@ import { AmbientLight, Color, DirectionalLight, PerspectiveCamera, Scene, Vector
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { colour } from "./dom";
 
+/** Draws for all pictures in space, each of which copies what is drawn: a context of its own would compile every shader again. */
+let painter: WebGLRenderer | null = null;
+
+function painting(width: number, height: number): WebGLRenderer {
+    if (!painter) {
+        painter = new WebGLRenderer({ antialias: true });
+        painter.localClippingEnabled = true;
+    }
+    const { width: wide, height: high } = painter.domElement;
+    if (width > wide || height > high) painter.setSize(Math.max(width, wide), Math.max(height, high), false);
+    return painter;
+}
+
 export class View3d {
     readonly scene = new Scene();
     readonly camera = new PerspectiveCamera(32, 1, 0.01, 200);
     readonly controls: OrbitControls;
-    private readonly renderer: WebGLRenderer;
+    private readonly pen: CanvasRenderingContext2D;
     private asked = false;
     /** Called before each picture. */
     before: () => void = () => {};
 
     constructor(readonly canvas: HTMLCanvasElement, from: Vector3) {
-        // What is drawn stays, so that it can be printed.
-        this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-        this.renderer.localClippingEnabled = true;
+        painting(canvas.clientWidth, canvas.clientHeight);
+        this.pen = canvas.getContext("2d")!;
         this.camera.up.set(0, 0, 1);
         this.camera.position.copy(from);
         this.controls = new OrbitControls(this.camera, canvas);
@@ -60,16 +72,20 @@ export class View3d {
     now() {
         const { clientWidth: width, clientHeight: height } = this.canvas;
         if (width === 0 || height === 0) return;
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-        const ratio = this.renderer.getPixelRatio();
-        if (this.canvas.width !== Math.floor(width * ratio) || this.canvas.height !== Math.floor(height * ratio)) {
-            this.renderer.setSize(width, height, false);
+        const ratio = Math.min(devicePixelRatio, 2);
+        const [wide, high] = [Math.floor(width * ratio), Math.floor(height * ratio)];
+        if (this.canvas.width !== wide || this.canvas.height !== high) {
+            Object.assign(this.canvas, { width: wide, height: high });
             this.camera.aspect = width / height;
             this.camera.updateProjectionMatrix();
         }
         this.scene.background = new Color(colour("--stage"));
         this.before();
-        this.renderer.render(this.scene, this.camera);
+        const renderer = painting(wide, high);
+        renderer.setViewport(0, 0, wide, high);
+        renderer.render(this.scene, this.camera);
+        // The viewport begins below, the picture above.
+        this.pen.drawImage(renderer.domElement, 0, renderer.domElement.height - high, wide, high, 0, 0, wide, high);
     }
 
     /** Arrows turn the camera, + and − bring it nearer and farther. */

@@ -13,6 +13,7 @@ for (const path of process.argv.slice(2)) {
     await page.goto(pathToFileURL(path).href);
     await page.waitForSelector("html[data-ready]", { timeout: 120000 });
     const ready = await page.evaluate(() => Math.round(performance.now()));
+    const answers = await page.evaluate(() => Math.round(performance.getEntriesByName("answers")[0].startTime));
     const timed = async (does) => {
         const before = await page.evaluate(() => window.catchment.motion());
         const started = Date.now();
@@ -31,7 +32,7 @@ for (const path of process.argv.slice(2)) {
     }
     await page.waitForTimeout(2000);
     const frozen = await page.evaluate(() => window.frozen);
-    console.log(JSON.stringify({ path, megabytes: statSync(path).size / 1e6, ready_ms: ready, click_ms: click, longest_task_ms: Math.max(0, ...frozen.map(([, long]) => long)), tasks_over_50_ms: frozen.length }));
+    console.log(JSON.stringify({ path, megabytes: statSync(path).size / 1e6, answers_ms: answers, ready_ms: ready, click_ms: click, longest_task_ms: Math.max(0, ...frozen.map(([, long]) => long)), tasks_over_50_ms: frozen.length }));
     await page.close();
 }
 await running.close();
