@@ -51,7 +51,7 @@ export class Friction {
     private readonly number: HTMLInputElement;
 
     constructor(private readonly decided: number, changed: () => void) {
-        this.number = make("input", { type: "number", id: "friction", min: 0, max: 10, step: 0.05, value: decided, "aria-label": "coefficient of friction of the motions",
+        this.number = make("input", { type: "number", id: "friction", min: 0, max: 10, step: "any", value: decided, "aria-label": "coefficient of friction of the motions",
             onchange: () => {
                 if (!this.number.checkValidity() || this.number.value === "") this.number.value = String(decided);
                 changed();

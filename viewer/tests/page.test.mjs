@@ -142,6 +142,10 @@ test("motions have the friction that is asked for, and the page says where the s
     await page.locator("#friction").press("Enter");
     alike(await motion(page, shown), traced("v-face", { start: { x: 0.3, y: 0, roll: 0, pitch: 0.4, yaw: 0 } }));
     assert.match(await page.locator("#verdict").textContent(), /This motion is without friction, the set with friction 0.2/);
+    // Any coefficient, not only round ones.
+    await page.locator("#friction").fill("0.237");
+    await page.locator("#friction").press("Enter");
+    await page.waitForFunction(() => /with friction 0.237/.test(document.querySelector("#verdict").textContent));
 });
 
 test("a served page computes a changed design again, and says what is wrong with it", async () => {
