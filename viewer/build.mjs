@@ -1,6 +1,6 @@
 // Builds the viewer into the folder of the library that ships it; with --compare says whether what lies there is what is built.
 //
-//     node build.mjs             src/*.ts ──▶ ../crates/catchment/src/report/page/bundle/{viewer.js, worker.js, viewer.css}
+//     node build.mjs             src/*.ts ──▶ ../crates/catchment/src/report/page/bundle/{viewer.js, worker.js, painter.js, viewer.css}
 //     node build.mjs --compare   exit code 1 unless the same bytes lie there
 import { build } from "esbuild";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
@@ -11,9 +11,12 @@ const bundle = here("../crates/catchment/src/report/page/bundle/");
 const compare = process.argv.includes("--compare");
 const shared = { bundle: true, minify: true, write: false, target: "es2022", legalComments: "none", charset: "ascii", logLevel: "warning" };
 const banner = "/* catchment viewer; holds three.js, MIT, Copyright 2010-2026 three.js authors */";
+// The page orbits, and leaves drawing to the painter: of three.js it takes vectors and cameras, without shaders.
+const core = { name: "core", setup: (building) => building.onResolve({ filter: /^three$/ }, () => ({ path: here("node_modules/three/build/three.core.js") })) };
 const built = await Promise.all([
-    build({ ...shared, entryPoints: [here("src/main.ts")], outfile: "viewer.js", format: "iife", banner: { js: banner } }),
+    build({ ...shared, entryPoints: [here("src/main.ts")], outfile: "viewer.js", format: "iife", banner: { js: banner }, plugins: [core] }),
     build({ ...shared, entryPoints: [here("src/worker.ts")], outfile: "worker.js", format: "iife" }),
+    build({ ...shared, entryPoints: [here("src/painter.ts")], outfile: "painter.js", format: "iife", banner: { js: banner } }),
     build({ ...shared, entryPoints: [here("src/style/viewer.css")], outfile: "viewer.css" }),
 ]);
 let differs = false;

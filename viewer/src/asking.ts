@@ -1,15 +1,16 @@
-// Asks the worker, and gives what it found.
+// Asks a worker, and gives what it found.
 
-import type { Answers, Ask, Question } from "./messages";
+import type { Protocol } from "./messages";
 import { text } from "./page";
 
-export class Helper {
+export class Helper<P extends Protocol<P>> {
     private readonly worker: Worker;
     private readonly open = new Map<number, { done: (found: never) => void; failed: (error: Error) => void }>();
     private next = 0;
 
-    constructor() {
-        const url = URL.createObjectURL(new Blob([text("worker") ?? ""], { type: "text/javascript" }));
+    /** `script`: the element that holds what the worker runs. */
+    constructor(script: string) {
+        const url = URL.createObjectURL(new Blob([text(script) ?? ""], { type: "text/javascript" }));
         this.worker = new Worker(url);
         this.worker.onmessage = ({ data: { id, found, error } }) => {
             const waiting = this.open.get(id);
@@ -19,11 +20,11 @@ export class Helper {
         };
     }
 
-    ask<A extends Ask>(question: Extract<Question, { ask: A }>): Promise<Answers[A]> {
+    ask<A extends keyof P>(ask: A, given: P[A][0], moved: Transferable[] = []): Promise<P[A][1]> {
         return new Promise((done, failed) => {
             const id = this.next++;
             this.open.set(id, { done: done as (found: never) => void, failed });
-            this.worker.postMessage({ id, question });
+            this.worker.postMessage({ id, ask, given }, moved);
         });
     }
 }

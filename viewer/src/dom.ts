@@ -16,3 +16,5 @@ export function make<T extends keyof HTMLElementTagNameMap>(tag: T, given: Given
 
 /** The colour of a variable of the style. */
 export const colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+export const colours = (...names: string[]) => Object.fromEntries(names.map((name) => [name, colour(`--${name}`)]));

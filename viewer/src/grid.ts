@@ -1,7 +1,7 @@
 // The outcomes over the grid: chunks unpacked when they are first looked into, cut into planes and boxes.
 
 /** Bytes of a base64 text. */
-export function decoded(base64: string): Uint8Array {
+function decoded(base64: string): Uint8Array {
     const native = (Uint8Array as unknown as { fromBase64?: (text: string) => Uint8Array }).fromBase64;
     if (native) return native.call(Uint8Array, base64);
     const raw = atob(base64);
@@ -11,15 +11,18 @@ export function decoded(base64: string): Uint8Array {
 }
 
 /** What deflate (zlib) packed. */
-export async function inflated(packed: Uint8Array): Promise<Uint8Array> {
+async function inflated(packed: Uint8Array): Promise<Uint8Array> {
     const stream = new Blob([packed as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+/** Bytes as a page holds them. */
+export const unpacked = (base64: string): Promise<Uint8Array> => inflated(decoded(base64));
+
 export class Grid {
     readonly strides: number[];
     private readonly cells: number;
-    private readonly unpacked: (Promise<Uint8Array> | undefined)[] = [];
+    private readonly chunks: (Promise<Uint8Array> | undefined)[] = [];
 
     /** The first axis is fastest. */
     constructor(readonly shape: number[], private readonly chunkCells: number, private readonly packed: string[]) {
@@ -34,7 +37,7 @@ export class Grid {
 
     /** Each cell is stored as its difference (exclusive or) from the one a row before. */
     private chunk(number: number): Promise<Uint8Array> {
-        return (this.unpacked[number] ??= inflated(decoded(this.packed[number])).then((cells) => {
+        return (this.chunks[number] ??= unpacked(this.packed[number]).then((cells) => {
             const row = this.shape[0] ?? 1;
             for (let k = row; k < cells.length; k++) cells[k] ^= cells[k - row];
             return cells;

@@ -1,11 +1,12 @@
-// The page: what it shows, and what happens when a pose is chosen. It draws results; motions come from the library itself (worker).
+// The page: what it shows, and what happens when a pose is chosen. It draws results; motions come from the library itself (worker), pictures in space
+// from a worker of their own (painter): whatever they take, a click is answered.
 
 import { Helper, latest } from "./asking";
 import { Friction, Sliders } from "./controls";
 import { make } from "./dom";
 import { Units } from "./format";
-import { decoded, inflated } from "./grid";
 import { help, keys } from "./keys";
+import type { Computing, Painting } from "./messages";
 import { AXES, listed, page as read, text, type Jam, type Pose, type Trace } from "./page";
 import { doubts, jamsCard, merits, summary, windowCard } from "./panels";
 import { Player } from "./player";
@@ -23,7 +24,8 @@ const units = new Units(design);
 const { free, center_of_rotation: cor } = design.alignment;
 const locked = { x: !free.includes("x"), y: !free.includes("y") };
 const packed = [text("fixed"), text("moving"), text("motions")];
-const helper = new Helper();
+const helper = new Helper<Computing>("worker");
+const painter = new Helper<Painting>("painter");
 
 let pose: Pose = [0, 0, 0, 0, 0];
 /** The motion that is shown, as the library told it. */
@@ -46,13 +48,13 @@ const marks = (): Marks => ({
 const host = {
     axes, units, marks,
     pose: () => pose,
-    plane: (asked: number[], at: number[]) => helper.ask<"plane">({ ask: "plane", axes: asked, at }),
-    border: (asked: number[], at: number[], code: number) => helper.ask<"border">({ ask: "border", axes: asked, at, code }),
+    plane: (asked: number[], at: number[]) => helper.ask("plane", { axes: asked, at }),
+    border: (asked: number[], at: number[], code: number) => helper.ask("border", { axes: asked, at, code }),
     choose: (chosen: Pose) => choose(chosen, true),
 };
 const pairs: [number, number][] = axes.length < 3 ? [[0, 1]] : axes.length === 3 ? [[0, 1], [0, 2], [1, 2]] : [[0, 1], [2, 3], [0, axes.length - 1]];
 const slices = axes.length < 2 ? [] : pairs.map((pair, k) => new Slice(host, pair, k + 1));
-const volume = axes.length > 2 ? new Volume(host, [0, 1, 2]) : null;
+const volume = axes.length > 2 ? new Volume(host, painter, [0, 1, 2]) : null;
 
 const cut = latest(async () => void (await Promise.all([...slices.map((slice) => slice.update()), volume?.update()])));
 let play = false;
@@ -60,7 +62,7 @@ const follow = latest(async () => {
     if (!packed[2]) return;
     const asked = pose;
     try {
-        const found = await helper.ask<"follow">({ ask: "follow", pose: asked, friction: friction.value });
+        const found = await helper.ask("follow", { pose: asked, friction: friction.value });
         if (asked === pose) show(found.trace, found.json);
     } catch (error) {
         tell("undecided", String(error instanceof Error ? error.message : error));
@@ -109,7 +111,7 @@ function build() {
     const repaint = () => {
         slices.forEach((slice) => slice.draw());
         volume?.repaint();
-        stage?.view.draw();
+        void stage?.view.draw();
     };
     const canvas = make("canvas", { tabindex: 0, class: "stage", "aria-label": "the two halves; arrows turn them, + and − zoom" });
     const section = sectionPicker();
@@ -130,10 +132,7 @@ function build() {
         make("main", {}, make("div", { class: "top" }, halves, set), make("div", { class: "cards" }, ...cards)),
         make("footer", {}, `catchment ${report.catchment}; this page holds everything it shows and asks nobody.`));
     keys({ player, sliders, section: section as HTMLSelectElement, mated: () => examine([0, 0, 0, 0, 0]) });
-    window.addEventListener("beforeprint", () => {
-        stage?.view.now();
-        repaint();
-    });
+    window.addEventListener("beforeprint", repaint);
     return { canvas, halves };
 }
 
@@ -144,21 +143,19 @@ async function begin() {
     const { canvas, halves } = build();
     const chunks = Array.from({ length: page.chunks }, (_, k) => text(`outcomes-${k}`) ?? "");
     const [fixed, moving, module] = packed;
-    await helper.ask<"start">({ ask: "start", start: {
+    await helper.ask("start", {
         shape: axes.map((axis) => axis.cells), chunkCells: page.chunk_cells, chunks,
         motions: fixed && moving && module ? { design: JSON.stringify(design), halves: [fixed, moving], module } : null,
-    } });
+    });
     const first = Promise.all(slices.map((slice) => slice.update()));
+    let pictures: Promise<void>[] = [];
     if (fixed && moving) {
-        try {
-            stage = new Stage(canvas, [await inflated(decoded(fixed)), await inflated(decoded(moving))], cor);
-        } catch (error) {
-            canvas.replaceWith(make("p", { class: "hint" }, `This browser draws nothing in space (${error instanceof Error ? error.message : error}).`));
-        }
-        const home = await helper.ask<"follow">({ ask: "follow", pose, friction: friction.value });
+        stage = new Stage(canvas, painter, cor);
+        const home = await helper.ask("follow", { pose, friction: friction.value });
         mated = home.trace.waypoints.at(-1)?.height_d ?? 0;
         show(home.trace, home.json);
-        stage?.frame();
+        pictures = [stage.open([fixed, moving]).catch((error) =>
+            canvas.replaceWith(make("p", { class: "hint" }, `This browser draws nothing in space (${error instanceof Error ? error.message : error}).`)))];
     } else {
         canvas.remove();
         player.element.remove();
@@ -167,14 +164,10 @@ async function begin() {
     }
     await first;
     await drawn();
-    // From here on a click is answered; the surface comes after it.
+    // From here on a click is answered; pictures in space may still be on their way.
     performance.mark("answers");
-    try {
-        volume?.open();
-    } catch {
-        volume?.element.remove();
-    }
-    await volume?.update();
+    if (volume) pictures.push(volume.open().catch(() => volume.element.remove()));
+    await Promise.all(pictures);
     document.documentElement.dataset.ready = "true";
 }
 

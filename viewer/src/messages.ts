@@ -1,7 +1,10 @@
-// What the page and its worker say to each other.
+// What the page and its two workers say to each other: what is asked by name, what goes with it, what comes back.
 
-import type { Pose, Trace } from "./page";
-import type { Mesh } from "./surface";
+import type { Point, Pose, Touch, Trace } from "./page";
+import type { Mesh } from "./border";
+
+/** For every question what is given and what is found. */
+export type Protocol<P> = { [A in keyof P]: [unknown, unknown] };
 
 export interface Start {
     shape: number[];
@@ -10,15 +13,29 @@ export interface Start {
     /** JSON of the design, the halves and the module, packed; null where no motion can be followed. */
     motions: { design: string; halves: [string, string]; module: string } | null;
 }
-export type Question =
-    | { ask: "start"; start: Start }
-    | { ask: "plane"; axes: number[]; at: number[] }
-    | { ask: "border"; axes: number[]; at: number[]; code: number }
-    | { ask: "follow"; pose: Pose; friction: number };
-export interface Answers {
-    start: null;
-    plane: Uint8Array;
-    border: Mesh;
-    follow: { trace: Trace; json: string };
+/** Outcomes and motions. */
+export interface Computing {
+    start: [Start, null];
+    plane: [{ axes: number[]; at: number[] }, Uint8Array];
+    border: [{ axes: number[]; at: number[]; code: number }, Mesh];
+    follow: [{ pose: Pose; friction: number }, { trace: Trace; json: string }];
 }
-export type Ask = Question["ask"];
+
+/** From where a picture is seen, and its size in pixels. */
+export interface Seen { width: number; height: number; position: number[]; quaternion: number[]; fov: number; near: number; far: number }
+/** Colours of the style by name. */
+export type Colours = Record<string, string>;
+export type Corners = [Point, Point];
+export interface Label { text: string; colour: string; height: number; at: Point }
+/** Pictures in space. */
+export interface Painting {
+    /** Takes the halves, packed; their lowest and highest corners. */
+    halves: [[string, string], [Corners, Corners]];
+    /** The moving half by a matrix; a section through a point, along x or y. */
+    stage: [{ seen: Seen; colours: Colours; moving: number[]; touches: Touch[]; section: { normal: Point; through: Point } | null }, ImageBitmap];
+    /** Takes the surface of a set. */
+    surface: [Mesh, null];
+    volume: [{ seen: Seen; colours: Colours; surface: string; point: Point; labels: Label[] }, ImageBitmap];
+    /** Where on the surface a look from −1 to 1 across and up ends. */
+    hit: [{ seen: Seen; at: [number, number] }, Point | null];
+}

@@ -1,50 +1,29 @@
-// A canvas with a camera that orbits: what both pictures in space stand in. Draws when something changed, never idly.
+// A canvas with a camera that orbits: what both pictures in space stand in. Asks for a picture when something changed, never idly.
 
-import { AmbientLight, Color, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer, type Box3 } from "three";
+import { PerspectiveCamera, Vector3, type Box3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { colour } from "./dom";
-
-/** Draws for all pictures in space, each of which copies what is drawn: a context of its own would compile every shader again. */
-let painter: WebGLRenderer | null = null;
-
-function painting(width: number, height: number): WebGLRenderer {
-    if (!painter) {
-        painter = new WebGLRenderer({ antialias: true });
-        painter.localClippingEnabled = true;
-    }
-    const { width: wide, height: high } = painter.domElement;
-    if (width > wide || height > high) painter.setSize(Math.max(width, wide), Math.max(height, high), false);
-    return painter;
-}
+import { latest } from "./asking";
+import type { Seen } from "./messages";
 
 export class View3d {
-    readonly scene = new Scene();
-    readonly camera = new PerspectiveCamera(32, 1, 0.01, 200);
-    readonly controls: OrbitControls;
-    private readonly pen: CanvasRenderingContext2D;
-    private asked = false;
-    /** Called before each picture. */
-    before: () => void = () => {};
+    private readonly camera = new PerspectiveCamera(32, 1, 0.01, 200);
+    private readonly controls: OrbitControls;
+    private readonly pen: ImageBitmapRenderingContext;
+    private isOpen = false;
 
-    constructor(readonly canvas: HTMLCanvasElement, from: Vector3) {
-        painting(canvas.clientWidth, canvas.clientHeight);
-        this.pen = canvas.getContext("2d")!;
+    constructor(readonly canvas: HTMLCanvasElement, from: Vector3, private readonly picture: (seen: Seen) => Promise<ImageBitmap>) {
+        this.pen = canvas.getContext("bitmaprenderer")!;
         this.camera.up.set(0, 0, 1);
         this.camera.position.copy(from);
         this.controls = new OrbitControls(this.camera, canvas);
         this.controls.enableDamping = false;
-        this.controls.addEventListener("change", () => this.draw());
-        const sun = new DirectionalLight(0xffffff, 2.2);
-        sun.position.set(2, -3, 4);
-        const fill = new DirectionalLight(0xffffff, 0.7);
-        fill.position.set(-3, 2, -1);
-        this.scene.add(new AmbientLight(0xffffff, 1.1), sun, fill);
-        new ResizeObserver(() => this.draw()).observe(canvas);
+        this.controls.addEventListener("change", () => void this.draw());
+        new ResizeObserver(() => void this.draw()).observe(canvas);
         canvas.addEventListener("keydown", (event) => this.key(event));
     }
 
-    /** Looks at a box from where the camera stands. */
-    look(box: Box3) {
+    /** Looks at a box from where the camera stands; from now on there are pictures. */
+    look(box: Box3): Promise<void> {
         const centre = box.getCenter(new Vector3());
         const radius = box.getSize(new Vector3()).length() / 2 || 1;
         this.camera.aspect = this.canvas.clientWidth / this.canvas.clientHeight || 1;
@@ -54,38 +33,25 @@ export class View3d {
         this.camera.position.copy(centre).addScaledVector(away, distance);
         this.camera.near = distance / 100;
         this.camera.far = distance * 10;
-        this.camera.updateProjectionMatrix();
+        this.isOpen = true;
         this.controls.update();
-        this.draw();
+        return this.draw();
     }
 
-    /** Draws with the next picture of the screen. */
-    draw() {
-        if (this.asked) return;
-        this.asked = true;
-        requestAnimationFrame(() => {
-            this.asked = false;
-            this.now();
-        });
-    }
+    /** Draws anew, with the next picture of the screen; done when it is there. */
+    readonly draw = latest(async () => {
+        if (!this.isOpen) return;
+        await new Promise(requestAnimationFrame);
+        const seen = this.seen();
+        if (seen) this.pen.transferFromImageBitmap(await this.picture(seen));
+    });
 
-    now() {
-        const { clientWidth: width, clientHeight: height } = this.canvas;
-        if (width === 0 || height === 0) return;
+    /** Nothing where the canvas is not shown. */
+    seen(): Seen | null {
         const ratio = Math.min(devicePixelRatio, 2);
-        const [wide, high] = [Math.floor(width * ratio), Math.floor(height * ratio)];
-        if (this.canvas.width !== wide || this.canvas.height !== high) {
-            Object.assign(this.canvas, { width: wide, height: high });
-            this.camera.aspect = width / height;
-            this.camera.updateProjectionMatrix();
-        }
-        this.scene.background = new Color(colour("--stage"));
-        this.before();
-        const renderer = painting(wide, high);
-        renderer.setViewport(0, 0, wide, high);
-        renderer.render(this.scene, this.camera);
-        // The viewport begins below, the picture above.
-        this.pen.drawImage(renderer.domElement, 0, renderer.domElement.height - high, wide, high, 0, 0, wide, high);
+        const [width, height] = [Math.floor(this.canvas.clientWidth * ratio), Math.floor(this.canvas.clientHeight * ratio)];
+        const { position, quaternion, fov, near, far } = this.camera;
+        return width * height === 0 ? null : { width, height, position: position.toArray(), quaternion: quaternion.toArray(), fov, near, far };
     }
 
     /** Arrows turn the camera, + and − bring it nearer and farther. */
@@ -105,6 +71,6 @@ export class View3d {
         event.preventDefault();
         this.camera.position.copy(this.controls.target).add(offset);
         this.controls.update();
-        this.draw();
+        void this.draw();
     }
 }

@@ -21,10 +21,11 @@ export function written(design, ...given) {
     return path;
 }
 
-export const launch = () =>
+/** Draws in space by software, for want of a graphics card, or as `space` says. */
+export const launch = (space = "--enable-unsafe-swiftshader") =>
     chromium.launch({
         executablePath: browser,
-        args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--enable-unsafe-swiftshader"],
+        args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", space],
     });
 
 /** Opens a page and waits until it is drawn; `said` collects errors and everything that it asked for from elsewhere. */

@@ -97,6 +97,38 @@ test("sliders, pickers and keys do what they say", async () => {
     assert.deepEqual(said.errors, []);
 });
 
+test("a click onto the surface chooses a pose on the border of the set", async () => {
+    const { page, said } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
+    const canvas = page.locator("canvas.volume");
+    const { width, height } = await canvas.boundingBox();
+    await canvas.click({ position: { x: width / 2, y: height / 2 } });
+    await page.waitForFunction(() => window.catchment.pose().some((value) => value !== 0));
+    const pose = await page.evaluate(() => window.catchment.pose());
+    // The surface lies in the box, over the first three errors; the others stay where they were.
+    assert.ok(pose.slice(0, 3).every((value) => Math.abs(value) < 2) && pose[3] === 0 && pose[4] === 0, pose.join());
+    // Beside the set nothing is chosen.
+    await canvas.click({ position: { x: 3, y: 3 } });
+    assert.deepEqual(await page.evaluate(() => window.catchment.pose()), pose);
+    assert.deepEqual(said.errors, []);
+});
+
+test("a browser that draws nothing in space answers all the same", async () => {
+    const flat = await launch("--disable-software-rasterizer");
+    try {
+        const { page, said } = await open(flat, written("x-face-3d", "--resolution", "8", "--leave-out", "window"));
+        assert.match(await page.locator("#halves .hint").textContent(), /draws nothing in space/);
+        assert.equal(await page.locator("canvas.volume").count(), 0);
+        const shown = await page.evaluate(() => window.catchment.motion());
+        const canvas = page.locator("canvas.slice").first();
+        const { width, height } = await canvas.boundingBox();
+        await canvas.click({ position: { x: 46 + 0.6 * (width - 56), y: 8 + 0.45 * (height - 42) } });
+        alike(await motion(page, shown), traced("x-face-3d", await motion(page, shown)));
+        assert.deepEqual(said.errors.filter((error) => !/WebGL/.test(error)), []);
+    } finally {
+        await flat.close();
+    }
+});
+
 test("slices show the cells of the result", async () => {
     const { page } = await open(browser, written("v-face", "--resolution", "30"));
     const data = JSON.parse(readFileSync(written("v-face", "--resolution", "30"), "utf8").match(/id="data">(.*?)<\/script>/s)[1]);

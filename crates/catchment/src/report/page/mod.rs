@@ -35,6 +35,8 @@ use std::io::Write as _;
 const VIEWER: &str = include_str!("bundle/viewer.js");
 /// What the viewer runs beside the page: outcomes, surfaces, motions.
 const WORKER: &str = include_str!("bundle/worker.js");
+/// What draws in space beside the page.
+const PAINTER: &str = include_str!("bundle/painter.js");
 /// How it looks.
 const STYLE: &str = include_str!("bundle/viewer.css");
 /// The core of the library as WebAssembly, deflated (zlib).
@@ -123,6 +125,7 @@ impl Page<'_> {
             element(&mut page, "text/plain", &format!("outcomes-{number}"), &STANDARD.encode(chunk));
         }
         element(&mut page, "text/plain", "worker", WORKER);
+        element(&mut page, "text/plain", "painter", PAINTER);
         let _ = write!(page, "<script>\n{VIEWER}</script>\n</body>\n</html>\n");
         Ok(page)
     }

@@ -71,7 +71,7 @@ fn the_same_result_gives_the_same_bytes_and_names_no_other_place() {
 
 #[test]
 fn no_part_of_the_viewer_ends_the_script_that_it_stands_in() {
-    for part in [VIEWER, WORKER, STYLE] {
+    for part in [VIEWER, WORKER, PAINTER, STYLE] {
         let part = part.to_lowercase();
         for end in ["</script", "<script", "<!--", "</style"] {
             assert!(!part.contains(end), "{end}");
