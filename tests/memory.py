@@ -9,13 +9,16 @@ threads, tables of the report and the allocator's own are in no estimate. Unix, 
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BESIDE = 48  # MiB
+LONGEST = 180  # s; what takes longer is told with what it took until then
 UNITS = {"B": 1, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30, "TiB": 1 << 40}
 COMMANDS = [
     "run --method transport",
@@ -44,13 +47,17 @@ COMMANDS = [
 
 
 def measured(program, args, folder):
-    """Exit code, MiB at most, and what was said."""
+    """Exit code (none where it was ended), MiB at most, and what was said."""
     with tempfile.TemporaryFile() as said, open(os.devnull, "w") as null:
         child = subprocess.Popen([program, *args], cwd=folder, stdout=null, stderr=said)
+        late = threading.Timer(LONGEST, child.kill)
+        late.start()
         _, status, usage = os.wait4(child.pid, 0)
+        late.cancel()
         child.returncode = os.waitstatus_to_exitcode(status)
         said.seek(0)
-        return child.returncode, usage.ru_maxrss / 1024, re.sub(r"\s*\n\s*│?\s*", " ", said.read().decode())
+        code = None if child.returncode == -signal.SIGKILL else child.returncode
+        return code, usage.ru_maxrss / 1024, re.sub(r"\s*\n\s*│?\s*", " ", said.read().decode())
 
 
 def weighed(program, args, folder):
@@ -79,13 +86,13 @@ def main():
                 (Path(folder) / "poses.csv").write_text("x\n" + "0.01\n" * 20_000)
                 args = [name, str(design.resolve()), *options]
                 code, most, needs = (*measured(program, args, folder)[:2], None) if name == "check" else weighed(program, args, folder)
-            if code != 0:
+            if code not in (0, None):
                 print(f"{design.stem:20} {command:62} not for this design", flush=True)
                 continue
             ran += 1
             took = max(most - base, 0.0)
             shown = "-" if needs is None else f"{needs:.1f}"
-            print(f"{design.stem:20} {command:62} expected {shown:>8} MiB, took {took:7.1f} MiB", flush=True)
+            print(f"{design.stem:20} {command:62} expected {shown:>8} MiB, took {took:7.1f} MiB{' in the first minutes' if code is None else ''}", flush=True)
             beside = took - (needs or 0.0)
             worst[command] = max(worst.get(command, (float("-inf"),)), (beside, took, needs or 0.0, design.stem))
             if beside > BESIDE:

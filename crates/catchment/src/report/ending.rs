@@ -6,7 +6,7 @@ use crate::acceptance::Outcome;
 use crate::connector::Side;
 use crate::contact::{Features, Nearby};
 use crate::method::descent::End;
-use crate::pose::CorPose;
+use crate::pose::{CorPose, PoseError};
 use crate::problem::Problem;
 use serde::Serialize;
 
@@ -29,23 +29,39 @@ pub(super) struct Endings<'a> {
     problem: &'a Problem,
     features: Features,
     nearby: Nearby<'a>,
+    /// What was told last: halves that dock rest in one pose, as a rule.
+    last: Option<(PoseError, Option<Ending>)>,
 }
+
+/// The height of the COR, in D, and what touches.
+type Ending = (f64, Vec<EndContact>);
 
 impl<'a> Endings<'a> {
     pub(super) fn new(problem: &'a Problem) -> Self {
         let pair = problem.pair();
-        Self { problem, features: Features::of(pair), nearby: pair.about(TOUCHING) }
+        Self { problem, features: Features::of(pair), nearby: pair.about(TOUCHING), last: None }
     }
 
     /// z of the COR at first contact with the last pose error, in D, and what touches there, each pair of features once; none where nothing
     /// carries the half any more.
-    pub(super) fn of(&mut self, end: &End) -> Option<(f64, Vec<EndContact>)> {
+    pub(super) fn of(&mut self, end: &End) -> Option<Ending> {
         if end.outcome == Outcome::Missed {
             return None;
         }
-        let height = self.nearby.height(&end.error)?;
+        if let Some((error, told)) = &self.last
+            && *error == end.error
+        {
+            return told.clone();
+        }
+        let told = self.at(&end.error);
+        self.last = Some((end.error, told.clone()));
+        told
+    }
+
+    fn at(&mut self, error: &PoseError) -> Option<Ending> {
+        let height = self.nearby.height(error)?;
         let alignment = self.problem.alignment();
-        let pose = CorPose::from_error(&end.error, alignment.center_of_rotation, alignment.free);
+        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
         let mut met = Vec::new();
         self.nearby.turn(&pose.rotation, pose.lateral, TOUCHING, TOUCHING);
         self.nearby.contacts(pose.lateral.extend(height), TOUCHING, &mut met);

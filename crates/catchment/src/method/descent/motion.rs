@@ -8,6 +8,7 @@
 use super::coulomb::Coulomb;
 use super::homing;
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
+use super::rest::TOUCHING;
 use super::rows::{OVERLAP, Rows, horizon};
 use super::sliding::Sliding;
 use super::{Settings, Touch, Waypoint};
@@ -49,6 +50,11 @@ pub(super) enum Advance {
 pub(super) trait Watch {
     /// What becomes of the motion, if that is known from here: it is followed no further.
     fn see(&mut self, motion: &Motion, state: &State, travelled: f64) -> Option<Outcome>;
+
+    /// Whether it looks at contacts: else those of the last step are not looked for.
+    fn looks(&self) -> bool {
+        true
+    }
 }
 
 /// Sees nothing.
@@ -57,6 +63,10 @@ pub(super) struct Unwatched;
 impl Watch for Unwatched {
     fn see(&mut self, _: &Motion, _: &State, _: f64) -> Option<Outcome> {
         None
+    }
+
+    fn looks(&self) -> bool {
+        false
     }
 }
 
@@ -72,6 +82,10 @@ impl Watch for Vec<Waypoint> {
 impl<F: FnMut(&PoseError) -> Option<Outcome>> Watch for F {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self(&motion.error_of(state))
+    }
+
+    fn looks(&self) -> bool {
+        false
     }
 }
 
@@ -109,6 +123,9 @@ const FALL: f64 = 1.0;
 const STRAIGHT: f64 = 0.01;
 const BENT: f64 = 0.04;
 const LONG: f64 = 2.0;
+
+/// Steps of halves of many facets are halved down to this share of the longest one before what they run into is looked for: to look takes longer.
+const LOOKING_SHARE: f64 = 1.0 / 16.0;
 
 /// Rounding of a height, in D.
 const ROUNDING: f64 = 1e-12;
@@ -197,11 +214,6 @@ impl<'a> Motion<'a> {
         for count in 0..self.settings.max_steps {
             if self.pair.is_tight() {
                 state = self.feel(&state);
-            } else {
-                self.gather(&state, pace.step);
-            }
-            if let Some(outcome) = watch.see(self, &state, travelled) {
-                return (outcome, self.error_of(&state));
             }
             // What is deep enough moves on in its own part of what is: once tells whether that is the seat. Where all motion near the
             // mated pose leads to it, coming near tells as much, and what slides off has not to ask.
@@ -210,8 +222,18 @@ impl<'a> Motion<'a> {
             asked |= deep;
             docked |= all_count
                 && (seated || self.homing && homing::is_near(self.pair, &state.rotation, state.cor));
-            if docked && until == Until::Known {
+            let (is_known, is_home) = (docked && until == Until::Known, self.is_home(&state));
+            if !self.pair.is_tight() && (watch.looks() || !is_known && !is_home) {
+                self.gather(&state, pace.step);
+            }
+            if let Some(outcome) = watch.see(self, &state, travelled) {
+                return (outcome, self.error_of(&state));
+            }
+            if is_known {
                 return (Outcome::Aligned, self.error_of(&state));
+            }
+            if is_home {
+                return self.end(Outcome::Jammed, &state, [seated, docked]);
             }
             if travelled - mark.1 > self.settings.step || count - mark.0 > LEVEL_STEPS {
                 if mark.2 - state.cor.z < LEVEL * self.settings.step {
@@ -309,9 +331,16 @@ impl<'a> Motion<'a> {
             }
             if !halve {
                 let next = self.moved(state, &u);
+                let allowed = self.settings.surprise * pace.step.min(longest);
+                if let Some(home) = self
+                    .home_of(&next)
+                    .filter(|home| (home.cor.z - next.cor.z).abs() <= allowed && home.cor.z <= state.cor.z)
+                {
+                    self.turn(&home.rotation, home.cor.truncate(), pace.step);
+                    return Advance::Moved(home, length);
+                }
                 self.turn(&next.rotation, next.cor.truncate(), pace.step);
                 let ceiling = state.cor.z.max(next.cor.z) + longest;
-                let allowed = self.settings.surprise * pace.step.min(longest);
                 let expected = next.cor.z - allowed;
                 let (below, covered) = self.nearby.height_about(next.cor.truncate(), ceiling, expected);
                 let z = below.unwrap_or(next.cor.z);
@@ -324,7 +353,8 @@ impl<'a> Motion<'a> {
                 let climbs = z > state.cor.z + ROUNDING;
                 halve = if blocked {
                     // A wall that no contact announced is one more contact, if it was not met before.
-                    if cuts < MAX_CUTS && self.meet(&landed, pace.step, &u) {
+                    let looks = !self.pair.asks_trees() || pace.step <= longest * LOOKING_SHARE;
+                    if looks && cuts < MAX_CUTS && self.meet(&landed, pace.step, &u) {
                         cuts += 1;
                         fresh = false;
                         (u, length) = self.displacement(pace);
@@ -428,6 +458,31 @@ impl<'a> Motion<'a> {
             }
             State { cor, rotation: rotation(angles[0], angles[1], angles[2]), angles, ..*state }
         }
+    }
+
+    /// The mated pose, where halves of many facets have come as near to it, in the ρ-metric, as what touches. All their facets nearly touch there, and to tell
+    /// which of them carry takes as long as all the way before.
+    fn home_of(&self, state: &State) -> Option<State> {
+        if !self.pair.asks_trees() {
+            return None;
+        }
+        let PoseError { x, y, roll, pitch, yaw } = self.error_of(state);
+        let turn = roll.hypot(pitch).hypot(yaw) * self.pair.alignment.rotation_length;
+        (x.hypot(y).hypot(turn) <= TOUCHING).then(|| State {
+            cor: DVec3::new(0.0, 0.0, self.pair.mated_height()),
+            rotation: DMat3::IDENTITY,
+            spin: DQuat::IDENTITY,
+            angles: [0.0; 3],
+        })
+    }
+
+    /// Whether halves of many facets rest in the mated pose, where no push leads on.
+    fn is_home(&self, state: &State) -> bool {
+        let home = DVec3::new(0.0, 0.0, self.pair.mated_height());
+        self.pair.asks_trees()
+            && !self.pair.is_tight()
+            && state.cor == home
+            && state.rotation == DMat3::IDENTITY
     }
 
     /// Whether the half has come into the seat.

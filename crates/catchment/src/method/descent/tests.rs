@@ -1,16 +1,20 @@
 //! Closed forms and invariants of single motions. Agreement with an independent engine: `tests/trials.rs`.
 
-use super::{Settings, outcome, run, trace};
+use super::rest::TOUCHING;
+use super::{Follower, Settings, outcome, run, trace};
 use crate::acceptance::{Domain, Outcome, Warning};
-use crate::connector::Connector;
+use crate::connector::{Connector, Source};
 use crate::contact::Pair;
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::exec::{Cancelled, Exec};
-use crate::pose::{CorPose, Dof, DofSet, PoseError, face_from_cor};
+use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError, face_from_cor};
 use glam::DVec3;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::atomic::Ordering;
+
+#[path = "../../../benches/meshes/mod.rs"]
+mod meshes;
 
 pub(super) fn pair(family: Family, change: impl FnOnce(&mut Alignment)) -> Pair {
     let mut alignment = Alignment::default_for(Some(family));
@@ -221,4 +225,40 @@ fn a_corner_does_not_pass_through_the_bottom_of_a_v() {
             );
         }
     }
+}
+
+/// Halves of many facets that dock end in the mated pose itself, by a step like any other, and what touches there is kept.
+#[test]
+fn a_funnel_ends_in_the_mated_pose() {
+    let [fixed, moving] = meshes::funnel(1000).map(Source::Triangles);
+    let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap();
+    let mut alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
+    alignment.center_of_rotation = 0.5;
+    let pair = Pair::new(&connector, &alignment);
+    assert!(pair.asks_trees() && !pair.is_tight());
+    let settings = Settings::default();
+    let mut follower = Follower::new(&pair, &settings);
+    let mut docked = 0;
+    for k in 0..24 {
+        let a = f64::from(k);
+        let error = PoseError {
+            x: 0.3 * a.sin(),
+            y: 0.3 * (1.7 * a).cos(),
+            roll: 0.5 * (2.1 * a).sin(),
+            pitch: 0.5 * (0.9 * a).cos(),
+            yaw: 0.0,
+        };
+        let rest = follower.come_to_rest(&error);
+        assert_eq!(rest.outcome, follower.follow(&error).outcome);
+        if rest.outcome == Outcome::Aligned {
+            docked += 1;
+            assert_eq!(rest.error, PoseError::default());
+            assert!(rest.contacts.len() > 100, "{} touch", rest.contacts.len());
+            let way = trace(&pair, &error, &settings).waypoints;
+            let [.., before, last] = &way[..] else { panic!("{way:?}") };
+            assert!(last.height == pair.mated_height() && before.height >= last.height);
+            assert!(last.travelled - before.travelled <= 2.0 * settings.step + TOUCHING);
+        }
+    }
+    assert!(docked > 6, "{docked}");
 }
