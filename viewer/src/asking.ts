@@ -34,13 +34,18 @@ export function latest(run: () => Promise<void>): () => Promise<void> {
     let running: Promise<void> | null = null;
     let again = false;
     const loop = async () => {
-        do {
-            again = false;
-            await run();
-        } while (again);
+        try {
+            do {
+                again = false;
+                await run();
+            } while (again);
+        } finally {
+            // At once: whoever asks from here on begins anew.
+            running = null;
+        }
     };
     return () => {
         again = true;
-        return (running ??= loop().finally(() => (running = null)));
+        return (running ??= loop());
     };
 }

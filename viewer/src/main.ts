@@ -132,7 +132,17 @@ function build() {
         make("main", {}, make("div", { class: "top" }, halves, set), make("div", { class: "cards" }, ...cards)),
         make("footer", {}, `catchment ${report.catchment}; this page holds everything it shows and asks nobody.`));
     keys({ player, sliders, section: section as HTMLSelectElement, mated: () => examine([0, 0, 0, 0, 0]) });
-    window.addEventListener("beforeprint", repaint);
+    // On paper everything is dark on white.
+    const root = document.documentElement;
+    let chosen = root.dataset.theme;
+    window.addEventListener("beforeprint", () => {
+        [chosen, root.dataset.theme] = [root.dataset.theme, "light"];
+        repaint();
+    });
+    window.addEventListener("afterprint", () => {
+        root.dataset.theme = chosen ?? "";
+        repaint();
+    });
     return { canvas, halves };
 }
 

@@ -1,6 +1,6 @@
 // Beside the page: draws the pictures in space, so that a slow graphics card (or none) holds up no click.
 
-import { Color, PerspectiveCamera, WebGLRenderer, type Scene } from "three";
+import { PerspectiveCamera, WebGLRenderer, type Scene } from "three";
 import { answer } from "./answering";
 import { unpacked } from "./grid";
 import { Halves } from "./halves";
@@ -15,7 +15,7 @@ const camera = new PerspectiveCamera();
 /** One for all pictures, as large as the largest: another would compile every shader again. */
 function painting(): WebGLRenderer {
     if (!renderer) {
-        renderer = new WebGLRenderer({ canvas: new OffscreenCanvas(1, 1), antialias: true });
+        renderer = new WebGLRenderer({ canvas: new OffscreenCanvas(1, 1), antialias: true, alpha: true });
         renderer.localClippingEnabled = true;
     }
     return renderer;
@@ -31,12 +31,11 @@ function from(seen: Seen) {
     return camera;
 }
 
-async function picture(scene: Scene, seen: Seen, stage: string) {
+async function picture(scene: Scene, seen: Seen) {
     const { width, height } = seen;
     const renderer = painting();
     const canvas = renderer.domElement;
     if (width > canvas.width || height > canvas.height) renderer.setSize(Math.max(width, canvas.width), Math.max(height, canvas.height), false);
-    scene.background = new Color(stage);
     renderer.setViewport(0, 0, width, height);
     renderer.render(scene, from(seen));
     // The viewport begins below, the picture above.
@@ -53,7 +52,7 @@ answer<Painting>({
     },
     stage(asked) {
         halves.put(asked);
-        return picture(halves.scene, asked.seen, asked.colours.stage);
+        return picture(halves.scene, asked.seen);
     },
     surface(mesh) {
         painting();
@@ -62,7 +61,7 @@ answer<Painting>({
     },
     volume(asked) {
         surface!.put(asked);
-        return picture(surface!.scene, asked.seen, asked.colours.stage);
+        return picture(surface!.scene, asked.seen);
     },
     hit({ seen, at }) {
         return { found: surface!.hit(at, from(seen)) };

@@ -18,7 +18,7 @@ export class Stage {
     constructor(canvas: HTMLCanvasElement, private readonly painter: Helper<Painting>, private readonly cor: number) {
         this.view = new View3d(canvas, new Vector3(1.5, -2.6, 1.5), (seen) => {
             const { touches, through } = this;
-            const paint = colours("stage", "fixed", "fixed-cut", "fixed-edge", "moving", "moving-cut", "moving-edge", "contact");
+            const paint = colours("fixed", "fixed-cut", "fixed-edge", "moving", "moving-cut", "moving-edge", "contact");
             const section = this.section === "none" ? null : { normal: this.section === "x" ? [-1, 0, 0] : [0, 1, 0], through } as Painting["stage"][0]["section"];
             return painter.ask("stage", { seen, colours: paint, moving: this.moving.toArray(), touches, section });
         });

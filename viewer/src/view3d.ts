@@ -8,11 +8,11 @@ import type { Seen } from "./messages";
 export class View3d {
     private readonly camera = new PerspectiveCamera(32, 1, 0.01, 200);
     private readonly controls: OrbitControls;
-    private readonly pen: ImageBitmapRenderingContext;
+    private readonly pen: CanvasRenderingContext2D;
     private isOpen = false;
 
     constructor(readonly canvas: HTMLCanvasElement, from: Vector3, private readonly picture: (seen: Seen) => Promise<ImageBitmap>) {
-        this.pen = canvas.getContext("bitmaprenderer")!;
+        this.pen = canvas.getContext("2d")!;
         this.camera.up.set(0, 0, 1);
         this.camera.position.copy(from);
         this.controls = new OrbitControls(this.camera, canvas);
@@ -43,7 +43,12 @@ export class View3d {
         if (!this.isOpen) return;
         await new Promise(requestAnimationFrame);
         const seen = this.seen();
-        if (seen) this.pen.transferFromImageBitmap(await this.picture(seen));
+        if (!seen) return;
+        const picture = await this.picture(seen);
+        // Which empties it, too: what is drawn is transparent where nothing is.
+        Object.assign(this.canvas, { width: picture.width, height: picture.height });
+        this.pen.drawImage(picture, 0, 0);
+        picture.close();
     });
 
     /** Nothing where the canvas is not shown. */

@@ -41,7 +41,7 @@ export class Volume {
     /** Starts drawing, the element being in the page; done when it is drawn. */
     async open(): Promise<void> {
         this.view = new View3d(this.canvas, new Vector3(1.7, -2.3, 1.4), (seen) => {
-            const paint = colours("stage", "aligned", "jammed", "contact", "line");
+            const paint = colours("aligned", "jammed", "contact", "line");
             const surface = this.of.value === "1" ? "aligned" : "jammed";
             return this.painter.ask("volume", { seen, colours: paint, surface, point: this.point, labels: this.labels });
         });

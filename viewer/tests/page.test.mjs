@@ -129,6 +129,23 @@ test("a browser that draws nothing in space answers all the same", async () => {
     }
 });
 
+test("all is drawn when the page says so, and stays dark on white on paper", async () => {
+    const { page } = await open(browser, written("x-face-3d", "--resolution", "8", "--leave-out", "window"), { colorScheme: "dark" });
+    for (const name of ["canvas.stage", "canvas.volume"]) {
+        const inked = await page.locator(name).evaluate((canvas) => {
+            const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+            return data.filter((value, k) => k % 4 === 3 && value > 0).length / (canvas.width * canvas.height);
+        });
+        assert.ok(inked > 0.05, `${name}: ${inked}`);
+    }
+    const ink = () => page.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue("--ink"));
+    const dark = await ink();
+    await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+    assert.notEqual(await ink(), dark);
+    await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+    assert.equal(await ink(), dark);
+});
+
 test("slices show the cells of the result", async () => {
     const { page } = await open(browser, written("v-face", "--resolution", "30"));
     const data = JSON.parse(readFileSync(written("v-face", "--resolution", "30"), "utf8").match(/id="data">(.*?)<\/script>/s)[1]);
