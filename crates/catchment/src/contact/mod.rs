@@ -22,6 +22,9 @@ mod feature;
 mod hold;
 mod layers;
 pub mod mated;
+#[cfg(test)]
+#[path = "../../benches/meshes/mod.rs"]
+pub(crate) mod meshes;
 mod mirror;
 mod nearby;
 mod overlap;

@@ -4,13 +4,10 @@ use super::*;
 use crate::connector::{Connector, Half, Source, convex_hull};
 use crate::contact::candidates::{Candidates, FLUSH, Sieve};
 use crate::contact::turned::Turned;
-use crate::contact::{Contact, Envelope, Lattice, Meeting, brute};
+use crate::contact::{Contact, Envelope, Lattice, Meeting, brute, meshes};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::pose::{CorPose, DofSet, Mount, rotation};
 use proptest::prelude::*;
-
-#[path = "../../../benches/meshes/mod.rs"]
-mod meshes;
 
 /// The pair with trees, however small it is.
 fn with_trees(connector: &Connector) -> Pair {

@@ -4,7 +4,7 @@ use super::rest::TOUCHING;
 use super::{Follower, Settings, outcome, run, trace};
 use crate::acceptance::{Domain, Outcome, Warning};
 use crate::connector::{Connector, Source};
-use crate::contact::Pair;
+use crate::contact::{Pair, meshes};
 use crate::design::{Alignment, ConnectorSpec, Design, Family, FamilySpec};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError, face_from_cor};
@@ -12,9 +12,6 @@ use glam::DVec3;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::atomic::Ordering;
-
-#[path = "../../../benches/meshes/mod.rs"]
-mod meshes;
 
 pub(super) fn pair(family: Family, change: impl FnOnce(&mut Alignment)) -> Pair {
     let mut alignment = Alignment::default_for(Some(family));
