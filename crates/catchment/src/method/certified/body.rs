@@ -11,6 +11,7 @@
 
 use crate::connector::Half;
 use glam::DVec3;
+use std::collections::BTreeSet;
 
 /// A convex planar polygon.
 #[derive(Debug, Clone)]
@@ -25,10 +26,20 @@ pub(super) struct Corner {
     pub(super) vertex: u32,
     /// Unit vectors to all of its neighbours.
     pub(super) spokes: Vec<DVec3>,
-    /// The two sides of every facet around it: where they lead, unit, and the outward normal of the facet.
-    pub(super) sides: Vec<[DVec3; 2]>,
+    /// The two sides of every facet around it.
+    pub(super) sides: Vec<Side>,
     /// Which ridges end here.
     pub(super) ridges: Vec<u32>,
+}
+
+/// A side of a facet at a corner.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side {
+    /// Where it leads, unit.
+    pub(super) along: DVec3,
+    /// Outward normal of the facet.
+    pub(super) normal: DVec3,
+    pub(super) facet: u32,
 }
 
 /// A convex edge.
@@ -39,6 +50,8 @@ pub(super) struct Ridge {
     pub(super) along: DVec3,
     /// Outward normals of the facets to its left and right, seen from outside.
     pub(super) normals: [DVec3; 2],
+    /// Their numbers.
+    pub(super) facets: [u32; 2],
 }
 
 /// Everything of a half.
@@ -59,14 +72,19 @@ impl Body {
             let at = |k: u32| surface.vertices[k as usize];
             let mut spokes = vec![Vec::new(); surface.vertices.len()];
             let mut sides = vec![Vec::new(); surface.vertices.len()];
+            let first_facet = body.facets.len() as u32;
             for facet in &surface.facets {
+                let number = body.facets.len() as u32;
                 let n = facet.corners.len();
                 for k in 0..n {
                     let (a, b) = (facet.corners[k], facet.corners[(k + 1) % n]);
                     let along = (at(b) - at(a)).normalize_or_zero();
                     spokes[a as usize].push(along);
-                    sides[a as usize].push([along, facet.normal]);
-                    sides[b as usize].push([-along, facet.normal]);
+                    let mut side = |end: u32, along: DVec3| {
+                        sides[end as usize].push(Side { along, normal: facet.normal, facet: number });
+                    };
+                    side(a, along);
+                    side(b, -along);
                 }
                 let corners = facet.corners.iter().map(|k| first + k).collect();
                 body.facets.push(Facet { corners, normal: facet.normal });
@@ -79,6 +97,7 @@ impl Body {
                     ends: edge.ends.map(|end| first + end),
                     along: (at(edge.ends[1]) - at(edge.ends[0])).normalize_or_zero(),
                     normals: edge.facets.map(|f| surface.facets[f as usize].normal),
+                    facets: edge.facets.map(|f| first_facet + f),
                 });
             }
             for (vertex, ((spokes, sides), ridges)) in spokes.into_iter().zip(sides).zip(ridges).enumerate() {
@@ -96,6 +115,18 @@ impl Body {
     }
 }
 
+impl Body {
+    /// Whether all corners of a ridge are those of a facet.
+    pub(super) fn has_side(&self, facet: u32, ridge: u32) -> bool {
+        self.ridges[ridge as usize].ends.iter().all(|end| self.has_corner(facet, *end))
+    }
+
+    /// Whether a vertex is a corner of a facet.
+    pub(super) fn has_corner(&self, facet: u32, vertex: u32) -> bool {
+        self.facets[facet as usize].corners.contains(&vertex)
+    }
+}
+
 /// Two features that may meet, by their numbers in the fixed and the moving body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meeting {
@@ -107,8 +138,8 @@ pub(super) enum Meeting {
     RidgeRidge(u32, u32),
 }
 
-/// Every meeting of two bodies of which the upper does not lie upside down for certain.
-pub(super) fn meetings(fixed: &Body, moving: &Body) -> Vec<Meeting> {
+/// Every meeting of two bodies of which the upper does not lie upside down for certain; each once where both move in the x–z plane alone (`planar`).
+pub(super) fn meetings(fixed: &Body, moving: &Body, planar: bool) -> Vec<Meeting> {
     let count = |list: usize| 0..list as u32;
     let up = |k: &u32| fixed.facets[*k as usize].normal.z > 0.0;
     let facets = count(fixed.facets.len()).filter(up);
@@ -119,5 +150,47 @@ pub(super) fn meetings(fixed: &Body, moving: &Body) -> Vec<Meeting> {
     let open = |k: &u32| fixed.ridges[*k as usize].normals.iter().any(|n| n.z > 0.0);
     let ridges = count(fixed.ridges.len()).filter(open);
     all.extend(ridges.flat_map(|f| of(f, moving.ridges.len(), Meeting::RidgeRidge)));
+    if planar {
+        let mut seen = BTreeSet::new();
+        all.retain(|meeting| match *meeting {
+            Meeting::FacetCorner(f, m) => {
+                is_first(fixed, f, moving, m, &mut |x, z| seen.insert((0, f, x, z)))
+            }
+            Meeting::CornerFacet(f, m) => {
+                is_first(moving, m, fixed, f, &mut |x, z| seen.insert((1, m, x, z)))
+            }
+            Meeting::RidgeRidge(f, m) => !(ends_on(fixed, f, moving, m) || ends_on(moving, m, fixed, f)),
+        });
+    }
     all
 }
+
+/// Whether a corner that moves in the x–z plane may touch a facet, and is the first at its place in that plane to do so.
+fn is_first(
+    body: &Body,
+    facet: u32,
+    other: &Body,
+    corner: u32,
+    is_new: &mut dyn FnMut(u64, u64) -> bool,
+) -> bool {
+    let facet = &body.facets[facet as usize];
+    let at = other.at(other.corners[corner as usize].vertex);
+    let sides = facet.corners.iter().map(|k| body.at(*k).y);
+    let (near, far) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+    // An oblique facet is another one at every y.
+    let oblique = facet.normal.y != 0.0;
+    near - SEAM <= at.y && at.y <= far + SEAM && (oblique || is_new(at.x.to_bits(), at.z.to_bits()))
+}
+
+/// Whether a ridge along y, where a ridge across y meets it in the x–z plane, does so with its end: that corner lies on the facet of the other, which
+/// has the same normal.
+fn ends_on(body: &Body, along: u32, other: &Body, across: u32) -> bool {
+    let (along, across) = (&body.ridges[along as usize], &other.ridges[across as usize]);
+    let level = |ridge: &Ridge, body: &Body| ridge.ends.map(|end| body.at(end).y);
+    let ([a, b], [c, d]) = (level(along, body), level(across, other));
+    let is_along = along.along.x == 0.0 && along.along.z == 0.0;
+    is_along && c == d && (c == a || c == b) && across.normals.iter().any(|n| n.y == 0.0)
+}
+
+/// What counts as beside a facet, as a multiple of lengths.
+const SEAM: f64 = 1e-12;

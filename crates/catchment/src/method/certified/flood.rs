@@ -13,8 +13,9 @@
 //!
 //! The same two walks bound the **retention** of the seat: by floors from below, by roofs, to what certainly does not come back, from above.
 
+use super::home::Home;
 use super::placed::PoseBox;
-use super::tree::{Cell, Label, Tree};
+use super::tree::{Cell, DEEPEST, Label, Tree};
 use crate::exec::{Cancelled, Exec};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -24,6 +25,8 @@ use std::collections::BinaryHeap;
 struct Reached {
     height: f64,
     number: usize,
+    /// The box it was come to from; itself for a source.
+    from: usize,
 }
 
 impl Eq for Reached {}
@@ -47,27 +50,28 @@ fn walk(
     exec: &Exec,
     sources: impl Iterator<Item = usize>,
     height: impl Fn(&Cell) -> Option<f64>,
-    mut visit: impl FnMut(usize, f64) -> Onward,
+    mut visit: impl FnMut(&Reached) -> Onward,
 ) -> Result<(), Cancelled> {
     let mut open = BinaryHeap::new();
     let mut taken = 0usize;
     let mut seen = vec![false; tree.cells.len()];
-    let mut push = |open: &mut BinaryHeap<Reached>, number: usize, from: f64| {
+    let mut push = |open: &mut BinaryHeap<Reached>, number: usize, from: usize, way: f64| {
         if !seen[number]
             && let Some(own) = height(&tree.cells[number])
         {
             seen[number] = true;
-            open.push(Reached { height: own.max(from), number });
+            open.push(Reached { height: own.max(way), number, from });
         }
     };
-    sources.for_each(|number| push(&mut open, number, f64::NEG_INFINITY));
-    while let Some(Reached { height, number }) = open.pop() {
+    sources.for_each(|number| push(&mut open, number, number, f64::NEG_INFINITY));
+    while let Some(reached) = open.pop() {
+        let Reached { height, number, .. } = reached;
         taken += 1;
         if taken.is_multiple_of(BETWEEN) {
             exec.check()?;
         }
-        match visit(number, height) {
-            Onward::Go => tree.neighbours(&tree.cells[number], |next| push(&mut open, next, height)),
+        match visit(&reached) {
+            Onward::Go => tree.neighbours(&tree.cells[number], |next| push(&mut open, next, number, height)),
             Onward::End => break,
         }
     }
@@ -76,6 +80,9 @@ fn walk(
 
 /// Boxes that are taken between two looks at whether to stop.
 const BETWEEN: usize = 1024;
+
+/// By how much heights along a path may exceed the seat's level where [`crate::contact::Seat`] tries whether a pose is connected with it, in D.
+const OVER_A_PATH: f64 = 1e-6;
 
 /// Whether to go on from a box.
 enum Onward {
@@ -91,6 +98,8 @@ pub(super) struct Seat<'a> {
     pub(super) level: f64,
     /// Whether a box is one in which every rest at the seat's level or below is docked.
     pub(super) holds: &'a dyn Fn(&PoseBox) -> bool,
+    /// Where nothing rests but in the seat, as far as that is certain.
+    pub(super) home: Option<Home>,
     /// Whether a box may be part of what counts as connected with a mated pose.
     pub(super) meets: &'a dyn Fn(&PoseBox) -> bool,
 }
@@ -101,10 +110,56 @@ impl Seat<'_> {
         tree.leaves().filter(|(_, cell)| (self.meets)(&tree.poses(cell))).map(|(number, _)| number).collect()
     }
 
+    /// Of every box whether it may be part of the seat: connected with a mated pose at the seat's level or below.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when asked to stop.
+    pub(super) fn reach(&self, tree: &Tree, exec: &Exec) -> Result<Vec<bool>, Cancelled> {
+        let mut in_seat = vec![false; tree.cells.len()];
+        let floor = |cell: &Cell| cell.height.map(|height| height.lo);
+        walk(tree, exec, self.boxes(tree).into_iter(), floor, |&Reached { number, height, .. }| {
+            if height > self.level + OVER_A_PATH {
+                return Onward::End;
+            }
+            in_seat[number] = true;
+            Onward::Go
+        })?;
+        Ok(in_seat)
+    }
+
     /// Whether some motion may rest in a box without having docked.
-    fn lets_rest(&self, tree: &Tree, cell: &Cell) -> bool {
+    pub(super) fn lets_rest(&self, tree: &Tree, cell: &Cell) -> bool {
         let roof = cell.height.map_or(f64::INFINITY, |height| height.up);
-        !(cell.restless || roof <= self.level && (self.holds)(&tree.poses(cell)))
+        let poses = tree.poses(cell);
+        let ends_docked =
+            roof <= self.level && (self.holds)(&poses) || self.home.is_some_and(|home| home.holds(&poses));
+        !(cell.restless || ends_docked)
+    }
+
+    /// The undecided boxes that may hold poses so deep in the neighbourhood of the mated pose that nothing leaves it, the nearest first.
+    pub(super) fn about(&self, tree: &Tree) -> Vec<usize> {
+        let Some(home) = self.home else { return Vec::new() };
+        let off = |cell: &Cell| {
+            let poses = tree.poses(cell);
+            let parts = poses.iter().zip(&home.poses).filter(|(_, own)| own.up > 0.0);
+            parts.map(|(part, own)| part.lo.max(-part.up).max(0.0) / own.up).fold(0.0, f64::max)
+        };
+        let may = |cell: &Cell| {
+            cell.label.is_none()
+                && cell.level < DEEPEST
+                && cell.height.is_some_and(|height| height.lo < home.level)
+        };
+        let mut found: Vec<(f64, usize)> =
+            tree.leaves().filter(|(_, cell)| may(cell)).map(|(number, cell)| (off(cell), number)).collect();
+        found.retain(|(off, _)| *off < 1.0);
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.into_iter().map(|(_, number)| number).collect()
+    }
+
+    /// Whether a box lies so deep in the neighbourhood of the mated pose that nothing leaves it.
+    fn keeps(&self, tree: &Tree, cell: &Cell) -> bool {
+        let below = |home: &Home| cell.height.is_some_and(|height| height.up < home.level);
+        self.home.is_some_and(|home| below(&home) && home.holds(&tree.poses(cell)))
     }
 }
 
@@ -120,6 +175,25 @@ pub(super) struct Flood {
     pub(super) level: f64,
     /// Boxes that may let rest or out below the lowest certain exit: smaller ones may not.
     pub(super) blocking: Vec<usize>,
+    /// From which box each was come to.
+    came_from: Vec<usize>,
+}
+
+impl Flood {
+    /// What is in the way and may be halved: each blocking box or, where it may not, the last that may on the way to it, whose floor may be too low.
+    pub(super) fn in_the_way(&self, may: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut found = Vec::new();
+        for blocking in &self.blocking {
+            let mut at = *blocking;
+            while !may(at) && self.came_from[at] != at {
+                at = self.came_from[at];
+            }
+            if may(at) && !found.contains(&at) {
+                found.push(at);
+            }
+        }
+        found
+    }
 }
 
 /// Most boxes in the way that are told at once, and how many are told where the way is out for certain.
@@ -134,41 +208,51 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Flo
     let floor = |cell: &Cell| cell.height.map(|height| height.lo);
     let near = seat.boxes(tree);
     let (mut level, mut inside, mut blocking) = (None, Vec::new(), Vec::new());
-    walk(tree, exec, near.iter().copied(), floor, |number, height| {
+    let mut came_from = vec![usize::MAX; tree.cells.len()];
+    walk(tree, exec, near.iter().copied(), floor, |&Reached { number, height, from }| {
+        came_from[number] = from;
         let cell = &tree.cells[number];
-        let (rests, leaks) = (seat.lets_rest(tree, cell), leaks(tree, cell));
-        if rests || leaks {
+        // What is known to dock comes back from wherever it goes; what lies beyond the border nobody knows.
+        let docks = cell.label == Some(Label::Yes) && !tree.is_at_border(cell);
+        if !docks && (seat.lets_rest(tree, cell) || leaks(tree, cell)) {
             level = level.or(Some(height));
             blocking.push(number);
         } else if level.is_none() {
-            inside.push(number);
+            inside.push((number, height));
         }
         let out = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
         let enough = blocking.len() >= if out { LEAST_BLOCKING } else { MOST_BLOCKING };
         if enough { Onward::End } else { Onward::Go }
     })?;
     let level = level.unwrap_or(f64::INFINITY);
-    for number in inside {
+    // Beyond the pass at the level itself lies what may lead elsewhere, however deep.
+    for (number, _) in inside.into_iter().filter(|(_, way)| *way < level) {
         let cell = &mut tree.cells[number];
         if cell.height.is_some_and(|height| height.up < level) {
             cell.label = Some(Label::Yes);
         }
     }
+    let kept: Vec<usize> = tree.leaves().filter(|(_, cell)| seat.keeps(tree, cell)).map(|(k, _)| k).collect();
+    for number in kept {
+        tree.cells[number].label = Some(Label::Yes);
+    }
     // The other way round: from the seat and from all that is not known, which may lead to it.
     let unknown = tree.leaves().filter(|(_, cell)| cell.walled || tree.is_at_border(cell)).map(|(k, _)| k);
     let sources: Vec<usize> = near.iter().copied().chain(unknown).collect();
     let mut way = vec![f64::INFINITY; tree.cells.len()];
-    walk(tree, exec, sources.into_iter(), floor, |number, height| {
+    walk(tree, exec, sources.into_iter(), floor, |&Reached { number, height, .. }| {
         way[number] = height;
         Onward::Go
     })?;
-    let lone = |cell: &Cell, way: f64| cell.height.is_none_or(|height| height.up < way && way > seat.level);
+    let lone = |cell: &Cell, way: f64| {
+        cell.height.is_none_or(|height| height.up < way && way > seat.level + OVER_A_PATH)
+    };
     for (cell, way) in tree.cells.iter_mut().zip(way) {
         if cell.label.is_none() && !cell.is_split() && lone(cell, way) {
             cell.label = Some(if cell.height.is_none() || cell.sudden { Label::Leaves } else { Label::Jams });
         }
     }
-    Ok(Flood { level, blocking })
+    Ok(Flood { level, blocking, came_from })
 }
 
 /// How high a half that is in the seat must be lifted before it can leave, above the mated height: at least and at most, in D.
@@ -183,9 +267,9 @@ pub(super) fn retention(
 ) -> Result<[f64; 2], Cancelled> {
     let mut out = f64::INFINITY;
     let roof = |cell: &Cell| Some(cell.height.map_or(f64::NEG_INFINITY, |height| height.up));
-    walk(tree, exec, seat.boxes(tree).into_iter(), roof, |number, height| match tree.cells[number].label {
+    walk(tree, exec, seat.boxes(tree).into_iter(), roof, |reached| match tree.cells[reached.number].label {
         Some(Label::Jams | Label::Leaves) => {
-            out = height;
+            out = reached.height;
             Onward::End
         }
         _ => Onward::Go,

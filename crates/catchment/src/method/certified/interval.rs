@@ -26,6 +26,7 @@ pub(super) type Vector = [Interval; 3];
 
 impl Interval {
     pub(super) const ZERO: Self = Self::thin(0.0);
+    pub(super) const ONE: Self = Self::thin(1.0);
     pub(super) const EVERYTHING: Self = Self { lo: f64::NEG_INFINITY, up: f64::INFINITY };
 
     pub(super) const fn new(lo: f64, up: f64) -> Self {
@@ -84,7 +85,7 @@ impl Interval {
     /// Sine and cosine of an angle, in radians.
     pub(super) fn sin_cos(self) -> [Self; 2] {
         if self == Self::ZERO {
-            return [Self::ZERO, Self::thin(1.0)];
+            return [Self::ZERO, Self::ONE];
         }
         [self.wave(FRAC_PI_2, f64::sin), self.wave(0.0, f64::cos)]
     }
@@ -105,6 +106,10 @@ impl Add for Interval {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
+        // Without rounding where nothing is added.
+        if self == Self::ZERO || other == Self::ZERO {
+            return if self == Self::ZERO { other } else { self };
+        }
         Self { lo: (self.lo + other.lo).next_down(), up: (self.up + other.up).next_up() }
     }
 }
@@ -113,6 +118,9 @@ impl Sub for Interval {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
+        if self == Self::ZERO || other == Self::ZERO {
+            return if self == Self::ZERO { -other } else { self };
+        }
         Self { lo: (self.lo - other.up).next_down(), up: (self.up - other.lo).next_up() }
     }
 }
@@ -121,7 +129,8 @@ impl Neg for Interval {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Self { lo: -self.up, up: -self.lo }
+        // Without a zero below 0, which is another number in its bits.
+        Self { lo: 0.0 - self.up, up: 0.0 - self.lo }
     }
 }
 
@@ -132,6 +141,9 @@ impl Mul for Interval {
         // What is exactly 0 stays so, beside infinity too: locked errors add nothing.
         if self == Self::ZERO || other == Self::ZERO {
             return Self::ZERO;
+        }
+        if self == Self::ONE || other == Self::ONE {
+            return if self == Self::ONE { other } else { self };
         }
         let (a, b) = (self.lo * other.lo, self.lo * other.up);
         let (c, d) = (self.up * other.lo, self.up * other.up);

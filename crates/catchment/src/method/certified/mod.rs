@@ -2,27 +2,33 @@
 //!
 //! ```text
 //!   bodies ──▶ survey of a box ──▶ tree of boxes ──▶ flood   a motion cannot climb          ──▶ yes · no · undecided
-//!   (features)  floor ≤ h ≤ roof    halved where      tube    where motions of a box can go      volumes, retention
-//!               all contacts, jumps  undecided
+//!   (features)  floor ≤ h ≤ roof    halved where      spread  which faces of boxes it can cross  volumes, retention
+//!               all contacts, jumps  undecided        tube    where motions of a box can go
+//!                                                     home    what is certain about the seat at once
 //! ```
 //!
-//! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`, `touch`, `survey`). Two
-//! arguments make labels of them: energy (`flood`: the part of the poses below a height that a motion is in cannot be left), in any
-//! dimension, and direction (`tube`: a bundle that holds all motions of a box until it lies in labelled boxes), where at most one rotation is
-//! free. Capture basins by intervals: Lhommeau, Jaulin, Hardouin 2007; the neighbourhood of the seat in which nothing else rests: after Delanoue 2015;
-//! how high a caged body must be lifted: energy-bounded caging.
+//! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`, `touch`, `arc`, `survey`). Four
+//! arguments make labels of them: energy (`flood`: the part of the poses below a height that a motion is in cannot be left), faces (`spread`: boxes
+//! that nothing leaves but into their like) and the neighbourhood of the seat (`home`), in any dimension, and direction (`tube`: a bundle that holds
+//! all motions of a box until it lies in labelled boxes), where at most one rotation is free. Capture basins by intervals: Lhommeau, Jaulin,
+//! Hardouin 2007; the neighbourhood of the seat in which nothing else rests: after Delanoue 2015; how high a caged body must be lifted:
+//! energy-bounded caging.
 //!
 //! Certain means: of exact frictionless motion of the halves as drawn, up to what exact heights are rounded by (10⁻⁹ D). A certificate
 //! speaks of almost every motion that a box holds: which way a half goes that starts exactly on a ridge is nobody's promise.
 //!
 //! Not promised: that the undecided share is small. It shrinks with the boxes; seats with play, tight fits, halves that meet walls and more
-//! than one free rotation leave more of it. Lengths in D, angles in radians.
+//! than two free errors leave more of it. Lengths in D, angles in radians.
 
+mod arc;
 mod body;
 pub(super) mod door;
 mod flood;
+mod home;
 mod interval;
 mod placed;
+mod rest;
+mod spread;
 mod survey;
 #[cfg(test)]
 mod tests;
@@ -35,11 +41,15 @@ use crate::contact::{Nearby, Pair, SEAT_CORE};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
 use crate::pose::Dof;
-use flood::{Seat, flood, retention};
+use flood::{Flood, Seat, flood, retention};
+use home::Home;
 use interval::Interval;
 use placed::{Bodies, PoseBox};
 use rayon::prelude::*;
+pub(crate) use rest::{applies, depths};
 use serde::{Deserialize, Serialize};
+use spread::{ahead, spread};
+use std::collections::BTreeSet;
 use tree::{Cell, Label, Tree};
 use tube::Tube;
 
@@ -120,9 +130,17 @@ pub(crate) struct Certified {
 }
 
 /// Levels of boxes that are looked at anyway, for one to five free errors.
-const FIRST_LEVEL: [u8; 5] = [8, 6, 4, 3, 2];
+const FIRST_LEVEL: [u8; 5] = [8, 5, 4, 3, 2];
 /// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
 const FINEST: f64 = 3e-4;
+/// The part that is spent at last on what is in the way of the seat's part.
+const AT_LAST: usize = 8;
+/// Boxes about the mated pose that are halved at once.
+const AT_HOME: usize = 64;
+/// With more free errors than so many, boxes about the mated pose come before those in the way of its part: there are too many of those.
+const MOST_IN_THE_WAY: usize = 3;
+/// The part of all boxes that is spent first on the seat, at most, for one to five free errors: of many there is little else that so few boxes tell.
+const AT_SEAT: [usize; 5] = [8, 8, 8, 2, 1];
 /// Boxes that are halved at once, at least, and as a part of all.
 const AT_ONCE: usize = 1024;
 const PART: usize = 8;
@@ -145,59 +163,97 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     let sits = SeatBoxes { pair, rho: alignment.rotation_length };
     let (holds, meets) = (|poses: &PoseBox| sits.holds(poses), |poses: &PoseBox| sits.meets(poses));
     let mated = pair.mated_height();
-    let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, meets: &meets };
-    // Until what is in the way of the seat is as small as it gets, or half of the boxes are spent on it.
-    let mut settled = false;
-    loop {
+    let home = Home::find(&bodies, &tree.root, mated, &mut pair.about(REACH), exec)?;
+    let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, home, meets: &meets };
+    // The seat comes first: most of what docks leads there.
+    let first = tree.cells.len() + settings.boxes / AT_SEAT[tree.axes.len().clamp(1, 5) - 1];
+    while tree.cells.len() < first.min(settings.boxes) {
         let flooded = flood(&mut tree, &seat, exec)?;
-        let in_the_way = coarse(&tree, flooded.blocking, &bodies);
-        settled |= in_the_way.is_empty() || tree.cells.len() > settings.boxes / 2;
-        // Nowhere to lead to before.
-        if alignment.free.rotations() <= 1 && settled {
-            bundle(&mut tree, pair, &bodies, exec)?;
+        let mut chosen = seat.about(&tree);
+        chosen.truncate(AT_HOME);
+        if tree.axes.len() <= MOST_IN_THE_WAY || chosen.is_empty() {
+            chosen.extend(coarse(&tree, &flooded, &bodies));
         }
-        let gap = tree.undecided();
-        exec.report(tree.cells.len() as f64 / settings.boxes as f64, "boxes");
-        let chosen = chosen(&tree, in_the_way, settled, settings);
-        if gap <= settings.gap || tree.cells.len() >= settings.boxes || chosen.is_empty() {
-            let [at_least, at_most] = retention(&tree, &seat, flooded.level, exec)?;
-            let certificate = tree.certificate(at_least, at_most);
-            return Ok(Certified { tree, certificate });
+        chosen.truncate(((first - tree.cells.len()) >> tree.axes.len()).max(1));
+        chosen.sort_unstable();
+        chosen.dedup();
+        if chosen.is_empty() {
+            break;
         }
         halve(&mut tree, &chosen, pair, &bodies, exec)?;
     }
+    let most = settings.boxes - settings.boxes / AT_LAST;
+    loop {
+        let flooded = flood(&mut tree, &seat, exec)?;
+        let in_the_way = coarse(&tree, &flooded, &bodies);
+        spread(&mut tree, &seat, exec)?;
+        if alignment.free.rotations() <= 1 {
+            bundle(&mut tree, pair, &bodies, exec)?;
+            spread(&mut tree, &seat, exec)?;
+        }
+        let gap = tree.undecided();
+        exec.report(tree.cells.len() as f64 / settings.boxes as f64, "boxes");
+        if gap <= settings.gap || tree.cells.len() >= most {
+            break;
+        }
+        let chosen = chosen(&tree, &seat, in_the_way, most, exec)?;
+        if chosen.is_empty() {
+            break;
+        }
+        halve(&mut tree, &chosen, pair, &bodies, exec)?;
+    }
+    // How well the seat holds is told best where labels say what comes back and what does not.
+    let last = (tree.cells.len() + settings.boxes / AT_LAST).min(settings.boxes);
+    loop {
+        let flooded = flood(&mut tree, &seat, exec)?;
+        let mut in_the_way = coarse(&tree, &flooded, &bodies);
+        in_the_way.truncate(last.saturating_sub(tree.cells.len()) >> tree.axes.len());
+        if in_the_way.is_empty() {
+            let level = home.map_or(flooded.level, |home| home.level.max(flooded.level));
+            let [at_least, at_most] = retention(&tree, &seat, level, exec)?;
+            let certificate = tree.certificate(at_least, at_most);
+            return Ok(Certified { tree, certificate });
+        }
+        in_the_way.sort_unstable();
+        halve(&mut tree, &in_the_way, pair, &bodies, exec)?;
+    }
 }
 
-/// Those boxes that are not as small as it gets.
-fn coarse(tree: &Tree, mut numbers: Vec<usize>, bodies: &Bodies) -> Vec<usize> {
-    numbers.retain(|number| {
-        let poses = tree.poses(&tree.cells[*number]);
+/// What is in the way of the seat's part and not as small as it gets.
+fn coarse(tree: &Tree, flooded: &Flood, bodies: &Bodies) -> Vec<usize> {
+    flooded.in_the_way(|number| {
+        let poses = tree.poses(&tree.cells[number]);
         tree.axes.iter().any(|dof| {
             let unit = if dof.is_rotation() { bodies.rho } else { 1.0 };
             unit * poses[dof.index()].width() > FINEST
         })
-    });
-    numbers
+    })
 }
 
-/// Which boxes to halve: those in the way of the seat's own part, and, once that is settled, the largest undecided ones.
-fn chosen(tree: &Tree, in_the_way: Vec<usize>, settled: bool, settings: &Settings) -> Vec<usize> {
+/// Which boxes to halve: those in the way of the seat's own part, those about the mated pose, and the largest of those that are undecided or may
+/// lead undecided ones on.
+fn chosen(
+    tree: &Tree,
+    seat: &Seat<'_>,
+    in_the_way: Vec<usize>,
+    boxes: usize,
+    exec: &Exec,
+) -> Result<Vec<usize>, Cancelled> {
     let most = (tree.cells.len() / PART).max(AT_ONCE);
-    let room = settings.boxes.saturating_sub(tree.cells.len()) >> tree.axes.len();
+    let room = boxes.saturating_sub(tree.cells.len()) >> tree.axes.len();
+    let by_size = |mut numbers: Vec<usize>| {
+        numbers.retain(|number| tree.cells[*number].level < tree::DEEPEST);
+        numbers.sort_by_key(|number| (tree.cells[*number].level, *number));
+        numbers
+    };
     let mut chosen = in_the_way;
-    if settled {
-        let mut open: Vec<(u8, usize)> = tree
-            .leaves()
-            .filter(|(_, cell)| cell.label.is_none() && tree.is_asked(cell) && cell.level < tree::DEEPEST)
-            .map(|(number, cell)| (cell.level, number))
-            .collect();
-        open.sort_unstable();
-        chosen.extend(open.into_iter().map(|(_, number)| number).take(most));
-    }
+    chosen.extend(seat.about(tree).into_iter().take(AT_HOME));
+    chosen.extend(by_size(ahead(tree, exec)?).into_iter().take(most));
+    let mut seen = BTreeSet::new();
+    chosen.retain(|number| seen.insert(*number));
     chosen.truncate(room.max(1));
     chosen.sort_unstable();
-    chosen.dedup();
-    chosen
+    Ok(chosen)
 }
 
 /// Halves leaves, in parallel; their parts are in the order of the leaves.

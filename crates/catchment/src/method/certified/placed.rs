@@ -38,7 +38,8 @@ impl Bodies {
     pub(super) fn of(pair: &Pair) -> Self {
         let (fixed, moving) = (Body::of(&pair.fixed), Body::of(&pair.moving));
         let alignment = &pair.alignment;
-        let meetings = meetings(&fixed, &moving);
+        let planar = alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch));
+        let meetings = meetings(&fixed, &moving, planar);
         let (cor, rho) = (alignment.center_of_rotation, alignment.rotation_length);
         Self { fixed, moving, free: alignment.free, cor, rho, meetings }
     }
@@ -100,12 +101,24 @@ impl Placed {
     }
 
     /// From the centre of rotation to a point of the world at this height over it, in plan view and above.
-    pub(super) fn arm_to(&self, bodies: &Bodies, point: DVec3, height: Interval) -> Vector {
+    pub(super) fn arm_to(&self, bodies: &Bodies, point: Vector, height: Interval) -> Vector {
         let lateral = [0, 1].map(|axis| {
             let cor = if bodies.slides(axis) { self.offset[axis] - self.face[axis] } else { Interval::ZERO };
-            Interval::thin(point.to_array()[axis]) - cor
+            point[axis] - cor
         });
-        [lateral[0], lateral[1], Interval::thin(point.z) - height]
+        [lateral[0], lateral[1], point[2] - height]
+    }
+
+    /// How fast roll, pitch and yaw change where the half turns by `spin`, about axes of the world.
+    pub(super) fn angle_rates(&self, spin: &Vector) -> [Interval; 3] {
+        let [_, [minus_sine, cosine, _], _] = self.axes;
+        let sine = -minus_sine;
+        let pitch = dot(spin, &self.axes[1]);
+        let level = spin[0] * cosine + spin[1] * sine;
+        // cos(pitch), of the axis of roll in plan view.
+        let slant = self.axes[0][0] * cosine + self.axes[0][1] * sine;
+        let roll = level.over(slant).unwrap_or(Interval::EVERYTHING);
+        [roll, pitch, spin[2] - roll * self.axes[0][2]]
     }
 
     /// What the gap of a contact changes by, per unit of each error, with the height of the centre of rotation held: `normal` at

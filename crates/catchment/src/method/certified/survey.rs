@@ -14,7 +14,7 @@
 //!
 //! Not promised: that a box is called continuous or restless where it is; smaller ones are.
 
-use super::body::{Body, Corner, Ridge};
+use super::body::{Body, Corner, Meeting, Ridge, Side};
 use super::interval::{Interval, Vector, dot, perp, thin};
 use super::placed::{Bodies, Placed, PoseBox, middle};
 use super::touch::{Touch, Touching, plan};
@@ -41,6 +41,8 @@ pub(super) struct Survey {
     pub(super) sudden: bool,
     /// Whether a rim may be come to from outside by a motion in the box: it may meet a wall, or slide under something.
     pub(super) walled: bool,
+    /// Whether it may end: at some pose of the box the halves may pass by each other.
+    pub(super) ends: bool,
     /// A direction, in errors, that opens all touches; `None` where the half may rest.
     pub(super) downhill: Option<[f64; 5]>,
 }
@@ -52,7 +54,8 @@ impl Survey {
         let mut touches: Vec<Touch> = among.iter().filter_map(|number| touching.touch(*number)).collect();
         let Some(mut height) = span(&touches) else {
             let pushes = Vec::new();
-            return Self { touches, pushes, height: None, sudden: false, walled: false, downhill: None };
+            let (sudden, walled) = (false, false);
+            return Self { touches, pushes, height: None, sudden, walled, ends: true, downhill: None };
         };
         let mut rims = None;
         let mut sudden = true;
@@ -76,12 +79,15 @@ impl Survey {
             if sudden { rims.unwrap_or_else(|| Rims::meeting(bodies, &touching.over)) } else { Vec::new() };
         let pushes: Vec<PoseBox> = touches.iter().map(|t| t.push(bodies, &touching.over)).collect();
         let inwards = |rim: &Meet| {
-            rim.lift.up >= height.lo
-                && (bodies.free.rotations() > 1 || pushes.iter().any(|push| rim.closes(push)))
+            let closes = |(touch, push): (&Touch, &PoseBox)| {
+                rim.closes(push) && !rim.parts(bodies, bodies.meetings[touch.number as usize])
+            };
+            rim.lift.up >= height.lo && touches.iter().zip(&pushes).any(closes)
         };
         let walled = rims.iter().any(inwards);
         let downhill = downhill(bodies, &touches);
-        Self { touches, pushes, height: Some(height), sudden, walled, downhill }
+        let ends = sudden && !touching.overlaps();
+        Self { touches, pushes, height: Some(height), sudden, walled, ends, downhill }
     }
 
     /// Which of these touches may carry in a box within theirs, and how; over which h may jump or not.
@@ -106,10 +112,68 @@ impl Survey {
         (touches, pushes)
     }
 
+    /// Which ways motions may go through the faces of its box.
+    pub(super) fn flows(&self, bodies: &Bodies, poses: &PoseBox, nearby: &mut Nearby<'_>) -> Flows {
+        if self.height.is_none() || self.walled {
+            return Flows::ALL;
+        }
+        let mut flows = Flows::default();
+        for dof in bodies.free.iter() {
+            let k = dof.index();
+            let Interval { lo, up } = poses[k];
+            for (upper, at) in [(false, lo), (true, up)] {
+                let all = Ways::of(&self.pushes, k);
+                let found = if all == Ways::default() || all.is_along() {
+                    all
+                } else {
+                    let mut face = *poses;
+                    face[k] = Interval::thin(at);
+                    let (_, pushes) = Self::among(bodies, &face, &self.touches, self.sudden, nearby);
+                    Ways::of(&pushes, k)
+                };
+                flows.0[k][usize::from(upper)] = found;
+            }
+        }
+        flows
+    }
+
     /// The numbers of all that may carry.
     pub(super) fn numbers(&self) -> Box<[u32]> {
         self.touches.iter().map(|touch| touch.number).collect()
     }
+}
+
+/// Whether motions may go down and up an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Ways {
+    pub(super) down: bool,
+    pub(super) up: bool,
+}
+
+impl Ways {
+    pub(super) const BOTH: Self = Self { down: true, up: true };
+
+    /// Between all pushes.
+    fn of(pushes: &[PoseBox], axis: usize) -> Self {
+        // What is 0 stays so beyond a face: it depends on nothing that changes there.
+        let may = |sign: f64| {
+            pushes.iter().any(|push| push[axis] != Interval::ZERO && (push[axis] * sign).up >= 0.0)
+        };
+        Self { down: may(-1.0), up: may(1.0) }
+    }
+
+    /// Whether one way only.
+    const fn is_along(self) -> bool {
+        self.down != self.up
+    }
+}
+
+/// Which ways motions may go through the lower and upper face of every axis of a box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Flows(pub(super) [[Ways; 2]; 5]);
+
+impl Flows {
+    pub(super) const ALL: Self = Self([[Ways::BOTH; 2]; 5]);
 }
 
 /// All heights at which something may carry.
@@ -137,6 +201,11 @@ struct Meet {
     lift: Interval,
     /// What the distance between them in plan view, outwards, changes by per unit of each error.
     apart: PoseBox,
+    /// The facet that ends at the rim, of the fixed half or the moving one.
+    facet: u32,
+    of_fixed: bool,
+    /// Facets about the corner that lead nowhere but outwards. While the corner is outside nothing of them touches anything of the other facet.
+    sheet: Vec<u32>,
 }
 
 impl Meet {
@@ -144,6 +213,28 @@ impl Meet {
     fn closes(&self, push: &PoseBox) -> bool {
         let rate = (0..5).map(|k| self.apart[k] * push[k]).fold(Interval::ZERO, |sum, part| sum + part);
         rate.lo < 0.0
+    }
+
+    /// Whether a meeting is one of features that lie apart in plan view while the corner is outside.
+    fn parts(&self, bodies: &Bodies, meeting: Meeting) -> bool {
+        let (rim, other) =
+            if self.of_fixed { (&bodies.fixed, &bodies.moving) } else { (&bodies.moving, &bodies.fixed) };
+        let corner = |body: &Body, number: u32| body.corners[number as usize].vertex;
+        // Of the facet at the rim, and of the sheet.
+        let [ends, leads] = match (meeting, self.of_fixed) {
+            (Meeting::FacetCorner(facet, c), true) | (Meeting::CornerFacet(c, facet), false) => {
+                let c = corner(other, c);
+                [facet == self.facet, self.sheet.iter().any(|sheet| other.has_corner(*sheet, c))]
+            }
+            (Meeting::CornerFacet(c, facet), true) | (Meeting::FacetCorner(facet, c), false) => {
+                [rim.has_corner(self.facet, corner(rim, c)), self.sheet.contains(&facet)]
+            }
+            (Meeting::RidgeRidge(own, its), _) => {
+                let (own, its) = if self.of_fixed { (own, its) } else { (its, own) };
+                [rim.has_side(self.facet, own), self.sheet.iter().any(|sheet| other.has_side(*sheet, its))]
+            }
+        };
+        ends && leads
     }
 }
 
@@ -158,8 +249,8 @@ struct Rim<'a> {
     levels: [Interval; 2],
     /// From its first end to its second, unit in space.
     along: [Interval; 2],
-    /// The normals out of it, where outside may be to its right and where to its left.
-    outward: [Option<[Interval; 2]>; 2],
+    /// The normals out of it, where outside may be to its right and where to its left, with the facet that ends there.
+    outward: [Option<([Interval; 2], u32)>; 2],
 }
 
 /// What counts as facing neither up nor down, and as nearer in plan view than rounding.
@@ -182,15 +273,18 @@ impl Rims {
             let [a, b] = ridge.ends.map(|k| fixed.at(k));
             let along = [Interval::thin(ridge.along.x), Interval::thin(ridge.along.y)];
             let right = ending(along, ridge.normals.map(thin));
-            let outward = [sides[0].then_some(right[0]), sides[1].then_some(right[1])];
+            let [left_facet, right_facet] = ridge.facets;
+            let outward =
+                [sides[0].then_some((right[0], left_facet)), sides[1].then_some((right[1], right_facet))];
             let levels = [a, b].map(|end| Interval::thin(end.z));
             let rim = Rim { ridge, ends: [plan(a), plan(b)], levels, along, outward };
             for corner in moving.corners.iter().filter(|c| is_on_rim(c, &its_sides)) {
                 let k = corner.vertex as usize;
-                let sheet = sheet(corner, its).map(|v| at.turn(v));
-                rim.meet(at.lateral[k], &sheet, |outward, level| {
+                let sheet = sheet(corner, its).map(|side| (at.turn(side.along), side.facet));
+                rim.meet(at.lateral[k], &sheet, |outward, level, facet, sheet| {
                     let lift = level - at.turned[k][2];
-                    found.push(Meet { lift, apart: moved(bodies, at, k, outward) });
+                    let apart = moved(bodies, at, k, outward);
+                    found.push(Meet { lift, apart, facet, of_fixed: true, sheet });
                 });
             }
         }
@@ -201,18 +295,20 @@ impl Rims {
             let along = [along[0], along[1]];
             let [left, right] = ridge.normals.map(|n| at.turn(n));
             let out = ending(along, [right, left]);
-            let outward = [sides[1].then_some(out[0]), sides[0].then_some(out[1])];
+            let [left_facet, right_facet] = ridge.facets;
+            let outward =
+                [sides[1].then_some((out[0], right_facet)), sides[0].then_some((out[1], left_facet))];
             let levels = [p, q].map(|end| at.turned[end][2]);
             let rim = Rim { ridge, ends: [at.lateral[p], at.lateral[q]], levels, along, outward };
             for corner in fixed.corners.iter().filter(|c| is_on_rim(c, &own_sides)) {
                 let point = fixed.at(corner.vertex);
-                let sheet = sheet(corner, own).map(thin);
-                rim.meet(plan(point), &sheet, |outward, level| {
+                let sheet = sheet(corner, own).map(|side| (thin(side.along), side.facet));
+                rim.meet(plan(point), &sheet, |outward, level, facet, sheet| {
                     let lift = Interval::thin(point.z) - level;
                     // As the rim moves inwards, the corner comes out: either end tells, and all between.
                     let ends = rim.ridge.ends.map(|k| moved(bodies, at, k as usize, outward));
                     let apart = [0, 1, 2, 3, 4].map(|k| -ends[0][k].hull(ends[1][k]));
-                    found.push(Meet { lift, apart });
+                    found.push(Meet { lift, apart, facet, of_fixed: false, sheet });
                 });
             }
         }
@@ -235,12 +331,13 @@ impl Rim<'_> {
         low + share.unwrap_or(Interval::new(0.0, 1.0)) * (high - low)
     }
 
-    /// Tells the outward normals by which a corner may come to this rim from outside whose facets lead these ways, and how high it is there.
+    /// Tells the outward normals by which a corner may come to this rim from outside whose facets lead these ways, how high it is there, the
+    /// facet that ends there, and those facets of the corner that lead nowhere but outwards.
     fn meet(
         &self,
         corner: [Interval; 2],
-        sheet: &(impl Iterator<Item = Vector> + Clone),
-        mut tell: impl FnMut([Interval; 2], Interval),
+        sheet: &(impl Iterator<Item = (Vector, u32)> + Clone),
+        mut tell: impl FnMut([Interval; 2], Interval, u32, Vec<u32>),
     ) {
         let [a, b] = self.ends;
         let near = |axis: usize| corner[axis].meets(a[axis].hull(b[axis]).widened(LEVEL));
@@ -251,11 +348,15 @@ impl Rim<'_> {
         if beside.lo > LEVEL || beside.up < -LEVEL {
             return;
         }
-        for outward in self.outward.into_iter().flatten() {
+        for (outward, facet) in self.outward.into_iter().flatten() {
+            let leads = |s: &Vector| s[0] * outward[0] + s[1] * outward[1];
             // One that leads inwards for certain: the halves overlap in plan view, and go on doing so.
-            let inside = |s: Vector| (s[0] * outward[0] + s[1] * outward[1]).up < -LEVEL;
-            if !sheet.clone().any(inside) {
-                tell(outward, self.level(corner));
+            if !sheet.clone().any(|(s, _)| leads(&s).up < -LEVEL) {
+                let mut outside: Vec<u32> = sheet.clone().map(|(_, facet)| facet).collect();
+                let may_lead_in =
+                    |facet: u32| sheet.clone().any(|(s, own)| own == facet && leads(&s).lo < -LEVEL);
+                outside.retain(|facet| !may_lead_in(*facet));
+                tell(outward, self.level(corner), facet, outside);
             }
         }
     }
@@ -284,8 +385,8 @@ fn is_on_rim(corner: &Corner, sides: &[Option<[bool; 2]>]) -> bool {
 }
 
 /// Where the facets around a corner lead that face the other half for certain.
-fn sheet(corner: &Corner, facing: impl Fn(DVec3) -> Interval + Clone) -> impl Iterator<Item = DVec3> + Clone {
-    corner.sides.iter().filter(move |[_, normal]| facing(*normal).lo > LEVEL).map(|[along, _]| *along)
+fn sheet(corner: &Corner, facing: impl Fn(DVec3) -> Interval + Clone) -> impl Iterator<Item = Side> + Clone {
+    corner.sides.iter().filter(move |side| facing(side.normal).lo > LEVEL).copied()
 }
 
 /// What a moving vertex goes outward by, per unit of each error.

@@ -12,20 +12,23 @@
 //! May carry: the features support the normal, their feet may meet in plan view, and `n_z` may be above 0. All three are judged by bounds,
 //! so nothing that carries is left out; what does not carry may be left in.
 
-use super::body::{Meeting, Ridge};
+use super::arc::Arc;
+use super::body::{Facet, Meeting, Ridge};
 use super::interval::{Interval, Vector, cross, dot, perp, thin};
 use super::placed::{Bodies, Placed, PoseBox};
 use crate::pose::{Dof, ROTATIONS};
 use glam::DVec3;
 
 /// Sine by which normals of facets, which are rounded, may fail to be supported.
-const SLACK: f64 = 1e-9;
+pub(super) const SLACK: f64 = 1e-9;
 /// What counts as within a border in plan view, as a multiple of lengths.
 const SEAM: f64 = 1e-12;
 /// Below this part of its own length a normal's rise gives no mean value form.
 const STEEP: f64 = 1e-6;
 /// Sine below which ridges count as parallel in plan view, as [`crate::contact::brute`] has it.
 const PARALLEL: f64 = 1e-9;
+/// Slopes that differ by no more are known well enough.
+const PRECISE: f64 = 0.05;
 /// Normals of two facets with a smaller cosine have no mean direction to speak of.
 const OPPOSED: f64 = -0.9;
 
@@ -43,6 +46,17 @@ pub(super) struct Touch {
     /// Its moment about the centre of rotation.
     pub(super) torque: Vector,
     /// What its gap changes by, per unit of each error.
+    pub(super) rates: PoseBox,
+    /// Of its plane all over the box, also where the features do not meet; where it has one.
+    pub(super) plane: Option<Whole>,
+}
+
+/// The plane of a meeting: where its features, produced, close.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Whole {
+    /// The height in the middle of the box at which they do, in D.
+    pub(super) middle: Interval,
+    /// What the gap between them changes by, per unit of each error.
     pub(super) rates: PoseBox,
 }
 
@@ -64,13 +78,19 @@ struct Plane {
 impl Plane {
     /// Height of the centre of rotation with the meeting closed.
     fn height(&self, at: &Placed) -> Option<Interval> {
-        let [x, y, z] = self.normal;
-        let lateral = at.lateral[self.moving as usize];
+        at.closing(&self.normal, self.fixed, self.moving as usize)
+    }
+}
+
+impl Placed {
+    /// Height of the centre of rotation at which a moving vertex comes to a plane through a fixed point.
+    pub(super) fn closing(&self, [x, y, z]: &Vector, point: DVec3, vertex: usize) -> Option<Interval> {
+        let lateral = self.lateral[vertex];
         let across =
-            x * (lateral[0] - Interval::thin(self.fixed.x)) + y * (lateral[1] - Interval::thin(self.fixed.y));
-        let foot = Interval::thin(self.fixed.z) - at.turned[self.moving as usize][2];
+            *x * (lateral[0] - Interval::thin(point.x)) + *y * (lateral[1] - Interval::thin(point.y));
+        let foot = Interval::thin(point.z) - self.turned[vertex][2];
         // Levels of facets are those of single corners, which are rounded.
-        across.over(z).map(|fall| (foot - fall).widened(SEAM))
+        across.over(*z).map(|fall| (foot - fall).widened(SEAM))
     }
 }
 
@@ -86,6 +106,24 @@ impl<'a> Touching<'a> {
     pub(super) fn new(bodies: &'a Bodies, poses: &'a PoseBox) -> Self {
         let middle = poses.map(|p| Interval::thin(p.middle()));
         Self { bodies, poses, over: Placed::new(bodies, poses), middle: Placed::new(bodies, &middle) }
+    }
+
+    /// Whether the halves overlap in plan view at every pose of the box for certain: a vertex of one lies over a facet of the other.
+    pub(super) fn overlaps(&self) -> bool {
+        let Bodies { fixed, moving, .. } = self.bodies;
+        let over =
+            |facet: &Facet| facet.corners.iter().map(|k| self.over.lateral[*k as usize]).collect::<Vec<_>>();
+        let under = |facet: &Facet| facet.corners.iter().map(|k| plan(fixed.at(*k))).collect::<Vec<_>>();
+        fixed
+            .facets
+            .iter()
+            .map(under)
+            .any(|polygon| self.over.lateral.iter().any(|foot| holds(&polygon, *foot)))
+            || moving
+                .facets
+                .iter()
+                .map(over)
+                .any(|polygon| fixed.vertices.iter().any(|v| holds(&polygon, plan(*v))))
     }
 
     /// How a meeting may carry the half in the box, if it may.
@@ -132,7 +170,7 @@ impl<'a> Touching<'a> {
             Interval::thin(point.z) - range(facet.corners.iter().map(|k| self.over.turned[*k as usize][2]))?;
         let plane =
             |at: &Placed| Plane { normal: at.turn(-facet.normal), fixed: point, moving: facet.corners[0] };
-        let arm = |height| self.over.arm_to(self.bodies, point, height);
+        let arm = |height| self.over.arm_to(self.bodies, thin(point), height);
         self.touch_by(number, plane, among, arm, arm)
     }
 
@@ -167,7 +205,13 @@ impl<'a> Touching<'a> {
         // The plane and its slope hold along the whole lines, beyond the ends of the ridges.
         let reach = t.filter(|_| straight).unwrap_or(unit);
         let arm_at = |share: Interval| [0, 1, 2].map(|k| start[k] + share * w[k]);
-        let (beyond, arm) = (arm_at(reach), arm_at(on_its));
+        let (beyond, on_ridge) = (arm_at(reach), arm_at(on_its));
+        // The same point, of the fixed ridge.
+        let point = [0, 1, 2].map(|k| Interval::thin(a.to_array()[k]) + on_own * u.to_array()[k]);
+        let arm = |height: Interval| {
+            let other = self.over.arm_to(bodies, point, height);
+            [0, 1, 2].map(|k| on_ridge[k].and(other[k].widened(SEAM)).unwrap_or(on_ridge[k]))
+        };
         let plane = |at: &Placed| {
             let along = at.turn(bodies.moving.at(its.ends[1]) - bodies.moving.at(its.ends[0]));
             let across = cross(&thin(u), &along);
@@ -176,10 +220,18 @@ impl<'a> Touching<'a> {
         };
         let planar = straight.then_some(plane);
         let found = match planar {
-            Some(plane) => self.touch_by(number, plane, among, |_| beyond, |_| arm)?,
-            None => self.touch_with(number, normal, among, |_| arm),
+            Some(plane) => self.touch_by(number, plane, among, |_| beyond, arm)?,
+            None => self.touch_with(number, normal, among, arm),
         };
-        Some(found)
+        // Of lines that are nearly parallel the cross product tells little, their facets tell more.
+        let arc = (spread(&found.normal) > PRECISE).then(|| Arc::of(own)).flatten();
+        let Some(arc) = arc.map(|arc| arc.normal(its, &self.over)) else { return Some(found) };
+        let arc = arc.filter(|normal| normal[2].up > 0.0)?;
+        Some(if spread(&arc) < spread(&found.normal) {
+            self.touch_with(number, arc, found.height, arm)
+        } else {
+            found
+        })
     }
 
     /// The normal of two ridges where they support it, or what it lies in; upwards.
@@ -230,13 +282,15 @@ impl<'a> Touching<'a> {
         // Of the plane, wherever its feet are: what its slope is taken from.
         let natural = over.height(&self.over)?;
         let whole = self.touch_with(number, normal, natural, beyond);
-        let mut mean = plane(&self.middle).height(&self.middle)?;
+        let in_middle = plane(&self.middle).height(&self.middle)?;
+        let mut mean = in_middle;
         for dof in self.bodies.free.iter() {
             let poses = self.poses[dof.index()];
             mean = mean + whole.slope(dof)? * (poses - Interval::thin(poses.middle()));
         }
         let height = natural.and(among)?.and(mean)?;
-        Some(self.touch_with(number, normal, height, arm))
+        let plane = Some(Whole { middle: in_middle, rates: whole.rates });
+        Some(Touch { plane, ..self.touch_with(number, normal, height, arm) })
     }
 
     fn touch_with(
@@ -249,15 +303,15 @@ impl<'a> Touching<'a> {
         let normal = [normal[0], normal[1], Interval::new(normal[2].lo.max(0.0), normal[2].up)];
         let torque = cross(&arm(height), &normal);
         let rates = self.over.gap_rates(self.bodies, &normal, &torque);
-        Touch { number, height, rise: normal[2], normal, torque, rates }
+        Touch { number, height, rise: normal[2], normal, torque, rates, plane: None }
     }
 }
 
 impl Touch {
-    /// The direction in which it alone pushes the half: errors per unit of its normal, where at most one rotation is free.
+    /// The direction in which it alone pushes the half: errors per unit of its normal.
     ///
     /// ```text
-    ///   ċ = n_xy     ω = ρ⁻²·(torque·axis)·axis     (x, y)˙ = ċ + ω × face
+    ///   ċ = n_xy     ω = ρ⁻²·torque, of locked rotations its part along the free axes     (x, y)˙ = ċ + ω × face
     /// ```
     pub(super) fn push(&self, bodies: &Bodies, at: &Placed) -> PoseBox {
         let mut way = [Interval::ZERO; 5];
@@ -266,10 +320,26 @@ impl Touch {
                 *way = self.normal[axis];
             }
         }
+        let scaled = |torque: Interval| {
+            let rate = torque * (1.0 / (bodies.rho * bodies.rho));
+            rate.widened(f64::EPSILON * (rate.lo.abs() + rate.up.abs()))
+        };
+        if bodies.free.rotations() == 3 {
+            // Any axis of the world; the angles follow.
+            let spin = self.torque.map(scaled);
+            let swung = cross(&spin, &at.face);
+            for axis in 0..2 {
+                if bodies.slides(axis) {
+                    way[axis] = way[axis] + swung[axis];
+                }
+            }
+            let [roll, pitch, yaw] = at.angle_rates(&spin);
+            (way[2], way[3], way[4]) = (roll, pitch, yaw);
+            return way;
+        }
         for (k, dof) in ROTATIONS.into_iter().enumerate() {
             if bodies.free.contains(dof) {
-                let rate = dot(&at.axes[k], &self.torque) * (1.0 / (bodies.rho * bodies.rho));
-                let rate = rate.widened(f64::EPSILON * (rate.lo.abs() + rate.up.abs()));
+                let rate = scaled(dot(&at.axes[k], &self.torque));
                 let swing = cross(&at.axes[k], &at.face);
                 for axis in 0..2 {
                     if bodies.slides(axis) {
@@ -281,6 +351,12 @@ impl Touch {
         }
         way
     }
+}
+
+/// How much the slopes of a normal may differ.
+fn spread(normal: &Vector) -> f64 {
+    let slope = |axis: usize| normal[axis].over(normal[2]).map_or(f64::INFINITY, Interval::width);
+    slope(0).max(slope(1))
 }
 
 /// A point of the fixed half in plan view.
@@ -301,6 +377,16 @@ fn may_hold(polygon: impl Iterator<Item = [Interval; 2]>, point: [Interval; 2], 
         let (a, b) = (polygon[k], polygon[(k + 1) % n]);
         (perp(from(a, b), from(a, point)) * turn).up >= -SEAM
     })
+}
+
+/// Whether a point lies in a convex polygon for certain, whichever way it runs.
+pub(super) fn holds(polygon: &[[Interval; 2]], point: [Interval; 2]) -> bool {
+    let n = polygon.len();
+    let beside = |k: usize| {
+        let (a, b) = (polygon[k], polygon[(k + 1) % n]);
+        perp(from(a, b), from(a, point))
+    };
+    (0..n).all(|k| beside(k).lo > SEAM) || (0..n).all(|k| beside(k).up < -SEAM)
 }
 
 /// Heights at which two ridges may touch that are nearly parallel in plan view, where what they share of their common direction is known.

@@ -13,7 +13,7 @@
 
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox};
-use super::survey::Survey;
+use super::survey::{Flows, Survey};
 use crate::contact::Nearby;
 use crate::design::Alignment;
 use crate::pose::Dof;
@@ -43,6 +43,10 @@ pub(super) type Span = [[u32; 2]; 5];
 
 /// A box.
 #[derive(Debug, Clone)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "four facts that hold for a box or not, each without the others"
+)]
 pub(super) struct Cell {
     pub(super) corner: [u32; 5],
     pub(super) level: u8,
@@ -56,6 +60,9 @@ pub(super) struct Cell {
     pub(super) sudden: bool,
     pub(super) walled: bool,
     pub(super) restless: bool,
+    /// Whether a motion may come to poses in it at which nothing touches.
+    pub(super) ends: bool,
+    pub(super) flows: Flows,
     pub(super) label: Option<Label>,
 }
 
@@ -107,6 +114,8 @@ impl Tree {
             sudden: true,
             walled: true,
             restless: false,
+            ends: true,
+            flows: Flows::ALL,
             label: None,
         };
         Self { axes, root, closed, errors, cells: vec![whole] }
@@ -249,21 +258,37 @@ impl Tree {
 
     /// Visits every leaf that shares a face with a leaf.
     pub(super) fn neighbours(&self, cell: &Cell, mut visit: impl FnMut(usize)) {
+        self.beside(cell, |number, _, _| visit(number));
+    }
+
+    /// The same, with the axis along which it lies and whether it lies above.
+    pub(super) fn beside(&self, cell: &Cell, mut visit: impl FnMut(usize, usize, bool)) {
         let own = self.span(cell);
         for dof in &self.axes {
             let k = dof.index();
             let [a, b] = own[k];
             let below = if a > 0 { Some(a - 1) } else { self.closed[k].then_some(WHOLE - 1) };
             let above = if b < WHOLE { Some(b) } else { self.closed[k].then_some(0) };
-            for place in below.into_iter().chain(above) {
+            for (place, is_above) in [(below, false), (above, true)] {
+                let Some(place) = place else { continue };
                 let mut face = own;
                 face[k] = [place, place + 1];
                 self.visit(&face, |number, _| {
-                    visit(number);
+                    visit(number, k, is_above);
                     true
                 });
             }
         }
+    }
+
+    /// Whether a motion may leave the root from a leaf.
+    pub(super) fn leaves_root(&self, cell: &Cell) -> bool {
+        let span = self.span(cell);
+        self.axes.iter().any(|dof| {
+            let k = dof.index();
+            let ([a, b], [lower, upper]) = (span[k], cell.flows.0[k]);
+            !self.closed[k] && (a == 0 && lower.down || b == WHOLE && upper.up)
+        })
     }
 
     /// The parts that a leaf would have, each looked at: nothing is changed.
@@ -278,10 +303,14 @@ impl Tree {
             let mut part = Cell { corner, level, ..whole.clone() };
             let survey = Survey::of(bodies, &self.poses(&part), &whole.among, nearby);
             part.among = survey.numbers();
-            part.height = survey.height;
-            part.sudden = survey.sudden;
-            part.walled = survey.walled;
-            part.restless = survey.downhill.is_some();
+            // What holds for the whole holds for its parts.
+            let both = |own: Interval| whole.height.and_then(|height| own.and(height)).unwrap_or(own);
+            part.height = survey.height.map(both);
+            part.sudden = survey.sudden && whole.sudden;
+            part.walled = survey.walled && whole.walled;
+            part.restless = survey.downhill.is_some() || whole.restless;
+            part.ends = part.height.is_none() || survey.ends && whole.ends;
+            part.flows = survey.flows(bodies, &self.poses(&part), nearby);
             part.parts = None;
             part
         };

@@ -32,8 +32,10 @@ const STEPS: usize = 600;
 /// Bundles wider than this are given up, in D of the metric.
 const WIDEST: f64 = 0.3;
 /// Length of a step, as a part of the width of the bundle, and at least, in D.
-const STEP: f64 = 0.75;
+const STEP: f64 = 0.5;
 const LEAST_STEP: f64 = 1e-3;
+/// Slopes at first, and at least, for which a slab is made wide enough.
+const GUESS: f64 = 0.25;
 /// Slopes above this call for other coordinates.
 const BENT: f64 = 0.6;
 /// What linear coordinates are rounded by.
@@ -89,6 +91,20 @@ impl Frame {
         let rows = basis.iter().map(|own| metric.row(own)).collect();
         let columns = basis.iter().map(|own| metric.column(own)).collect();
         Some(Self { origin: origin.to_array(), rows, columns })
+    }
+
+    /// Along one of the errors, up it or down it.
+    fn along(axes: &[Dof], poses: &PoseBox, first: usize, up: bool) -> Self {
+        let unit = |k: usize, size: f64| {
+            let mut unit = [0.0; 5];
+            unit[k] = size;
+            unit
+        };
+        let sign = if up { 1.0 } else { -1.0 };
+        let others = axes.iter().map(|dof| dof.index()).filter(|k| *k != first);
+        let rows: Vec<[f64; 5]> =
+            std::iter::once(unit(first, sign)).chain(others.map(|k| unit(k, 1.0))).collect();
+        Self { origin: middle(poses).to_array(), columns: rows.clone(), rows }
     }
 
     /// The coordinates of all poses of a box.
@@ -194,11 +210,33 @@ impl Tube<'_> {
     pub(super) fn follow(&self, cell: &Cell, nearby: &mut Nearby<'_>) -> Option<Label> {
         let poses = self.tree.poses(cell);
         let first = self.look(&poses, nearby)?;
-        let mut frame = Frame::new(self.bodies, &self.tree.axes, &poses, &first.touches)?;
-        let mut start = frame.of_box(&poses);
+        let axes = &self.tree.axes;
+        let downhill = Frame::new(self.bodies, axes, &poses, &first.touches);
+        if let Some(label) = downhill.and_then(|frame| self.follow_in(frame, &poses, &first, nearby)) {
+            return Some(label);
+        }
+        // A box is no wider than itself along an error that all pushes agree on.
+        axes.iter().find_map(|dof| {
+            let k = dof.index();
+            let up = first.pushes.iter().all(|push| push[k].lo > 0.0);
+            let down = first.pushes.iter().all(|push| push[k].up < 0.0);
+            let along = (up != down).then(|| Frame::along(axes, &poses, k, up))?;
+            self.follow_in(along, &poses, &first, nearby)
+        })
+    }
+
+    /// The same, beginning in these coordinates.
+    fn follow_in(
+        &self,
+        mut frame: Frame,
+        poses: &PoseBox,
+        first: &Survey,
+        nearby: &mut Nearby<'_>,
+    ) -> Option<Label> {
+        let mut start = frame.of_box(poses);
         let mut bundle = start.clone();
         let mut at = start[0].lo;
-        let mut guess = 1.0;
+        let mut guess = GUESS;
         let mut ends = first.sudden;
         let mut fresh = true;
         for _ in 0..STEPS {
@@ -283,7 +321,7 @@ impl Tube<'_> {
             }
             (bundle, at) = (next, end);
             fresh = false;
-            guess = (1.5 * steepest).max(0.25);
+            guess = (1.5 * steepest).max(GUESS);
         }
         None
     }

@@ -1,0 +1,132 @@
+//! How deep any place of rest is, from below: how far a half must be lifted at least before it may come to rest elsewhere.
+//!
+//! ```text
+//!     h │ ╲    ╱ exit      boxes are taken in the order of the lowest way to them by floors, from those about the rest:
+//!       │  ╲  ╱            the first that may let a motion out, or let it rest, ends it
+//!       │   ╲╱  rest       lifted by less, a half stays among those before it, and so it ends within CORE of where it rested
+//! ```
+//!
+//! The walk is that of [`super::flood`], with the boxes about the rest in the place of the seat. What is near-level has a depth of nothing here: it may rest a
+//! little beside.
+//!
+//! Not promised: a bound that is near the depth. It comes near as boxes become small, and there are [`BOXES`] of them for each rest.
+
+use super::flood::{Seat, flood};
+use super::interval::Interval;
+use super::placed::{Bodies, PoseBox};
+use super::tree::Tree;
+use super::{CertifiedError, FIRST_LEVEL, MOST_MEETINGS, coarse, halve};
+use crate::contact::Pair;
+use crate::exec::Exec;
+use crate::pose::{Dof, DofSet, PoseError};
+use std::f64::consts::TAU;
+
+/// What is this near to a rest counts as the same place, in the ρ-metric, in D: far above where motions end.
+const CORE: f64 = 0.005;
+/// Boxes for each rest, beyond those that all share: some seconds in the plane.
+const BOXES: usize = 20_000;
+
+/// How far above each rest (a pose error, and z of the centre of rotation) a half must be lifted at least, in D, before it may come to rest elsewhere or leave;
+/// none of a rest that is beyond all that is looked at, or that nothing is known to lead away from.
+///
+/// # Errors
+/// [`CertifiedError::Large`], and [`CertifiedError::Cancelled`] when asked to stop.
+pub(crate) fn depths(
+    pair: &Pair,
+    rests: &[(PoseError, f64)],
+    exec: &Exec,
+) -> Result<Vec<Option<f64>>, CertifiedError> {
+    let bodies = bodies(pair)?;
+    let alignment = &pair.alignment;
+    let mut tree = Tree::over(alignment, alignment.free.rotations() <= 1, &bodies);
+    for _ in 0..FIRST_LEVEL[tree.axes.len().clamp(1, 5) - 1] {
+        let all: Vec<usize> = tree.leaves().map(|(number, _)| number).collect();
+        halve(&mut tree, &all, pair, &bodies, exec)?;
+    }
+    let of = |(k, (error, height)): (usize, &(PoseError, f64))| {
+        exec.report(k as f64 / rests.len() as f64, "certified depths");
+        Ok(depth(&mut tree, pair, &bodies, error, exec)?.map(|level| (level - height).max(0.0)))
+    };
+    rests.iter().enumerate().map(of).collect()
+}
+
+/// Whether anything can be certified of a pair.
+///
+/// # Errors
+/// [`CertifiedError::Large`].
+pub(crate) fn applies(pair: &Pair) -> Result<(), CertifiedError> {
+    bodies(pair).map(|_| ())
+}
+
+fn bodies(pair: &Pair) -> Result<Bodies, CertifiedError> {
+    let bodies = Bodies::of(pair);
+    match bodies.meetings.len() {
+        meetings if meetings > MOST_MEETINGS => Err(CertifiedError::Large { meetings }),
+        _ => Ok(bodies),
+    }
+}
+
+/// The lowest height at which a half may leave a rest.
+fn depth(
+    tree: &mut Tree,
+    pair: &Pair,
+    bodies: &Bodies,
+    rest: &PoseError,
+    exec: &Exec,
+) -> Result<Option<f64>, CertifiedError> {
+    let about = About { rest: rest.to_array(), free: bodies.free, rho: bodies.rho };
+    if tree.places(&about.rest.map(Interval::thin)).is_none() {
+        return Ok(None);
+    }
+    let (holds, meets) = (|poses: &PoseBox| about.holds(poses), |poses: &PoseBox| about.meets(poses));
+    // At any height: there is but one rest that counts.
+    let level = f64::INFINITY;
+    let seat = Seat { mated: f64::NEG_INFINITY, level, holds: &holds, home: None, meets: &meets };
+    let most = tree.cells.len() + BOXES;
+    loop {
+        let flooded = flood(tree, &seat, exec)?;
+        // Labels say what leads to this rest alone.
+        tree.cells.iter_mut().for_each(|cell| cell.label = None);
+        let mut in_the_way = coarse(tree, &flooded, bodies);
+        in_the_way.truncate(most.saturating_sub(tree.cells.len()) >> tree.axes.len());
+        if in_the_way.is_empty() {
+            return Ok(Some(flooded.level).filter(|level| level.is_finite()));
+        }
+        halve(tree, &in_the_way, pair, bodies, exec)?;
+    }
+}
+
+/// What is near a rest.
+struct About {
+    rest: [f64; 5],
+    free: DofSet,
+    rho: f64,
+}
+
+impl About {
+    /// Errors against the rest, angles as far as their circle is short, in D.
+    fn off(&self, poses: &PoseBox) -> PoseBox {
+        Dof::ALL.map(|dof| {
+            if !self.free.contains(dof) {
+                return Interval::ZERO;
+            }
+            let (own, rest) = (poses[dof.index()], self.rest[dof.index()]);
+            if !dof.is_rotation() {
+                return own - Interval::thin(rest);
+            }
+            let rest = rest + ((own.middle() - rest) / TAU).round() * TAU;
+            (own - Interval::thin(rest)).widened(4.0 * f64::EPSILON * rest.abs()) * self.rho
+        })
+    }
+
+    /// Whether all poses of a box are near it.
+    fn holds(&self, poses: &PoseBox) -> bool {
+        let square = |part: Interval| part.lo.abs().max(part.up.abs()).powi(2);
+        self.off(poses).into_iter().map(square).sum::<f64>() <= (CORE * (1.0 - 1e-9)).powi(2)
+    }
+
+    /// Whether some may be.
+    fn meets(&self, poses: &PoseBox) -> bool {
+        self.off(poses).into_iter().all(|part| part.meets(Interval::new(-CORE, CORE)))
+    }
+}
