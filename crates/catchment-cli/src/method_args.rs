@@ -36,6 +36,9 @@ pub(crate) struct SettingArgs {
     /// Certified: boxes of poses that are looked at at most
     #[arg(long, value_name = "COUNT")]
     boxes: Option<usize>,
+    /// Confluence: motions that are followed, lowest first, before the cells that are left stay undecided [default: as many as it takes]
+    #[arg(long, value_name = "COUNT")]
+    motions: Option<usize>,
     #[command(flatten)]
     drop: DropArgs,
 }
@@ -61,6 +64,7 @@ impl SettingArgs {
         add("--strips", "strips", self.strips.map(Value::from));
         add("--gap", "gap", self.gap.map(Value::from));
         add("--boxes", "boxes", self.boxes.map(Value::from));
+        add("--motions", "motions", self.motions.map(Value::from));
         changes.extend(self.drop.changes());
         changes
     }

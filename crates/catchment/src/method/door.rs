@@ -24,9 +24,11 @@ use crate::method::certified::Certificate;
 use crate::method::confluence::Joined;
 use crate::method::flood::{Hierarchy, Watersheds};
 use crate::method::partition::Partition;
+use crate::method::registry::Method;
 use crate::problem::Problem;
 use serde_json::Value;
 use std::fmt;
+use std::time::Duration;
 
 /// What is known of a method without asking it anything.
 #[derive(Debug, PartialEq, Eq)]
@@ -107,6 +109,11 @@ pub trait Decide: fmt::Debug + Send + Sync {
     /// How it follows motions, and how random poses beside it are followed.
     fn motions(&self) -> descent::Settings {
         descent::Settings::default()
+    }
+
+    /// The same method for so much time, where it has something to tell when the time is over; what takes its time anyway has not.
+    fn within(&self, _budget: Duration) -> Option<Method> {
+        None
     }
 
     /// The same method pose by pose, where each is decided by itself.

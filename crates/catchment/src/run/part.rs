@@ -12,6 +12,11 @@
 //! ([`Over::Stream`](super::Over::Stream)), pose k of which depends on the seed and k alone. The correction of a grid's Sum draws
 //! its poses by what the poses before them showed, so it is made where the parts are merged.
 //!
+//! The grid of a method that decides cells from one another is refused. Confluence labels cells by rising height, which runs through the whole
+//! box: every batch reads what all batches before it found anywhere, so a part would have to know the others' labels thousands of
+//! times on its way, and one that knows its own alone would join other cells than the whole does. What works is a stream of
+//! random poses, or the same grid by `descent`, whose outcomes confluence's labels are but for one or two cells in ten thousand.
+//!
 //! A part carries the digest of its problem and the run it belongs to: parts that do not belong together are refused.
 
 use super::{Answer, Plan, Run, RunError, stages};
@@ -60,7 +65,8 @@ pub struct PartAnswer {
 pub enum PartError {
     /// The method decides cells from one another.
     #[error(
-        "{method} decides the cells of a grid from one another, so its grid cannot be divided; divide a stream of random poses"
+        "{method} decides the cells of a grid from one another, so its grid cannot be divided; divide a stream of random poses, \
+         or the grid of a method that follows each pose by itself, such as descent"
     )]
     Indivisible {
         /// Which method.

@@ -24,13 +24,21 @@ pub struct Plan {
     pub cost: Cost,
 }
 
+/// One in so many parts of a budget of time is the most that the grid takes of it; random poses, which make the Sum, have the others.
+pub(super) const GRID_PART: u32 = 2;
+
 impl Run {
     /// What this run will do on a problem.
     ///
     /// # Errors
     /// The method does not apply to the design, its settings are out of range, or the resolution does not suit the free errors.
     pub fn plan(&self, problem: &Problem) -> Result<Plan, RunError> {
-        let (method, pair) = (&self.method, problem.pair());
+        let pair = problem.pair();
+        let within = match self.sample {
+            Sample::Until(Stop::Budget(budget)) => self.method.within(budget / GRID_PART),
+            _ => None,
+        };
+        let method = within.as_ref().unwrap_or(&self.method);
         method.check()?;
         method.applies_to(problem.design())?;
         let grid = |resolution: &crate::landscape::Resolution| {
@@ -93,5 +101,31 @@ impl Plan {
         };
         let per_cell = self.cost.bytes_per_cell + if self.heights { Landscape::bytes(1) } else { 0 };
         ensure_fits(self.cost.what, cells.saturating_mul(per_cell), per_cell, axes, exec)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::SourceText;
+    use crate::problem::Draft;
+    use serde_json::json;
+    use std::time::Duration;
+
+    #[test]
+    fn of_a_budget_of_time_a_grid_that_can_end_early_takes_half_at_most() {
+        let text =
+            "[connector]\nfamily = \"v-face\"\naspect_ratio = 1.0\n[alignment]\nrotation_length = 1.0\n";
+        let problem = Draft::read(SourceText::new("v.toml", text)).and_then(Draft::build).unwrap();
+        let budget_s = |sample: Sample| {
+            let plan = Run { sample, ..Run::default() }.plan(&problem).unwrap();
+            plan.method.settings()["budget_s"].clone()
+        };
+        assert_eq!(budget_s(Sample::Until(Stop::Budget(Duration::from_secs(20)))), json!(10.0));
+        assert_eq!(budget_s(Sample::Until(Stop::Samples(20))), json!(null));
+        let method: Method = "descent".parse().unwrap();
+        let sample = Sample::Until(Stop::Budget(Duration::from_secs(20)));
+        let run = Run { method: method.clone(), sample, ..Run::default() };
+        assert_eq!(run.plan(&problem).unwrap().method, method);
     }
 }

@@ -1,5 +1,6 @@
 //! The stages of a run, each once.
 
+use super::plan::GRID_PART;
 use super::window::WindowError;
 use super::{Answer, Corrected, Plan, Run, RunError, Seating, jams, window};
 use crate::acceptance::{Acceptance, Domain, Warning};
@@ -8,7 +9,7 @@ use crate::landscape::{Grid, Landscape};
 use crate::merit::Merits;
 use crate::merit::success::success;
 use crate::merit::tolerance::followed;
-use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError};
+use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop};
 use crate::method::{Decided, Doubts, Follow, Method, affordable, descent};
 use crate::problem::Problem;
 
@@ -54,9 +55,9 @@ pub(super) fn finish(
         if plan.heights && by_products.landscape.is_none() {
             by_products.landscape = Some(Landscape::compute(problem.pair(), grid, exec)?);
         }
-        if let Some(settings) = &plan.sample {
+        if let Some(settings) = plan.sample.map(|settings| left(settings, started)) {
             let doubts = doubts.as_deref();
-            corrected = Some(correct(&plan.method, problem, grid, &acceptance, doubts, settings, exec)?);
+            corrected = Some(correct(&plan.method, problem, grid, &acceptance, doubts, &settings, exec)?);
         }
         if let Some(doubts) = &doubts {
             // Which cells are settled depends on the number of random poses, not on the time they took.
@@ -104,6 +105,18 @@ pub(super) fn finish(
         seconds: started.seconds(),
         threads: exec.threads(),
     })
+}
+
+/// What the grid has left of a budget of time, of which random poses have their part in any case.
+fn left(settings: correction::Settings, started: Stopwatch) -> correction::Settings {
+    let stop = match settings.stop {
+        Stop::Budget(budget) => {
+            let least = budget.saturating_sub(budget / GRID_PART);
+            Stop::Budget(budget.saturating_sub(started.elapsed()).max(least))
+        }
+        stop => stop,
+    };
+    correction::Settings { stop, ..settings }
 }
 
 /// The Sum, made unbiased by random poses, most of them where the method is in doubt.

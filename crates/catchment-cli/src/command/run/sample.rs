@@ -11,7 +11,8 @@ pub(crate) struct SampleArgs {
     /// Random poses followed exactly to correct the Sum, 0 for none [default: 4000, fewer for round halves; 0 with flood]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000_000), help_heading = SUM)]
     pub(super) samples: Option<u32>,
-    /// As many as can be followed in this time, such as "20s" or "2 min"; the report says how many
+    /// As many as can be followed in this time, such as "20s" or "2 min", less what the grid takes: half of it at most, what confluence has
+    /// not decided by then is undecided. The report says how many
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["samples", "tolerance"], help_heading = SUM)]
     budget: Option<Duration>,
     /// As many as it takes for a 95 % interval of ± this share of the Sum, such as 1% or 0.01; with --converge the largest

@@ -8,9 +8,10 @@ use crate::landscape::{Grid, LandscapeError};
 use crate::method::cost::{DESCENT_SECONDS, affordable};
 use crate::method::descent;
 use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
-use crate::method::registry::Entry;
+use crate::method::registry::{Entry, Method};
 use crate::problem::Problem;
 use serde_json::{Value, json};
+use std::time::Duration;
 
 pub(super) const NAME: &str = "confluence";
 
@@ -37,11 +38,19 @@ impl Decide for Settings {
         if !(self.known > 0.5 && self.known <= 1.0) {
             return Err(DecideError::method(KnownOutOfRange));
         }
+        if self.budget_s.is_some_and(|seconds| !(seconds > 0.0 && seconds.is_finite())) {
+            return Err(DecideError::method(NoBudget));
+        }
         self.descent.check()
     }
 
     fn motions(&self) -> descent::Settings {
         self.descent.clone()
+    }
+
+    fn within(&self, budget: Duration) -> Option<Method> {
+        let budget_s = self.budget_s.map_or(budget.as_secs_f64(), |own| own.min(budget.as_secs_f64()));
+        Some(Method::new(Self { budget_s: Some(budget_s), ..self.clone() }))
     }
 
     /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once; fewer where motions take long.
@@ -78,13 +87,20 @@ impl Decide for Settings {
     fn decide(&self, problem: &Problem, domain: &Domain, exec: &Exec) -> Result<Decided, DecideError> {
         let labels = run(problem.pair(), grid_of(&INFO, domain)?, self, exec)?;
         let by_products = ByProducts { joined: Some(labels.joined), ..ByProducts::default() };
-        Ok(Decided { by_products, ..Decided::plain(labels.acceptance(exec), self.settings()) })
+        // A clock that ended nothing has no part in the answer.
+        let budget_s = self.budget_s.filter(|_| labels.unreached() > 0);
+        let settings = Self { budget_s, ..self.clone() }.settings();
+        Ok(Decided { by_products, ..Decided::plain(labels.acceptance(exec), settings) })
     }
 }
 
 #[derive(Debug, thiserror::Error)]
 #[error("known is a share of the centres around a pose, above 0.5 and at most 1")]
 struct KnownOutOfRange;
+
+#[derive(Debug, thiserror::Error)]
+#[error("budget_s is a positive number of seconds")]
+struct NoBudget;
 
 impl From<ConfluenceError> for DecideError {
     fn from(error: ConfluenceError) -> Self {

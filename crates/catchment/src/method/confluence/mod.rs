@@ -5,13 +5,15 @@
 //!         ╲                    1  the 2ⁿ centres towards which the exact direction of descent leads: known, and alike? Then it
 //!   ·   ·  ╲·   ·   ·             is one of them, and nothing is followed
 //!           ╰─╮                2  else its exact motion, until it comes among centres that are
-//!   a   a   a ▼ j   j          3  at last the neighbours of thin jams, where they joined others, to their end: what jams
+//!   a   a   a ▼ j   j          3  at last what touches thin jams, where it joined others, to its end: what jams
 //!   a   a   a   j   j             may be thinner than a cell
 //! ```
 //!
 //! What lies lower is known before: motion falls. As rivers do, motions flow together, so most are followed for a fraction of their way, and
 //! where a whole neighbourhood ends alike not at all. Cells are decided in batches that read only what earlier batches found: the same
 //! bits for any number of threads.
+//!
+//! A budget of motions or of time ends this early: what lies lower is decided then, what lies higher is undecided, and nothing is guessed.
 //!
 //! With friction ([`descent::Settings::friction`]) the first of the three is left out: the way bends from the direction of descent.
 //!
@@ -36,7 +38,7 @@ use super::metric::Metric;
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
-use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{Fold, Gradient, Grid, LandscapeError, Relief, Resolution};
 use crate::pose::PoseError;
 use label::Label;
@@ -51,13 +53,18 @@ pub struct Settings {
     /// Share of the centres around a pose that must be known, all of them alike, above ½ and at most 1. Of the eight and fewer that
     /// grids of up to three axes have, all must be.
     pub known: f64,
+    /// Motions after which no further batch of cells is begun; cells that were not reached, the highest ones, are undecided. As many as it
+    /// takes where nothing is said.
+    pub motions: Option<usize>,
+    /// The same by the clock, in seconds from the beginning: how far it comes depends on the machine. Heights are computed in any case.
+    pub budget_s: Option<f64>,
     /// How poses are followed.
     pub descent: descent::Settings,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { known: 0.75, descent: descent::Settings::default() }
+        Self { known: 0.75, motions: None, budget_s: None, descent: descent::Settings::default() }
     }
 }
 
@@ -122,12 +129,13 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
         let per_cell = (needed / (cells as u64).max(1)).max(1) + 1;
         vec![Advice::AtMostResolution(Resolution::largest_that_fits(budget, per_cell, grid.axes.len()))]
     })?;
+    let started = Stopwatch::start();
     let part = |from, to| exec.part([from, to], STAGE);
     let relief = Relief::compute(pair, grid, &part(0.0, HEIGHTS_SHARE), |error: &PoseError| {
         let metric = Metric::new(pair, grid, error);
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
-    let river = River { pair, relief: &relief, settings };
+    let river = River { pair, relief: &relief, settings, started };
     let (kept, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
     let Relief { grid, fold, .. } = relief;
     Ok(Labels { grid, fold, kept, joined })
@@ -156,6 +164,11 @@ impl Labels {
         self.kept[self.fold.kept_cell(cell)].outcome()
     }
 
+    /// Kept cells in contact that a budget did not reach.
+    fn unreached(&self) -> usize {
+        self.kept.par_iter().filter(|label| !label.is_known()).count()
+    }
+
     /// The outcomes of all cells.
     pub fn acceptance(&self, exec: &Exec) -> Acceptance {
         let slab = self.fold.slab();
@@ -168,7 +181,15 @@ impl Labels {
             });
         });
         let cells = outcomes.par_iter().filter(|outcome| **outcome == Outcome::Undecided).count();
-        let warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
+        let mut warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
+        let (left, of) = (self.unreached(), self.joined.cells);
+        if left > 0 {
+            let text = format!(
+                "the budget was spent before {left} of {of} cells in contact were reached, mirror images counted once: they are undecided, and lie \
+                 higher than those that were decided"
+            );
+            warnings.push(Warning::Note { text });
+        }
         Acceptance { method: door::NAME, domain: Domain::Grid(self.grid.clone()), outcomes, warnings }
     }
 }
