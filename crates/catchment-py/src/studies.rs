@@ -76,6 +76,7 @@ impl Problem {
         examine: usize,
         cells: Option<String>,
         friction: f64,
+        certified: bool,
         expected: Expected,
         how: How,
     ) -> PyResult<Told> {
@@ -84,7 +85,8 @@ impl Problem {
             let problem = &self.inner;
             let errors = expected.distribution(problem)?;
             let resolution = resolution(cells.as_deref())?;
-            let settings = jams::Settings { motions, seed, errors, examined: examine, friction, resolution };
+            let settings =
+                jams::Settings { motions, seed, errors, examined: examine, friction, resolution, certified };
             let found = jams::run(problem, &settings, exec)?;
             let report =
                 JamsReport::new(problem.design(), &found, doubts(problem), Some(timing(&started, exec)));

@@ -45,6 +45,9 @@ pub(crate) struct JamsArgs {
     /// A grid over the error box whose merge tree says depths, too, such as 200 or x=100,pitch=50
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
+    /// How far it must be lifted at least, too, for certain: of simple halves with one or two free errors, in seconds
+    #[arg(long)]
+    certified: bool,
     /// Coefficient of friction between the halves
     #[arg(long, value_name = "MU", default_value_t = 0.0)]
     friction: f64,
@@ -91,6 +94,7 @@ impl JamsArgs {
             examined: self.examine as usize,
             friction: self.friction,
             resolution: self.resolution,
+            certified: self.certified,
         })
     }
 }

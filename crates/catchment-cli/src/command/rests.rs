@@ -42,6 +42,9 @@ pub(crate) struct RestsArgs {
     /// A grid over the error box whose merge tree says depths, too, such as 200 or x=100,pitch=50
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
+    /// How far it must be lifted at least, too, for certain: of simple halves with one or two free errors, in seconds
+    #[arg(long)]
+    certified: bool,
     #[command(flatten)]
     asked: AskedArgs,
     #[command(flatten)]
@@ -59,6 +62,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
         seed: args.seed,
         examined: args.examine as usize,
         resolution: args.resolution,
+        certified: args.certified,
     };
     let running = args.exec.start()?;
     let found: Rests = find(&problem, &settings, &running.exec)?;

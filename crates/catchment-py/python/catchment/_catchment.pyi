@@ -99,6 +99,7 @@ class Problem:
         examine: int,
         cells: str | None,
         friction: float,
+        certified: bool,
         expected: Expected,
         how: How,
     ) -> Told:

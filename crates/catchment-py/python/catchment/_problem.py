@@ -245,7 +245,7 @@ class Problem:
         such as {"friction": 0.2}.
         resolution: cells per axis of the error grid: 30, {"x": 40, "yaw": 24}. poses: instead of a grid, so many random poses.
         samples: random poses followed exactly to correct the Sum, 0 for none; or budget: as many as can be followed in
-        these seconds; or tolerance: until the 95 % interval is ± this share of the Sum.
+        these seconds, of which the grid takes half at most; or tolerance: until the 95 % interval is ± this share of the Sum.
         error_sigma, error_uniform: errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds `success`.
         require: what must hold of the report, such as "onaa.edge>=0.3"; `Result.unmet` says what does not.
         heights: keep the heights of first contact. jams: also where poses jam, and on what; window: also the largest box of
@@ -349,6 +349,7 @@ class Problem:
         examine: int = 6,
         resolution: Cells | None = None,
         friction: float = 0.0,
+        certified: bool = False,
         error_sigma: Errors | None = None,
         error_uniform: Errors | None = None,
         threads: int = 0,
@@ -357,11 +358,12 @@ class Problem:
     ) -> Report:
         """Where it jams instead of docking, on which features, how firmly. `report["jams"]`.
 
-        motions: random poses that are followed. examine: how many jams are looked at closely.
+        motions: random poses that are followed. examine: how many jams are looked at closely. certified: also how far each must be
+        lifted at least.
         """
         expected = _expected(error_sigma, error_uniform)
         run_how = how(threads, memory, progress)
-        return Report._of(self._native.jams(motions, seed, examine, cells(resolution), friction, expected, run_how))
+        return Report._of(self._native.jams(motions, seed, examine, cells(resolution), friction, certified, expected, run_how))
 
     def zraa(self, *, threads: int = 0, memory: int | None = None, progress: Progress = False) -> Report:
         """Offsets that are corrected by sliding alone, all rotations locked, exactly. `report["area_d2"]` or `report["from_d"]`."""

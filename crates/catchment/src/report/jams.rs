@@ -116,11 +116,7 @@ impl JamsReport {
         );
         wrapped(text, &format!("  {:<15}", format!("jam {number}")), &share);
         let told = self.told();
-        said(
-            text,
-            "  rests",
-            &format!("{}, {} above the mated pose", told.place(&jam.pose), told.length(jam.above_mated_d)),
-        );
+        said(text, "  rests", &format!("{}{}", told.place(&jam.pose), told.above(jam.above_mated_d)));
         let wide = told.extent(&jam.pose, &jam.extent);
         if !wide.is_empty() {
             said(text, "  anywhere in", &wide);
@@ -132,9 +128,8 @@ impl JamsReport {
             said(text, "  held", &told.held(examined));
             said(text, "  out", &self.out(examined));
         }
-        if let Some(depth) = jam.depth_on_grid_d {
-            said(text, "", &format!("{} deep by the merge tree of the grid", told.fine(depth)));
-        }
+        let asked = self.settings.certified && jam.examined.is_some();
+        told.depth_lines(text, asked, jam.depth_at_least_d, jam.depth_on_grid_d);
         told.contact_lines(text, &jam.contacts);
     }
 
@@ -176,7 +171,7 @@ impl JamsReport {
     /// Jams and what touches in each as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = "jam count share share_lo share_hi of_jams of_failures expected x y roll pitch yaw height above_mated order \
-                    slope_lo slope_hi curvature firmness rise_at_most climb_at_most depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
+                    slope_lo slope_hi curvature firmness rise_at_most climb_at_most depth_at_least depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
                     moving_name moving_part moving_x moving_y moving_z";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         for (k, jam) in self.jams.iter().enumerate() {
@@ -196,7 +191,7 @@ impl JamsReport {
             record.push(examined.map_or("", |examined| examined.firmness.name()).to_owned());
             record.push(or_nothing(examined.and_then(|examined| examined.rise_at_most_d)));
             record.push(or_nothing(way.map(|way| way.climb_at_most_d)));
-            record.push(or_nothing(jam.depth_on_grid_d));
+            record.extend([jam.depth_at_least_d, jam.depth_on_grid_d].map(or_nothing));
             record.push(way.map_or("", |way| way.to.name()).to_owned());
             for contact in &jam.contacts {
                 let feature = |feature: &FeatureReport| {

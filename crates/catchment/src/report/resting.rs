@@ -118,6 +118,26 @@ impl<'a> Told<'a> {
         }
     }
 
+    /// Depths beside that of the way that was found; at least where that was `asked`.
+    pub(super) fn depth_lines(
+        self,
+        text: &mut String,
+        asked: bool,
+        at_least: Option<f64>,
+        on_grid: Option<f64>,
+    ) {
+        if let Some(depth) = at_least {
+            let depth = if depth < NOTHING { 0.0 } else { depth };
+            let depth = super::text::rounded_down(depth * self.scale());
+            said(text, "", &format!("by {depth} {} at least, certainly", self.unit()));
+        } else if asked {
+            said(text, "", "how far at least is not certain");
+        }
+        if let Some(depth) = on_grid {
+            said(text, "", &format!("by {}, the merge tree of the grid says", self.fine(depth)));
+        }
+    }
+
     /// What touches, and where on either half.
     pub(super) fn contact_lines(self, text: &mut String, contacts: &[ContactReport]) {
         for (k, words) in words(contacts).iter().enumerate() {
@@ -130,6 +150,15 @@ impl<'a> Told<'a> {
         if contacts.len() > MOST_CONTACTS {
             said(text, "", &format!("and at {} more", contacts.len() - MOST_CONTACTS));
         }
+    }
+
+    /// How far it is above the mated pose, if it is: `, 1.2 mm above the mated pose`.
+    pub(super) fn above(self, above: f64) -> String {
+        if above.abs() < ONE_HEIGHT {
+            return String::new();
+        }
+        let side = if above < 0.0 { "below" } else { "above" };
+        format!(", {} {side} the mated pose", self.length(above.abs()))
     }
 
     /// From where to where rests lie where that is more than a place.
@@ -224,6 +253,8 @@ impl<'a> Told<'a> {
 const ON_ITS_SIDE: f64 = 0.0175;
 /// Heights below this are nothing, in D: rounding.
 const NOTHING: f64 = 1e-8;
+/// Heights nearer than this are one, in D.
+const ONE_HEIGHT: f64 = 1e-4;
 /// Contacts whose places are told.
 const MOST_CONTACTS: usize = 4;
 /// Rests within this are at one place, in D or radians.

@@ -51,6 +51,8 @@ pub struct RestReport {
     pub above_mated_d: f64,
     /// At most so far it must be lifted to leave, in D; null where no way out was found, or it was not examined.
     pub depth_at_most_d: Option<f64>,
+    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
+    pub depth_at_least_d: Option<f64>,
     /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
     pub depth_on_grid_d: Option<f64>,
     /// The rest to which that way leads, from 0 in this list; null where it leads off.
@@ -82,6 +84,7 @@ impl RestReport {
             height_d: found.height,
             above_mated_d: found.above,
             depth_at_most_d: way.map(|way| way.climb),
+            depth_at_least_d: found.depth_at_least,
             depth_on_grid_d: found.depth_on_grid,
             leads_to: place.leads_to,
             contacts: found.contacts.iter().map(ContactReport::from).collect(),
@@ -162,12 +165,7 @@ impl RestsReport {
         let share = format!("basin {} of the box{docked}{places}", with_interval(&rest.of_box));
         wrapped(text, &format!("  {:<15}", format!("rest {number}")), &share);
         let place = told.place(&rest.pose);
-        let above = match rest.above_mated_d {
-            above if above.abs() < LEVEL => String::new(),
-            above if above < 0.0 => format!(", {} below the mated pose", told.length(-above)),
-            above => format!(", {} above the mated pose", told.length(above)),
-        };
-        said(text, "  rests", &format!("{place}{above}"));
+        said(text, "  rests", &format!("{place}{}", told.above(rest.above_mated_d)));
         let wide = told.extent(&rest.pose, &rest.extent);
         if !wide.is_empty() {
             said(text, "  anywhere in", &wide);
@@ -179,9 +177,8 @@ impl RestsReport {
             said(text, "  held", &told.held(examined));
             said(text, "  depth", &self.out(rest));
         }
-        if let Some(depth) = rest.depth_on_grid_d {
-            said(text, "", &format!("{} by the merge tree of the grid", told.fine(depth)));
-        }
+        let asked = self.settings.certified && rest.examined.is_some();
+        told.depth_lines(text, asked, rest.depth_at_least_d, rest.depth_on_grid_d);
         told.contact_lines(text, &rest.contacts);
     }
 
@@ -204,7 +201,7 @@ impl RestsReport {
     /// Rests as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = "rest count share share_lo share_hi docked x y roll pitch yaw height above_mated order slope_lo slope_hi free curvature \
-                    firmness depth_at_most depth_on_grid leads_to touching";
+                    firmness depth_at_most depth_at_least depth_on_grid leads_to touching";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         let or_nothing = |value: Option<f64>| value.map_or_else(String::new, number);
         for (k, rest) in self.rests.iter().enumerate() {
@@ -220,7 +217,7 @@ impl RestsReport {
             record.push(or_nothing(held.and_then(|held| held.curvature_per_d)));
             record.push(rest.examined.map_or("", |examined| examined.firmness.name()).to_owned());
             record.push(or_nothing(rest.depth_at_most_d));
-            record.push(or_nothing(rest.depth_on_grid_d));
+            record.extend([rest.depth_at_least_d, rest.depth_on_grid_d].map(or_nothing));
             record.push(rest.leads_to.map_or_else(String::new, |to| (to + 1).to_string()));
             record.push(super::resting::words(&rest.contacts).join("; "));
             records.push(record);
@@ -239,5 +236,3 @@ fn with_interval(share: &ShareReport) -> String {
 
 /// Rests that are told.
 const SHOWN: usize = 6;
-/// Heights nearer than this are one, in D.
-const LEVEL: f64 = 1e-4;

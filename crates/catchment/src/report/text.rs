@@ -94,6 +94,12 @@ pub fn significant(value: f64) -> String {
     format!("{value:.*}", (3.0 - magnitude).max(0.0) as usize)
 }
 
+/// Four significant digits of a number from 0 on, rounded towards 0: what is at least.
+pub fn rounded_down(value: f64) -> String {
+    let digits = 10f64.powf(3.0 - value.log10().floor());
+    significant(if value > 0.0 { (value * digits).floor() / digits } else { 0.0 })
+}
+
 /// `2.391 ± 0.013`: the farther end of the interval, rounded up to two digits, and the value to as many decimals.
 pub fn with_error(value: f64, [lo, hi]: [f64; 2]) -> String {
     let error = (hi - value).max(value - lo);
@@ -156,6 +162,8 @@ mod tests {
     fn numbers_keep_four_digits() {
         let written = [0.0, 0.012_345, 2.345_67, 23.4567, 12_345.6, 1.5e-7].map(significant);
         assert_eq!(written, ["0", "0.01235", "2.346", "23.46", "12346", "1.500e-7"]);
+        let at_least = [0.0, 0.012_349, 9.999_9, 0.5, 12_345.6].map(rounded_down);
+        assert_eq!(at_least, ["0", "0.01234", "9.999", "0.5000", "12340"]);
         assert_eq!(grouped(24_300_000), "24 300 000");
         assert_eq!(rounded(-0.5), "-0.5");
         assert_eq!(with_error(2.391_34, [2.380, 2.403_44]), "2.391 ± 0.013");

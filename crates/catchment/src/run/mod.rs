@@ -11,7 +11,7 @@
 //! A [`Run`] is all that changes an answer beside the problem: method, resolution, random poses, errors to expect, requirements. It
 //! is data: written as JSON, read back, compared, sent to another machine. [`Run::on`] computes it; the same run on the
 //! same problem gives the same bits, whatever [`Exec`] says about threads, except where [`Stop::Budget`] lets the clock say how
-//! many poses are drawn.
+//! many poses are drawn, and how far the grid comes.
 //!
 //! A run over listed poses ([`Over::Stream`]) or by a method that decides each pose by itself can be divided over machines: [`part`].
 //!

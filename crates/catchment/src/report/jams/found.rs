@@ -65,6 +65,8 @@ pub struct JamReport {
     pub examined: Option<ExaminedReport>,
     /// The depth that the merge tree of a grid says, in D: a bound from neither side; null where no grid was asked for, or it does not say.
     pub depth_on_grid_d: Option<f64>,
+    /// At least so far it must be lifted before it may come to rest elsewhere, in D, certainly; null where that was not asked for, or is not known.
+    pub depth_at_least_d: Option<f64>,
 }
 
 /// From where to where rests lie along an error, in D or radians.
@@ -234,6 +236,7 @@ impl JamReport {
             contacts: jam.contacts.iter().map(ContactReport::from).collect(),
             examined: jam.examined.as_ref().map(ExaminedReport::from),
             depth_on_grid_d: jam.depth_on_grid,
+            depth_at_least_d: jam.depth_at_least,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::pose::CorPose;
 use crate::problem::Problem;
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Rests nearer than this are at one place, in the metric of the motion, in D: far above where motions end, far below a part's features.
 const SAME: f64 = 0.01;
@@ -20,13 +20,17 @@ const SAME: f64 = 0.01;
 const NEAR: f64 = 0.1;
 /// More places on the same features than this lie all over.
 const MOST_PLACES: usize = 48;
+/// Level rests by which a place is known, on an average: of fewer, chance leaves gaps that part what is one level (of so many in one of some hundred).
+const ENOUGH: usize = 4;
+/// Rests of a jam that are asked until one is level and does not lie at an edge.
+const LEVEL_TRIES: usize = 16;
 
 /// Rests that are one jam.
 #[derive(Debug, Clone)]
 pub(in crate::run) struct Cluster {
     /// Their numbers, ascending.
     pub(in crate::run) members: Vec<usize>,
-    /// The one in the middle.
+    /// The one in the middle, or of level ones one that does not lie at an edge.
     pub(in crate::run) middle: usize,
     /// From where to where they lie, images laid upon each other.
     pub(in crate::run) extent: [[f64; 2]; 5],
@@ -60,7 +64,12 @@ pub(in crate::run) fn gather(
         .iter()
         .map(|group| {
             exec.check()?;
-            Ok(firmness::held(problem.pair(), leader(group), seed))
+            let held = firmness::held(problem.pair(), leader(group), seed);
+            if held.firmness != Firmness::Ridge {
+                return Ok(held);
+            }
+            let others = group.1[1..].iter().copied();
+            Ok(level(problem, rests, others, seed).map_or(held, |(_, held)| held))
         })
         .collect::<Result<_, Cancelled>>()?;
     let mut sets = Sets::new(groups.len());
@@ -82,7 +91,7 @@ pub(in crate::run) fn gather(
     for (set, mut members) in joined {
         exec.check()?;
         members.sort_unstable();
-        clusters.push(Cluster::of(rests, members, &held[set as usize], images));
+        clusters.push(Cluster::of(problem, rests, members, &held[set as usize], images, seed));
     }
     clusters.sort_by_key(|cluster| (Reverse(cluster.members.len()), cluster.members[0]));
     Ok(clusters)
@@ -118,7 +127,14 @@ fn near(rests: &[Rested], members: &[usize], images: &Images) -> Vec<Vec<usize>>
 }
 
 impl Cluster {
-    fn of(rests: &[Rested], members: Vec<usize>, held: &Held, images: &Images) -> Self {
+    fn of(
+        problem: &Problem,
+        rests: &[Rested],
+        members: Vec<usize>,
+        held: &Held,
+        images: &Images,
+        seed: u64,
+    ) -> Self {
         let pose = |k: usize| &rests[k].pose;
         // How far the images of all members that are nearest to one are off it.
         let folded = |to: usize| -> Vec<[f64; 5]> {
@@ -137,6 +153,14 @@ impl Cluster {
         };
         let nearest = (0..members.len()).min_by(|a, b| off(&around[*a]).total_cmp(&off(&around[*b])));
         let middle = members[nearest.unwrap_or_default()];
+        // On level ground around a hole the mean lies in the hole, and what is nearest to it at its edge: one that lies level stands for all.
+        let (middle, own_held) = if matches!(held.firmness, Firmness::Level | Firmness::Ridge) {
+            let tried = std::iter::once(middle).chain(members.iter().copied());
+            level(problem, rests, tried, seed).map_or((middle, None), |(member, held)| (member, Some(held)))
+        } else {
+            (middle, (middle == members[0]).then_some(*held))
+        };
+        let firmness = own_held.map_or(held.firmness, |held| held.firmness);
         let own = rests[middle].error.to_array();
         let mut extent = own.map(|value| [value; 2]);
         for errors in folded(middle) {
@@ -154,9 +178,47 @@ impl Cluster {
             }
         }
         let is_image = |place: &usize| images.nearest(pose(*place), pose(middle)).1 <= SAME;
-        let are_images = held.firmness != Firmness::Level && places.iter().all(is_image);
-        let places = if are_images { places.len() } else { 1 };
-        let held = (middle == members[0]).then_some(*held);
-        Self { members, middle, extent, places, held }
+        let places = if firmness == Firmness::Level {
+            if members.len() < ENOUGH * places.len() { 1 } else { levels(rests, &places, images) }
+        } else if places.iter().all(is_image) {
+            places.len()
+        } else {
+            1
+        };
+        Self { members, middle, extent, places, held: own_held }
     }
+}
+
+/// The first of some rests that lies level, and how, of as many as are asked.
+fn level(
+    problem: &Problem,
+    rests: &[Rested],
+    members: impl Iterator<Item = usize>,
+    seed: u64,
+) -> Option<(usize, Held)> {
+    let mut held = members.take(LEVEL_TRIES).map(|k| (k, firmness::held(problem.pair(), &rests[k], seed)));
+    held.find(|(_, held)| held.firmness == Firmness::Level)
+}
+
+/// On how many levels that are images of each other these places lie, each [`NEAR`] another of its level; 1 where they are no images, or lie all over.
+fn levels(rests: &[Rested], places: &[usize], images: &Images) -> usize {
+    if places.len() > MOST_PLACES {
+        return 1;
+    }
+    let pose = |k: usize| &rests[places[k]].pose;
+    let mut sets = Sets::new(places.len());
+    for j in 0..places.len() {
+        for k in 0..j {
+            // Between two that are as near as they can be there may be one that is near to both.
+            if images.distance(pose(j), pose(k)) <= 2.0 * NEAR {
+                sets.join(j as u32, k as u32);
+            }
+        }
+    }
+    let level: Vec<u32> = (0..places.len()).map(|k| sets.find(k as u32)).collect();
+    let level = level.as_slice();
+    let of = |set: u32| (0..places.len()).filter(move |k| level[*k] == set);
+    let is_image = |k: usize| of(level[0]).any(|to| images.nearest(pose(k), pose(to)).1 <= NEAR);
+    let found: BTreeSet<u32> = level.iter().copied().collect();
+    if found.iter().all(|set| of(*set).any(is_image)) { found.len() } else { 1 }
 }

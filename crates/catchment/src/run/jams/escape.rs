@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Ways are straight in position and turn: along every error, towards the mated pose, at random, and then about the best. Each is looked at
-//! every [`STEP`]; the best is looked at [`FINER`] times as closely. The climb is that of a way that exists, so the lowest way out of all climbs no more.
+//! every [`STEP`]; the best is looked at [`FINER`] times as closely, and so again about its highest place. The climb is that of a way that exists, so the lowest way out of all climbs no more.
 
 use super::firmness::{Ground, STEEPEST, Space, ground, moved};
 use super::rests::Rested;
@@ -21,8 +21,9 @@ use glam::DVec2;
 
 /// How closely a way is looked at, in the metric of the motion, in D.
 const STEP: f64 = 0.02;
-/// How much more closely the best.
+/// How much more closely the best, and how often: up to 2·10⁻⁶ D about its highest place.
 const FINER: usize = 10;
+const LOOKS: usize = 4;
 /// How far ways are followed, in D: from one side of a connector to the other.
 const FARTHEST: f64 = 1.5;
 /// Random ways and moves about the best, of simple halves, per free error.
@@ -204,16 +205,28 @@ impl Search<'_> {
         step_length(lateral, turned, self.space.rho()) > ELSEWHERE
     }
 
-    /// The climb of a way, looked at more closely.
+    /// The climb of a way, looked at more and more closely about its highest place.
     fn finer(&mut self, best: &Way) -> WayOut {
-        let steps = (best.length / STEP * FINER as f64).round() as usize;
-        let (mut top, mut last) = (best.out.climb, self.rest.height);
-        for k in 1..steps {
-            let pose = self.space.displaced(self.rest, &best.along, k as f64 * STEP / FINER as f64);
-            if let Ground::At(z) = self.look(&pose, last + STEEPEST * STEP) {
-                top = top.max(z - self.rest.height);
-                last = z;
+        let mut top = best.out.climb;
+        let (mut from, mut to, mut last) = (0.0, best.length, self.rest.height);
+        let mut step = STEP;
+        for _ in 0..LOOKS {
+            step /= FINER as f64;
+            let (begun, mut highest) = (last, (from, last));
+            for k in 1..((to - from) / step).round() as usize {
+                let length = from + k as f64 * step;
+                let pose = self.space.displaced(self.rest, &best.along, length);
+                if let Ground::At(z) = self.look(&pose, last + STEEPEST * STEP) {
+                    if z > highest.1 {
+                        highest = (length, z);
+                    }
+                    last = z;
+                }
             }
+            top = top.max(highest.1 - self.rest.height);
+            // From a step before the highest place on: what leads there was as high as where this look began.
+            last = begun.max(highest.1 - STEEPEST * step);
+            (from, to) = ((highest.0 - step).max(0.0), (highest.0 + step).min(best.length));
         }
         WayOut { climb: top, ..best.out }
     }

@@ -14,24 +14,24 @@
 //!   friction or chance decides where on it a half stays.
 //! - **Order**: how its contacts hold it, to first or second order ([`crate::method::descent::immobility()`]).
 //! - **Way out**: by how much it must be lifted, at most, to get to where motion leads lower: the least climb of all ways that were tried, each
-//!   straight. A bent way may be lower, so this is a bound from above alone.
+//!   straight. A bent way may be lower, so this is a bound from above. One from below is told where it is asked for ([`Settings::certified`]).
 //!
 //! Not promised: rests that fewer than about one in N random poses meet, and the least of anything that was searched for. Rise is that of the height alone:
 //! with friction a half may stay where it would fall. Lengths in D, angles in radians.
 
 pub(super) mod clusters;
+pub(super) mod depth;
 mod draw;
 pub(super) mod escape;
 mod firmness;
-pub(super) mod grid;
 pub(super) mod images;
 pub(super) mod rests;
 #[cfg(test)]
 mod tests;
 
+pub use depth::DepthError;
 pub use escape::WayOut;
 pub use firmness::{Firmness, Held};
-pub use grid::DepthError;
 
 use crate::acceptance::{Domain, Outcome};
 use crate::connector::Side;
@@ -67,11 +67,21 @@ pub struct Settings {
     pub friction: f64,
     /// A grid whose merge tree says depths, too; none where nothing is said.
     pub resolution: Option<Resolution>,
+    /// Whether depths are bounded from below, too, by boxes of poses: of simple halves without friction, with one or two free errors as a rule.
+    pub certified: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { motions: None, seed: 1, errors: None, examined: 6, friction: 0.0, resolution: None }
+        Self {
+            motions: None,
+            seed: 1,
+            errors: None,
+            examined: 6,
+            friction: 0.0,
+            resolution: None,
+            certified: false,
+        }
     }
 }
 
@@ -116,6 +126,8 @@ pub struct Jam {
     pub examined: Option<Examined>,
     /// The depth that the merge tree of a grid says, in D; none where none was asked for or none is known.
     pub depth_on_grid: Option<f64>,
+    /// How far it must be lifted at least before it may come to rest anywhere else, in D; none where that was not asked for or is not known.
+    pub depth_at_least: Option<f64>,
 }
 
 /// Two features that touch, and where.
@@ -196,7 +208,7 @@ pub enum JamsError {
     /// Numbers that are no covariance.
     #[error("the covariance of the errors is none: symmetric, without negative variances")]
     NotACovariance,
-    /// The grid says no depths.
+    /// No depths can be told.
     #[error(transparent)]
     Depth(#[from] DepthError),
     /// It was asked to stop.
@@ -244,6 +256,7 @@ pub(super) fn by(
     if motions == 0 {
         return Err(JamsError::Nothing);
     }
+    depth::check(problem, settings.certified, followed_by.friction)?;
     let settings = Settings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
     let follow = Follow { problem, features: &features, motions: followed_by, which: Which::Jams };
@@ -277,11 +290,7 @@ pub(super) fn by(
     for (jam, examined) in jams.iter_mut().zip(seen) {
         jam.examined = Some(examined);
     }
-    if let Some(resolution) = &settings.resolution {
-        let at: Vec<_> = jams.iter().map(|jam| (jam.pose, jam.height)).collect();
-        let depths = grid::depths(problem, resolution, &at, exec)?;
-        jams.iter_mut().zip(depths).for_each(|(jam, depth)| jam.depth_on_grid = depth);
-    }
+    depth::tell(problem, jams.iter_mut().collect(), settings.resolution.as_ref(), settings.certified, exec)?;
     let pairs = touching(problem, &features, &rests[..own]);
     Ok(Jams { settings, counts, expected, jams, pairs })
 }
@@ -335,6 +344,7 @@ impl Jam {
             contacts: rest.touched(problem, features),
             examined: None,
             depth_on_grid: None,
+            depth_at_least: None,
         }
     }
 }

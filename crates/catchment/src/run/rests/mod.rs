@@ -25,7 +25,7 @@ mod tests;
 use super::jams::clusters::{self, Cluster};
 use super::jams::images::Images;
 use super::jams::rests::{Follow, Rested, Which};
-use super::jams::{DepthError, Examined, Jam, WayOut, grid};
+use super::jams::{DepthError, Examined, Jam, WayOut, depth};
 use crate::acceptance::{Domain, Outcome};
 use crate::contact::Features;
 use crate::exec::{Cancelled, Exec};
@@ -49,11 +49,13 @@ pub struct Settings {
     pub examined: usize,
     /// A grid whose merge tree says depths, too; none where nothing is said.
     pub resolution: Option<Resolution>,
+    /// Whether depths are bounded from below, too, by boxes of poses: of simple halves with one or two free errors as a rule.
+    pub certified: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { motions: None, seed: 1, examined: 6, resolution: None }
+        Self { motions: None, seed: 1, examined: 6, resolution: None, certified: false }
     }
 }
 
@@ -85,7 +87,7 @@ pub enum RestsError {
     /// Nothing was asked.
     #[error("no motions, no rests: follow one random pose at least")]
     Nothing,
-    /// The grid says no depths.
+    /// No depths can be told.
     #[error(transparent)]
     Depth(#[from] DepthError),
     /// It was asked to stop.
@@ -123,6 +125,7 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
     if motions == 0 {
         return Err(RestsError::Nothing);
     }
+    depth::check(problem, settings.certified, 0.0)?;
     let settings = Settings { motions: Some(motions), ..settings.clone() };
     let features = Features::of(problem.pair());
     let motions_of = descent::Settings::default();
@@ -157,11 +160,8 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Rests,
         place.leads_to = examined.way_out.and_then(|way| leads_to(problem, &images, &middles, &way));
         place.found.examined = Some(examined);
     }
-    if let Some(resolution) = &settings.resolution {
-        let at: Vec<_> = places.iter().map(|place| (place.found.pose, place.found.height)).collect();
-        let depths = grid::depths(problem, resolution, &at, exec)?;
-        places.iter_mut().zip(depths).for_each(|(place, depth)| place.found.depth_on_grid = depth);
-    }
+    let found = places.iter_mut().map(|place| &mut place.found).collect();
+    depth::tell(problem, found, settings.resolution.as_ref(), settings.certified, exec)?;
     Ok(Rests { settings, counts, rests: places })
 }
 

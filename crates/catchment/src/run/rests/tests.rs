@@ -62,11 +62,10 @@ fn a_rigid_body_comes_to_the_same_rests() {
     }
 }
 
-/// A ball of radius r in a funnel of slope s and rim radius R rests with its centre r√(1 + s²) above the apex, and leaves over the rim at R s + r.
-#[test]
-fn a_ball_in_a_cone_leaves_over_its_rim() {
+/// A ball of radius 0.2 in a funnel of slope 1 and rim radius 0.5.
+fn ball_in_cone() -> String {
     const SIDES: usize = 12;
-    let (slope, rim, radius) = (1.0f64, 0.5f64, 0.2f64);
+    let (slope, rim) = (1.0f64, 0.5f64);
     // Wedges about the axis: each holds up one plane through the apex; the least rim is in the middle of a side.
     let mut text = String::from("[connector]\nwidth = 1.0\n");
     let corner = rim / (std::f64::consts::PI / SIDES as f64).cos();
@@ -88,7 +87,14 @@ fn a_ball_in_a_cone_leaves_over_its_rim() {
     }
     text += "[[connector.moving.parts]]\nsphere = { radius = 0.2 }\nchord_error = 0.0005\n[alignment]\nfree = [\"x\", \"y\"]\n\
              center_of_rotation = 0.0\nrotation_length = 0.5\n[errors]\nx = 0.4\ny = 0.4\n";
-    let found = found(&problem(&text), 60);
+    text
+}
+
+/// A ball of radius r in a funnel of slope s and rim radius R rests with its centre r√(1 + s²) above the apex, and leaves over the rim at R s + r.
+#[test]
+fn a_ball_in_a_cone_leaves_over_its_rim() {
+    let (slope, rim, radius) = (1.0f64, 0.5f64, 0.2f64);
+    let found = found(&problem(&ball_in_cone()), 60);
     let place = &found.rests[0];
     let expected = slope * rim + radius - radius * (1.0 + slope * slope).sqrt();
     // The ball is a chord error too small, and its facets shift where it touches by as much.
@@ -96,12 +102,81 @@ fn a_ball_in_a_cone_leaves_over_its_rim() {
     assert_eq!(place.found.examined.unwrap().way_out.unwrap().to, Outcome::Missed);
 }
 
+/// A round peg with play in a chamfered hole.
+const PEG: &str = "[connector]\nfamily = \"pin-hole\"\npins = 1\ncircle_radius = 0\npin_radius = 0.1\nclearance = 0.01\n\
+                   chamfer = 0.06\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.3\ny = 0.3\n";
+
+/// A plate that lies on three fingers about its middle, free to tilt.
+fn plate_on_fingers() -> String {
+    let fingers = [0.0f64, 120.0, 240.0].map(|degrees| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let foot = |dx: f64, dy: f64| format!("[{}, {}, 0]", 0.3 * cos + dx, 0.3 * sin + dy);
+        let feet = [foot(0.05, 0.0), foot(-0.03, 0.04), foot(-0.03, -0.04)].join(", ");
+        format!("[[{}, {}, 1], {feet}]", 0.3 * cos, 0.3 * sin)
+    });
+    let corners = [0.5, 1.0].map(|z| {
+        let corner = |[x, y]: [f64; 2]| format!("[{x}, {y}, {z}]");
+        [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(corner).join(", ")
+    });
+    format!(
+        "[connector]\nwidth = 1.0\nface_height = 1.0\nfixed = {{ pieces = [{}] }}\nmoving = {{ pieces = [[{}]] }}\n\
+         [alignment]\nfree = [\"roll\", \"pitch\"]\nmount = \"y\"\ncenter_of_rotation = 0.0\nrotation_length = 0.5\n\
+         [errors]\nroll = \"10 deg\"\npitch = \"10 deg\"\n",
+        fingers.join(", "),
+        corners.join(", ")
+    )
+}
+
+/// Let go where the atlas says that it rests a rigid body stays, and pushed aside it comes back: a ball in its cone, a peg in its hole, a plate on three fingers.
+#[cfg(feature = "drop")]
+#[test]
+fn a_rigid_body_comes_back_to_every_kind_of_rest() {
+    let along = |k: usize, by: f64| {
+        let mut error = [0.0; 5];
+        error[k] = by;
+        error
+    };
+    let lateral = |by: f64| [along(0, 0.0), along(0, by), along(0, -by), along(1, by), along(1, -by)];
+    let tilts = |by: f64| [along(2, 0.0), along(2, by), along(2, -by), along(3, by), along(3, -by)];
+    for (name, text, pushes, near) in [
+        ("ball", ball_in_cone(), lateral(0.05), 0.01),
+        // Wherever in its hole: within the play.
+        ("peg", PEG.to_owned(), lateral(0.03), 0.022),
+        ("plate", plate_on_fingers(), tilts(0.05), 0.01),
+    ] {
+        let problem = problem(&text);
+        let found = found(&problem, 60);
+        let rest = found.rests.iter().find(|place| place.docked > 0).unwrap().found.pose.to_array();
+        let beside = pushes.map(|push| PoseError::from_array(std::array::from_fn(|k| rest[k] + push[k])));
+        let (_, ends) = problem.follow_by(&"drop".parse().unwrap(), &beside, &Exec::new()).unwrap();
+        for (end, from) in ends.iter().zip(&beside) {
+            let off = end.error.to_array().iter().zip(rest).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            assert!(off < near, "{name}: from {from:?} to {end:?}, {off} off");
+        }
+    }
+}
+
+/// Over an edge of a cube, and over the rim of a V: at least, certainly, is hardly less than what a way that exists climbs at most.
+#[test]
+fn certified_depths_are_below_those_of_ways_and_near_them() {
+    let settings = Settings { motions: Some(200), certified: true, ..Settings::default() };
+    let exec = Exec::new();
+    for place in &run(&problem(CUBE), &settings, &exec).unwrap().rests {
+        let at_least = place.found.depth_at_least.unwrap();
+        assert!(at_least <= depth(place) + 1e-6 && at_least > 0.99 * depth(place), "{at_least} {place:?}");
+    }
+    let pyramid =
+        "[connector]\nfamily = \"pyramid\"\naspect_ratio = 0.5\n[alignment]\nfree = [\"x\", \"y\"]\n";
+    for place in &run(&problem(pyramid), &settings, &exec).unwrap().rests {
+        let at_least = place.found.depth_at_least.unwrap();
+        assert!(at_least <= depth(place) + 1e-6 && at_least >= 0.9 * depth(place), "{at_least} {place:?}");
+    }
+}
+
 /// Walls all around: it is lifted as high as the level ground beside the hole.
 #[test]
 fn a_peg_is_as_deep_as_its_hole() {
-    let text = "[connector]\nfamily = \"pin-hole\"\npins = 1\ncircle_radius = 0\npin_radius = 0.1\nclearance = 0.01\n\
-                chamfer = 0.06\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.3\ny = 0.3\n";
-    let found = found(&problem(text), 300);
+    let found = found(&problem(PEG), 300);
     let [home, ground] =
         [true, false].map(|docked| found.rests.iter().find(|place| (place.docked > 0) == docked).unwrap());
     assert!((depth(home) - ground.found.above).abs() < 1e-4, "{home:?} {ground:?}");
