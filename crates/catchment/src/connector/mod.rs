@@ -59,6 +59,12 @@ impl Half {
     pub fn mapped(&self, map: impl Fn(DVec3) -> DVec3 + Copy) -> Self {
         Self { surfaces: self.surfaces.iter().map(|s| s.mapped(map)).collect() }
     }
+
+    /// The mirror image by `map`, a reflection.
+    #[must_use]
+    pub(crate) fn reflected(&self, map: impl Fn(DVec3) -> DVec3 + Copy) -> Self {
+        Self { surfaces: self.surfaces.iter().map(|s| s.reflected(map)).collect() }
+    }
 }
 
 /// The half that one mesh file holds, read from disk, as its scale makes it: of any size.

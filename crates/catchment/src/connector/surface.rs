@@ -143,6 +143,15 @@ impl Surface {
         }
     }
 
+    /// The mirror image by `map`, a reflection: what is inside stays so.
+    #[must_use]
+    pub(crate) fn reflected(&self, map: impl Fn(DVec3) -> DVec3) -> Self {
+        let mut image = self.mapped(map);
+        image.facets.iter_mut().for_each(|facet| facet.corners.reverse());
+        image.edges.iter_mut().for_each(|edge| edge.facets.reverse());
+        image
+    }
+
     /// The axis-aligned box around the surface: lowest and highest corner.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         self.vertices

@@ -21,7 +21,7 @@ use crate::pose::{DofSet, Mount};
 use glam::{DVec2, DVec3};
 
 /// How far from where they first touch halves may be drawn that are drawn docked, in D: more than any play or press fit.
-const MOST_APART: f64 = 0.05;
+pub(crate) const MOST_APART: f64 = 0.05;
 
 /// What speaks against halves that are drawn docked: that they are not.
 pub(crate) fn misdrawn(connector: &Connector, spec: &ConnectorSpec) -> Option<MatedProblem> {

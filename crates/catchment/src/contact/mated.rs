@@ -182,7 +182,7 @@ pub(crate) fn problems_on(pair: &Pair, exec: &Exec) -> Vec<MatedProblem> {
         if let Some(half) = round_half(pair) {
             problems.push(MatedProblem::Round { half });
         } else {
-            let found = play_on(pair, &exec.part([DEEPEST, 1.0], STAGE));
+            let found = play_on(pair, DofSet::ALL, &exec.part([DEEPEST, 1.0], STAGE));
             problems.extend(found.iter().filter_map(|play| loose(pair, play)));
         }
     }

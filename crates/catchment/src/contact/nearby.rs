@@ -118,6 +118,11 @@ impl<'a> Nearby<'a> {
         self.turned.is_stopped_above(lateral, level)
     }
 
+    /// Whether the halves touch at a pose error, however deep, and do not pass each other by: cheaper than the height.
+    pub fn touches(&mut self, error: &PoseError) -> bool {
+        self.is_above(error, f64::NEG_INFINITY)
+    }
+
     /// Turns to a pose error, for heights; returns where the COR is.
     fn go_to(&mut self, error: &PoseError) -> DVec2 {
         let alignment = &self.turned.pair.alignment;

@@ -6,13 +6,14 @@
 //!        └────├──play──┤── q    sharp seats have none
 //! ```
 //!
-//! Directions are the combinations of signs of the free errors, one radian counting as ρ. A seat that is free in a direction far
+//! Directions are the combinations of signs of the free errors, one radian counting as ρ: first those of one error alone; an error that nothing
+//! stops by itself, up to twice what is allowed, takes no part in the others. A seat that is free in a direction far
 //! from all of these is not found here; the residual misalignment of docked poses shows it. Lengths in D, angles in radians.
 
 use super::seat::PATH_STEP;
 use super::{Nearby, Pair};
 use crate::exec::Exec;
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, DofSet, PoseError};
 use serde::{Deserialize, Serialize};
 
 /// How far one error may be off at rest.
@@ -43,38 +44,68 @@ const GROWTH: f64 = 0.125;
 /// A play beyond this many times what is allowed is not measured any further.
 const BEYOND: f64 = 2.0;
 
+/// Directions that are looked along one after another, from a common list of what may touch.
+const TOGETHER: usize = 16;
+
 /// The play of every free error that matters, in their order.
 pub fn play(pair: &Pair) -> Vec<Play> {
-    play_on(pair, &Exec::new())
+    play_on(pair, DofSet::ALL, &Exec::new())
 }
 
-/// The same, with its progress.
-pub(super) fn play_on(pair: &Pair, exec: &Exec) -> Vec<Play> {
+/// The same, of what is `asked`, on these threads and with its progress: of other errors it may be more.
+pub(crate) fn play_on(pair: &Pair, asked: DofSet, exec: &Exec) -> Vec<Play> {
     let alignment = &pair.alignment;
     let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
     let mut play: Vec<Play> = free.iter().map(|dof| Play { axis: *dof, minus: 0.0, plus: 0.0 }).collect();
-    let mut nearby = pair.about(4.0 * PATH_STEP);
-    let all = 3usize.pow(free.len() as u32);
-    for (tried, signs) in directions(free.len()).enumerate() {
-        exec.report(tried as f64 / all as f64, "play");
+    let (alone, together): (Vec<_>, Vec<_>) =
+        directions(free.len()).partition(|signs| signs.iter().filter(|sign| **sign != 0.0).count() == 1);
+    let most = directions(free.len()).count() as f64;
+    let split = alone.len() as f64 / most;
+    let loose = along(pair, &free, &alone, &mut play, &exec.part([0.0, split], STAGE));
+    let matters = |signs: &Vec<f64>| {
+        let among = || free.iter().zip(signs).filter(|(_, sign)| **sign != 0.0).map(|(dof, _)| *dof);
+        among().all(|dof| !loose.contains(dof)) && among().any(|dof| asked.contains(dof))
+    };
+    let together: Vec<Vec<f64>> = together.into_iter().filter(matters).collect();
+    along(pair, &free, &together, &mut play, &exec.part([split, 1.0], STAGE));
+    play
+}
+
+/// What progress is told of.
+const STAGE: &str = "play";
+
+/// Looks along directions, and makes the play as much as they say; which errors nothing stopped.
+fn along(pair: &Pair, free: &[Dof], ways: &[Vec<f64>], play: &mut [Play], exec: &Exec) -> DofSet {
+    let look = |signs: &Vec<f64>, nearby: &mut Nearby<'_>| {
         let count = signs.iter().filter(|sign| **sign != 0.0).count() as f64;
         let mut way = [0.0; Dof::ALL.len()];
-        for (dof, sign) in free.iter().zip(&signs) {
+        for (dof, sign) in free.iter().zip(signs) {
             way[dof.index()] = sign / (count.sqrt() * unit(pair, *dof));
         }
         let farthest = free
             .iter()
-            .zip(&signs)
+            .zip(signs)
             .filter(|(_, sign)| **sign != 0.0)
-            .map(|(dof, _)| BEYOND * alignment.docked.most_play(*dof) / way[dof.index()].abs())
+            .map(|(dof, _)| BEYOND * pair.alignment.docked.most_play(*dof) / way[dof.index()].abs())
             .fold(f64::INFINITY, f64::min);
-        let length = reach(&mut nearby, pair.mated_height() + LEVEL, &way, farthest);
-        for (dof, play) in free.iter().zip(&mut play) {
+        (way, reach(nearby, pair.mated_height() + LEVEL, &way, farthest), farthest)
+    };
+    let groups: Vec<&[Vec<f64>]> = ways.chunks(TOGETHER).collect();
+    let found = exec.each(groups.len(), usize::MAX, STAGE, |k, _| {
+        let mut nearby = pair.about(4.0 * PATH_STEP);
+        groups[k].iter().map(|signs| look(signs, &mut nearby)).collect::<Vec<_>>()
+    });
+    let mut loose = DofSet::EMPTY;
+    for (way, length, farthest) in found.into_iter().flatten() {
+        for (dof, play) in free.iter().zip(&mut *play) {
             let off = length * way[dof.index()];
             (play.minus, play.plus) = (play.minus.max(-off), play.plus.max(off));
+            if off != 0.0 && length >= farthest {
+                loose = loose.with(*dof);
+            }
         }
     }
-    play
+    loose
 }
 
 /// All combinations of −1, 0 and 1 but that of zeros.
@@ -92,7 +123,7 @@ pub(super) fn unit(pair: &Pair, dof: Dof) -> f64 {
 fn reach(nearby: &mut Nearby, level: f64, way: &[f64; 5], farthest: f64) -> f64 {
     let mut is_level = |length: f64| {
         let error = PoseError::from_array(way.map(|part| length * part));
-        !nearby.is_above(&error, level) && nearby.height(&error).is_some()
+        !nearby.is_above(&error, level) && nearby.touches(&error)
     };
     let (mut held, mut look) = (0.0, FIRST);
     while held < farthest {

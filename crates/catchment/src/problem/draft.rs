@@ -1,6 +1,6 @@
 //! A design that was read and not built yet: it can still be changed, and knows where its file says what.
 
-use super::{Problem, ProblemError, measure, places};
+use super::{Problem, ProblemError, measure, misfit, places};
 use crate::connector::Connector;
 use crate::contact::mated::{self, MatedProblem};
 use crate::contact::{Pair, face, settle};
@@ -154,7 +154,7 @@ impl Draft {
                         match own.settle.then(|| settle::settled(found.clone(), &self.design.alignment)) {
                             None => found,
                             Some(Some(settled)) => settled,
-                            Some(None) => return Err(self.unmated(&[MatedProblem::RunsOff]).into()),
+                            Some(None) => return Err(self.unmated(&[MatedProblem::RunsOff], None).into()),
                         }
                     }
                     ConnectorSpec::Family(_) => connector,
@@ -188,15 +188,21 @@ impl Draft {
         let problems = misdrawn.map_or_else(|| mated::problems_on(&pair, exec), |problem| vec![problem]);
         let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
         if !apart.is_empty() {
-            return Err(self.unmated(&apart).into());
+            // Said once: all are about one pose.
+            let advice = misfit::advice(&connector, &pair, &self.design, &apart[0]);
+            return Err(self.unmated(&apart, advice).into());
         }
         Ok(Problem::assembled(self, connector, pair, doubts))
     }
 
-    pub(super) fn unmated(self, problems: &[MatedProblem]) -> Findings {
+    /// Refused for its mated pose; what helps beside what the problems say themselves stands with the first.
+    pub(super) fn unmated(self, problems: &[MatedProblem], mut advice: Option<String>) -> Findings {
         let finding = |problem: &MatedProblem| {
-            self.finding(places::of_mated(problem), problem.to_string(), problem.help())
+            let help: Vec<String> = problem.help().into_iter().chain(advice.take()).collect();
+            let help = (!help.is_empty()).then(|| help.join("; "));
+            self.finding(places::of_mated(problem), problem.to_string(), help)
         };
-        Findings { list: problems.iter().map(finding).collect(), source: self.source, omitted: 0 }
+        let list = problems.iter().map(finding).collect();
+        Findings { list, source: self.source, omitted: 0 }
     }
 }

@@ -48,7 +48,7 @@ fn of(draft: Draft, exec: &Exec) -> Result<(f64, WidthFrom), ProblemError> {
     // The height without any error does not depend on the alignment problem.
     let lift = Pair::new(&connector, &Alignment::new(DofSet::EMPTY, Mount::X)).mated_height();
     let found = lift.is_finite().then(|| width::default(&connector.fixed, &connector.moving, lift, widest));
-    found.flatten().ok_or_else(|| draft.unmated(&[MatedProblem::Apart]).into())
+    found.flatten().ok_or_else(|| draft.unmated(&[MatedProblem::Apart], None).into())
 }
 
 /// Whether parts are round, so that how finely they are drawn depends on D.

@@ -19,6 +19,7 @@
 mod draft;
 mod measure;
 mod memory;
+mod misfit;
 mod places;
 #[cfg(test)]
 mod tests;
@@ -155,6 +156,11 @@ impl Problem {
             (ConnectorSpec::Family(_), Side::Fixed) => point,
             (ConnectorSpec::Family(_), Side::Moving) => self.alignment().mount.apply(point),
         }
+    }
+
+    /// What helps against one of the doubts of its mated pose, beside what the doubt says itself.
+    pub(crate) fn advice(&self, doubt: &MatedProblem) -> Option<String> {
+        misfit::advice(self.connector(), self.pair(), self.design(), doubt)
     }
 
     /// This problem, refused for a reason that another room found, at the key it is about.

@@ -200,7 +200,8 @@ impl Problem {
             None => Ok(self),
             Some(number) => {
                 let message = self.objections().swap_remove(number);
-                Err(self.refused("alignment.free", message, None).into())
+                let advice = self.advice(&self.doubts()[number]);
+                Err(self.refused("alignment.free", message, advice).into())
             }
         }
     }

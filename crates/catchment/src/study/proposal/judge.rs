@@ -11,9 +11,10 @@
 use super::relief::{broadest, plan_box};
 use super::way::Lie;
 use crate::connector::{Connector, Half};
-use crate::contact::mated::{MatedProblem, problems, round_half};
-use crate::contact::{Pair, face, play, settle, width};
+use crate::contact::mated::{MatedProblem, problems_on, round_half};
+use crate::contact::{Pair, face, play, play_on, settle, width};
 use crate::design::{Alignment, Drawn, HalfSpec, OwnSpec};
+use crate::exec::Exec;
 use crate::pose::{CorPose, Dof, DofSet, Mount};
 use glam::{DMat3, DVec2};
 use std::f64::consts::TAU;
@@ -84,9 +85,9 @@ impl Judged {
     }
 
     /// Asks what it holds, which takes the longest.
-    pub(super) fn ask(&mut self, free: Option<DofSet>) {
+    pub(super) fn ask(&mut self, free: Option<DofSet>, exec: &Exec) {
         if self.seat.is_none() {
-            self.seat = Some(seat(&self.connector, free));
+            self.seat = Some(seat(&self.connector, free, exec));
         }
     }
 }
@@ -209,13 +210,13 @@ fn symmetry(pair: &Pair) -> u32 {
 }
 
 /// What the seat holds, of what may be free.
-fn seat(connector: &Connector, wanted: Option<DofSet>) -> Result<Seat, String> {
+fn seat(connector: &Connector, wanted: Option<DofSet>, exec: &Exec) -> Result<Seat, String> {
     // What does not hold may hold where it cannot tip, or where it only shifts.
     let level = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
     let sets = wanted.map_or_else(|| vec![DofSet::ALL, level.with(Dof::Yaw), level], |set| vec![set]);
     let mut first = None;
     for set in sets {
-        match held(connector, set, wanted.is_some()) {
+        match held(connector, set, wanted.is_some(), exec) {
             Ok(seat) => return Ok(seat),
             Err(reason) => first = first.or(Some(reason)),
         }
@@ -224,7 +225,7 @@ fn seat(connector: &Connector, wanted: Option<DofSet>) -> Result<Seat, String> {
 }
 
 /// The same, starting from one set; `exactly` that one, but for a yaw that does not matter.
-fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, String> {
+fn held(connector: &Connector, free: DofSet, exactly: bool, exec: &Exec) -> Result<Seat, String> {
     let mut alignment = Alignment::new(free, Mount::X);
     let pair = Pair::new(connector, &alignment);
     if round_half(&pair).is_some() {
@@ -233,16 +234,17 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
     }
     let symmetry = if alignment.free.contains(Dof::Yaw) { symmetry(&pair) } else { 1 };
     drop(pair);
+    let may_go = |dof: &Dof| !exactly || *dof == Dof::Yaw;
     let mut is_without_walls = DofSet::EMPTY;
     // Every step leaves one out, or says the play of some.
     loop {
         let mut settles = false;
-        let mut found = problems(&Pair::new(connector, &alignment));
+        let mut found = problems_on(&Pair::new(connector, &alignment), exec);
         if found.iter().any(|problem| matches!(problem, MatedProblem::NotMinimum { .. })) {
             let settled = settle::settled(connector.clone(), &alignment).ok_or("it runs off")?;
             let off = settled.origin.settled.unwrap_or_default().to_array();
             settles = off.iter().any(|off| off.abs() > AT_REST);
-            found = problems(&Pair::new(&settled, &alignment));
+            found = problems_on(&Pair::new(&settled, &alignment), exec);
         }
         // What nothing stops near, a wall may stop farther off.
         let unsaid = found.iter().filter_map(|problem| match problem {
@@ -251,8 +253,12 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
         });
         let unsaid: DofSet = unsaid.collect();
         if !unsaid.is_empty() {
-            let without = walls(connector, &mut alignment, unsaid);
+            let without = walls(connector, &mut alignment, unsaid, exec);
             is_without_walls = without.iter().fold(is_without_walls, DofSet::with);
+            // Looked at again it would be found again.
+            if let Some(dof) = without.iter().find(may_go) {
+                leave_out(&mut alignment, dof)?;
+            }
             continue;
         }
         let loose = found.iter().find_map(|problem| match problem {
@@ -260,36 +266,37 @@ fn held(connector: &Connector, free: DofSet, exactly: bool) -> Result<Seat, Stri
             MatedProblem::Free { dof, .. } | MatedProblem::LimitCutsPlay { dof, .. } => Some(*dof),
             _ => None,
         });
-        let loose = loose.filter(|dof| !exactly || *dof == Dof::Yaw);
+        let loose = loose.filter(may_go);
         match (found.first(), loose) {
             (None, _) => {
                 let Alignment { free, dont_care, docked, .. } = alignment;
                 return Ok(Seat { free, dont_care, settle: settles, symmetry, play: docked.limits });
             }
-            (Some(_), Some(dof)) => {
-                alignment.free = alignment.free.without(dof);
-                alignment.docked.limits[dof.index()] = None;
-                if dof == Dof::Yaw {
-                    alignment.dont_care = alignment.dont_care.with(dof);
-                }
-                if alignment.free.is_empty() {
-                    return Err("it holds nothing".to_owned());
-                }
-            }
+            (Some(_), Some(dof)) => leave_out(&mut alignment, dof)?,
             (Some(MatedProblem::NotMinimum { .. }), None) => return Err("it does not hold".to_owned()),
             (Some(problem), None) => return Err(problem.to_string()),
         }
     }
 }
 
+/// Leaves out an error that the seat does not hold.
+fn leave_out(alignment: &mut Alignment, dof: Dof) -> Result<(), String> {
+    alignment.free = alignment.free.without(dof);
+    alignment.docked.limits[dof.index()] = None;
+    if dof == Dof::Yaw {
+        alignment.dont_care = alignment.dont_care.with(dof);
+    }
+    if alignment.free.is_empty() { Err("it holds nothing".to_owned()) } else { Ok(()) }
+}
+
 /// Says the play of some errors, two digits of it and not less, where walls stop them; returns those that nothing stops.
-fn walls(connector: &Connector, alignment: &mut Alignment, unsaid: DofSet) -> DofSet {
+fn walls(connector: &Connector, alignment: &mut Alignment, unsaid: DofSet, exec: &Exec) -> DofSet {
     let loosest = |dof: Dof| LOOSEST[usize::from(dof.is_rotation())];
     for dof in unsaid.iter() {
         alignment.docked.limits[dof.index()] = Some(loosest(dof));
     }
     let mut free = DofSet::EMPTY;
-    for found in play(&Pair::new(connector, alignment)) {
+    for found in play_on(&Pair::new(connector, alignment), unsaid, exec) {
         let (dof, most) = (found.axis, found.most());
         if unsaid.contains(dof) {
             let is_stopped = most <= loosest(dof);

@@ -264,7 +264,7 @@ fn rank(judged: &mut Vec<Judged>, free: Option<DofSet>, exec: &Exec) -> Result<(
         let Some(next) = judged.iter_mut().find(|one| one.seat.is_none() && one.score() > level) else {
             return Ok(());
         };
-        next.ask(free);
+        next.ask(free, exec);
         sort(judged);
     }
 }

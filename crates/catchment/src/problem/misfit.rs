@@ -1,0 +1,134 @@
+//! What helps against halves that do not mate as they are drawn: where they touch, in the coordinates of each part, and whether a mirror
+//! image would fit.
+//!
+//! ```text
+//!      ┌─────┐            first contact of the halves without any error: a web in the way, a rim beside its hole
+//!      │   ┌─┘ ●──┐
+//!   ───┘   └─     └───
+//! ```
+//!
+//! Not promised: that the place is the only one in the way, or that halves which fit mirrored were meant to.
+
+use crate::connector::{Connector, Half, Side};
+use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem, sinking};
+use crate::contact::{Pair, face};
+use crate::design::{ConnectorSpec, Design};
+use glam::{DMat3, DVec2, DVec3};
+
+/// A mirror image has to lie deeper than the halves as drawn by so much to be worth a word, in D.
+const DEEPER: f64 = 0.01;
+/// Digits of lengths that are told: a thousandth of D.
+const GRAIN: f64 = 1e-3;
+
+/// What helps beside what the problem says itself.
+pub(super) fn advice(
+    connector: &Connector,
+    pair: &Pair,
+    design: &Design,
+    problem: &MatedProblem,
+) -> Option<String> {
+    if !matches!(design.connector, ConnectorSpec::Own(_)) {
+        return None;
+    }
+    let told = match problem {
+        MatedProblem::Collision { overlap } | MatedProblem::DrawnDeeper { overlap } => {
+            touching(connector, pair, design, Some(*overlap))
+        }
+        MatedProblem::Gap { gap } | MatedProblem::DrawnApart { gap } => {
+            touching(connector, pair, design, Some(-gap))
+        }
+        MatedProblem::NotMinimum { .. } | MatedProblem::Free { .. } => {
+            touching(connector, pair, design, None)
+        }
+        MatedProblem::Apart => Some(beside(connector, design)),
+        _ => None,
+    }?;
+    let mirrored = if fits_mirrored(connector, pair, problem) {
+        "; a mirror image of the moving part would fit: was one of the two exported mirrored?"
+    } else {
+        ""
+    };
+    Some(format!("{told}{mirrored}"))
+}
+
+/// Where the halves first touch without any error, and how far above where they are drawn.
+fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f64>) -> Option<String> {
+    let height = pair.mated_height();
+    let mut nearby = pair.about(CONTACT_TOLERANCE);
+    nearby.turn(&DMat3::IDENTITY, DVec2::ZERO, 0.0, 0.0);
+    let mut contacts = Vec::new();
+    nearby.contacts_within(DVec3::new(0.0, 0.0, height), CONTACT_TOLERANCE, CONTACT_TOLERANCE, &mut contacts);
+    let (contact, _) = contacts.first()?;
+    // Of the moving half from its face centre, which hangs below the centre of rotation or above it.
+    let from_face = contact.point - DVec3::new(0.0, 0.0, height + pair.alignment.center_of_rotation);
+    let [fixed, moving] = [(Side::Fixed, contact.point), (Side::Moving, from_face)]
+        .map(|(side, point)| place(design, connector.origin.drawn(side, point)));
+    let (scale, unit) = measure(design);
+    let off = above.map_or_else(String::new, |above| {
+        let way = if above > 0.0 { "above" } else { "below" };
+        format!(", {} {unit} {way} where they are drawn", number(scale * above.abs()))
+    });
+    Some(format!(
+        "lowered without any error they first touch at {fixed} of the fixed and {moving} of the moving part as drawn{off}"
+    ))
+}
+
+/// How far each half reaches in plan view.
+fn beside(connector: &Connector, design: &Design) -> String {
+    let (scale, unit) = measure(design);
+    let reach = |half: &Half| {
+        let boxes = half.surfaces.iter().map(crate::connector::Surface::bounds);
+        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = boxes.fold(none, |(low, high), (a, b)| (low.min(a), high.max(b)));
+        let [a, b, c, d] = [low.x, high.x, low.y, high.y].map(|x| number(scale * x));
+        format!("x {a} … {b}, y {c} … {d} {unit}")
+    };
+    format!(
+        "across the approach the fixed half reaches {}, the moving one {}",
+        reach(&connector.fixed),
+        reach(&connector.moving)
+    )
+}
+
+/// Whether the moving half reflected across a plane along the approach holds where the drawn one does not.
+fn fits_mirrored(connector: &Connector, pair: &Pair, problem: &MatedProblem) -> bool {
+    let deeper = match problem {
+        // As deep as drawn.
+        MatedProblem::DrawnDeeper { overlap } | MatedProblem::Collision { overlap } => {
+            [overlap - face::MOST_APART, overlap + face::MOST_APART]
+        }
+        MatedProblem::NotMinimum { .. } => [DEEPER, f64::INFINITY],
+        _ => return false,
+    };
+    let boxes = connector.moving.surfaces.iter().map(crate::connector::Surface::bounds);
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = boxes.fold(none, |(low, high), (a, b)| (low.min(a), high.max(b)));
+    let middle = low.midpoint(high);
+    [DVec3::X, DVec3::Y].into_iter().any(|across| {
+        let image = connector.moving.reflected(|p| p - 2.0 * across * (p - middle).dot(across));
+        let mirrored = Pair::new(&Connector::from_halves(connector.fixed.clone(), image), &pair.alignment);
+        let sinks = pair.mated_height() - mirrored.mated_height();
+        (deeper[0]..=deeper[1]).contains(&sinks) && sinking(&mirrored, pair.alignment.free).is_none()
+    })
+}
+
+/// What lengths are told in: how much of it D is, and its name.
+fn measure(design: &Design) -> (f64, &'static str) {
+    design.unit.map_or((1.0, "D"), |unit| (design.width, unit.symbol()))
+}
+
+fn place(design: &Design, point: DVec3) -> String {
+    let (scale, unit) = measure(design);
+    let [x, y, z] = (point * scale).to_array().map(number);
+    format!("({x}, {y}, {z}) {unit}")
+}
+
+/// A length to about four digits.
+fn number(value: f64) -> String {
+    let grain = GRAIN * 10f64.powf(value.abs().max(f64::MIN_POSITIVE).log10().floor().clamp(-3.0, 3.0));
+    let rounded = (value / grain).round() * grain;
+    let digits = (-grain.log10()).ceil().clamp(0.0, 6.0) as usize;
+    let text = format!("{rounded:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
