@@ -3,7 +3,7 @@
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
 use super::plane::{Patch, Plane};
 use super::section::{Placement, View, describe};
-use super::solid::panel;
+use super::solid::touching;
 use super::{FigureError, Picture};
 use crate::acceptance::Outcome;
 use crate::connector::Connector;
@@ -12,7 +12,7 @@ use crate::report::resting::{Told, words};
 use crate::report::text::grouped;
 use crate::report::{ContactReport, JamReport, JamsFound, RestReport, RestsReport};
 use crate::run::jams::Firmness;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Jams that are drawn.
 const SHOWN: usize = 6;
@@ -67,7 +67,7 @@ fn jam_panel<'a>(design: &Design, number: usize, jam: &'a JamReport) -> Panel<'a
         let lifted = |climb| Told::of(design).lifted(climb);
         let way = examined
             .way_out
-            .map_or_else(String::new, |way| format!(": {} it gets out", lifted(way.climb_at_most_d)));
+            .map_or_else(String::new, |way| format!("; {}, and it gets out", lifted(way.climb_at_most_d)));
         format!("{level}{way}")
     });
     Panel {
@@ -171,7 +171,8 @@ fn draw(
     for (k, (colour, words)) in lines.iter().enumerate() {
         svg.text([x, y + 33.0 + 15.0 * k as f64], LABEL - 0.5, Anchor::Start, colour, words);
     }
-    let patches: Vec<Patch> = shown.contacts.iter().map(patch).collect();
+    let placed = placement.of(design);
+    let patches: Vec<Patch> = shown.contacts.iter().map(|contact| patch(contact, placed)).collect();
     let plane = Plane::through(connector, &patches);
     let view = View::along(design, connector, std::slice::from_ref(&placement), plane)?;
     let rect = Rect { x: x + 52.0, y: y + WORDS, w: SECTION[0], h: SECTION[1] };
@@ -185,12 +186,13 @@ fn draw(
         svg.text([x + 52.0, y + WORDS + SECTION[1] + 48.0], LABEL - 2.0, Anchor::Start, SOFT, &words);
     }
     let space = Rect { x: x + SECTION[0] + 70.0, y: y + WORDS, w: SPACE[0], h: SPACE[1] };
-    panel(svg, space, design, connector, &placement)
+    let points: Vec<DVec3> = patches.into_iter().flat_map(|patch| patch.points).collect();
+    touching(svg, space, design, connector, &placement, &points)
 }
 
-fn patch(contact: &ContactReport) -> Patch {
+fn patch(contact: &ContactReport, placed: (DMat3, DVec3)) -> Patch {
     let points = contact.points_d.iter().copied().map(DVec3::from_array).collect();
-    Patch { points, normal: DVec3::from_array(contact.normal) }
+    Patch::new(points, DVec3::from_array(contact.normal), placed)
 }
 
 fn percent(share: f64) -> String {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   seen from above        ↑ normals of the contacts      the plane holds the main direction of their horizontal parts,
-//!        ●─────────●──── u                                or of the contacts themselves where they carry straight up;
+//!        ●─────────●──── u                                or where they carry straight up the way from where the half should touch;
 //!                                                         it passes through as many contacts as it can
 //! ```
 
@@ -21,11 +21,24 @@ pub(super) struct Plane {
     pub(super) through_contacts: bool,
 }
 
-/// Two halves that touch along a face, an edge or at a point: where, and the normal.
+/// Two halves that touch along a face, an edge or at a point.
 #[derive(Debug, Clone)]
 pub(super) struct Patch {
+    /// Where.
     pub(super) points: Vec<DVec3>,
+    /// The normal there.
     pub(super) normal: DVec3,
+    /// How far the moving half's first place is from where it is docked, in plan view.
+    pub(super) off: DVec2,
+}
+
+impl Patch {
+    /// Of a moving half with this rotation and face centre.
+    pub(super) fn new(points: Vec<DVec3>, normal: DVec3, (rotation, face): (DMat3, DVec3)) -> Self {
+        let docked = |point: &DVec3| rotation.transpose() * (*point - face);
+        let off = points.first().map_or(DVec2::ZERO, |point| (*point - docked(point)).truncate());
+        Self { points, normal, off }
+    }
 }
 
 /// Nearer than this is in the plane, in D.
@@ -95,7 +108,7 @@ impl Plane {
     }
 }
 
-/// The angle from x of the main horizontal direction of the normals, or else of the contacts; none where nothing touches.
+/// The angle from x of the main horizontal direction of the normals, or else of the ways home, or of the contacts; none where nothing touches.
 fn direction(patches: &[Patch]) -> Option<f64> {
     let normals = patches.iter().map(|patch| patch.normal.truncate());
     let upright = normals.clone().all(|normal| normal.length() < UPRIGHT);
@@ -107,6 +120,8 @@ fn direction(patches: &[Patch]) -> Option<f64> {
     let mean = points().sum::<DVec2>() / count as f64;
     let ways: Vec<DVec2> = if !upright {
         normals.collect()
+    } else if patches.iter().any(|patch| patch.off.length() > IN_PLANE) {
+        patches.iter().map(|patch| patch.off).collect()
     } else if points().any(|point| point.distance(mean) > IN_PLANE) {
         points().map(|point| point - mean).collect()
     } else {
@@ -128,10 +143,8 @@ mod tests {
     use super::*;
 
     fn patch(points: &[[f64; 3]], normal: [f64; 3]) -> Patch {
-        Patch {
-            points: points.iter().copied().map(DVec3::from_array).collect(),
-            normal: DVec3::from_array(normal),
-        }
+        let points = points.iter().copied().map(DVec3::from_array).collect();
+        Patch::new(points, DVec3::from_array(normal), (DMat3::IDENTITY, DVec3::ZERO))
     }
 
     #[test]
@@ -145,11 +158,28 @@ mod tests {
         let by = DMat3::from_rotation_z(50f64.to_radians());
         let turned: Vec<Patch> = contacts
             .iter()
-            .map(|c| Patch { points: c.points.iter().map(|p| by * *p).collect(), normal: by * c.normal })
+            .map(|c| {
+                let points = c.points.iter().map(|p| by * *p).collect();
+                Patch::new(points, by * c.normal, (DMat3::IDENTITY, DVec3::ZERO))
+            })
             .collect();
         let plane = Plane::through(&pyramid(), &turned);
         assert!((plane.azimuth - 50f64.to_radians()).abs() < 1e-9 && (plane.offsets[0] - 0.1).abs() < 1e-9);
         assert_eq!(plane.name(), "along 50° from x");
+    }
+
+    /// What stands beside its hole is cut the way that it is off, turned or not.
+    #[test]
+    fn what_carries_straight_up_is_cut_towards_where_it_should_be() {
+        let beside = |turn: DMat3, off: DVec3| {
+            let points = [DVec3::new(0.3, 0.1, 0.0), DVec3::new(0.3, 0.11, 0.0)].map(|p| turn * p + off);
+            Patch::new(points.to_vec(), DVec3::Z, (turn, off))
+        };
+        let plane = Plane::through(&pyramid(), &[beside(DMat3::IDENTITY, DVec3::new(0.1, -0.1, 0.2))]);
+        assert_eq!(plane.name(), "along −45° from x");
+        // Turned about the axis by a little: what is at x = 0.3 is off along y.
+        let plane = Plane::through(&pyramid(), &[beside(DMat3::from_rotation_z(0.02), DVec3::ZERO)]);
+        assert!((plane.azimuth.to_degrees() + 71.0).abs() < 2.0, "{plane:?}");
     }
 
     #[test]

@@ -44,6 +44,22 @@ const CLOSE: f64 = 5e-3;
 /// Contacts seen nearer to each other than this are one, in SVG units.
 const APART: f64 = 3.0;
 
+/// Marks where halves touch: full, or hollow where that is seen through something.
+pub(super) fn contact_mark(svg: &mut Svg, at: [f64; 2], full: bool) {
+    let fill = if full { CONTACT } else { "none" };
+    svg.circle(at, 5.4, r##"fill="none" stroke="#ffffff" stroke-width="3""##);
+    svg.circle(at, 4.4, &format!(r#"fill="{fill}" stroke="{CONTACT}" stroke-width="1.6""#));
+}
+
+/// Whether a place is not seen where one of those shown before is; then it is one of them.
+pub(super) fn seen_apart(shown: &mut Vec<[f64; 2]>, at: [f64; 2]) -> bool {
+    let is_apart = shown.iter().all(|other| (other[0] - at[0]).hypot(other[1] - at[1]) >= APART);
+    if is_apart {
+        shown.push(at);
+    }
+    is_apart
+}
+
 /// Draws the two halves in section at a pose.
 ///
 /// # Errors
@@ -255,14 +271,9 @@ impl<'a> View<'a> {
             let in_cut = self.plane.offsets.iter().any(|y| (lo - CLOSE..=hi + CLOSE).contains(y));
             for point in &patch.points {
                 let at = self.seen(frame, *point);
-                if shown.iter().any(|other| (other[0] - at[0]).hypot(other[1] - at[1]) < APART) {
-                    continue;
+                if seen_apart(&mut shown, at) {
+                    contact_mark(svg, at, in_cut || self.plane.beside(*point) < CLOSE);
                 }
-                shown.push(at);
-                let full = in_cut || self.plane.beside(*point) < CLOSE;
-                let fill = if full { CONTACT } else { "none" };
-                svg.circle(at, 5.4, r##"fill="none" stroke="#ffffff" stroke-width="3""##);
-                svg.circle(at, 4.4, &format!(r#"fill="{fill}" stroke="{CONTACT}" stroke-width="1.6""#));
             }
         }
     }

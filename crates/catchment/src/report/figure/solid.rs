@@ -5,7 +5,7 @@
 
 use super::draw::colour::{self, Rgb, mix};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
-use super::section::{Placement, describe};
+use super::section::{Placement, contact_mark, describe, seen_apart};
 use super::{FigureError, Picture, raster};
 use crate::connector::{Connector, Surface};
 use crate::design::Design;
@@ -42,6 +42,21 @@ pub fn panel(
     connector: &Connector,
     placement: &Placement,
 ) -> Result<(), FigureError> {
+    touching(svg, rect, design, connector, placement, &[])
+}
+
+/// The same with where the halves touch: full where that is seen, hollow where a half hides it.
+///
+/// # Errors
+/// If neither half has a facet.
+pub(super) fn touching(
+    svg: &mut Svg,
+    rect: Rect,
+    design: &Design,
+    connector: &Connector,
+    placement: &Placement,
+    points: &[DVec3],
+) -> Result<(), FigureError> {
     let (rotation, face) = placement.of(design);
     let halves: Vec<Body> = connector
         .fixed
@@ -56,7 +71,15 @@ pub fn panel(
                 .map(|s| Body::new(s, rotation, face, [colour::MOVING, colour::MOVING_EDGE])),
         )
         .collect();
-    bodies(svg, rect, &halves)
+    let seen = seen(svg, rect, &halves)?;
+    let mut shown = Vec::new();
+    for point in points {
+        let (at, is_hidden) = seen.place(*point);
+        if seen_apart(&mut shown, at) {
+            contact_mark(svg, at, !is_hidden);
+        }
+    }
+    Ok(())
 }
 
 /// Surfaces in the world frame, as an image in a rectangle of a picture.
@@ -64,12 +87,39 @@ pub fn panel(
 /// # Errors
 /// If none has a facet.
 pub(super) fn bodies(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<(), FigureError> {
-    /// Pixels per SVG unit in the finished image.
-    const PIXELS: f64 = 2.0;
+    seen(svg, rect, bodies).map(|_| ())
+}
+
+/// Pixels per SVG unit in the finished image.
+const PIXELS: f64 = 2.0;
+
+/// The same, and where in the picture points of the world are.
+fn seen(svg: &mut Svg, rect: Rect, bodies: &[Body]) -> Result<Seen, FigureError> {
     let size = [(rect.w * PIXELS) as usize, (rect.h * PIXELS) as usize];
-    let image = draw(bodies, size)?;
-    svg.image(rect, &raster::encode(size[0], size[1], true, &image)?, false);
-    Ok(())
+    let (camera, canvas) = draw(bodies, size)?;
+    svg.image(rect, &raster::encode(size[0], size[1], true, &canvas.averaged())?, false);
+    Ok(Seen { rect, camera, canvas })
+}
+
+/// A finished image.
+struct Seen {
+    rect: Rect,
+    camera: Camera,
+    canvas: Canvas,
+}
+
+impl Seen {
+    /// Where a point is in the picture, and whether something is in front of it.
+    fn place(&self, point: DVec3) -> ([f64; 2], bool) {
+        /// So much in front of a point hides it, in fine pixels: less is the facet that it lies on.
+        const HIDES: f64 = 12.0;
+        let at = self.camera.project(point);
+        let to_svg = 1.0 / (PIXELS * FINER as f64);
+        let [column, row] = [(at.x, self.canvas.width), (at.y, self.canvas.height)]
+            .map(|(value, most)| (value.max(0.0) as usize).min(most - 1));
+        let is_hidden = self.canvas.depth[column + row * self.canvas.width] > at.z + HIDES;
+        ([self.rect.x + at.x * to_svg, self.rect.y + at.y * to_svg], is_hidden)
+    }
 }
 
 /// A surface in the world frame.
@@ -162,8 +212,8 @@ impl Camera {
 /// How many times larger than shown the image is drawn, each way.
 const FINER: usize = 3;
 
-/// RGBA pixels of the image.
-fn draw(bodies: &[Body], size: [usize; 2]) -> Result<Vec<u8>, FigureError> {
+/// Draws an image of so many pixels.
+fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, Canvas), FigureError> {
     let fine = size.map(|n| n * FINER);
     let camera = Camera::new(bodies, fine)?;
     let mut canvas = Canvas {
@@ -191,7 +241,7 @@ fn draw(bodies: &[Body], size: [usize; 2]) -> Result<Vec<u8>, FigureError> {
             canvas.edge(ends.map(|p| camera.project(p)), body.edge);
         }
     }
-    Ok(canvas.averaged())
+    Ok((camera, canvas))
 }
 
 /// Light from the upper left front, and a floor of brightness.
@@ -270,7 +320,7 @@ impl Canvas {
         }
     }
 
-    /// Averages blocks of fine pixels; where nothing was drawn the image is transparent.
+    /// RGBA pixels of the finished image: averages blocks of fine ones; where nothing was drawn the image is transparent.
     fn averaged(&self) -> Vec<u8> {
         let (width, height) = (self.width / FINER, self.height / FINER);
         let mut pixels = Vec::with_capacity(4 * width * height);
@@ -323,7 +373,7 @@ mod tests {
             body(&connector.fixed.surfaces[0], [0, 0, 200]),
             body(&connector.moving.surfaces[0], [200, 0, 0]),
         ];
-        let image = draw(&bodies, [200, 160]).unwrap();
+        let image = draw(&bodies, [200, 160]).unwrap().1.averaged();
         let red = image.chunks_exact(4).filter(|p| p[3] == 255 && p[0] > p[2]);
         let mut shades: Vec<_> = red.map(|p| [p[0], p[1], p[2]]).collect();
         shades.sort_unstable();

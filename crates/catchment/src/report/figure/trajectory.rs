@@ -4,19 +4,22 @@ use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use super::plane::{Patch, Plane};
-use super::section::{Placement, View, approach_axis, describe};
+use super::section::{Placement, View, approach_axis, cut, describe};
+use super::solid::touching;
 use super::{FigureError, Picture};
 use crate::acceptance::Outcome;
 use crate::connector::Connector;
 use crate::design::Design;
 use crate::method::descent::{Trajectory, Waypoint};
 use crate::pose::Dof;
+use glam::DVec3;
 
 /// Ghosts of the moving half, the first and the last pose included.
 const GHOSTS: usize = 7;
 
-/// Draws a trajectory: left the section, of one that jams through what touches at its end, with the moving half ghosted along its path, right its errors over the path
-/// length (in the ρ-metric, D).
+/// Draws a trajectory: left the section with the moving half ghosted along its path, cut through what touches at its end where it jams, else through what touches
+/// first; right its errors over the path length (in the ρ-metric, D). Where it moves out of a plane, in between, both halves in space where they first touch and at
+/// the end. ● and ○ are contacts.
 ///
 /// # Errors
 /// If the halves never met, so that there is no path.
@@ -26,11 +29,14 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     };
     let ghosts = ghosts(&path.waypoints);
     let placements: Vec<Placement> = ghosts.iter().map(|w| placed(w)).collect();
-    // What docks is shown in the usual cut: its contacts lie all around.
-    let patches = if path.outcome == Outcome::Jammed { patches(last) } else { Vec::new() };
-    let view = View::along(design, connector, &placements, Plane::through(connector, &patches))?;
+    let meeting = path.waypoints.iter().find(|w| !w.touches.is_empty()).unwrap_or(first);
+    // What docks touches all around at its end; what misses, nowhere.
+    let jams = path.outcome == Outcome::Jammed;
+    let patches = patches(design, if jams { last } else { meeting });
+    let view = View::along(design, connector, &placements, plane(connector, &patches))?;
+    let in_space = if is_planar(design) { 0.0 } else { SPACE + 50.0 };
     let (left, height) = (430.0, 400.0);
-    let mut svg = Svg::new(960.0, height + 130.0);
+    let mut svg = Svg::new(960.0 + in_space, height + 130.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     let story = format!("from {} → {}", describe(design, &placed(first)), path.outcome.name());
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
@@ -57,29 +63,68 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     view.contacts(&mut svg, &frame, &patches);
     svg.end();
     frame.draw(&mut svg);
-    if let Some(words) = view.words() {
-        svg.text([72.0, height + 120.0], LABEL - 1.0, Anchor::Start, SOFT, &words);
+    if !patches.is_empty() {
+        let when = if jams { "contacts where it jams" } else { "where it first touches" };
+        let words = view.words().map_or_else(|| when.to_owned(), |cut| format!("{when}; {cut}"));
+        svg.text([72.0, height + 120.0], LABEL - 1.0, Anchor::Start, SOFT, &format!("● {words}"));
     }
-    errors(&mut svg, design, &path.waypoints, Rect { x: 590.0, y: 74.0, w: 340.0, h: height });
+    if !is_planar(design) {
+        let each = 0.5 * height - 24.0;
+        for (k, (when, waypoint)) in
+            [("where it first touches", meeting), ("at its end", last)].iter().enumerate()
+        {
+            let top = 74.0 + k as f64 * (each + 48.0);
+            svg.text([540.0, top + 10.0], LABEL, Anchor::Start, INK, when);
+            let rect = Rect { x: 540.0, y: top + 18.0, w: SPACE, h: each - 18.0 };
+            let points: Vec<DVec3> = waypoint.touches.iter().map(|touch| touch.point).collect();
+            touching(&mut svg, rect, design, connector, &placed(waypoint), &points)?;
+        }
+    }
+    errors(&mut svg, design, &path.waypoints, Rect { x: 590.0 + in_space, y: 74.0, w: 340.0, h: height });
     Ok(Picture::of(svg))
+}
+
+/// The plane through what touches; the usual one where that shows next to nothing of the fixed half, as at one of its corners.
+fn plane(connector: &Connector, patches: &[Patch]) -> Plane {
+    /// Less than so much of what the usual cut shows of the fixed half, from side to side, is next to nothing.
+    const SLIVER: f64 = 0.3;
+    let (usual, plane) = (Plane::across(connector), Plane::through(connector, patches));
+    if width(connector, &plane) < SLIVER * width(connector, &usual) { usual } else { plane }
+}
+
+/// How wide the fixed half is from side to side where it is cut, in D.
+fn width(connector: &Connector, plane: &Plane) -> f64 {
+    let cuts = plane.offsets.iter().flat_map(|y| cut(&connector.fixed, plane.turn(), DVec3::ZERO, *y));
+    let sides = cuts.flatten().map(|[x, _]| x);
+    let (lo, hi) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
+    (hi - lo).max(0.0)
+}
+
+/// How wide the halves are drawn in space, in SVG units.
+const SPACE: f64 = 280.0;
+
+/// Whether all motion is in the plane of x and pitch.
+fn is_planar(design: &Design) -> bool {
+    design.alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch))
 }
 
 const fn placed(w: &Waypoint) -> Placement {
     Placement { error: w.error, height: w.height }
 }
 
-/// What touches at the end: points with the same normal are of one face or edge.
-fn patches(last: &Waypoint) -> Vec<Patch> {
+/// What touches: points with the same normal are of one face or edge.
+fn patches(design: &Design, waypoint: &Waypoint) -> Vec<Patch> {
     /// Cosine of a fiftieth of a degree.
     const SAME: f64 = 1.0 - 1e-7;
-    let mut patches: Vec<Patch> = Vec::new();
-    for touch in &last.touches {
-        match patches.iter_mut().find(|patch| patch.normal.dot(touch.normal) > SAME) {
-            Some(patch) => patch.points.push(touch.point),
-            None => patches.push(Patch { points: vec![touch.point], normal: touch.normal }),
+    let mut patches: Vec<(DVec3, Vec<DVec3>)> = Vec::new();
+    for touch in &waypoint.touches {
+        match patches.iter_mut().find(|(normal, _)| normal.dot(touch.normal) > SAME) {
+            Some((_, points)) => points.push(touch.point),
+            None => patches.push((touch.normal, vec![touch.point])),
         }
     }
-    patches
+    let at = placed(waypoint).of(design);
+    patches.into_iter().map(|(normal, points)| Patch::new(points, normal, at)).collect()
 }
 
 /// Waypoints evenly spaced along the path.
@@ -94,6 +139,9 @@ fn ghosts(waypoints: &[Waypoint]) -> Vec<&Waypoint> {
     chosen.into_iter().map(|k| &waypoints[k]).collect()
 }
 
+/// A path is drawn over so much at least, in D: that of a half which does not move has no length.
+const SHORT: f64 = 1e-3;
+
 /// Lengths above, angles below, over a common path length.
 fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
     let units = Units::of(design);
@@ -106,7 +154,7 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
     let groups: Vec<Vec<Dof>> = [lengths, angles].into_iter().filter(|g| !g.is_empty()).collect();
     let gap = 66.0;
     let each = (rect.h - gap * (groups.len().max(1) - 1) as f64) / groups.len().max(1) as f64;
-    let travelled = waypoints.last().map_or(0.0, |w| w.travelled).max(1e-9);
+    let travelled = waypoints.last().map_or(0.0, |w| w.travelled).max(SHORT);
     for (k, group) in groups.iter().enumerate() {
         let angle = group[0].is_rotation();
         let factor = units.factor(group[0]);
@@ -129,6 +177,9 @@ fn errors(svg: &mut Svg, design: &Design, waypoints: &[Waypoint], rect: Rect) {
         for dof in group {
             let points = waypoints.iter().zip(values(*dof)).map(|(w, v)| frame.at([w.travelled, v]));
             let stroke = hex(colour::CURVES[dof.index()]);
+            if let [point] = points.clone().collect::<Vec<_>>()[..] {
+                svg.circle(point, 3.0, &format!(r#"fill="{stroke}""#));
+            }
             svg.path(
                 &polyline(points, false),
                 &format!(r#"fill="none" stroke="{stroke}" stroke-width="2" {JOIN}"#),
