@@ -63,6 +63,10 @@ memory *designs:
 reproducible:
     tests/reproducible
 
+# known weaknesses of what is depended on, by the RustSec database, which is fetched; needs `cargo install cargo-deny`
+advisories:
+    cargo deny --all-features check advisories
+
 # the bill of materials of the program (CycloneDX), beside its Cargo.toml; needs `cargo install cargo-cyclonedx`
 sbom:
     cargo cyclonedx --manifest-path crates/catchment-cli/Cargo.toml --all-features --format json --describe binaries
