@@ -7,7 +7,11 @@
 //!                     and at last none: the caller's own thread does everything
 //!   each              pieces of work side by side, every one on a thread that works for it alone
 //! ```
+//!
+//! A thread that has its stack and then finds no room for what else it begins with ends the process. So the system is not
+//! asked for threads whose stacks would fill what the limit of the address space leaves: they are refused before.
 
+use super::memory::{self, Bytes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -38,9 +42,10 @@ pub(super) enum Threads {
 
 impl Threads {
     pub(super) fn exactly(threads: usize) -> Result<Self, ThreadsError> {
-        let refused =
-            |error: rayon::ThreadPoolBuildError| ThreadsError { threads, reason: error.to_string() };
-        Ok(Self::Own(Arc::new(ThreadPoolBuilder::new().num_threads(threads).build().map_err(refused)?)))
+        let refused = |reason: String| ThreadsError { threads, reason };
+        ensure_room(threads, memory::limit()).map_err(refused)?;
+        let pool = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
+        Ok(Self::Own(Arc::new(pool.map_err(|error| refused(error.to_string()))?)))
     }
 
     fn pool(&self) -> Option<&ThreadPool> {
@@ -61,6 +66,24 @@ impl Threads {
             None => alone(work),
         }
     }
+}
+
+/// The stack of a thread, in bytes.
+const STACK: usize = 2 << 20;
+/// One in so many parts of what the limits of this process leave is the most that stacks take of it.
+const STACKS_PART: u64 = 2;
+
+/// Why there is no room for the stacks of so many threads in what the limits of this process leave.
+fn ensure_room(threads: usize, left: u64) -> Result<(), String> {
+    let stacks = (threads as u64).saturating_mul(STACK as u64);
+    if stacks <= left / STACKS_PART {
+        return Ok(());
+    }
+    Err(format!(
+        "their stacks take {}, and the limits of this process leave {} for everything",
+        Bytes(stacks),
+        Bytes(left)
+    ))
 }
 
 /// Hands the numbers below `count` to `work`, on `lanes` threads that share nothing: a pool would let a thread that waits in one
@@ -90,8 +113,11 @@ fn shared() -> Option<&'static ThreadPool> {
     static SHARED: OnceLock<Option<ThreadPool>> = OnceLock::new();
     SHARED
         .get_or_init(|| {
-            let start = |threads| ThreadPoolBuilder::new().num_threads(threads).build().ok();
             let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+            let start = |threads: usize| {
+                ensure_room(if threads == 0 { cores } else { threads }, memory::limit()).ok()?;
+                ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build().ok()
+            };
             // 0: a thread per core, or what the environment variable of `rayon` says.
             start(0).or_else(|| most(cores / 2, start))
         })
@@ -125,6 +151,16 @@ mod tests {
             [20, 13, 12, 5, 2, 1, 0].map(limited),
             [Some(13), Some(13), Some(6), Some(3), Some(1), Some(1), None]
         );
+    }
+
+    #[test]
+    fn stacks_take_half_of_what_is_left_at_most() {
+        const MIB: u64 = 1 << 20;
+        assert_eq!(ensure_room(1024, u64::MAX), Ok(()));
+        assert_eq!(ensure_room(1024, 4096 * MIB), Ok(()));
+        let why = "their stacks take 2.0 GiB, and the limits of this process leave 4.0 GiB for everything";
+        assert_eq!(ensure_room(1024, 4096 * MIB - 1), Err(why.to_owned()));
+        assert!(ensure_room(usize::MAX, 1 << 60).is_err());
     }
 
     #[test]
