@@ -1,10 +1,13 @@
 """The command of the wheel, Ctrl-C, types, and the lines of the README."""
 
+import contextlib
 import os
 import re
 import signal
 import subprocess
 import sys
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -72,10 +75,15 @@ def test_ctrl_c_ends_it(what: str) -> None:
 
 def listens(process: int) -> None:
     """Waits until a process has a thread that waits for signals."""
-    while True:
-        names = [task.joinpath("comm") for task in Path(f"/proc/{process}/task").iterdir()]
-        if any(name.read_text().strip() == "signals" for name in names if name.exists()):
-            return
+    while "signals" not in thread_names(process):
+        time.sleep(0.001)
+
+
+def thread_names(process: int) -> Iterator[str]:
+    """The names of a process's threads: of those that have not ended when they are asked."""
+    for task in Path(f"/proc/{process}/task").iterdir():
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            yield task.joinpath("comm").read_text().strip()
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/python.md", "crates/catchment-py/README.md"])
