@@ -116,6 +116,14 @@ impl Body {
 }
 
 impl Body {
+    /// Whether no facet faces up (1) or down (−1) but those of one flat back.
+    pub(super) fn is_over_flat_back(&self, side: f64) -> bool {
+        let level = |vertex: u32| side * self.at(vertex).z;
+        let back = (0..self.vertices.len() as u32).map(level).fold(f64::NEG_INFINITY, f64::max);
+        let mut facets = self.facets.iter().filter(|facet| side * facet.normal.z > SEAM);
+        facets.all(|facet| facet.corners.iter().all(|corner| level(*corner) >= back - SEAM))
+    }
+
     /// Whether all corners of a ridge are those of a facet.
     pub(super) fn has_side(&self, facet: u32, ridge: u32) -> bool {
         self.ridges[ridge as usize].ends.iter().all(|end| self.has_corner(facet, *end))

@@ -6,6 +6,7 @@ use crate::contact::{Pair, Seat};
 use crate::design::Design;
 use crate::exec::Exec;
 use crate::landscape::Grid;
+use crate::method::descent;
 use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, NotApplicable, grid_of};
 use crate::method::registry::Entry;
 use crate::problem::Problem;
@@ -75,6 +76,11 @@ impl Decide for Settings {
         let refused = |reason: &str| NotApplicable { method: INFO.name, reason: reason.to_owned() };
         if Seat::new(pair).is_limited() {
             return Err(refused("it limits what may rest in the seat, which boxes cannot tell").into());
+        }
+        if !descent::all_count(pair) {
+            return Err(
+                refused("its mated pose does not hold, so that what is seated need not be docked").into()
+            );
         }
         let certified = certify(pair, self, exec)?;
         let acceptance = certified.acceptance(grid, exec)?;

@@ -15,7 +15,7 @@
 
 use super::home::Home;
 use super::placed::PoseBox;
-use super::tree::{Cell, DEEPEST, Label, Tree};
+use super::tree::{Cell, Label, Tree};
 use crate::exec::{Cancelled, Exec};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -146,7 +146,7 @@ impl Seat<'_> {
         };
         let may = |cell: &Cell| {
             cell.label.is_none()
-                && cell.level < DEEPEST
+                && Tree::is_divisible(cell)
                 && cell.height.is_some_and(|height| height.lo < home.level)
         };
         let mut found: Vec<(f64, usize)> =
@@ -237,7 +237,10 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Flo
         tree.cells[number].label = Some(Label::Yes);
     }
     // The other way round: from the seat and from all that is not known, which may lead to it.
-    let unknown = tree.leaves().filter(|(_, cell)| cell.walled || tree.is_at_border(cell)).map(|(k, _)| k);
+    let unknown = tree
+        .leaves()
+        .filter(|(_, cell)| cell.walled && !tree.upright || tree.is_at_border(cell))
+        .map(|(k, _)| k);
     let sources: Vec<usize> = near.iter().copied().chain(unknown).collect();
     let mut way = vec![f64::INFINITY; tree.cells.len()];
     walk(tree, exec, sources.into_iter(), floor, |&Reached { number, height, .. }| {

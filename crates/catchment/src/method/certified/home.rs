@@ -32,8 +32,8 @@ pub(super) struct Home {
     pub(super) level: f64,
 }
 
-/// How often the root is halved before and at most.
-const HALVINGS: std::ops::RangeInclusive<i32> = 3..=9;
+/// How often the error box is halved before and at most.
+const HALVINGS: std::ops::RangeInclusive<i32> = 2..=8;
 /// What the height must rise by on the border beyond what slopes may change by, in D. What heights are rounded by is so much less that the argument
 /// holds to within a ten-thousandth of the way to the mated pose: there everything is in the seat.
 const LEAST: f64 = 1e5 * ROUNDING;
@@ -46,20 +46,20 @@ const FLUSH: f64 = 1.0 - 1e-9;
 const PIECES: usize = 100_000;
 
 impl Home {
-    /// The largest one that is found about the mated pose, whose height is `mated`; part of a root by halves.
+    /// The largest one that is found about the mated pose, whose height is `mated`; part of the error box by halves.
     ///
     /// # Errors
     /// [`Cancelled`] when asked to stop.
     pub(super) fn find(
         bodies: &Bodies,
-        root: &PoseBox,
+        errors: &PoseBox,
         mated: f64,
         nearby: &mut Nearby<'_>,
         exec: &Exec,
     ) -> Result<Option<Self>, Cancelled> {
         for halvings in HALVINGS {
             exec.check()?;
-            let poses = root.map(|range| {
+            let poses = errors.map(|range| {
                 let reach = range.up.min(-range.lo) * 0.5f64.powi(halvings);
                 if reach > 0.0 { Interval::new(-reach, reach) } else { Interval::ZERO }
             });

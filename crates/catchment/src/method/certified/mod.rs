@@ -9,7 +9,7 @@
 //!
 //! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`, `touch`, `arc`, `survey`). Four
 //! arguments make labels of them: energy (`flood`: the part of the poses below a height that a motion is in cannot be left), faces (`spread`: boxes
-//! that nothing leaves but into their like) and the neighbourhood of the seat (`home`), in any dimension, and direction (`tube`: a bundle that holds
+//! that nothing leaves but into their like) and the neighbourhood of the seat (`home`, and what it grows to: `grown`), in any dimension, and direction (`tube`: a bundle that holds
 //! all motions of a box until it lies in labelled boxes), where at most one rotation is free. Capture basins by intervals: Lhommeau, Jaulin,
 //! Hardouin 2007; the neighbourhood of the seat in which nothing else rests: after Delanoue 2015; how high a caged body must be lifted:
 //! energy-bounded caging.
@@ -24,6 +24,7 @@ mod arc;
 mod body;
 pub(super) mod door;
 mod flood;
+mod grown;
 mod home;
 mod interval;
 mod placed;
@@ -42,6 +43,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
 use crate::pose::Dof;
 use flood::{Flood, Seat, flood, retention};
+use grown::Growth;
 use home::Home;
 use interval::Interval;
 use placed::{Bodies, PoseBox};
@@ -118,6 +120,8 @@ pub struct Certificate {
     pub retention_at_least: f64,
     /// At most; nothing where no way out was found.
     pub retention_at_most: Option<f64>,
+    /// The largest window that is certain: every pose docks of the error box, made smaller about zero by this factor, in [0, 1].
+    pub window: f64,
     /// Boxes that were looked at.
     pub boxes: usize,
 }
@@ -133,6 +137,8 @@ pub(crate) struct Certified {
 const FIRST_LEVEL: [u8; 5] = [8, 5, 4, 3, 2];
 /// Boxes in the way of the seat's own part are halved down to this size in the ρ-metric, in D.
 const FINEST: f64 = 3e-4;
+/// How often a window is halved.
+const WINDOW_HALVINGS: usize = 24;
 /// The part that is spent at last on what is in the way of the seat's part.
 const AT_LAST: usize = 8;
 /// Boxes about the mated pose that are halved at once.
@@ -155,24 +161,30 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
         return Err(CertifiedError::Large { meetings: bodies.meetings.len() });
     }
     let alignment = &pair.alignment;
-    let mut tree = Tree::over(alignment, alignment.free.rotations() <= 1, &bodies);
-    for _ in 0..FIRST_LEVEL[tree.axes.len().clamp(1, 5) - 1] {
-        let all: Vec<usize> = tree.leaves().map(|(number, _)| number).collect();
-        halve(&mut tree, &all, pair, &bodies, exec)?;
-    }
+    let mut tree = begin(pair, &bodies, exec)?;
     let sits = SeatBoxes { pair, rho: alignment.rotation_length };
     let (holds, meets) = (|poses: &PoseBox| sits.holds(poses), |poses: &PoseBox| sits.meets(poses));
     let mated = pair.mated_height();
-    let home = Home::find(&bodies, &tree.root, mated, &mut pair.about(REACH), exec)?;
+    let mut home = Home::find(&bodies, &tree.asked, mated, &mut pair.about(REACH), exec)?;
+    let pieces = settings.boxes.saturating_sub(tree.cells.len()) / 2;
+    let growth = Growth { pair, bodies: &bodies, errors: tree.asked, pieces, exec };
+    let (mut grown, mut window) = (0, 0.0);
+    if let Some(found) = &mut home
+        && tree.axes.len() > MOST_IN_THE_WAY
+    {
+        (*found, grown) = growth.of(*found)?;
+        window = growth.window(found)?;
+    }
+    let boxes = settings.boxes.saturating_sub(grown);
     let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, home, meets: &meets };
     // The seat comes first: most of what docks leads there.
-    let first = tree.cells.len() + settings.boxes / AT_SEAT[tree.axes.len().clamp(1, 5) - 1];
-    while tree.cells.len() < first.min(settings.boxes) {
+    let first = tree.cells.len() + boxes / AT_SEAT[tree.axes.len().clamp(1, 5) - 1];
+    while tree.cells.len() < first.min(boxes) {
         let flooded = flood(&mut tree, &seat, exec)?;
         let mut chosen = seat.about(&tree);
         chosen.truncate(AT_HOME);
         if tree.axes.len() <= MOST_IN_THE_WAY || chosen.is_empty() {
-            chosen.extend(coarse(&tree, &flooded, &bodies));
+            chosen.extend(coarse(&tree, &flooded));
         }
         chosen.truncate(((first - tree.cells.len()) >> tree.axes.len()).max(1));
         chosen.sort_unstable();
@@ -182,17 +194,17 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
         }
         halve(&mut tree, &chosen, pair, &bodies, exec)?;
     }
-    let most = settings.boxes - settings.boxes / AT_LAST;
+    let most = boxes - boxes / AT_LAST;
     loop {
         let flooded = flood(&mut tree, &seat, exec)?;
-        let in_the_way = coarse(&tree, &flooded, &bodies);
+        let in_the_way = coarse(&tree, &flooded);
         spread(&mut tree, &seat, exec)?;
         if alignment.free.rotations() <= 1 {
             bundle(&mut tree, pair, &bodies, exec)?;
             spread(&mut tree, &seat, exec)?;
         }
         let gap = tree.undecided();
-        exec.report(tree.cells.len() as f64 / settings.boxes as f64, "boxes");
+        exec.report(tree.cells.len() as f64 / boxes as f64, "boxes");
         if gap <= settings.gap || tree.cells.len() >= most {
             break;
         }
@@ -203,15 +215,18 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
         halve(&mut tree, &chosen, pair, &bodies, exec)?;
     }
     // How well the seat holds is told best where labels say what comes back and what does not.
-    let last = (tree.cells.len() + settings.boxes / AT_LAST).min(settings.boxes);
+    let last = (tree.cells.len() + boxes / AT_LAST).min(boxes);
     loop {
         let flooded = flood(&mut tree, &seat, exec)?;
-        let mut in_the_way = coarse(&tree, &flooded, &bodies);
+        let mut in_the_way = coarse(&tree, &flooded);
         in_the_way.truncate(last.saturating_sub(tree.cells.len()) >> tree.axes.len());
         if in_the_way.is_empty() {
             let level = home.map_or(flooded.level, |home| home.level.max(flooded.level));
             let [at_least, at_most] = retention(&tree, &seat, level, exec)?;
-            let certificate = tree.certificate(at_least, at_most);
+            let mut certificate = tree.certificate(window.max(tree.window()));
+            certificate.boxes += grown;
+            certificate.retention_at_least = at_least;
+            certificate.retention_at_most = at_most.is_finite().then_some(at_most);
             return Ok(Certified { tree, certificate });
         }
         in_the_way.sort_unstable();
@@ -219,19 +234,23 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     }
 }
 
-/// What is in the way of the seat's part and not as small as it gets.
-fn coarse(tree: &Tree, flooded: &Flood, bodies: &Bodies) -> Vec<usize> {
-    flooded.in_the_way(|number| {
-        let poses = tree.poses(&tree.cells[number]);
-        tree.axes.iter().any(|dof| {
-            let unit = if dof.is_rotation() { bodies.rho } else { 1.0 };
-            unit * poses[dof.index()].width() > FINEST
-        })
-    })
+/// The boxes that are looked at anyway.
+fn begin(pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<Tree, Cancelled> {
+    let mut tree = Tree::over(&pair.alignment, bodies);
+    for _ in 0..FIRST_LEVEL[tree.axes.len().clamp(1, 5) - 1] {
+        let all: Vec<usize> = tree.leaves().map(|(number, _)| number).collect();
+        divide(&mut tree, &all, true, pair, bodies, exec)?;
+    }
+    Ok(tree)
 }
 
-/// Which boxes to halve: those in the way of the seat's own part, those about the mated pose, and the largest of those that are undecided or may
-/// lead undecided ones on.
+/// What is in the way of the seat's part and not as small as it gets.
+fn coarse(tree: &Tree, flooded: &Flood) -> Vec<usize> {
+    flooded.in_the_way(|number| tree.width(&tree.cells[number]) > FINEST)
+}
+
+/// Which boxes to halve: those in the way of the seat's own part, those about the mated pose, the largest of those that are undecided, and the
+/// largest beyond the error box to which these may lead.
 fn chosen(
     tree: &Tree,
     seat: &Seat<'_>,
@@ -242,13 +261,18 @@ fn chosen(
     let most = (tree.cells.len() / PART).max(AT_ONCE);
     let room = boxes.saturating_sub(tree.cells.len()) >> tree.axes.len();
     let by_size = |mut numbers: Vec<usize>| {
-        numbers.retain(|number| tree.cells[*number].level < tree::DEEPEST);
-        numbers.sort_by_key(|number| (tree.cells[*number].level, *number));
-        numbers
+        numbers.retain(|number| Tree::is_divisible(&tree.cells[*number]));
+        let mut sized: Vec<(f64, usize)> =
+            numbers.into_iter().map(|number| (tree.volume(&tree.cells[number]), number)).collect();
+        sized.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        sized.into_iter().map(|(_, number)| number)
     };
     let mut chosen = in_the_way;
     chosen.extend(seat.about(tree).into_iter().take(AT_HOME));
-    chosen.extend(by_size(ahead(tree, exec)?).into_iter().take(most));
+    let ahead = ahead(tree, exec)?.into_iter();
+    let (asked, beyond) = ahead.partition(|number| tree.is_asked(&tree.cells[*number]));
+    chosen.extend(by_size(asked).take(most));
+    chosen.extend(by_size(beyond).take(most));
     let mut seen = BTreeSet::new();
     chosen.retain(|number| seen.insert(*number));
     chosen.truncate(room.max(1));
@@ -256,7 +280,7 @@ fn chosen(
     Ok(chosen)
 }
 
-/// Halves leaves, in parallel; their parts are in the order of the leaves.
+/// Halves leaves along their widest errors.
 fn halve(
     tree: &mut Tree,
     numbers: &[usize],
@@ -264,10 +288,22 @@ fn halve(
     bodies: &Bodies,
     exec: &Exec,
 ) -> Result<(), Cancelled> {
+    divide(tree, numbers, false, pair, bodies, exec)
+}
+
+/// Halves leaves along their widest errors or along all, in parallel; their parts are in the order of the leaves.
+fn divide(
+    tree: &mut Tree,
+    numbers: &[usize],
+    all: bool,
+    pair: &Pair,
+    bodies: &Bodies,
+    exec: &Exec,
+) -> Result<(), Cancelled> {
     let parts: Vec<Vec<Cell>> = exec.install(|| {
         let look = |nearby: &mut Nearby<'_>, number: &usize| {
             exec.check()?;
-            Ok(tree.parts(*number, bodies, nearby))
+            Ok(tree.parts(*number, all, bodies, nearby))
         };
         numbers.par_iter().map_init(|| pair.about(REACH), look).collect::<Result<_, Cancelled>>()
     })?;
@@ -351,6 +387,9 @@ impl Certified {
             let at = |k: usize| axis.lo + axis.step() * k as f64;
             poses[axis.dof.index()] = Interval::new(at(k), at(k + 1));
         }
+        if self.tree.is_within(&poses, self.certificate.window) {
+            return Outcome::Aligned;
+        }
         match self.tree.label_over(&poses) {
             Some(Label::Yes) => Outcome::Aligned,
             Some(Label::Jams) => Outcome::Jammed,
@@ -372,7 +411,38 @@ impl Tree {
         self.common_label(&self.inner_places(poses)?)
     }
 
-    fn certificate(&self, at_least: f64, at_most: f64) -> Certificate {
+    /// The error box, smaller by a factor.
+    fn window_of(&self, scale: f64) -> PoseBox {
+        self.asked.map(|errors| {
+            if errors.up > 0.0 { Interval::new(-scale * errors.up, scale * errors.up) } else { errors }
+        })
+    }
+
+    /// Whether a box lies in the error box made smaller by a factor.
+    fn is_within(&self, poses: &PoseBox, scale: f64) -> bool {
+        let window = self.window_of(scale);
+        self.axes.iter().all(|dof| {
+            let (own, whole) = (poses[dof.index()], window[dof.index()]);
+            whole.lo <= own.lo && own.up <= whole.up
+        })
+    }
+
+    /// By which factor the error box may be made smaller, at least, to hold but boxes that dock.
+    fn window(&self) -> f64 {
+        let docks = |scale: f64| self.label_over(&self.window_of(scale)) == Some(Label::Yes);
+        if docks(1.0) {
+            return 1.0;
+        }
+        let (mut yes, mut no) = (0.0, 1.0);
+        for _ in 0..WINDOW_HALVINGS {
+            let scale = f64::midpoint(yes, no);
+            if docks(scale) { yes = scale } else { no = scale }
+        }
+        yes
+    }
+
+    /// The shares of labels, of a tree and a window; the seat is not spoken of.
+    fn certificate(&self, window: f64) -> Certificate {
         let [mut yes, mut no] = [0.0; 2];
         for (_, cell) in self.leaves().filter(|(_, cell)| self.is_asked(cell)) {
             match cell.label {
@@ -381,23 +451,18 @@ impl Tree {
                 None => {}
             }
         }
+        // Boxes may be larger than a window that is certain by itself.
+        yes = yes.max(self.axes.iter().map(|_| window).product());
         let undecided = (1.0 - yes - no).max(0.0);
-        let measure: f64 = self
-            .axes
-            .iter()
-            .map(|dof| {
-                let ([a, b], root) = (self.errors[dof.index()], self.root[dof.index()]);
-                root.width() * f64::from(b - a) / f64::from(tree::WHOLE)
-            })
-            .product();
+        let measure: f64 = self.axes.iter().map(|dof| self.asked[dof.index()].width()).product();
         Certificate {
             yes,
             no,
             undecided,
             measures: [yes, no, undecided].map(|share| share * measure),
-            retention_at_least: at_least,
-            retention_at_most: at_most.is_finite().then_some(at_most),
+            window,
             boxes: self.cells.len(),
+            ..Certificate::default()
         }
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct Bodies {
     pub(super) rho: f64,
     /// All that may meet at all.
     pub(super) meetings: Vec<Meeting>,
+    /// Whether nothing can slide under anything: both halves are columns over a flat back, and neither tilts. What meets a wall stays on h then.
+    pub(super) upright: bool,
 }
 
 impl Bodies {
@@ -41,7 +43,9 @@ impl Bodies {
         let planar = alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch));
         let meetings = meetings(&fixed, &moving, planar);
         let (cor, rho) = (alignment.center_of_rotation, alignment.rotation_length);
-        Self { fixed, moving, free: alignment.free, cor, rho, meetings }
+        let tilts = [Dof::Roll, Dof::Pitch].into_iter().any(|dof| alignment.free.contains(dof));
+        let upright = !tilts && fixed.is_over_flat_back(-1.0) && moving.is_over_flat_back(1.0);
+        Self { fixed, moving, free: alignment.free, cor, rho, meetings, upright }
     }
 
     /// Whether x (0) or y (1) of the face centre is what is free, not 0 at the centre of rotation.

@@ -15,7 +15,7 @@ use super::flood::{Seat, flood};
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox};
 use super::tree::Tree;
-use super::{CertifiedError, FIRST_LEVEL, MOST_MEETINGS, coarse, halve};
+use super::{CertifiedError, MOST_MEETINGS, begin, coarse, halve};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
@@ -37,12 +37,7 @@ pub(crate) fn depths(
     exec: &Exec,
 ) -> Result<Vec<Option<f64>>, CertifiedError> {
     let bodies = bodies(pair)?;
-    let alignment = &pair.alignment;
-    let mut tree = Tree::over(alignment, alignment.free.rotations() <= 1, &bodies);
-    for _ in 0..FIRST_LEVEL[tree.axes.len().clamp(1, 5) - 1] {
-        let all: Vec<usize> = tree.leaves().map(|(number, _)| number).collect();
-        halve(&mut tree, &all, pair, &bodies, exec)?;
-    }
+    let mut tree = begin(pair, &bodies, exec)?;
     let of = |(k, (error, height)): (usize, &(PoseError, f64))| {
         exec.report(k as f64 / rests.len() as f64, "certified depths");
         Ok(depth(&mut tree, pair, &bodies, error, exec)?.map(|level| (level - height).max(0.0)))
@@ -87,7 +82,7 @@ fn depth(
         let flooded = flood(tree, &seat, exec)?;
         // Labels say what leads to this rest alone.
         tree.cells.iter_mut().for_each(|cell| cell.label = None);
-        let mut in_the_way = coarse(tree, &flooded, bodies);
+        let mut in_the_way = coarse(tree, &flooded);
         in_the_way.truncate(most.saturating_sub(tree.cells.len()) >> tree.axes.len());
         if in_the_way.is_empty() {
             return Ok(Some(flooded.level).filter(|level| level.is_finite()));

@@ -25,16 +25,18 @@ const BETWEEN: usize = 1024;
 pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<(), Cancelled> {
     let in_seat = seat.reach(tree, exec)?;
     let is = |cell: &Cell, yes: bool| cell.label.is_some_and(|label| (label == Label::Yes) == yes);
-    let lost = |cell: &Cell| cell.walled || tree.leaves_root(cell);
     let falls_off = |cell: &Cell| cell.height.is_none() || cell.ends;
     let otherwise = |_, cell: &Cell| {
-        is(cell, false) || !is(cell, true) && (lost(cell) || falls_off(cell) || seat.lets_rest(tree, cell))
+        is(cell, false)
+            || !is(cell, true)
+                && (cell.walled || tree.leaves_root(cell) || falls_off(cell) || seat.lets_rest(tree, cell))
     };
     let may_end = back(tree, otherwise, |cell| !is(cell, true), exec)?;
     let seated = |number: usize, cell: &Cell| {
-        is(cell, true) || !is(cell, false) && cell.height.is_some() && (in_seat[number] || lost(cell))
+        is(cell, true) || !is(cell, false) && cell.height.is_some() && (in_seat[number] || tree.loses(cell))
     };
-    let may_dock = back(tree, seated, |cell| !is(cell, false), exec)?;
+    // Where nothing touches, a motion has ended.
+    let may_dock = back(tree, seated, |cell| !is(cell, false) && cell.height.is_some(), exec)?;
     let may_fall = back(tree, |_, cell| falls_off(cell), |_| true, exec)?;
     for (number, cell) in tree.cells.iter_mut().enumerate() {
         if cell.is_split() || cell.label.is_some() {

@@ -6,7 +6,8 @@ use crate::acceptance::Stream;
 use crate::connector::Connector;
 use crate::contact::brute;
 use crate::design::{Alignment, Family, FamilySpec, SourceText};
-use crate::method::descent;
+use crate::landscape::{Landscape, Resolution};
+use crate::method::{descent, flood};
 use crate::pose::{CorPose, DofSet, PoseError};
 use crate::problem::Draft;
 use std::sync::atomic::Ordering;
@@ -194,6 +195,65 @@ fn all_of_a_box_of_three_errors_docks() {
     let found = certified(&pair, 20_000);
     assert!(found.certificate.undecided <= 0.05 && found.certificate.no == 0.0, "{:?}", found.certificate);
     assert!(contradicts_nothing(&pair, &found, 300) > 280);
+}
+
+/// An independent engine's trials end as their boxes say, wherever these say anything.
+#[test]
+fn no_trial_of_an_engine_contradicts() {
+    for (file, labelled) in [("x-face-3d-cor0-xy.json", 150), ("pyramid-ar1-cor0-xyyaw.json", 10)] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../reference/mujoco").join(file);
+        let set: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+        let family = Family::ALL.into_iter().find(|family| set["family"] == family.name()).unwrap();
+        let mut alignment = Alignment::default_for(Some(family));
+        let free = set["free"].as_array().unwrap().iter();
+        alignment.free = free.map(|name| name.as_str().unwrap().parse::<Dof>().unwrap()).collect();
+        alignment.center_of_rotation = set["center_of_rotation"].as_f64().unwrap();
+        alignment.rotation_length = set["rotation_length"].as_f64().unwrap();
+        let spec = FamilySpec::new(family).with_aspect_ratio(set["aspect_ratio"].as_f64().unwrap());
+        let pair = Pair::new(&Connector::of_family(&spec, alignment.mount).unwrap(), &alignment);
+        let found = certified(&pair, 20_000);
+        let mut told = 0;
+        for row in set["poses"].as_array().unwrap() {
+            let error = PoseError::from_array(std::array::from_fn(|k| row[k].as_f64().unwrap()));
+            let outcome = row[5].as_str().unwrap();
+            if let Some(docks) = found.label_at(&error).filter(|_| outcome != "undecided") {
+                told += 1;
+                assert_eq!(outcome == "aligned", docks, "{file} {error:?}: {outcome}");
+            }
+        }
+        assert!(told > labelled, "{file}: {told}");
+    }
+}
+
+/// What heights on a grid say of the lowest way out of the seat lies between what is certain of it, up to what heights change by from cell to cell.
+#[test]
+fn the_merge_tree_lets_the_seat_go_as_high() {
+    let translations = [Dof::X, Dof::Y];
+    for (family, free, cor) in
+        [(Family::VFace, &[][..], 0.0), (Family::XFace, &[], 0.5), (Family::Pyramid, &translations, 0.0)]
+    {
+        let pair = pair_of(family, free, cor);
+        let Certificate { retention_at_least: least, retention_at_most: most, .. } =
+            certified(&pair, 20_000).certificate;
+        let grid =
+            Resolution::uniform(200).unwrap().grid(&pair.alignment, &Resolution::DEFAULT_CELLS).unwrap();
+        let landscape = Landscape::compute(&pair, &grid, &Exec::new()).unwrap();
+        let docks = flood::docks(&pair, &grid);
+        let settings = flood::Settings::default();
+        let flooding = flood::flood(&landscape, &pair.alignment, &docks, &settings, &Exec::new()).unwrap();
+        let basins = &flooding.hierarchy.basins;
+        let seat = basins.iter().find(|basin| basin.outcome == Outcome::Aligned).unwrap();
+        let pass = seat.height + seat.escape - pair.mated_height();
+        // Slopes are 1 at most here, in the metric.
+        let step = |axis: &crate::landscape::GridAxis| {
+            axis.step() * if axis.dof.is_rotation() { pair.alignment.rotation_length } else { 1.0 }
+        };
+        let between: f64 = 2.0 * grid.axes.iter().map(step).sum::<f64>();
+        assert!(
+            least - between <= pass && most.is_none_or(|most| pass <= most + between),
+            "{family:?}: {least} {pass} {most:?} {between}"
+        );
+    }
 }
 
 /// With all five errors free boxes are too many, but the neighbourhood of the mated pose is certain, and with it a part of the set that has a volume.

@@ -1,15 +1,15 @@
-//! Boxes of pose errors, each halved along all free errors where more is to be known.
+//! Boxes of pose errors, each halved along its widest errors where more is to be known.
 //!
 //! ```text
-//!   ┌───────────────┐   root: the error box, or twice that per error, so that motion can be followed beyond it;
-//!   │   ┌───┬─┬─┐   │         the error box is then the middle quarter, and its border one of boxes
-//!   │   │   ├─┼─┤   │   leaf: a box without parts, with what is certain over it
+//!   ┌───────────────┐   root: the error box, or what motions may come to from it: a whole turn, and as far as the halves
+//!   │   ┌───┬─┬─┐   │         reach; the error box is then half of its places per error, and its border one of boxes
+//!   │   │   ├─┤ │   │   leaf: a box without parts, with what is certain over it
 //!   │   ├───┼─┴─┤   │   places are whole numbers in units of the smallest box, half open: [corner, corner + size)
-//!   │   └───┴───┘   │
+//!   │   └───┴───┘   │         in the error box all are of one width, and so they are on either side of it
 //!   └───────────────┘
 //! ```
 //!
-//! A root that goes once around a rotation closes on itself.
+//! A root that goes once around a rotation closes on itself. Which errors a box is widest along the ρ-metric says: a turn θ is as wide as ρθ.
 
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox};
@@ -17,10 +17,11 @@ use super::survey::{Flows, Survey};
 use crate::contact::Nearby;
 use crate::design::Alignment;
 use crate::pose::Dof;
+use glam::DVec3;
 use std::f64::consts::PI;
 
-/// How often the root may be halved.
-pub(super) const DEEPEST: u8 = 20;
+/// How often the root may be halved along an error.
+const DEEPEST: u8 = 20;
 /// The root's size in smallest boxes.
 pub(super) const WHOLE: u32 = 1 << DEEPEST;
 
@@ -41,6 +42,18 @@ const ROUNDING: f64 = 1e-12;
 /// Numbers of a box per axis, lowest and beyond the highest.
 pub(super) type Span = [[u32; 2]; 5];
 
+/// Errors along which a box is wider than this part of its widest are halved with that.
+const NEARLY_WIDEST: f64 = 0.6;
+
+/// The parts of a box.
+#[derive(Debug, Clone, Copy)]
+struct Parts {
+    /// Number of the first; the others follow.
+    first: u32,
+    /// How many.
+    count: u32,
+}
+
 /// A box.
 #[derive(Debug, Clone)]
 #[expect(
@@ -49,9 +62,9 @@ pub(super) type Span = [[u32; 2]; 5];
 )]
 pub(super) struct Cell {
     pub(super) corner: [u32; 5],
-    pub(super) level: u8,
-    /// Number of its first part, if it has parts.
-    parts: Option<u32>,
+    /// How often the root was halved along each error.
+    levels: [u8; 5],
+    parts: Option<Parts>,
     /// All that may carry in it.
     pub(super) among: Box<[u32]>,
     /// Heights, in D; none where nothing touches.
@@ -79,35 +92,44 @@ pub(super) struct Tree {
     /// The free errors: halved ones.
     pub(super) axes: Vec<Dof>,
     /// The root.
-    pub(super) root: PoseBox,
+    root: PoseBox,
     /// Whether an axis closes on itself.
-    pub(super) closed: [bool; 5],
-    /// The error box in the root.
-    pub(super) errors: Span,
+    closed: [bool; 5],
+    /// The error box, and where in the root it is.
+    pub(super) asked: PoseBox,
+    errors: Span,
+    /// What a unit of each error counts in the ρ-metric, in D.
+    units: [f64; 5],
+    /// Whether motions that meet a wall stay on h: see [`Bodies::upright`].
+    pub(super) upright: bool,
     pub(super) cells: Vec<Cell>,
 }
 
 impl Tree {
-    /// The root of an alignment problem; beyond the error box where `wide`.
-    pub(super) fn over(alignment: &Alignment, wide: bool, bodies: &Bodies) -> Self {
+    /// The root of an alignment problem. Beyond the error box it goes where no more than one rotation is free: motions can be followed there.
+    pub(super) fn over(alignment: &Alignment, bodies: &Bodies) -> Self {
         let axes: Vec<Dof> = alignment.free.iter().collect();
-        let mut root = [Interval::ZERO; 5];
+        let wide = alignment.free.rotations() <= 1;
+        let [mut root, mut asked] = [[Interval::ZERO; 5]; 2];
         let mut closed = [false; 5];
         let mut errors = [[0, WHOLE]; 5];
         for dof in &axes {
             let k = dof.index();
             let half = alignment.half_range(*dof);
-            let reach = if wide { 2.0 * half } else { half };
+            asked[k] = Interval::new(-half, half);
+            let beyond = if dof.is_rotation() { PI } else { (2.0 * half).max(passing(bodies)) };
+            let reach = if wide { half.max(beyond) } else { half };
             root[k] = Interval::new(-reach, reach);
             closed[k] = dof.is_rotation() && (reach - PI).abs() <= 4.0 * f64::EPSILON * PI;
-            if wide {
+            if reach > half {
                 errors[k] = [WHOLE / 4, WHOLE / 4 * 3];
             }
         }
+        let units = Dof::ALL.map(|dof| if dof.is_rotation() { bodies.rho } else { 1.0 });
         let among = (0..bodies.meetings.len() as u32).collect();
         let whole = Cell {
             corner: [0; 5],
-            level: 0,
+            levels: [0; 5],
             parts: None,
             among,
             height: Some(Interval::EVERYTHING),
@@ -118,30 +140,76 @@ impl Tree {
             flows: Flows::ALL,
             label: None,
         };
-        Self { axes, root, closed, errors, cells: vec![whole] }
+        Self { axes, root, closed, asked, errors, units, upright: bodies.upright, cells: vec![whole] }
     }
 
-    /// Size of a box of this level, in smallest boxes.
-    pub(super) const fn size(level: u8) -> u32 {
-        WHOLE >> level
+    /// Size of a box along an axis, in smallest boxes.
+    const fn size(cell: &Cell, axis: usize) -> u32 {
+        WHOLE >> cell.levels[axis]
     }
 
     /// Where a box is.
     pub(super) fn span(&self, cell: &Cell) -> Span {
-        let size = Self::size(cell.level);
         let mut span = [[0, WHOLE]; 5];
         for dof in &self.axes {
-            let corner = cell.corner[dof.index()];
-            span[dof.index()] = [corner, corner + size];
+            let k = dof.index();
+            span[k] = [cell.corner[k], cell.corner[k] + Self::size(cell, k)];
         }
         span
     }
 
+    /// The stretch of an axis that holds a place: places and errors of both of its ends. Below the error box, in it, or above it.
+    fn stretch(&self, axis: usize, above: impl Fn(u32, f64) -> bool) -> ([u32; 2], Interval) {
+        let (root, asked, [from, to]) = (self.root[axis], self.asked[axis], self.errors[axis]);
+        if above(to, asked.up) {
+            ([to, WHOLE], Interval::new(asked.up, root.up))
+        } else if above(from, asked.lo) {
+            ([from, to], asked)
+        } else {
+            ([0, from], Interval::new(root.lo, asked.lo))
+        }
+    }
+
     /// The error at a place of an axis.
     fn error(&self, axis: usize, place: u32) -> f64 {
-        let Interval { lo, up } = self.root[axis];
-        // Exact at quarters of a root that is symmetric about 0, and one number for both boxes that meet there.
-        lo + (up - lo) * (f64::from(place) / f64::from(WHOLE))
+        let ([from, to], errors) = self.stretch(axis, |end, _| place > end);
+        // Exact at ends and in the middle, and one number for both boxes that meet there.
+        if place == from {
+            return errors.lo;
+        }
+        if place == to {
+            return errors.up;
+        }
+        errors.lo + (errors.up - errors.lo) * (f64::from(place - from) / f64::from(to - from))
+    }
+
+    /// The place of an error on its axis, up to rounding.
+    fn place(&self, axis: usize, error: f64) -> f64 {
+        let ([from, to], errors) = self.stretch(axis, |_, end| error > end);
+        let share = if errors.up > errors.lo { (error - errors.lo) / (errors.up - errors.lo) } else { 0.0 };
+        f64::from(from) + share * f64::from(to - from)
+    }
+
+    /// How wide a box is along each error in the ρ-metric, in D.
+    fn widths(&self, cell: &Cell) -> [f64; 5] {
+        let poses = self.poses(cell);
+        Dof::ALL.map(|dof| self.units[dof.index()] * poses[dof.index()].width())
+    }
+
+    /// Width of a box along its widest error, in D.
+    pub(super) fn width(&self, cell: &Cell) -> f64 {
+        self.widths(cell).into_iter().fold(0.0, f64::max)
+    }
+
+    /// What a box measures in the ρ-metric.
+    pub(super) fn volume(&self, cell: &Cell) -> f64 {
+        let widths = self.widths(cell);
+        self.axes.iter().map(|dof| widths[dof.index()]).product()
+    }
+
+    /// Whether a box may be halved.
+    pub(super) fn is_divisible(cell: &Cell) -> bool {
+        cell.levels.iter().all(|level| *level < DEEPEST)
     }
 
     /// The pose errors of a box.
@@ -164,10 +232,9 @@ impl Tree {
             if poses[k].lo < lo || poses[k].up > up {
                 return None;
             }
-            let place = |error: f64| (error - lo) / (up - lo) * f64::from(WHOLE);
             // One more either way than where rounding says they are.
-            let first = (place(poses[k].lo).floor() - 1.0).max(0.0) as u32;
-            let last = ((place(poses[k].up).ceil() + 1.0) as u32).min(WHOLE);
+            let first = (self.place(k, poses[k].lo).floor() - 1.0).max(0.0) as u32;
+            let last = ((self.place(k, poses[k].up).ceil() + 1.0) as u32).min(WHOLE);
             span[k] = [first, last];
         }
         Some(span)
@@ -183,10 +250,8 @@ impl Tree {
             let mut span = [[0, WHOLE]; 5];
             for dof in &self.axes {
                 let k = dof.index();
-                let Interval { lo, up } = self.root[k];
-                let place = |error: f64| (error - lo) / (up - lo) * f64::from(WHOLE);
-                let first = (place(poses[k].lo) + 1e-3).floor().max(0.0) as u32;
-                let last = (place(poses[k].up) - 1e-3).ceil() as u32;
+                let first = (self.place(k, poses[k].lo) + 1e-3).floor().max(0.0) as u32;
+                let last = (self.place(k, poses[k].up) - 1e-3).ceil() as u32;
                 span[k] = [first.min(WHOLE - 1), last.min(WHOLE)];
             }
             span
@@ -204,9 +269,11 @@ impl Tree {
 
     /// Share of the error box that a box in it takes.
     pub(super) fn share(&self, cell: &Cell) -> f64 {
-        let size = f64::from(Self::size(cell.level));
-        let errors = self.axes.iter().map(|dof| self.errors[dof.index()]);
-        errors.map(|[a, b]| size / f64::from(b - a)).product()
+        let part = |dof: &Dof| {
+            let [a, b] = self.errors[dof.index()];
+            f64::from(Self::size(cell, dof.index())) / f64::from(b - a)
+        };
+        self.axes.iter().map(part).product()
     }
 
     /// Whether a motion may leave the root from a box.
@@ -216,6 +283,11 @@ impl Tree {
             let [a, b] = span[dof.index()];
             !self.closed[dof.index()] && (a == 0 || b == WHOLE)
         })
+    }
+
+    /// Whether a motion may come from a box to places that heights and faces tell nothing of: under something, or out of the root.
+    pub(super) fn loses(&self, cell: &Cell) -> bool {
+        cell.walled && !self.upright || self.leaves_root(cell)
     }
 
     /// Every leaf, in order.
@@ -236,7 +308,9 @@ impl Tree {
                 continue;
             }
             match cell.parts {
-                Some(first) => stack.extend((0..1usize << self.axes.len()).map(|part| first as usize + part)),
+                Some(parts) => {
+                    stack.extend((parts.first..parts.first + parts.count).map(|part| part as usize));
+                }
                 None if !go_on(number, cell) => return false,
                 None => {}
             }
@@ -291,16 +365,24 @@ impl Tree {
         })
     }
 
-    /// The parts that a leaf would have, each looked at: nothing is changed.
-    pub(super) fn parts(&self, number: usize, bodies: &Bodies, nearby: &mut Nearby<'_>) -> Vec<Cell> {
+    /// The parts that a leaf would have, halved along all errors or along its widest, each looked at: nothing is changed.
+    pub(super) fn parts(
+        &self,
+        number: usize,
+        all: bool,
+        bodies: &Bodies,
+        nearby: &mut Nearby<'_>,
+    ) -> Vec<Cell> {
         let whole = &self.cells[number];
-        let (level, size) = (whole.level + 1, Self::size(whole.level + 1));
+        let (widths, widest) = (self.widths(whole), self.width(whole));
+        let axes = self.axes.iter().map(|dof| dof.index());
+        let halved: Vec<usize> = axes.filter(|k| all || widths[*k] > NEARLY_WIDEST * widest).collect();
         let part = |which: usize| {
-            let mut corner = whole.corner;
-            for (bit, dof) in self.axes.iter().enumerate() {
-                corner[dof.index()] += size * (which >> bit & 1) as u32;
+            let mut part = whole.clone();
+            for (bit, k) in halved.iter().enumerate() {
+                part.levels[*k] += 1;
+                part.corner[*k] += Self::size(&part, *k) * (which >> bit & 1) as u32;
             }
-            let mut part = Cell { corner, level, ..whole.clone() };
             let survey = Survey::of(bodies, &self.poses(&part), &whole.among, nearby);
             part.among = survey.numbers();
             // What holds for the whole holds for its parts.
@@ -314,13 +396,20 @@ impl Tree {
             part.parts = None;
             part
         };
-        (0..1usize << self.axes.len()).map(part).collect()
+        (0..1usize << halved.len()).map(part).collect()
     }
 
     /// Gives a leaf its parts.
     pub(super) fn split(&mut self, number: usize, parts: Vec<Cell>) {
-        self.cells[number].parts = Some(self.cells.len() as u32);
+        self.cells[number].parts = Some(Parts { first: self.cells.len() as u32, count: parts.len() as u32 });
         self.cells[number].among = Box::default();
         self.cells.extend(parts);
     }
+}
+
+/// How far aside halves are that pass each other by for certain, at any rotation, in D.
+fn passing(bodies: &Bodies) -> f64 {
+    let reach =
+        |vertices: &[DVec3], of: fn(DVec3) -> f64| vertices.iter().map(|v| of(*v)).fold(0.0, f64::max);
+    reach(&bodies.fixed.vertices, |v| v.truncate().length()) + reach(&bodies.moving.vertices, DVec3::length)
 }

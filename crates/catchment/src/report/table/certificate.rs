@@ -1,8 +1,9 @@
 //! What is certain, as text: the three parts of the error box, and how well the seat holds.
 
 use crate::method::certified::Certificate;
+use crate::pose::Dof;
 use crate::report::schema::Report;
-use crate::report::text::{grouped, percent, row, significant};
+use crate::report::text::{grouped, percent, rounded_down, row, significant};
 
 /// Writes a certificate.
 pub(super) fn lines(text: &mut String, found: &Certificate, report: &Report) {
@@ -12,6 +13,17 @@ pub(super) fn lines(text: &mut String, found: &Certificate, report: &Report) {
     row(text, "all dock", &format!("{} of the error box, {yes:.4} {unit}   ({boxes})", percent(found.yes)));
     row(text, "none docks", &format!("{}, {no:.4} {unit}", percent(found.no)));
     row(text, "undecided", &format!("{}, {open:.4} {unit}", percent(found.undecided)));
+    if found.window > 0.0 {
+        let alignment = &report.design.alignment;
+        let side = |dof: Dof| {
+            let half = found.window * alignment.half_range(dof);
+            let degrees = || format!("{}°", rounded_down(half.to_degrees()));
+            let half = if dof.is_rotation() { degrees() } else { format!("{} D", rounded_down(half)) };
+            format!("{dof} ±{half}")
+        };
+        let sides: Vec<String> = alignment.free.iter().map(side).collect();
+        row(text, "certain window", &sides.join(", "));
+    }
     let least = significant(found.retention_at_least);
     let most = found.retention_at_most.map_or_else(String::new, |most| format!(" … {}", significant(most)));
     let lift = if most.is_empty() { format!("at least {least}") } else { format!("{least}{most}") };

@@ -58,7 +58,9 @@ impl RunBody {
 }
 
 fn check_certificate(found: &Certificate) -> Result<(), UnsoundError> {
-    for (value, name) in [(found.yes, "yes"), (found.no, "no"), (found.undecided, "undecided")] {
+    let shares =
+        [(found.yes, "yes"), (found.no, "no"), (found.undecided, "undecided"), (found.window, "window")];
+    for (value, name) in shares {
         share(value, &format!("certificate.{name}"))?;
     }
     // Shares are sums over boxes: they make 1 but for rounding.
