@@ -39,7 +39,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
-use crate::landscape::{Fold, Gradient, Grid, LandscapeError, Relief, Resolution};
+use crate::landscape::{Fold, Gradient, Grid, Landscape, LandscapeError, Relief, Resolution};
 use crate::pose::PoseError;
 use label::Label;
 use rayon::prelude::*;
@@ -76,6 +76,21 @@ pub enum ConfluenceError {
     TooManyCells {
         /// How many.
         cells: usize,
+    },
+    /// The heights alone, which nothing cuts short, take longer than there is.
+    #[error(
+        "the heights of {cells} cells alone take about {seconds:.0} s here, and the grid may take {budget_s:.0} s of the budget: \
+         give {most} cells per error at most (--resolution {most}), or more time"
+    )]
+    HeightsTakeLonger {
+        /// How many cells.
+        cells: usize,
+        /// What they take, by the rate of a few.
+        seconds: f64,
+        /// What there is.
+        budget_s: f64,
+        /// What would fit.
+        most: usize,
     },
     /// No heights.
     #[error(transparent)]
@@ -129,6 +144,9 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
         let per_cell = (needed / (cells as u64).max(1)).max(1) + 1;
         vec![Advice::AtMostResolution(Resolution::largest_that_fits(budget, per_cell, grid.axes.len()))]
     })?;
+    if let Some(budget_s) = settings.budget_s {
+        ensure_in_time(pair, grid, budget_s, exec)?;
+    }
     let started = Stopwatch::start();
     let part = |from, to| exec.part([from, to], STAGE);
     let relief = Relief::compute(pair, grid, &part(0.0, HEIGHTS_SHARE), |error: &PoseError| {
@@ -144,6 +162,33 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
 const STAGE: &str = "motions";
 /// Share of the time that goes to the heights.
 const HEIGHTS_SHARE: f64 = 0.1;
+
+/// Heights may take so long whatever the budget, in seconds: less is not worth a refusal.
+const PATIENCE_S: f64 = 1.0;
+
+/// Refuses heights that would outlast the budget, by the rate of a slice with two cells per rotation.
+fn ensure_in_time(pair: &Pair, grid: &Grid, budget_s: f64, exec: &Exec) -> Result<(), ConfluenceError> {
+    let mut slice = grid.clone();
+    slice
+        .axes
+        .iter_mut()
+        .filter(|axis| axis.dof.is_rotation())
+        .for_each(|axis| axis.cells = axis.cells.min(2));
+    let kept = |grid: &Grid| {
+        let cells = grid.checked_len().unwrap_or(usize::MAX);
+        Fold::new(grid, pair.mirrors()).map_or(cells, |fold| fold.kept_cells())
+    };
+    let started = Stopwatch::start();
+    Landscape::compute(pair, &slice, &exec.part([0.0, 0.0], STAGE))?;
+    let seconds = started.seconds() * kept(grid) as f64 / slice.len() as f64;
+    if seconds <= budget_s.max(PATIENCE_S) {
+        return Ok(());
+    }
+    let axes = grid.axes.len() as f64;
+    let cells = grid.len();
+    let fits = (cells as f64 * budget_s.max(PATIENCE_S) / seconds).powf(1.0 / axes);
+    Err(ConfluenceError::HeightsTakeLonger { cells, seconds, budget_s, most: (fits as usize / 2 * 2).max(2) })
+}
 
 /// Bytes that it takes at the peak, for a pair.
 pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
@@ -180,7 +225,11 @@ impl Labels {
                 }
             });
         });
-        let cells = outcomes.par_iter().filter(|outcome| **outcome == Outcome::Undecided).count();
+        // Of those that a budget did not reach the other warning speaks.
+        let lost = |cell: &usize| {
+            outcomes[*cell] == Outcome::Undecided && self.kept[self.fold.kept_cell(*cell)].is_known()
+        };
+        let cells = (0..outcomes.len()).into_par_iter().filter(lost).count();
         let mut warnings = if cells > 0 { vec![Warning::Undecided { cells }] } else { Vec::new() };
         let (left, of) = (self.unreached(), self.joined.cells);
         if left > 0 {
