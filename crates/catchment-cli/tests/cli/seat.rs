@@ -119,3 +119,48 @@ fn a_limit_below_the_play_is_a_warning_and_one_above_is_none() {
     assert!(said("0.2 mm").contains("is less than the play of the seat"), "{}", said("0.2 mm"));
     assert!(!said("0.6 mm").contains("is less than the play"));
 }
+
+/// A bar laid level across a V of 54 degrees: it balances on its two lower edges, and tips at the least error.
+const BALANCING: &str = r#"
+[connector]
+unit = "mm"
+width = 50
+[[connector.fixed.parts]]
+profile = [[-40, 0], [40, 0], [40, 60], [30, 60], [0, 2], [-30, 60], [-40, 60]]
+height = 20
+axis = "-y"
+at = [0, 10, 0]
+[[connector.moving.parts]]
+box = [50, 10, 3]
+[alignment]
+free = ["x", "pitch"]
+center_of_rotation = 0.0
+[errors]
+x = 1.0
+pitch = "80 deg"
+"#;
+
+#[test]
+fn a_bar_that_balances_is_not_mated() {
+    let home = home(BALANCING);
+    for settle in ["", "settle = true\n"] {
+        let text = BALANCING.replace("width = 50\n", &format!("width = 50\n{settle}"));
+        fs::write(home.path().join("peg.toml"), text).unwrap();
+        let told =
+            refused(home.path()).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        // 0.537 D, tipped by 62.65 degrees.
+        assert!(told.contains("the aligned pose does not hold: a half let go with an error of"), "{told}");
+        assert!(told.contains("comes to rest 26.8") && told.contains("mm deeper, at x "), "{told}");
+        assert!(told.contains("pitch -62.6") || told.contains("pitch 62.6"), "{told}");
+    }
+    // What tips has left the mated pose, however near it began; what balances has not.
+    fs::write(home.path().join("poses.csv"), "x_mm,pitch_deg\n0,0\n0.1,0\n1,0\n0,1\n0,30\n").unwrap();
+    let told = run(home.path(), &["outcome", "peg.toml", "--poses", "poses.csv"]);
+    assert!(told.contains("5 poses: 1 aligned, 4 jammed"), "{told}");
+    assert!(told.contains("warning: the aligned pose does not hold"), "{told}");
+    for method in ["confluence", "descent", "drop"] {
+        let args = ["run", "peg.toml", "--method", method, "--resolution", "6", "--samples", "20", "--json"];
+        let report = json(home.path(), &args);
+        assert_eq!(report["acceptance"]["outcomes"]["aligned"], 0, "{method}: {}", report["acceptance"]);
+    }
+}

@@ -7,16 +7,19 @@
 //! ```
 //!
 //! The second line is tried in every combination of signs of the free degrees of freedom. Slopes below 1 % and
-//! directions far from all of these are not seen: it is a check for wrong geometry, not a proof.
+//! directions far from all of these are not seen: it is a check for wrong geometry, not a proof. Where a half balances that tips at the least error the
+//! first order says nothing; exact motions from small errors do ([`Fall`]).
 //!
 //! The seat must also hold: where it leaves an error more play than the design allows, as flat on flat or a round plug's yaw, there is no
 //! one mated pose to align with, and the design has to say what counts.
 
 use super::Pair;
 use super::play::{Play, directions, play_on, unit};
+use super::told::Told;
 use crate::design::Alignment;
 use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
+use std::fmt;
 
 /// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
 /// four digits, below any play that matters.
@@ -27,70 +30,46 @@ const PROBE: f64 = 1e-3;
 /// What progress is told of, and the share of it that the search for something deeper takes.
 const STAGE: &str = "mated pose";
 const DEEPEST: f64 = 0.2;
+/// An offset to write, such as this much of D.
+const SUCH_AS: f64 = 0.01;
 /// Descent per length that counts: above the curvature of a rotation over one probe (some 1e-3).
 const SLOPE: f64 = 1e-2;
 
-/// Why the aligned pose is no mated pose.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+/// Why the aligned pose is no mated pose. Shown with lengths in D; reports of designs tell them in the design's own unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MatedProblem {
     /// The halves overlap in the aligned pose.
-    #[error(
-        "in the aligned pose the halves overlap by {overlap:.3e} D along the approach: check face_height, mount, and that both halves are drawn facing +z"
-    )]
     Collision {
         /// How far they would have to be drawn apart, in D.
         overlap: f64,
     },
     /// The halves do not touch in the aligned pose.
-    #[error(
-        "in the aligned pose the halves are {gap:.3e} D apart along the approach: check face_height and that both halves are drawn to the same scale"
-    )]
     Gap {
         /// How far they are apart, in D.
         gap: f64,
     },
     /// Halves that are drawn docked do not touch there.
-    #[error(
-        "as drawn the halves are {gap:.3e} D apart along the approach, which is not docked: draw them docked, check the approach, or draw \
-         each half facing +z in a frame of its own"
-    )]
     DrawnApart {
         /// How far they are apart, in D.
         gap: f64,
     },
     /// Halves that are drawn docked are stopped before.
-    #[error(
-        "as drawn the moving half is {overlap:.3e} D deeper than it gets by a straight approach: check the approach, whether something is in \
-         the way, and whether the halves overlap"
-    )]
     DrawnDeeper {
         /// How much deeper, in D.
         overlap: f64,
     },
     /// No vertical line meets both halves.
-    #[error(
-        "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis"
-    )]
     Apart,
     /// The aligned pose is no local minimum of the height.
-    #[error(
-        "the aligned pose does not hold: with an error of {} the halves sink {sinks:.3e} D deeper; check the mount, the centre of rotation, or lock that degree of freedom",
-        described(error)
-    )]
     NotMinimum {
         /// The error that lets them sink deepest among those tried.
         error: PoseError,
-        /// How much deeper, in D.
+        /// How much deeper, in D; infinite where they pass each other by.
         sinks: f64,
     },
     /// No rest is near.
-    #[error(
-        "let go as drawn, the halves run off: nothing holds them near; draw them closer to how they dock, or check the approach, the mount \
-         and what is free"
-    )]
     RunsOff,
     /// The seat leaves an error free.
-    #[error("the seat leaves {} free: {} off the half rests as deep as without any error", dof.name(), amount(*dof, *play))]
     Free {
         /// Which.
         dof: Dof,
@@ -98,16 +77,11 @@ pub enum MatedProblem {
         play: f64,
     },
     /// A half is round, and its yaw counts.
-    #[error("rotation about z changes nothing: the {half} half is round about the approach axis (found)")]
     Round {
         /// Which half.
         half: &'static str,
     },
     /// Not all that may rest in the seat counts.
-    #[error(
-        "docked.{} = {} is less than the play of the seat, {}: a half may be seated and not count as docked",
-        dof.name(), amount(*dof, *limit), amount(*dof, *play)
-    )]
     LimitCutsPlay {
         /// Which error.
         dof: Dof,
@@ -118,15 +92,79 @@ pub enum MatedProblem {
     },
 }
 
+impl std::error::Error for MatedProblem {}
+
+impl fmt::Display for MatedProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.told(Told::IN_D))
+    }
+}
+
 impl MatedProblem {
+    /// What is wrong, as a sentence.
+    pub(crate) fn told(&self, told: Told) -> String {
+        match self {
+            Self::Collision { overlap } => format!(
+                "in the aligned pose the halves overlap by {} along the approach: check face_height, mount, and that both halves are drawn \
+                 facing +z",
+                told.length(*overlap)
+            ),
+            Self::Gap { gap } => format!(
+                "in the aligned pose the halves are {} apart along the approach: check face_height and that both halves are drawn to the same \
+                 scale",
+                told.length(*gap)
+            ),
+            Self::DrawnApart { gap } => format!(
+                "as drawn the halves are {} apart along the approach, which is not docked: draw them docked, check the approach, or draw each \
+                 half facing +z in a frame of its own",
+                told.length(*gap)
+            ),
+            Self::DrawnDeeper { overlap } => format!(
+                "as drawn the moving half is {} deeper than it gets by a straight approach: check the approach, whether something is in the \
+                 way, and whether the halves overlap",
+                told.length(*overlap)
+            ),
+            Self::Apart => "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis".to_owned(),
+            Self::NotMinimum { error, sinks } => {
+                let sink = if sinks.is_finite() {
+                    format!("sink {} deeper", told.length(*sinks))
+                } else {
+                    "pass each other by".to_owned()
+                };
+                format!(
+                    "the aligned pose does not hold: with an error of {} the halves {sink}; check the mount, the centre of rotation, or lock \
+                     that degree of freedom",
+                    told.error(error)
+                )
+            }
+            Self::RunsOff => "let go as drawn, the halves run off: nothing holds them near; draw them closer to how they dock, or check the \
+                              approach, the mount and what is free"
+                .to_owned(),
+            Self::Free { dof, play } => format!(
+                "the seat leaves {} free: {} off the half rests as deep as without any error",
+                dof.name(),
+                told.amount(*dof, *play)
+            ),
+            Self::Round { half } => {
+                format!("rotation about z changes nothing: the {half} half is round about the approach axis (found)")
+            }
+            Self::LimitCutsPlay { dof, limit, play } => format!(
+                "docked.{} = {} is less than the play of the seat, {}: a half may be seated and not count as docked",
+                dof.name(),
+                told.amount(*dof, *limit),
+                told.amount(*dof, *play)
+            ),
+        }
+    }
+
     /// What helps.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self, told: Told) -> Option<String> {
         match self {
             Self::Free { dof, .. } => {
                 let name = dof.name();
                 let ignore =
                     if *dof == Dof::Yaw { ", dont_care = [\"yaw\"] in the place of free if it does not matter" } else { "" };
-                let unit = if dof.is_rotation() { "1 deg" } else { "0.01 D" };
+                let unit = if dof.is_rotation() { "1 deg".to_owned() } else { told.length(SUCH_AS) };
                 Some(format!(
                     "say how far off still counts as docked: [docked] {name} = \"{unit}\"{ignore}, or lock it: leave {name} \
                      out of free"
@@ -142,20 +180,36 @@ impl MatedProblem {
     }
 }
 
-/// An amount of an error for a person.
-fn amount(dof: Dof, value: f64) -> String {
-    if dof.is_rotation() { format!("{:.2} deg", value.to_degrees()) } else { format!("{value:.4} D") }
+/// A rest below the seat, to which a half comes that is a little off: the aligned pose is level about it, or falls off close by.
+///
+/// ```text
+///     ╲   ___●___   ╱     level within the probes; what is a little off tips, and goes on to the bottom
+///      ╲_╱       ╲_╱
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fall {
+    /// The error that it was let go with; none where it falls by itself.
+    pub from: PoseError,
+    /// Where it comes to rest.
+    pub rest: PoseError,
+    /// How much deeper that is than the aligned pose, in D; infinite where it runs off.
+    pub sinks: f64,
 }
 
-/// The parts of an error that are not 0.
-fn described(error: &PoseError) -> String {
-    let parts: Vec<String> = Dof::ALL
-        .into_iter()
-        .zip(error.to_array())
-        .filter(|(_, value)| *value != 0.0)
-        .map(|(dof, value)| format!("{} {value:+.1e}", dof.name()))
-        .collect();
-    parts.join(", ")
+impl Fall {
+    /// What is wrong, as a sentence.
+    pub(crate) fn told(&self, told: Told) -> String {
+        let let_go = match self.from {
+            from if from == PoseError::default() => "a half let go without any error".to_owned(),
+            from => format!("a half let go with an error of {}", told.error(&from)),
+        };
+        let goes = if self.sinks.is_finite() {
+            format!("comes to rest {} deeper, at {}", told.length(self.sinks), told.error(&self.rest))
+        } else {
+            "runs off".to_owned()
+        };
+        format!("the aligned pose does not hold: {let_go} {goes}")
+    }
 }
 
 /// Everything that keeps the aligned pose of a pair from being a mated pose; empty when it is one.

@@ -37,6 +37,7 @@ pub(crate) mod settle;
 mod shape;
 #[cfg(test)]
 mod tests;
+pub(crate) mod told;
 mod tree;
 mod turned;
 mod walls;
@@ -59,6 +60,7 @@ use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::{CorPose, DofSet};
 use glam::{DMat3, DVec2, DVec3};
+use mated::Fall;
 use search::Trees;
 use shape::Shape;
 use std::sync::OnceLock;
@@ -96,6 +98,8 @@ pub struct Pair {
     homing: OnceLock<bool>,
     /// How far the seat reaches by yaw alone, either way, in radians.
     spins: OnceLock<[f64; 2]>,
+    /// Where a half that is a little off comes to rest instead, below the seat.
+    fall: OnceLock<Option<Fall>>,
 }
 
 impl Pair {
@@ -128,6 +132,7 @@ impl Pair {
             mated_height,
             homing,
             spins: OnceLock::new(),
+            fall: OnceLock::new(),
         };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
@@ -143,6 +148,7 @@ impl Pair {
         if free != self.alignment.free {
             pair.homing = OnceLock::new();
             pair.spins = OnceLock::new();
+            pair.fall = OnceLock::new();
         }
         pair
     }
@@ -170,6 +176,11 @@ impl Pair {
     /// How far the seat reaches by yaw alone, either way, in radians: as `find` says, which is asked once.
     pub(crate) fn spins(&self, find: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
         *self.spins.get_or_init(find)
+    }
+
+    /// Where a half that is a little off comes to rest below the seat, if it does: as `find` says, which is asked once.
+    pub(crate) fn fall(&self, find: impl FnOnce() -> Option<Fall>) -> Option<Fall> {
+        *self.fall.get_or_init(find)
     }
 
     /// h₀, the z of the COR at first contact without any error, in D; −∞ where the halves pass each other by.

@@ -8,13 +8,15 @@
 //!       └──────┴─┴───── q
 //! ```
 //!
-//! h₀ is the height of first contact without any error. Whether a pose is connected with the mated one is tried along four paths in
+//! h₀ is the height of first contact without any error. S is entered from above. A half at rest below h₀ − depth has left the seat through its
+//! floor: the mated pose is no minimum then, and that rest is another one. Whether a pose is connected with the mated one is tried along four paths in
 //! the pose error: straight, and its yaw, its rotation or its translation first; along each h must stay at or below h₀ + depth. Poses nearer
 //! than [`CORE`] count as connected. How far the seat reaches by yaw alone, which what is round does all the way, is found once per pair.
 //!
 //! Not promised: walls between two places of rest that are thinner than [`PATH_STEP`] are stepped over, and a seat that bends more than
 //! its four paths do is not recognised to its end: what rests there counts as jammed. Lengths in D, angles in radians.
 
+use super::mated::CONTACT_TOLERANCE;
 use super::{Nearby, Pair};
 use crate::pose::{Dof, PoseError};
 use std::f64::consts::PI;
@@ -51,8 +53,18 @@ impl<'a> Seat<'a> {
         height <= self.level() && self.is_connected(error)
     }
 
-    /// Whether a half that rests with this error counts as docked by the limits of the design.
-    pub fn allows(&self, error: &PoseError) -> bool {
+    /// The least height of the COR at which a half at rest is in the seat, in D: as far below the mated height as the greatest is above, and no
+    /// less than drawings are rounded. What rests deeper has left the mated pose for another.
+    pub fn floor(&self) -> f64 {
+        self.pair.mated_height() - self.pair.alignment.docked.depth.max(CONTACT_TOLERANCE)
+    }
+
+    /// Whether a half that rests with this error, its COR at `height`, counts as docked: no deeper than the seat, and within the limits of the
+    /// design.
+    pub fn allows(&self, error: &PoseError, height: f64) -> bool {
+        if height < self.floor() {
+            return false;
+        }
         let alignment = &self.pair.alignment;
         let off = self.off(error).to_array();
         alignment.free.iter().all(|dof| {

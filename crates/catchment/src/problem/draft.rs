@@ -3,6 +3,7 @@
 use super::{Problem, ProblemError, measure, misfit, places};
 use crate::connector::Connector;
 use crate::contact::mated::{self, MatedProblem};
+use crate::contact::told::Told;
 use crate::contact::{Pair, face, settle};
 use crate::design::{
     Complaint, ConnectorSpec, Design, FilesInMemory, Finding, Findings, SourceText, Sources, Width, load,
@@ -145,6 +146,17 @@ impl Draft {
     /// # Errors
     /// As [`Draft::build`].
     pub fn build_on(self, exec: &Exec) -> Result<Problem, ProblemError> {
+        match self.judged_on(exec)? {
+            (problem, None) => Ok(problem),
+            (_, Some(refusal)) => Err(refusal.into()),
+        }
+    }
+
+    /// The same, with the problem also where it is refused for its mated pose alone: something to draw, and nothing to decide about.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the geometry.
+    pub fn judged_on(self, exec: &Exec) -> Result<(Problem, Option<Findings>), ProblemError> {
         exec.report(0.0, "halves");
         match Connector::build_on(&self.design, &self.files, exec) {
             Ok(connector) => {
@@ -154,20 +166,28 @@ impl Draft {
                         match own.settle.then(|| settle::settled(found.clone(), &self.design.alignment)) {
                             None => found,
                             Some(Some(settled)) => settled,
-                            Some(None) => return Err(self.unmated(&[MatedProblem::RunsOff], None).into()),
+                            Some(None) => return Ok(self.run_off(found)),
                         }
                     }
                     ConnectorSpec::Family(_) => connector,
                 };
-                self.with_halves(connector, exec)
+                Ok(self.judged(connector, exec))
             }
             Err(problems) => Err(self.unbuilt(&problems).into()),
         }
     }
 
+    /// Halves that settle nowhere near.
+    fn run_off(mut self, connector: Connector) -> (Problem, Option<Findings>) {
+        self.design = self.design.with_contents(&connector.contents);
+        let refusal = self.clone().unmated(&[MatedProblem::RunsOff], None);
+        let pair = Pair::new(&connector, &self.design.alignment);
+        (Problem::assembled(self, connector, pair, Vec::new()), Some(refusal))
+    }
+
     /// What is wrong with the geometry, in its places.
     pub(super) fn unbuilt(self, problems: &[crate::connector::Problem]) -> Findings {
-        let list = places::of_geometry(problems)
+        let list = places::of_geometry(problems, Told::of(&self.design))
             .into_iter()
             .map(|(place, message, help)| self.finding(&place, message, help))
             .collect();
@@ -180,27 +200,36 @@ impl Draft {
     }
 
     /// The problem of halves that were built, unless their mated pose is none.
-    pub(super) fn with_halves(mut self, connector: Connector, exec: &Exec) -> Result<Problem, ProblemError> {
+    pub(super) fn with_halves(self, connector: Connector, exec: &Exec) -> Result<Problem, ProblemError> {
+        match self.judged(connector, exec) {
+            (problem, None) => Ok(problem),
+            (_, Some(refusal)) => Err(refusal.into()),
+        }
+    }
+
+    /// The problem of halves that were built, and why their mated pose is none.
+    fn judged(mut self, connector: Connector, exec: &Exec) -> (Problem, Option<Findings>) {
         exec.report(0.0, "contact");
         self.design = self.design.with_contents(&connector.contents);
         let pair = Pair::new(&connector, &self.design.alignment);
         let misdrawn = face::misdrawn(&connector, &self.design.connector);
         let problems = misdrawn.map_or_else(|| mated::problems_on(&pair, exec), |problem| vec![problem]);
         let (apart, doubts): (Vec<_>, Vec<_>) = problems.into_iter().partition(Self::is_apart);
-        if !apart.is_empty() {
+        let refusal = apart.first().map(|first| {
             // Said once: all are about one pose.
-            let advice = misfit::advice(&connector, &pair, &self.design, &apart[0]);
-            return Err(self.unmated(&apart, advice).into());
-        }
-        Ok(Problem::assembled(self, connector, pair, doubts))
+            let advice = misfit::advice(&connector, &pair, &self.design, first);
+            self.clone().unmated(&apart, advice)
+        });
+        (Problem::assembled(self, connector, pair, doubts), refusal)
     }
 
     /// Refused for its mated pose; what helps beside what the problems say themselves stands with the first.
     pub(super) fn unmated(self, problems: &[MatedProblem], mut advice: Option<String>) -> Findings {
+        let told = Told::of(&self.design);
         let finding = |problem: &MatedProblem| {
-            let help: Vec<String> = problem.help().into_iter().chain(advice.take()).collect();
+            let help: Vec<String> = problem.help(told).into_iter().chain(advice.take()).collect();
             let help = (!help.is_empty()).then(|| help.join("; "));
-            self.finding(places::of_mated(problem), problem.to_string(), help)
+            self.finding(places::of_mated(problem), problem.told(told), help)
         };
         let list = problems.iter().map(finding).collect();
         Findings { list, source: self.source, omitted: 0 }

@@ -11,14 +11,13 @@
 
 use crate::connector::{Connector, Half, Side};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem, sinking};
+use crate::contact::told::{Told, number};
 use crate::contact::{Pair, face};
 use crate::design::{ConnectorSpec, Design};
 use glam::{DMat3, DVec2, DVec3};
 
 /// A mirror image has to lie deeper than the halves as drawn by so much to be worth a word, in D.
 const DEEPER: f64 = 0.01;
-/// Digits of lengths that are told: a thousandth of D.
-const GRAIN: f64 = 1e-3;
 
 /// What helps beside what the problem says itself.
 pub(super) fn advice(
@@ -63,10 +62,10 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
     let from_face = contact.point - DVec3::new(0.0, 0.0, height + pair.alignment.center_of_rotation);
     let [fixed, moving] = [(Side::Fixed, contact.point), (Side::Moving, from_face)]
         .map(|(side, point)| place(design, connector.origin.drawn(side, point)));
-    let (scale, unit) = measure(design);
+    let told = Told::of(design);
     let off = above.map_or_else(String::new, |above| {
         let way = if above > 0.0 { "above" } else { "below" };
-        format!(", {} {unit} {way} where they are drawn", number(scale * above.abs()))
+        format!(", {} {way} where they are drawn", told.length(above.abs()))
     });
     Some(format!(
         "lowered without any error they first touch at {fixed} of the fixed and {moving} of the moving part as drawn{off}"
@@ -75,7 +74,7 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
 
 /// How far each half reaches in plan view.
 fn beside(connector: &Connector, design: &Design) -> String {
-    let (scale, unit) = measure(design);
+    let Told { scale, unit } = Told::of(design);
     let reach = |half: &Half| {
         let boxes = half.surfaces.iter().map(crate::connector::Surface::bounds);
         let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -112,23 +111,8 @@ fn fits_mirrored(connector: &Connector, pair: &Pair, problem: &MatedProblem) -> 
     })
 }
 
-/// What lengths are told in: how much of it D is, and its name.
-fn measure(design: &Design) -> (f64, &'static str) {
-    design.unit.map_or((1.0, "D"), |unit| (design.width, unit.symbol()))
-}
-
 fn place(design: &Design, point: DVec3) -> String {
-    let (scale, unit) = measure(design);
+    let Told { scale, unit } = Told::of(design);
     let [x, y, z] = (point * scale).to_array().map(number);
     format!("({x}, {y}, {z}) {unit}")
-}
-
-/// A length to about four digits.
-fn number(value: f64) -> String {
-    let grain = GRAIN * 10f64.powf(value.abs().max(f64::MIN_POSITIVE).log10().floor().clamp(-3.0, 3.0));
-    let rounded = (value / grain).round() * grain;
-    let digits = (-grain.log10()).ceil().clamp(0.0, 6.0) as usize;
-    let text = format!("{rounded:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }

@@ -2,6 +2,7 @@
 
 use crate::connector::{MeshProblem, PartError, Problem, Side};
 use crate::contact::mated::MatedProblem;
+use crate::contact::told::{Told, number};
 use crate::design::{Complaint, Finding, Findings, keys};
 use std::mem::discriminant;
 
@@ -30,17 +31,39 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
 }
 
 /// Key, message and advice of geometric problems; those that say the same of one mesh are one, with the others as advice.
-pub(super) fn of_geometry(problems: &[Problem]) -> Vec<(String, String, Option<String>)> {
+pub(super) fn of_geometry(problems: &[Problem], told: Told) -> Vec<(String, String, Option<String>)> {
     problems
         .chunk_by(same_kind)
-        .map(|kind| (key_of(&kind[0]), kind[0].to_string(), likewise(&kind[1..])))
+        .map(|kind| (key_of(&kind[0]), message(&kind[0], told), likewise(&kind[1..])))
         .collect()
+}
+
+/// A problem as a sentence: a size that makes no sense in the unit of the design as well.
+fn message(problem: &Problem, told: Told) -> String {
+    let text = problem.to_string();
+    let (Problem::Mesh { error, .. }
+    | Problem::Part { error: PartError::Mesh { error, .. }, .. }
+    | Problem::Triangles { error, .. }) = problem
+    else {
+        return text;
+    };
+    match error {
+        MeshProblem::Unit { width } if told != Told::IN_D => {
+            let size = format!(
+                "the half is {} wide, {} D; a connector's half is about 1 D: check the mesh's unit and the design's width",
+                told.length(*width),
+                number(*width)
+            );
+            text.replace(&error.to_string(), &size)
+        }
+        _ => text,
+    }
 }
 
 /// Geometric problems of halves that no file describes.
 pub(crate) fn findings(problems: &[Problem]) -> Findings {
     let finding = |(_, message, help)| Finding::new(message, help);
-    let list = of_geometry(problems).into_iter().map(finding).collect();
+    let list = of_geometry(problems, Told::IN_D).into_iter().map(finding).collect();
     Findings { source: None, list, omitted: 0 }
 }
 

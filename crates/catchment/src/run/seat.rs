@@ -9,6 +9,7 @@
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem};
+use crate::contact::told::Told;
 use crate::contact::{Pair, Play, Seat, play};
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
@@ -116,20 +117,19 @@ impl Seating {
         let docked = &problem.alignment().docked;
         let far =
             self.residual.iter().filter(|residual| residual.most > 1.01 * docked.most_play(residual.axis));
-        let far = far.map(|residual| {
-            let (name, unit) = (residual.axis.name(), if residual.axis.is_rotation() { "rad" } else { "D" });
-            Warning::Note {
-                text: format!(
-                    "docked halves rest up to {:.3} {unit} off in {name}: say in [docked] how much of that counts",
-                    residual.most
-                ),
-            }
+        let told = Told::of(problem.design());
+        let far = far.map(|residual| Warning::Note {
+            text: format!(
+                "docked halves rest up to {} off in {}: say in [docked] how much of that counts",
+                told.amount(residual.axis, residual.most),
+                residual.axis.name()
+            ),
         });
         let deeper = self.deeper.iter().map(|Deeper { sinks, error }| Warning::Note {
             text: format!(
-                "the mated pose does not hold: docked halves rest {sinks:.4} D deeper, at {}; draw the halves so that this is the \
-                 mated pose",
-                place(error)
+                "the mated pose does not hold: docked halves rest {} deeper, at {}; draw the halves so that this is the mated pose",
+                told.length(*sinks),
+                told.error(error)
             ),
         });
         far.chain(deeper).collect()
@@ -145,13 +145,6 @@ impl Deeper {
         let (k, most) = sinks.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         (most > CONTACT_TOLERANCE).then_some(Self { sinks: most, error: rests[k] })
     }
-}
-
-/// A pose error for a person.
-fn place(error: &PoseError) -> String {
-    let [x, y, roll, pitch, yaw] = error.to_array();
-    let [roll, pitch, yaw] = [roll, pitch, yaw].map(f64::to_degrees);
-    format!("x {x:.4} D, y {y:.4} D, roll {roll:.2}°, pitch {pitch:.2}°, yaw {yaw:.2}°")
 }
 
 impl Residual {
@@ -195,30 +188,58 @@ impl Problem {
     /// # Errors
     /// It does not hold, with where the half would settle.
     pub fn checked(self) -> Result<Self, ProblemError> {
-        let unstable = |doubt: &MatedProblem| matches!(doubt, MatedProblem::NotMinimum { .. });
-        match self.doubts().iter().position(unstable) {
-            None => Ok(self),
-            Some(number) => {
-                let message = self.objections().swap_remove(number);
-                let advice = self.advice(&self.doubts()[number]);
-                Err(self.refused("alignment.free", message, advice).into())
-            }
-        }
+        let found = self.doubts().iter().zip(self.said()).find(|(doubt, _)| is_unstable(doubt));
+        let (message, advice) = match found {
+            Some((doubt, message)) => (message, self.advice(doubt)),
+            None => match self.fallen() {
+                Some(message) => (message, None),
+                None => return Ok(self),
+            },
+        };
+        Err(self.refused("alignment.free", message, advice).into())
     }
 
     /// What speaks against the mated pose, as sentences: with where the half settles instead, if it does not hold.
     pub fn objections(&self) -> Vec<String> {
-        let sentence = |doubt: &MatedProblem| match doubt {
-            MatedProblem::NotMinimum { .. } => {
-                let End { outcome, error } = self.settled();
-                format!(
-                    "{doubt}. Let go without any error it settles at {} ({}): draw the halves so that this is the mated pose, or say settle = true of halves of your own",
-                    place(&error),
-                    outcome.name()
-                )
+        let mut said = self.said();
+        if !self.doubts().iter().any(is_unstable) {
+            said.extend(self.fallen());
+        }
+        said
+    }
+
+    /// The doubts, in the unit of the design.
+    fn said(&self) -> Vec<String> {
+        let told = Told::of(self.design());
+        let sentence = |doubt: &MatedProblem| {
+            if !is_unstable(doubt) {
+                return doubt.told(told);
             }
-            _ => doubt.to_string(),
+            let End { outcome, error } = self.settled();
+            let rests = match outcome {
+                Outcome::Missed => "it runs off".to_owned(),
+                _ => format!("it settles at {} ({})", told.error(&error), outcome.name()),
+            };
+            format!(
+                "{}. Let go without any error {rests}: draw the halves so that this is the mated pose, or say settle = true of halves of your own",
+                doubt.told(told)
+            )
         };
         self.doubts().iter().map(sentence).collect()
     }
+
+    /// That halves which are a little off come to rest below the seat, if they do.
+    fn fallen(&self) -> Option<String> {
+        let fall = descent::fall(self.pair())?;
+        let told = Told::of(self.design());
+        Some(format!(
+            "{}: draw the halves so that they are mated where they rest, or lock the degree of freedom in which they tip",
+            fall.told(told)
+        ))
+    }
+}
+
+/// Whether the mated pose does not hold.
+const fn is_unstable(doubt: &MatedProblem) -> bool {
+    matches!(doubt, MatedProblem::NotMinimum { .. })
 }

@@ -14,9 +14,10 @@
 //! Not promised: that no pose near it jams, only that fewer than three in a hundred do, with 95 % confidence.
 
 use super::Settings;
+use super::fall::all_count;
 use super::motion::{Motion, Until, Unwatched};
 use crate::acceptance::{Outcome, Stream};
-use crate::contact::{Pair, Seat};
+use crate::contact::Pair;
 use crate::pose::{Dof, PoseError, face_from_cor};
 use glam::{DMat3, DVec3};
 
@@ -36,7 +37,7 @@ pub(super) fn is_near(pair: &Pair, rotation: &DMat3, cor: DVec3) -> bool {
 /// Whether all poses that are tried near the mated one dock. With the default settings, whoever asks: the answer is kept with the pair, and
 /// must not depend on who asked first.
 pub(super) fn all_dock(pair: &Pair) -> bool {
-    if pair.is_tight() || pair.is_large() || Seat::new(pair).is_limited() {
+    if pair.is_tight() || pair.is_large() || !all_count(pair) {
         return false;
     }
     pair.is_homing(|| {

@@ -12,12 +12,15 @@
 //! With friction ([`Settings::friction`]) the forces of the contacts lie in Coulomb's cones instead of along their normals (`coulomb`), and motion
 //! ends where they hold it; from which friction on they may, [`sticking()`] says.
 //!
+//! Where a half that is a little off the mated pose comes to rest below its seat ([`fall()`]) no motion is called before it has come to rest.
+//!
 //! Not promised: speed, bounce and mass are left out; a pose that starts exactly on a ridge, where
 //! the motion could go either way, may be reported as jammed there.
 
 mod coulomb;
 mod dependence;
 pub(super) mod door;
+mod fall;
 mod holding;
 mod homing;
 mod immobility;
@@ -39,6 +42,8 @@ mod trajectory;
 
 pub use dependence::step_dependence;
 pub(in crate::method) use door::default_samples;
+pub(in crate::method) use fall::all_count;
+pub use fall::fall;
 pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
 pub use immobility::{Immobility, Order, immobility};
 pub use rest::{Rest, settle};

@@ -6,6 +6,7 @@
 //! is halved. Pairs with tight fits go by [`super::sliding`] instead.
 
 use super::coulomb::Coulomb;
+use super::fall::fall;
 use super::homing;
 use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 use super::rest::TOUCHING;
@@ -140,6 +141,8 @@ pub(super) struct Motion<'a> {
     seat: Seat<'a>,
     /// Whether all motion near the mated pose leads to it: [`super::homing`].
     pub(super) homing: bool,
+    /// Whether the mated pose is taken to hold: [`super::fall`] asks that by motions.
+    trusting: bool,
     pub(super) nearby: Nearby<'a>,
     pub(super) contacts: Vec<(Contact, Meeting)>,
     /// Scratch for [`Motion::cut`] and [`Motion::meet`].
@@ -173,6 +176,7 @@ impl<'a> Motion<'a> {
             settings,
             seat: Seat::new(pair),
             homing: false,
+            trusting: false,
             nearby: pair.nearby(slack, near),
             contacts: Vec::new(),
             carrying: Vec::new(),
@@ -196,6 +200,12 @@ impl<'a> Motion<'a> {
         self
     }
 
+    /// Takes for granted that the mated pose holds.
+    pub(super) const fn trusting(mut self) -> Self {
+        self.trusting = true;
+        self
+    }
+
     /// Lowers the moving half at `error` and follows it to its end, or until `watch` calls it; returns the outcome and the last pose
     /// error.
     pub(super) fn follow(
@@ -210,7 +220,7 @@ impl<'a> Motion<'a> {
         let mut mark = (0, travelled, state.cor.z);
         // A half that is seated stays so; whether it is docked then is known before it has come to rest, unless some rests do not count.
         let (mut seated, mut asked, mut docked) = (false, false, false);
-        let all_count = !self.seat.is_limited();
+        let all_count = !self.seat.is_limited() && (self.trusting || fall(self.pair).is_none());
         for count in 0..self.settings.max_steps {
             if self.pair.is_tight() {
                 state = self.feel(&state);
@@ -288,7 +298,9 @@ impl<'a> Motion<'a> {
     fn end(&mut self, outcome: Outcome, last: &State, [seated, docked]: [bool; 2]) -> (Outcome, PoseError) {
         let error = self.error_of(last);
         let rests_well = |motion: &mut Self| {
-            outcome == Outcome::Jammed && (seated || motion.is_seated(last)) && motion.seat.allows(&error)
+            outcome == Outcome::Jammed
+                && (seated || motion.is_seated(last))
+                && motion.seat.allows(&error, last.cor.z)
         };
         let docked = docked || rests_well(self);
         (if docked { Outcome::Aligned } else { outcome }, error)

@@ -13,7 +13,7 @@ use crate::acceptance::Outcome;
 use crate::connector::Half;
 use crate::contact::{Pair, Seat};
 use crate::exec::{Cancelled, Exec};
-use crate::method::descent::{End, Touch};
+use crate::method::descent::{self, End, Touch};
 use crate::pose::{CorPose, Dof, DofSet, PoseError, face_from_cor, rotation};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use rapier3d_f64::parry::mass_properties::MassProperties;
@@ -111,6 +111,7 @@ impl<'a> Engine<'a> {
         let mut fall = Fall::new(self, cor, start.rotation);
         let lost = self.apart(cor.with_z(height), &start.rotation) + self.settings.lost_beyond;
         let mut seat = Seat::new(self.pair);
+        let all_count = descent::all_count(self.pair);
         let mut seated = false;
         let mut settled = 0;
         let mut quiet = 0;
@@ -128,7 +129,7 @@ impl<'a> Engine<'a> {
             seated = cor.z <= seat.level()
                 && (seated || seat.holds(&self.end(Outcome::Aligned, cor, &rotation).error, cor.z));
             settled = if seated { settled + 1 } else { 0 };
-            if settled >= SETTLED && !seat.is_limited() {
+            if settled >= SETTLED && all_count {
                 return Ok(self.end(Outcome::Aligned, cor, &rotation));
             }
             if apart > lost {
@@ -142,7 +143,7 @@ impl<'a> Engine<'a> {
                 quiet = if rests { quiet + 1 } else { 0 };
                 if quiet >= WINDOWS {
                     let end = self.end(Outcome::Aligned, cor, &rotation);
-                    let docked = seated && seat.allows(&end.error);
+                    let docked = seated && seat.allows(&end.error, cor.z);
                     return Ok(if docked { end } else { End { outcome: Outcome::Jammed, ..end } });
                 }
                 before = (cor, rotation);

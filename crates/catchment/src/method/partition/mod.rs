@@ -379,7 +379,7 @@ fn docks(pair: &Pair) -> impl Fn(&Point) -> bool + '_ {
         } else {
             let mut seat = Seat::new(pair);
             let height = pair.height(&pose).unwrap_or(f64::INFINITY);
-            seat.holds(&error, height) && seat.allows(&error)
+            seat.holds(&error, height) && seat.allows(&error, height)
         }
     }
 }

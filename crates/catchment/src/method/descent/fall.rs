@@ -1,0 +1,97 @@
+//! Whether what is a little off the mated pose stays in its seat, by exact motion: [`crate::contact::mated`] probes the first order only, and a half
+//! that balances is level to the first order.
+//!
+//! ```text
+//!     ╲   ___●___   ╱    let go: without error; 0.01 D or 1° off, each free error both ways, and all of them together
+//!      ╲_╱ ↙   ↘ ╲_╱     one comes to rest below the seat, or runs off  →  the mated pose does not hold
+//! ```
+//!
+//! Asked once per pair, of ten motions or so; of tight fits and of halves of many facets of five. Whoever calls motions before they have come to rest asks it
+//! first: a half that comes down into such a seat does not stay in it.
+//!
+//! Not promised: a fall that needs a larger error, or one in a direction that none of these leads into.
+
+use super::Settings;
+use super::motion::{Motion, Until};
+use crate::acceptance::Outcome;
+use crate::contact::mated::{CONTACT_TOLERANCE, Fall};
+use crate::contact::{Pair, Seat};
+use crate::pose::{Dof, PoseError};
+use std::f64::consts::PI;
+
+/// How far off halves are let go: D, and radians.
+const OFF: [f64; 2] = [0.01, PI / 180.0];
+/// What comes this near the mated pose, in the ρ-metric, stays: along the ways on which it would fall it is never nearer than a third of where it began.
+const HOME: f64 = 1e-3;
+/// Of so few free errors all combinations of signs are tried.
+const FEW: usize = 2;
+
+/// Where a half that is a little off comes to rest below the seat of a pair, or runs off to; `None`: nowhere, its mated pose holds. With the default
+/// settings, whoever asks: the answer is kept with the pair.
+pub fn fall(pair: &Pair) -> Option<Fall> {
+    pair.fall(|| {
+        let settings = Settings::default();
+        let mut motion = Motion::new(pair, &settings).trusting();
+        let mut seat = Seat::new(pair);
+        let mut nearby = pair.about(OFF[0]);
+        let mut falls = |from: PoseError| {
+            // What comes home is followed no further: the last of the way takes the longest.
+            let mut is_home = false;
+            let mut home = |at: &PoseError| {
+                is_home = from != PoseError::default() && length(pair, at) <= HOME;
+                is_home.then_some(Outcome::Aligned)
+            };
+            let (outcome, rest) = motion.follow(&from, Until::AtRest, &mut home);
+            if is_home || outcome == Outcome::Undecided {
+                return None;
+            }
+            let height = (outcome != Outcome::Missed).then(|| nearby.height(&rest)).flatten();
+            let height = height.unwrap_or(f64::NEG_INFINITY);
+            let sinks = pair.mated_height() - height;
+            let is_seated = height >= seat.floor() && seat.holds(&rest, height);
+            (sinks > CONTACT_TOLERANCE && !is_seated).then_some(Fall { from, rest, sinks })
+        };
+        starts(pair).into_iter().find_map(&mut falls)
+    })
+}
+
+/// Whether every rest in the seat is docked, so that a motion may be called before it has come to rest: the design limits nothing, and the mated pose
+/// holds.
+pub(in crate::method) fn all_count(pair: &Pair) -> bool {
+    !Seat::new(pair).is_limited() && fall(pair).is_none()
+}
+
+/// The length of a small error in the ρ-metric.
+fn length(pair: &Pair, error: &PoseError) -> f64 {
+    let PoseError { x, y, roll, pitch, yaw } = *error;
+    x.hypot(y).hypot(pair.alignment.rotation_length * roll.hypot(pitch).hypot(yaw))
+}
+
+/// The errors that halves are let go with.
+fn starts(pair: &Pair) -> Vec<PoseError> {
+    let alignment = &pair.alignment;
+    let free: Vec<Dof> = alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
+    let with = |sign: &dyn Fn(usize) -> f64| {
+        let mut error = [0.0; Dof::ALL.len()];
+        for (k, dof) in free.iter().enumerate() {
+            error[dof.index()] = sign(k) * OFF[usize::from(dof.is_rotation())];
+        }
+        PoseError::from_array(error)
+    };
+    let alternate = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+    // Where every motion takes long, in the order of a tenth of a second.
+    let is_slow = pair.asks_trees() || pair.is_tight();
+    let mut starts = vec![PoseError::default()];
+    if !is_slow {
+        starts.extend(
+            (0..free.len()).flat_map(|one| [1.0, -1.0].map(|s| with(&|k| if k == one { s } else { 0.0 }))),
+        );
+    }
+    if free.len() > 1 || is_slow {
+        starts.extend([with(&|_| 1.0), with(&|_| -1.0)]);
+        if free.len() <= FEW || is_slow {
+            starts.extend([with(&alternate), with(&|k| -alternate(k))]);
+        }
+    }
+    starts
+}
