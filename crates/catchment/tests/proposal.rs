@@ -119,7 +119,7 @@ fn comes_back(truth: &Problem, width: Option<f64>, tolerance: f64, seed: u64, fr
                 matches!(found.candidates[0].lie, Lie::Assembled { .. }),
                 frames == Frames::Any,
                 "{name}: {}",
-                found.candidates[0]
+                found.candidates[0].lie
             );
             let off = difference(truth, &found.problem);
             assert!(off < tolerance, "{name}, round {round}: {off}\n{:?}\n{}", found.candidates, found.text);

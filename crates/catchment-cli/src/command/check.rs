@@ -5,7 +5,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, image, to_stdout};
-use catchment::problem::{Problem, ProblemError};
+use catchment::problem::ProblemError;
 use catchment::report::{CheckReport, figure};
 use clap::Args;
 
@@ -37,15 +37,16 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitStatus, Failure> {
         figure::ensure_fits(0, &running.exec)?;
     }
     running.may_be_left();
-    let checked = args
-        .design
-        .draft_on(&running.exec)
-        .and_then(|draft| draft.build_on(&running.exec))
-        .and_then(Problem::checked);
-    let picture = match (kind, &checked) {
-        (Some(kind), Ok(problem)) => Some(image(&figure::pair(problem)?, kind)?),
+    let judged = args.design.draft_on(&running.exec).and_then(|draft| draft.judged_on(&running.exec));
+    // Also of halves that are refused for their mated pose: a picture shows why.
+    let picture = match (kind, &judged) {
+        (Some(kind), Ok((problem, _))) => Some(image(&figure::pair(problem)?, kind)?),
         _ => None,
     };
+    let checked = judged.and_then(|(problem, refusal)| match refusal {
+        None => problem.checked(),
+        Some(findings) => Err(findings.into()),
+    });
     running.exec.check()?;
     drop(running);
     if let Some(bytes) = picture {

@@ -3,7 +3,7 @@
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::{check_place, image, to_stderr, to_stdout, write_file};
+use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file};
 use catchment::design::{LengthUnit, parse_dofs};
 use catchment::pose::DofSet;
 use catchment::report::figure;
@@ -133,17 +133,14 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
 /// Refuses what cannot be written in the end; what kind of picture is asked for.
 fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     const KINDS: [&str; 2] = ["svg", "png"];
+    check_apart(args.output.as_deref(), args.figure.as_deref())?;
     for path in args.output.iter().chain(&args.figure) {
+        for part in [&args.fixed, &args.moving] {
+            check_apart(Some(path), Some(part))?;
+        }
         check_place(path, args.force)?;
     }
     let Some(path) = &args.figure else { return Ok(None) };
-    if args.output.as_ref() == Some(path) {
-        let help = "give two names".to_owned();
-        return Err(Failure::with_help(
-            format!("{} cannot be the design and its picture", path.display()),
-            Some(help),
-        ));
-    }
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     let kind = KINDS.into_iter().find(|kind| kind.eq_ignore_ascii_case(ending));
     kind.map(Some).ok_or_else(|| {
@@ -187,10 +184,13 @@ fn told(found: &Proposal) -> Vec<String> {
     let design = found.problem.design();
     let unit = design.unit.map_or("", LengthUnit::symbol);
     let head = format!("width D {} {unit}, taken from the facets that can touch", design.width);
-    let rows = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).enumerate();
-    let rows = rows.map(|(k, one)| format!("{} {one}", if k == 0 { "taken " } else { "      " }));
+    let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
+    let told = rows
+        .iter()
+        .enumerate()
+        .map(|(k, one)| format!("{} {}", if k == 0 { "taken " } else { "      " }, one.told(&rows, unit)));
     let doubts = found.doubts.iter().map(|doubt| format!("note: {doubt}"));
-    std::iter::once(head).chain(rows).chain(doubts).collect()
+    std::iter::once(head).chain(told).chain(doubts).collect()
 }
 
 /// A refusal in the words of the command line.

@@ -84,6 +84,25 @@ fn a_design_with_problems_has_no_picture() {
     assert!(!dir.path().join("a.svg").exists());
 }
 
+/// Halves that are refused for how they meet are drawn where they first touch, and told in their unit.
+#[test]
+fn halves_that_do_not_mate_are_drawn() {
+    let dir = tempfile::tempdir().unwrap();
+    let bar = "[[connector.fixed.parts]]\nbox = [40, 40, 10]\n[[connector.moving.parts]]\nbox = [40, 40, 10]\nat = [0, 0, 24]\n";
+    let text = format!(
+        "[connector]\nunit = \"mm\"\nwidth = 40\ndrawn = \"assembled\"\n{bar}[alignment]\nfree = [\"x\"]\n"
+    );
+    for (text, said, words) in [
+        (text.clone(), "as drawn the halves are 14 mm apart", "at first contact, cut along the approach"),
+        (text.replace("24]", "10]"), "the seat leaves x free: 4 mm off", "mated, cut along the approach"),
+    ] {
+        fs::write(dir.path().join("design.toml"), text).unwrap();
+        let told = run(dir.path(), &["check", "design.toml", "-o", "a.svg", "--force"]);
+        assert!(told.starts_with("exit 2\n") && told.contains(said), "{told}");
+        assert!(fs::read_to_string(dir.path().join("a.svg")).unwrap().contains(words));
+    }
+}
+
 const BOX: &str = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]]";
 
 #[test]

@@ -1,6 +1,7 @@
 //! `catchment place`: from two files to a design, to what it forgives.
 
 use crate::{catchment, designs, entries, run};
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
@@ -93,4 +94,127 @@ fn parts_that_do_not_dock_are_told_and_nothing_is_written() {
     assert_eq!(output.status.code(), Some(2), "{told}");
     assert!(told.contains("the parts dock in no direction") && told.contains("--facing-moving"), "{told}");
     assert_eq!(entries(home.path()), ["parts"]);
+}
+
+/// An OBJ of prisms: their outlines, from where to where they reach, and where a corner is put.
+type Prism<'a> = (&'a [[f64; 2]], [f64; 2], fn([f64; 2], f64) -> [f64; 3]);
+
+fn obj(prisms: &[Prism<'_>]) -> String {
+    let (mut corners, mut faces, mut first) = (String::new(), String::new(), 1);
+    for (outline, ends, put) in prisms {
+        for corner in ends.iter().flat_map(|end| outline.iter().map(|p| put(*p, *end))) {
+            let _ = writeln!(corners, "v {:.9} {:.9} {:.9}", corner[0], corner[1], corner[2]);
+        }
+        let count = outline.len();
+        let mut face = |list: Vec<usize>| {
+            let list: Vec<String> = list.iter().map(|k| (first + k).to_string()).collect();
+            let _ = writeln!(faces, "f {}", list.join(" "));
+        };
+        face((0..count).rev().collect());
+        face((count..2 * count).collect());
+        for (k, next) in (0..count).map(|k| (k, (k + 1) % count)) {
+            face(vec![k, next, count + next, count + k]);
+        }
+        first += 2 * count;
+    }
+    corners + &faces
+}
+
+/// Drawn in the plane of x and z, extruded along −y.
+fn deep([x, z]: [f64; 2], y: f64) -> [f64; 3] {
+    [x, -y, z]
+}
+
+/// Drawn in the plane of x and y, extruded along z.
+fn flat([x, y]: [f64; 2], z: f64) -> [f64; 3] {
+    [x, y, z]
+}
+
+fn two_parts(fixed: &str, moving: &str) -> tempfile::TempDir {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("fixed.obj"), fixed).unwrap();
+    fs::write(home.path().join("moving.obj"), moving).unwrap();
+    home
+}
+
+const ASSEMBLED: [&str; 8] =
+    ["place", "fixed.obj", "moving.obj", "--unit=mm", "--drawn=assembled", "--approach=-z", "-o", "d.toml"];
+
+/// A bar laid level across a V of 54 degrees balances: no seat where it may tip, and none is proposed in which it does.
+#[test]
+fn a_bar_that_balances_is_not_proposed_to_tip() {
+    let v = [[-40., 0.], [40., 0.], [40., 60.], [30., 60.], [0., 2.], [-30., 60.], [-40., 60.]];
+    let z = 2.0 + 25.0 * 58.0 / 30.0;
+    let bar = [[-25.0, z], [25.0, z], [25.0, z + 3.0], [-25.0, z + 3.0]];
+    let home = two_parts(&obj(&[(&v, [-10.0, 10.0], deep)]), &obj(&[(&bar, [-5.0, 5.0], deep)]));
+    let told = run(home.path(), &[&ASSEMBLED[..], &["--free", "x,pitch"]].concat());
+    assert!(
+        told.starts_with("exit 2") && told.contains("does not hold") && told.contains(" mm deeper"),
+        "{told}"
+    );
+    assert_eq!(entries(home.path()), ["fixed.obj", "moving.obj"]);
+    let told = run(home.path(), &ASSEMBLED);
+    if told.starts_with("exit 0") {
+        let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
+        assert!(text.contains("\nfree = [\"x\"") && !text.contains("\"pitch\""), "{text}");
+        assert!(run(home.path(), &["check", "d.toml"]).starts_with("exit 0"));
+    }
+}
+
+fn arc(radius: f64, from: f64, to: f64, count: u32) -> Vec<[f64; 2]> {
+    let at = |k: u32| (from + (to - from) * f64::from(k) / f64::from(count)).to_radians();
+    (0..=count).map(|k| [radius * at(k).cos(), radius * at(k).sin()]).collect()
+}
+
+/// Two keys between two walls turn by 48 degrees either way, and not all round: their yaw is locked, and does matter.
+#[test]
+fn a_yaw_with_much_play_matters_where_the_seat_is_not_round() {
+    let wall = |from: f64| [arc(16.0, from, from + 60.0, 6), arc(10.3, from + 60.0, from, 6)].concat();
+    let plate = [[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0]];
+    let fixed: [Prism<'_>; 3] =
+        [(&plate, [-5.0, 1.0], flat), (&wall(60.0), [0.0, 10.0], flat), (&wall(240.0), [0.0, 10.0], flat)];
+    let keys = [
+        arc(10.0, 12.0, 168.0, 13),
+        arc(14.0, 170.0, 190.0, 2),
+        arc(10.0, 192.0, 348.0, 13),
+        arc(14.0, -10.0, 10.0, 2),
+    ]
+    .concat();
+    let home = two_parts(&obj(&fixed), &obj(&[(&keys, [1.0, 12.0], flat)]));
+    let told = run(home.path(), &ASSEMBLED);
+    assert!(told.starts_with("exit 0"), "{told}");
+    let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    assert!(text.contains("\nfree = [\"x\", \"y\", ") && !text.contains("yaw"), "{text}");
+    assert!(text.contains("The others are locked."), "{text}");
+    // A disc without keys lies as deep all round.
+    fs::write(home.path().join("moving.obj"), obj(&[(&arc(10.0, 0.0, 350.0, 35), [1.0, 12.0], flat)]))
+        .unwrap();
+    let told = run(home.path(), &[&ASSEMBLED[..], &["--force"]].concat());
+    assert!(told.starts_with("exit 0"), "{told}");
+    let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    assert!(text.contains("dont_care = [\"yaw\"]") && text.contains("as deep all round"), "{text}");
+}
+
+/// A wedge that was drawn turned by 2.5 degrees in its groove: what settles says how far, and to look.
+#[test]
+fn what_settles_says_how_far() {
+    let groove = [[-40., 0.], [40., 0.], [40., 36.], [30., 32.], [0., 2.], [-30., 32.], [-40., 36.]];
+    let turn = |[x, z]: [f64; 2]| {
+        let (sin, cos) = 2.5f64.to_radians().sin_cos();
+        [cos * x - sin * (z - 2.0), 2.0 + sin * x + cos * (z - 2.0)]
+    };
+    let wedge = [[0., 2.], [25., 27.], [25., 30.], [-25., 30.], [-25., 27.]].map(turn);
+    let home = two_parts(&obj(&[(&groove, [-10.0, 10.0], deep)]), &obj(&[(&wedge, [-10.0, 10.0], deep)]));
+    let told = run(home.path(), &ASSEMBLED);
+    assert!(told.starts_with("exit 0") && told.contains("settles, 2.5 deg"), "{told}");
+    assert!(told.contains("note: as drawn the parts do not hold"), "{told}");
+}
+
+/// Ways of approach that are blocked say by how much in the unit of the parts.
+#[test]
+fn a_blocked_approach_is_told_in_millimetres() {
+    let home = home();
+    let parts = ["place", "parts/assembled-socket.obj", "parts/assembled-plug.ply", "--unit", "mm"];
+    let told = run(home.path(), &[&parts[..], &["--drawn=assembled", "--approach=+x"]].concat());
+    assert!(told.starts_with("exit 2") && told.contains("blocked: ") && told.contains(" mm above"), "{told}");
 }

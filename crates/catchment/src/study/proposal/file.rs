@@ -87,7 +87,7 @@ pub(super) fn text(
         );
         line(&format!("approach = \"{approach}\""));
     }
-    if seat.settle {
+    if seat.settle.is_some() {
         line("# As drawn they do not hold; let go they come to rest near, which is taken as mated.");
         line("settle = true");
     }
@@ -142,7 +142,7 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &Settings, unit:
     });
     line(&format!("free = {}", list(seat.free)));
     if !seat.dont_care.is_empty() {
-        line("# The seat does not hold it, as of what is round.");
+        line("# It does not matter: the half lies as deep all round.");
         line(&format!("dont_care = {}", list(seat.dont_care)));
     }
     if seat.symmetry > 1 && seat.free.contains(Dof::Yaw) {

@@ -5,17 +5,20 @@
 //!                                                                    └ climb: what an offset of 0.1 D and 0.3 D takes, all around
 //! ```
 //!
-//! Errors that the seat leaves free (along a groove, the yaw of what is round) are left out of what is free; where walls stop them, but later than a seat's
+//! Errors that the seat leaves free (along a groove, the yaw of what is round) are left out of what is free: locked, but for the yaw of what lies as deep
+//! all round, which does not matter; where walls stop them, but later than a seat's
 //! play may be without being said ([`Docked::MOST_PLAY`]), the play is what counts as docked.
 
 use super::relief::{broadest, plan_box};
 use super::way::Lie;
 use crate::connector::{Connector, Half};
 use crate::contact::mated::{MatedProblem, problems_on, round_half};
+use crate::contact::told::Told;
 use crate::contact::{Pair, face, play, play_on, settle, width};
 use crate::design::{Alignment, Drawn, HalfSpec, OwnSpec};
 use crate::exec::Exec;
-use crate::pose::{CorPose, Dof, DofSet, Mount};
+use crate::method::descent;
+use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError};
 use glam::{DMat3, DVec2};
 use std::f64::consts::TAU;
 
@@ -60,8 +63,8 @@ pub(super) struct Judged {
 pub(super) struct Seat {
     pub(super) free: DofSet,
     pub(super) dont_care: DofSet,
-    /// Whether the halves have to settle.
-    pub(super) settle: bool,
+    /// Where the halves have to settle first, that rest as an error of how they are drawn.
+    pub(super) settle: Option<PoseError>,
     /// Turned by this part of a turn they are mated as well; 1 for none.
     pub(super) symmetry: u32,
     /// How far off they may rest, where it must be said: D and radians, in the order of [`Dof::ALL`].
@@ -85,16 +88,23 @@ impl Judged {
     }
 
     /// Asks what it holds, which takes the longest.
-    pub(super) fn ask(&mut self, free: Option<DofSet>, exec: &Exec) {
+    pub(super) fn ask(&mut self, free: Option<DofSet>, told: Told, exec: &Exec) {
         if self.seat.is_none() {
-            self.seat = Some(seat(&self.connector, free, exec));
+            let told = Told { scale: told.scale * self.width, ..told };
+            self.seat = Some(seat(&self.connector, free, told, exec));
         }
     }
 }
 
 /// Judges halves that lie to each other as `lie` says, the moving one `offset` beside; more offsets may be given that are taken where the
-/// half lies as deep there. Why not, where the halves do not meet or are not docked as drawn.
-pub(super) fn judge(halves: [&Half; 2], lie: Lie, offset: DVec2, others: &[DVec2]) -> Result<Judged, String> {
+/// half lies as deep there. Why not, where the halves do not meet or are not docked as drawn, with lengths as `told` has them.
+pub(super) fn judge(
+    halves: [&Half; 2],
+    lie: Lie,
+    offset: DVec2,
+    others: &[DVec2],
+    told: Told,
+) -> Result<Judged, String> {
     const APART: &str = "they pass each other by";
     let turns = lie.turns();
     let [fixed, moving] = [0, 1].map(|k| halves[k].mapped(|p| turns[k] * p));
@@ -123,10 +133,10 @@ pub(super) fn judge(halves: [&Half; 2], lie: Lie, offset: DVec2, others: &[DVec2
         lift = height(&pair, offset).ok_or(APART)?;
     } else {
         if lift > MOST_APART * wide {
-            return Err(format!("blocked: {:.2} D above where they are drawn", lift / wide));
+            return Err(format!("blocked: {} above where they are drawn", told.length(lift)));
         }
         if lift < -MOST_APART * wide {
-            return Err(format!("drawn {:.2} D apart", -lift / wide));
+            return Err(format!("drawn {} apart", told.length(-lift)));
         }
     }
     let placed = at(offset);
@@ -210,13 +220,13 @@ fn symmetry(pair: &Pair) -> u32 {
 }
 
 /// What the seat holds, of what may be free.
-fn seat(connector: &Connector, wanted: Option<DofSet>, exec: &Exec) -> Result<Seat, String> {
+fn seat(connector: &Connector, wanted: Option<DofSet>, told: Told, exec: &Exec) -> Result<Seat, String> {
     // What does not hold may hold where it cannot tip, or where it only shifts.
     let level = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
     let sets = wanted.map_or_else(|| vec![DofSet::ALL, level.with(Dof::Yaw), level], |set| vec![set]);
     let mut first = None;
     for set in sets {
-        match held(connector, set, wanted.is_some(), exec) {
+        match held(connector, set, wanted.is_some(), told, exec) {
             Ok(seat) => return Ok(seat),
             Err(reason) => first = first.or(Some(reason)),
         }
@@ -225,7 +235,7 @@ fn seat(connector: &Connector, wanted: Option<DofSet>, exec: &Exec) -> Result<Se
 }
 
 /// The same, starting from one set; `exactly` that one, but for a yaw that does not matter.
-fn held(connector: &Connector, free: DofSet, exactly: bool, exec: &Exec) -> Result<Seat, String> {
+fn held(connector: &Connector, free: DofSet, exactly: bool, told: Told, exec: &Exec) -> Result<Seat, String> {
     let mut alignment = Alignment::new(free, Mount::X);
     let pair = Pair::new(connector, &alignment);
     if round_half(&pair).is_some() {
@@ -233,18 +243,23 @@ fn held(connector: &Connector, free: DofSet, exactly: bool, exec: &Exec) -> Resu
         alignment.dont_care = DofSet::EMPTY.with(Dof::Yaw);
     }
     let symmetry = if alignment.free.contains(Dof::Yaw) { symmetry(&pair) } else { 1 };
+    let spins = alignment.free.contains(Dof::Yaw) && spins(&pair);
     drop(pair);
-    let may_go = |dof: &Dof| !exactly || *dof == Dof::Yaw;
+    // The yaw of what is round does not matter; any other error that the seat does not hold is locked.
+    let may_go = |dof: &Dof| !exactly || *dof == Dof::Yaw && spins;
+    let leave_out = |alignment: &mut Alignment, dof: Dof| leave_out(alignment, dof, dof == Dof::Yaw && spins);
     let mut is_without_walls = DofSet::EMPTY;
     // Every step leaves one out, or says the play of some.
     loop {
-        let mut settles = false;
+        let mut settle = None;
+        let mut held = connector.clone();
         let mut found = problems_on(&Pair::new(connector, &alignment), exec);
         if found.iter().any(|problem| matches!(problem, MatedProblem::NotMinimum { .. })) {
             let settled = settle::settled(connector.clone(), &alignment).ok_or("it runs off")?;
-            let off = settled.origin.settled.unwrap_or_default().to_array();
-            settles = off.iter().any(|off| off.abs() > AT_REST);
+            let off = settled.origin.settled.unwrap_or_default();
+            settle = off.to_array().iter().any(|off| off.abs() > AT_REST).then_some(off);
             found = problems_on(&Pair::new(&settled, &alignment), exec);
+            held = settled;
         }
         // What nothing stops near, a wall may stop farther off.
         let unsaid = found.iter().filter_map(|problem| match problem {
@@ -269,21 +284,35 @@ fn held(connector: &Connector, free: DofSet, exactly: bool, exec: &Exec) -> Resu
         let loose = loose.filter(may_go);
         match (found.first(), loose) {
             (None, _) => {
+                if let Some(fall) = descent::fall(&Pair::new(&held, &alignment)) {
+                    return Err(fall.told(told));
+                }
                 let Alignment { free, dont_care, docked, .. } = alignment;
-                return Ok(Seat { free, dont_care, settle: settles, symmetry, play: docked.limits });
+                return Ok(Seat { free, dont_care, settle, symmetry, play: docked.limits });
             }
             (Some(_), Some(dof)) => leave_out(&mut alignment, dof)?,
             (Some(MatedProblem::NotMinimum { .. }), None) => return Err("it does not hold".to_owned()),
-            (Some(problem), None) => return Err(problem.to_string()),
+            (Some(problem), None) => return Err(problem.told(told)),
         }
     }
 }
 
-/// Leaves out an error that the seat does not hold.
-fn leave_out(alignment: &mut Alignment, dof: Dof) -> Result<(), String> {
+/// Whether a half lies as deep all round, to within what counts as seated: looked at every 2.5 degrees.
+fn spins(pair: &Pair) -> bool {
+    const LOOKS: u32 = 144;
+    let depth = pair.alignment.docked.depth;
+    (1..LOOKS).all(|k| {
+        let rotation = DMat3::from_rotation_z(TAU * f64::from(k) / f64::from(LOOKS));
+        let height = pair.height(&CorPose { lateral: DVec2::ZERO, rotation });
+        height.is_some_and(|height| (height - pair.mated_height()).abs() <= depth)
+    })
+}
+
+/// Leaves out an error that the seat does not hold: locked, or of no matter.
+fn leave_out(alignment: &mut Alignment, dof: Dof, is_round: bool) -> Result<(), String> {
     alignment.free = alignment.free.without(dof);
     alignment.docked.limits[dof.index()] = None;
-    if dof == Dof::Yaw {
+    if is_round {
         alignment.dont_care = alignment.dont_care.with(dof);
     }
     if alignment.free.is_empty() { Err("it holds nothing".to_owned()) } else { Ok(()) }

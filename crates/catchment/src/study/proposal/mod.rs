@@ -25,9 +25,10 @@ mod way;
 pub use way::{Lie, Way};
 
 use crate::connector::{Half, Side, of_file};
+use crate::contact::told::{Told, number};
 use crate::design::{FileSpec, FileUnit, LengthUnit, SourceText};
 use crate::exec::{Cancelled, Exec};
-use crate::pose::DofSet;
+use crate::pose::{DofSet, PoseError};
 use crate::problem::{Draft, Problem, ProblemError, findings};
 use glam::{DMat3, DVec2, DVec3};
 use judge::{Judged, judge};
@@ -85,17 +86,26 @@ pub struct Candidate {
     pub shared: f64,
     /// D, in the unit of the design.
     pub width: f64,
+    /// Where the origin of the moving part is across the approach, in the unit of the design and the frame of the fixed half, turned.
+    pub offset: [f64; 2],
     /// Whether it is a seat.
     pub seat: Held,
 }
 
 /// Whether a candidate is a seat.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Held {
     /// As drawn.
     Holds,
     /// Where the halves have settled.
-    Settles,
+    Settles {
+        /// By how much the moving half turned, in radians.
+        turn: f64,
+        /// By how much it shifted across the approach, in the unit of the design.
+        shift: f64,
+        /// How that is told.
+        told: String,
+    },
     /// It is none, and why.
     Refused(String),
     /// Others are better, so that it was not asked.
@@ -104,12 +114,12 @@ pub enum Held {
 
 impl fmt::Display for Held {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Holds => "holds",
-            Self::Settles => "settles",
-            Self::Refused(reason) => reason,
-            Self::NotAsked => "not looked at any closer",
-        })
+        match self {
+            Self::Holds => f.write_str("holds"),
+            Self::Settles { told, .. } => write!(f, "settles, {told} off"),
+            Self::Refused(reason) => f.write_str(reason),
+            Self::NotAsked => f.write_str("not looked at any closer"),
+        }
     }
 }
 
@@ -168,6 +178,8 @@ fn told(size: [f64; 3]) -> String {
 const LEAST: f64 = 0.02;
 /// A second best with this share of the score is nearly as good.
 const NEARLY: f64 = 0.8;
+/// A half that settles by more than this turn, or by this shift in D, is told of: 2 degrees, as much of an arm of half D.
+const MUCH: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 /// Parts whose boxes are nearer than this, in the smaller one's middle extent, may be drawn docked.
 const NEAR: f64 = 0.05;
 
@@ -186,6 +198,7 @@ pub fn propose(
     let unit = halves.each_ref().map(middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
     let pair = [&fixed, &moving];
+    let told = Told { scale: unit, unit: design_unit(settings).symbol() };
     let pinned = settings.facing.iter().any(Option::is_some);
     let may_be = |frames: Frames| match settings.frames {
         Frames::Any => {
@@ -200,10 +213,10 @@ pub fn propose(
         let ways = ways(settings.approach);
         let found = exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
             let lie = Lie::Assembled { approach: ways[k] };
-            judge(pair, lie, DVec2::ZERO, &[]).map_err(|reason| format!("{lie}: {reason}"))
+            judge(pair, lie, DVec2::ZERO, &[], told).map_err(|reason| format!("{lie}: {reason}"))
         });
         sort(found, &mut judged, &mut refused);
-        rank(&mut judged, settings.free, exec)?;
+        rank(&mut judged, settings.free, told, exec)?;
     }
     let docked = judged.first().is_some_and(is_seat);
     if may_be(Frames::Facing) && !docked {
@@ -211,7 +224,8 @@ pub fn propose(
         let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
         let found = exec.each(places.len(), usize::MAX, "seats", |k, _| {
             let search::Place { lie, offset, .. } = places[k];
-            judge(pair, lie, offset, &round_numbers(pair, lie)).map_err(|reason| format!("{lie}: {reason}"))
+            judge(pair, lie, offset, &round_numbers(pair, lie), told)
+                .map_err(|reason| format!("{lie}: {reason}"))
         });
         if places.is_empty() {
             refused.insert(
@@ -220,15 +234,15 @@ pub fn propose(
             );
         }
         sort(found, &mut judged, &mut refused);
-        rank(&mut judged, settings.free, exec)?;
+        rank(&mut judged, settings.free, told, exec)?;
     }
-    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, unit)).collect();
+    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, told)).collect();
     let best = judged.first().filter(|best| is_seat(best));
     let Some((best, Some(Ok(seat)))) = best.map(|best| (best, &best.seat)) else {
         let slack = |one: &Candidate| {
             let flat = "a half that is off does not climb";
             let why = if let Held::Refused(why) = &one.seat { why } else { flat };
-            format!("{}: {why}", one.lie)
+            format!("{}{}: {why}", one.lie, one.place_among(&candidates, told.unit))
         };
         return Err(ProposalError::NoSeat { tried: candidates.iter().map(slack).chain(refused).collect() });
     };
@@ -243,7 +257,7 @@ fn is_seat(judged: &Judged) -> bool {
 }
 
 /// The best first, and what the best and those nearly as good hold.
-fn rank(judged: &mut Vec<Judged>, free: Option<DofSet>, exec: &Exec) -> Result<(), Cancelled> {
+fn rank(judged: &mut Vec<Judged>, free: Option<DofSet>, told: Told, exec: &Exec) -> Result<(), Cancelled> {
     let sort = |judged: &mut Vec<Judged>| judged.sort_by(|a, b| b.score().total_cmp(&a.score()));
     sort(judged);
     // Places that came to the same seat.
@@ -264,7 +278,7 @@ fn rank(judged: &mut Vec<Judged>, free: Option<DofSet>, exec: &Exec) -> Result<(
         let Some(next) = judged.iter_mut().find(|one| one.seat.is_none() && one.score() > level) else {
             return Ok(());
         };
-        next.ask(free, exec);
+        next.ask(free, told, exec);
         sort(judged);
     }
 }
@@ -365,21 +379,41 @@ fn round_numbers([fixed, moving]: [&Half; 2], lie: Lie) -> [DVec2; 2] {
     [middle(fixed, &turns[0]) - middle(moving, &turns[1]), DVec2::ZERO]
 }
 
-fn candidate(judged: &Judged, unit: f64) -> Candidate {
-    let Judged { lie, width, climb, shared, seat, .. } = judged;
+fn candidate(judged: &Judged, told: Told) -> Candidate {
+    let Judged { lie, width, climb, shared, seat, offset, .. } = judged;
+    let unit = told.scale;
     Candidate {
         lie: *lie,
         score: judged.score(),
         climb: climb.max(0.0),
         shared: *shared,
         width: width * unit,
+        offset: (*offset * unit).to_array(),
         seat: match seat {
             None => Held::NotAsked,
-            Some(Ok(seat)) if seat.settle => Held::Settles,
+            Some(Ok(judge::Seat { settle: Some(off), .. })) => settles(off, width * unit, told.unit),
             Some(Ok(_)) => Held::Holds,
             Some(Err(reason)) => Held::Refused(reason.clone()),
         },
     }
+}
+
+/// Where halves have settled.
+fn settles(off: &PoseError, width: f64, unit: &str) -> Held {
+    let turn = off.roll.hypot(off.pitch).hypot(off.yaw);
+    let shift = off.x.hypot(off.y) * width;
+    // What is less is how well the rest is known.
+    let shown = [(turn.to_degrees(), "deg", 0.05), (shift, unit, 1e-4 * width)];
+    let parts: Vec<String> = shown
+        .into_iter()
+        .filter(|(value, _, least)| value >= least)
+        .map(|(value, unit, _)| match unit {
+            "deg" => format!("{value:.1} deg"),
+            _ => format!("{} {unit}", number(value)),
+        })
+        .collect();
+    let told = if parts.is_empty() { "hardly".to_owned() } else { parts.join(" and ") };
+    Held::Settles { turn, shift, told }
 }
 
 /// What a person should look at.
@@ -395,8 +429,9 @@ fn doubts(candidates: &[Candidate], settings: &Settings) -> Vec<String> {
     } else if let Some(other) = nearly.first() {
         let place = if other.lie == best.lie { "at another place" } else { "turned about the approach" };
         doubts.push(format!(
-            "the parts dock as well {place} ({}): look whether the one that was taken is the one that is meant",
-            other.lie
+            "the parts dock as well {place} ({}{}): look whether the one that was taken is the one that is meant",
+            other.lie,
+            other.place_among(candidates, design_unit(settings).symbol())
         ));
     }
     if settings.frames == Frames::Any
@@ -404,6 +439,14 @@ fn doubts(candidates: &[Candidate], settings: &Settings) -> Vec<String> {
         && settings.approach.is_none()
     {
         doubts.push("the parts meet as drawn, and were taken as an assembly that is docked".to_owned());
+    }
+    if let Held::Settles { turn, shift, told } = &best.seat
+        && (*turn > MUCH || *shift > MUCH * best.width)
+    {
+        doubts.push(format!(
+            "as drawn the parts do not hold; let go they come to rest {told} off, which is taken as mated: look at the picture, whether that is how \
+             they dock, or lock what turns with --free"
+        ));
     }
     if best.climb < 0.1 {
         doubts.push(format!(
@@ -414,12 +457,22 @@ fn doubts(candidates: &[Candidate], settings: &Settings) -> Vec<String> {
     doubts
 }
 
-impl fmt::Display for Candidate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Candidate {
+    /// Where the moving part is, in words to put behind how it lies, where others lie the same way; nothing otherwise.
+    pub fn place_among(&self, all: &[Self], unit: &str) -> String {
+        if all.iter().filter(|other| other.lie == self.lie).count() < 2 {
+            return String::new();
+        }
+        let [x, y] = self.offset.map(number);
+        format!(", its origin at ({x}, {y}) {unit}")
+    }
+
+    /// The candidate in words, beside all of them, with lengths in this unit.
+    pub fn told(&self, all: &[Self], unit: &str) -> String {
         let Self { lie, score, climb, shared, seat, .. } = self;
-        write!(
-            f,
-            "{score:.2}  {lie}: climbs {:.0} %, {:.0} % of the smaller part's broad side can touch, {seat}",
+        format!(
+            "{score:.2}  {lie}{}: climbs {:.0} %, {:.0} % of the smaller part's broad side can touch, {seat}",
+            self.place_among(all, unit),
             climb * 100.0,
             shared * 100.0
         )
