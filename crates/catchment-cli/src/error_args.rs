@@ -1,9 +1,12 @@
 //! The errors that a person expects, for the success probability.
 
 use crate::failure::Failure;
-use catchment::design::Design;
-use catchment::poses::Distribution;
+use crate::source::read_table;
+use catchment::design::{Design, SourceText, load};
+use catchment::poses::{Distribution, Robot, Spread, TextError, read_robots, read_text};
 use clap::Args;
+use std::fs::File;
+use std::path::{Path, PathBuf};
 
 /// Which errors to expect.
 #[derive(Debug, Args)]
@@ -32,4 +35,54 @@ impl ErrorArgs {
         };
         read.map(Some).map_err(|refusal| Failure::of_option(option, text, refusal))
     }
+}
+
+/// The same, or errors as a file has them.
+#[derive(Debug, Args)]
+pub(crate) struct SpreadArgs {
+    #[command(flatten)]
+    errors: ErrorArgs,
+    /// Errors as they were measured: a table of poses (CSV); - reads stdin
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect",
+          conflicts_with_all = ["error_sigma", "error_uniform"])]
+    error_measured: Option<PathBuf>,
+    /// A file with one robot (TOML) and its errors: covariance, sigma, uniform or measured
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect",
+          conflicts_with_all = ["error_sigma", "error_uniform", "error_measured"])]
+    robots: Option<PathBuf>,
+}
+
+impl SpreadArgs {
+    /// What is expected.
+    pub(crate) fn spread(&self, design: &Design) -> Result<Option<Spread>, Failure> {
+        if let Some(path) = &self.robots {
+            let mut robots = robots_of(path, design)?;
+            return match (robots.pop(), robots.len()) {
+                (Some(robot), 0) => Ok(Some(robot.errors)),
+                (_, others) => {
+                    let message =
+                        format!("{} has {} robots, and one is asked about", path.display(), others + 1);
+                    Err(Failure::with_help(message, Some("write that one into a file of its own".to_owned())))
+                }
+            };
+        }
+        if let Some(path) = &self.error_measured {
+            return Ok(Some(Spread::measured(read_table(path)?, design)?));
+        }
+        let distribution = self.errors.distribution(design)?;
+        Ok(distribution.map(|distribution| Spread::of(&distribution)).transpose()?)
+    }
+}
+
+/// The robots of a file; tables that it names lie beside it.
+pub(crate) fn robots_of(path: &Path, design: &Design) -> Result<Vec<Robot>, Failure> {
+    let source = SourceText::new(path, load(path)?);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut table = |name: &str| {
+        let place = folder.join(name);
+        let read = File::open(&place).map_err(TextError::from).and_then(read_text);
+        let told = |error: TextError| format!("cannot read {}: {error}", place.display());
+        read.map(|text| SourceText::new(&place, text)).map_err(told)
+    };
+    Ok(read_robots(&source, design, &mut table)?)
 }

@@ -3,7 +3,7 @@
 use crate::args::DesignArgs;
 use crate::asked::AskedArgs;
 use crate::drop_args::DropArgs;
-use crate::error_args::ErrorArgs;
+use crate::error_args::SpreadArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -11,9 +11,7 @@ use crate::output::{FileArgs, to_stderr};
 use crate::source::read_table;
 use catchment::design::{Design, Findings, SourceText, load, parse_dofs};
 use catchment::pose::Dof;
-use catchment::poses::{
-    Circumstance, Dynamics, OffsetsAt, PoseTable, Spread, parse_draw, parse_pose, read_dynamics,
-};
+use catchment::poses::{Circumstance, Dynamics, OffsetsAt, PoseTable, parse_draw, parse_pose, read_dynamics};
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{ChanceReport, csv, figure};
@@ -79,11 +77,7 @@ pub(crate) struct ChanceArgs {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000), help_heading = ASKED)]
     overall: u32,
     #[command(flatten)]
-    errors: ErrorArgs,
-    /// Errors as they were measured: a table of poses (CSV); - reads stdin
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = "Errors to expect",
-          conflicts_with_all = ["error_sigma", "error_uniform"])]
-    error_measured: Option<PathBuf>,
+    errors: SpreadArgs,
     #[command(flatten)]
     drop: DropArgs,
     #[command(flatten)]
@@ -178,11 +172,7 @@ impl ChanceArgs {
                 .map_err(|findings| Findings { source: Some(source.clone()), ..findings })?;
             asked.poses.extend_from_slice(table.errors());
         }
-        asked.errors = match (&self.error_measured, self.errors.distribution(design)?) {
-            (Some(path), _) => Some(Spread::measured(read_table(path)?, design)?),
-            (None, Some(distribution)) => Some(Spread::of(&distribution)?),
-            (None, None) => None,
-        };
+        asked.errors = self.errors.spread(design)?;
         if let Some(axes) = self.map {
             asked = asked.with_map(problem, axes, usize::from(self.cells));
         }

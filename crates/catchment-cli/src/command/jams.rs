@@ -3,16 +3,15 @@
 use super::run::resolution;
 use crate::args::DesignArgs;
 use crate::asked::AskedArgs;
-use crate::error_args::ErrorArgs;
+use crate::error_args::SpreadArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
 use catchment::landscape::Resolution;
-use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{JamsReport, csv, figure};
-use catchment::run::jams::{Jams, Settings, run as find};
+use catchment::run::jams::{Jams, Settings, run as find, run_for as find_for};
 use clap::Args;
 use std::time::Instant;
 
@@ -26,6 +25,7 @@ use std::time::Instant;
     catchment jams design.toml\n  \
     catchment jams design.toml -o jams.png          each jam cut through its contacts, and in space\n  \
     catchment jams design.toml --error-sigma 'x=1 mm,y=1 mm,yaw=2 deg'\n                                                  shares of the errors that your robot makes, too\n  \
+    catchment jams design.toml --error-measured errors.csv\n  \
     catchment jams design.toml --require 'outcomes.jammed.share<=0.01'\n  \
     catchment jams design.toml --json | jq '.features[0]'\n\n\
     -o writes .png and .svg (pictures), .csv (a line per contact of every jam) and .json. Lengths are in D and angles in \
@@ -52,7 +52,7 @@ pub(crate) struct JamsArgs {
     #[arg(long, value_name = "MU", default_value_t = 0.0)]
     friction: f64,
     #[command(flatten)]
-    errors: ErrorArgs,
+    errors: SpreadArgs,
     #[command(flatten)]
     asked: AskedArgs,
     #[command(flatten)]
@@ -65,11 +65,15 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
     let problem = args.design.problem()?;
-    let settings = args.settings(&problem)?;
-    let form = JamsReport::new(problem.design(), &Jams::form(&settings), Vec::new(), None);
-    args.asked.check(&form)?;
+    let settings = args.settings();
+    let spread = args.errors.spread(problem.design())?;
+    let form = Jams { expected: spread.as_ref().map(|_| [0; 4]), ..Jams::form(&settings) };
+    args.asked.check(&JamsReport::new(problem.design(), &form, Vec::new(), None))?;
     let running = args.exec.start()?;
-    let found = find(&problem, &settings, &running.exec)?;
+    let found = match &spread {
+        Some(spread) => find_for(&problem, &settings, spread, &running.exec)?,
+        None => find(&problem, &settings, &running.exec)?,
+    };
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);
     let doubts = problem.objections().iter().map(WarningReport::note).collect();
@@ -86,15 +90,15 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
 }
 
 impl JamsArgs {
-    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
-        Ok(Settings {
+    fn settings(&self) -> Settings {
+        Settings {
             motions: self.motions.map(|motions| motions as usize),
             seed: self.seed,
-            errors: self.errors.distribution(problem.design())?,
+            errors: None,
             examined: self.examine as usize,
             friction: self.friction,
             resolution: self.resolution,
             certified: self.certified,
-        })
+        }
     }
 }

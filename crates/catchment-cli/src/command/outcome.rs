@@ -13,7 +13,7 @@ use catchment::design::Findings;
 use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
 use catchment::problem::Problem;
-use catchment::report::{OutcomeRows, OutcomesReport};
+use catchment::report::{Doubts, OutcomeRows, OutcomesReport};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -22,7 +22,7 @@ use std::sync::{Mutex, PoisonError};
 /// Decide what becomes of listed pose errors
 ///
 /// Reads a CSV table with a header and prints it again with the outcome (aligned, jammed, missed, undecided)
-/// and the last pose error of every row, each row as soon as it and all before it are decided. How many met which outcome goes to
+/// and the last pose error of every row, with friction also whether it may have stuck on its way, each row as soon as it and all before it are decided. How many met which outcome goes to
 /// stderr. Where it is interrupted (Ctrl-C) the rows that are finished are printed; instead of the file of -o they go into
 /// FILE.partial. Exit code 130 then.
 #[derive(Debug, Args)]
@@ -86,17 +86,20 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     running
         .exec
         .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
-    let printed = Printed::new(&problem, &table);
+    let doubts = Doubts::of(&problem, &method, table.errors());
+    let printed = Printed::new(&problem, &table, doubts.as_ref());
     let streams = args.output.is_printed() && !args.json;
     let stop = running.exec.cancel_flag();
     let tell = |number, end| {
+        // Here, where each is decided: on all threads.
+        let _may_stick = doubts.as_ref().map(|doubts| doubts.may_stick(number));
         if streams && !running.beside_bar(|| printed.push(number, end)) {
             stop.store(true, Ordering::Relaxed);
         }
     };
     let followed = problem.follow_telling(&method, table.errors(), &running.exec, &tell)?;
     drop(running);
-    let report = OutcomesReport::new(&problem, &table, &method, &followed);
+    let report = OutcomesReport::new(&problem, &table, &method, &followed, doubts.as_ref());
     let text = match (streams, args.json) {
         (true, _) => printed.rest()?,
         (false, true) => report.to_json()?,
@@ -129,8 +132,9 @@ struct Printing<'a> {
 }
 
 impl<'a> Printed<'a> {
-    fn new(problem: &'a Problem, table: &'a PoseTable<'a>) -> Self {
-        Self(Mutex::new(Printing { rows: OutcomeRows::new(problem, table), has_begun: false, failed: None }))
+    fn new(problem: &'a Problem, table: &'a PoseTable<'a>, doubts: Option<&'a Doubts<'a>>) -> Self {
+        let rows = OutcomeRows::new(problem, table, doubts);
+        Self(Mutex::new(Printing { rows, has_begun: false, failed: None }))
     }
 
     /// A pose is decided; false where rows cannot be printed any more.

@@ -8,11 +8,13 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FigureArgs, FileArgs};
 use catchment::design::Findings;
+use catchment::exec::Exec;
 use catchment::method::descent;
 use catchment::pose::{Dof, PoseError};
 use catchment::poses::{parse_angles, parse_counts, parse_length, parse_sizes};
 use catchment::problem::Problem;
 use catchment::report::figure;
+use catchment::report::page::Parts;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{PlanReport, csv};
 use catchment::study::plan::{Pattern, Plan, PlanError, Settings, panels, run as make};
@@ -30,8 +32,12 @@ use std::time::Instant;
     catchment plan design.toml --pattern grid --steps x=5,y=5,yaw=6 --max 'x=1 in,y=1 in,yaw=30 deg' --symmetric --accuracy 'x=0.1 mm,y=0.1 mm'\n  \
     catchment plan design.toml --pattern lattice --step '5 mm' --along-border --symmetric --accuracy 'x=1 mm,y=1 mm' --figure plan.png\n  \
     catchment plan design.toml --pattern arc --lever '72.9 mm' --pitch '0..45:2.25 deg' --yaw '0,20 deg' --accuracy 'x=1.2 mm'\n                                                  a joint of the robot turns the face: x and pitch together\n  \
-    catchment plan design.toml --pattern bracket --trials 40 --accuracy x=0.01 --require 'plan.deciding>=30'\n\n\
-    -o writes .csv (the table for the robot), .json, .png or .svg. Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
+    catchment plan design.toml --pattern bracket --trials 40 --accuracy x=0.01 --require 'plan.deciding>=30'\n  \
+    catchment plan out --pattern bracket --trials 60 --accuracy x=0.01\n                                                  of a result of `run -o`, with its friction\n\n\
+    -o writes .csv (the table for the robot), .json, .png or .svg. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
+    mut_arg("path", |path| path.value_name("DESIGN_OR_RESULT")
+        .help("The design file, or a folder written by `run -o`")
+        .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     design: DesignArgs,
@@ -55,9 +61,9 @@ pub(crate) struct PlanArgs {
     /// The point of the moving half where the table gives x and y
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
-    /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0)]
-    friction: f64,
+    /// Coefficient of friction between the halves [default: 0, or that of the result]
+    #[arg(long, value_name = "MU")]
+    friction: Option<f64>,
     /// Seed of the order, of random lines and of the search for the border
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
@@ -128,13 +134,13 @@ enum Kind {
 pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
-    let drawing = args.figure.kind()?;
-    let problem = args.design.problem()?;
-    let settings = args.settings(&problem)?;
+    let drawing = args.figure.kind(&args.file)?;
+    let running = args.exec.start()?;
+    let (problem, decided_with) = args.problem(&running.exec)?;
+    let settings = args.settings(&problem, decided_with)?;
     let at = args.offsets_at.into();
     let form = PlanReport::new(problem.design(), &Plan::form(&settings), at, Vec::new(), None);
     args.asked.check(&form)?;
-    let running = args.exec.start()?;
     let found = make(&problem, &settings, &running.exec).map_err(refused)?;
     let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
     let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
@@ -169,7 +175,25 @@ pub(super) fn accuracy(text: &str, problem: &Problem) -> Result<PoseError, Failu
 }
 
 impl PlanArgs {
-    fn settings(&self, problem: &Problem) -> Result<Settings, Failure> {
+    /// What the design says, or the one that was decided before; and the friction of that.
+    fn problem(&self, exec: &Exec) -> Result<(Problem, f64), Failure> {
+        let path = &self.design.path;
+        if !path.is_dir() {
+            return Ok((self.design.problem()?, 0.0));
+        }
+        if let Some((option, _)) = self.design.changed().next() {
+            let message = format!("{option}: {} is a result, which has been decided", path.display());
+            return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
+        }
+        let Parts { report, problem, notes, .. } = Parts::stored(path, exec)?;
+        let friction = report.friction();
+        problem.map(|problem| (problem, friction)).ok_or_else(|| {
+            let help = "give the design instead".to_owned();
+            Failure::with_help(format!("{}: {}", path.display(), notes.join("; ")), Some(help))
+        })
+    }
+
+    fn settings(&self, problem: &Problem, decided_with: f64) -> Result<Settings, Failure> {
         let pattern = self.pattern.of(problem)?;
         Ok(Settings {
             symmetric: self.pattern.symmetric,
@@ -178,7 +202,7 @@ impl PlanArgs {
             shuffled: !self.in_order,
             stop_at_first_failure: self.stop_at_first_failure,
             seed: self.seed,
-            friction: self.friction,
+            friction: self.friction.unwrap_or(decided_with),
             ..Settings::new(pattern, accuracy(&self.accuracy, problem)?)
         })
     }

@@ -2,20 +2,20 @@
 
 use crate::args::DesignArgs;
 use crate::asked::AskedArgs;
+use crate::error_args::robots_of;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
 use crate::source::read_table;
-use catchment::design::{Design, Findings, SourceText, load};
-use catchment::poses::{Distribution, Robot, Spread, TextError, read_robots, read_text};
+use catchment::design::{Design, Findings};
+use catchment::poses::{Distribution, Robot, Spread};
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{SuccessesReport, csv, figure};
 use catchment::study::success::{Settings, Success, run as ask};
 use clap::Args;
-use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Will it dock? How likely a robot's errors are corrected, and which of them to improve first
@@ -116,7 +116,7 @@ impl ExpectedArgs {
         type Read = fn(&str, &Design) -> Result<Distribution, Findings>;
         let design = problem.design();
         if let Some(path) = &self.robots {
-            return from_file(path, design);
+            return robots_of(path, design);
         }
         if let Some(path) = &self.error_measured {
             let errors = Spread::measured(read_table(path)?, design)?;
@@ -130,17 +130,4 @@ impl ExpectedArgs {
         let distribution = read(text, design).map_err(|refusal| Failure::of_option(option, text, refusal))?;
         Ok(vec![Robot { name: "robot".to_owned(), errors: Spread::of(&distribution)? }])
     }
-}
-
-/// The robots of a file; tables that it names lie beside it.
-fn from_file(path: &Path, design: &Design) -> Result<Vec<Robot>, Failure> {
-    let source = SourceText::new(path, load(path)?);
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut table = |name: &str| {
-        let place = folder.join(name);
-        let read = File::open(&place).map_err(TextError::from).and_then(read_text);
-        let told = |error: TextError| format!("cannot read {}: {error}", place.display());
-        read.map(|text| SourceText::new(&place, text)).map_err(told)
-    };
-    Ok(read_robots(&source, design, &mut table)?)
 }

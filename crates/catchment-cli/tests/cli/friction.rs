@@ -52,3 +52,26 @@ fn a_requirement_decides_the_exit_code() {
     assert_eq!(code("kept.p95.friction>=0.19"), Some(0));
     assert_eq!(code("kept.p95.friction>=0.21"), Some(1));
 }
+
+/// No friction changes not one bit of any answer.
+#[test]
+fn friction_of_nothing_is_none() {
+    let home = home();
+    fs::write(home.path().join("poses.csv"), "x\n0.1\n-0.3\n0.45\n").unwrap();
+    let calls: [&[&str]; 6] = [
+        &["run", "v.toml", "--free", "x,pitch", "--resolution", "15", "--samples", "200"],
+        &["run", "v.toml", "--free", "x,pitch", "--resolution", "15", "--method", "descent"],
+        &["outcome", "v.toml", "--poses", "poses.csv"],
+        &["jams", "v.toml", "--free", "x,pitch", "--motions", "200"],
+        &["window", "v.toml", "--motions", "200"],
+        &["success", "v.toml", "--error-sigma", "x=0.3", "--motions", "200"],
+    ];
+    for args in calls {
+        let with = |more: &[&str]| {
+            let mut report = json(home.path(), &[args, &["--json"], more].concat());
+            report["timing"] = Value::Null;
+            report
+        };
+        assert_eq!(with(&[]), with(&["--friction", "0"]), "{args:?}");
+    }
+}

@@ -68,6 +68,68 @@ fn a_requirement_decides_the_exit_code() {
     assert_eq!(code("outcomes.jammed.share<=0.01"), Some(1));
 }
 
+/// Measured errors are followed each once; one robot of a file stands for all ways to write them.
+#[test]
+fn errors_that_were_measured_and_covariances_have_their_shares() {
+    let home = home();
+    let rows: Vec<String> = (0..40).map(|k| format!("{},{}", 2 * (k % 7) - 6, (k * 13) % 90 - 45)).collect();
+    fs::write(home.path().join("m.csv"), format!("x_mm,pitch_deg\n{}\n", rows.join("\n"))).unwrap();
+    let jams = |more: &[&str]| {
+        json(home.path(), &[&["jams", "v.toml", "--motions", "200", "--json"], more].concat())
+    };
+    let measured = jams(&["--error-measured", "m.csv"]);
+    let counts = |report: &Value| -> u64 {
+        report["expected"].as_object().unwrap().values().map(|share| share["count"].as_u64().unwrap()).sum()
+    };
+    assert_eq!((counts(&measured), &measured["measured"]), (40, &"m.csv".into()));
+    let robot = "[[robot]]\nname = \"arm\"\ncovariance = { axes = [\"x\", \"pitch\"], units = [\"mm\", \"deg\"], \
+                 matrix = [[225, 120], [120, 100]] }\n";
+    fs::write(home.path().join("r.toml"), robot).unwrap();
+    let correlated = jams(&["--robots", "r.toml"]);
+    assert_eq!((counts(&correlated), &correlated["settings"]["errors"]["kind"]), (200, &"correlated".into()));
+    assert_eq!(correlated["outcomes"], measured["outcomes"]);
+    fs::write(home.path().join("two.toml"), robot.to_owned() + &robot.replace("arm", "other")).unwrap();
+    let refused = run(home.path(), &["jams", "v.toml", "--robots", "two.toml"]);
+    assert!(
+        refused.starts_with("exit 2") && refused.contains("has 2 robots, and one is asked about"),
+        "{refused}"
+    );
+    let code = catchment(home.path())
+        .args(["jams", "v.toml", "--motions", "200", "--error-measured", "m.csv"])
+        .args(["--require", "expected.jammed.share<=1"])
+        .output()
+        .unwrap()
+        .status
+        .code();
+    assert_eq!(code, Some(0));
+}
+
+/// The alike quarter turns of a pyramid, and what friction alone holds.
+#[test]
+fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
+    let folder = super::designs();
+    let told = run(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "600"]);
+    assert!(told.contains("held         by friction alone: contacts alone do not hold it;"), "{told}");
+    assert!(!told.contains("ridge") && told.contains("friction     may stick from"), "{told}");
+    let words: Vec<&str> = told.split_whitespace().collect();
+    assert!(words.join(" ").contains("it counts as docked where the design says symmetry = 4"), "{told}");
+    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    let report = json(&folder, &["jams", "pyramid.toml", "--friction", "0.5", "--motions", "600", "--json"]);
+    let jams = report["jams"].as_array().unwrap();
+    let turned = jams.iter().find(|jam| jam["docked_with_symmetry"] == 4).unwrap();
+    assert!((turned["pose"]["yaw"].as_f64().unwrap().abs() - std::f64::consts::FRAC_PI_2).abs() < 0.01);
+    let thresholds = |jam: &Value| {
+        let sticks = &jam["examined"]["sticks"];
+        Some([sticks["holds_from"].as_f64()?, sticks["slips_until"].as_f64()?])
+    };
+    let found: Vec<[f64; 2]> = jams.iter().filter_map(thresholds).collect();
+    assert!(
+        found.len() >= 3
+            && found.iter().all(|[holds, slips]| 0.0 < *holds && holds <= slips && *holds <= 0.5),
+        "{found:?}"
+    );
+}
+
 /// What `run` says of jams is what `jams` says of as many poses.
 #[test]
 fn a_run_tells_of_jams_what_the_command_does() {

@@ -41,6 +41,30 @@ fn plan(folder: &Path, args: &[&str], file: &str) -> String {
     fs::read_to_string(folder.join(file)).unwrap()
 }
 
+/// A result is planned for as its design is, with the friction that it was decided with.
+#[test]
+fn a_result_is_planned_for_as_its_design_is() {
+    let home = home();
+    let run_args = ["run", "v.toml", "--resolution", "9", "--friction", "0.3", "-o", "out"];
+    assert!(run(home.path(), &run_args).starts_with("exit 0"));
+    let plan = |of: &str, more: &[&str]| {
+        let args = ["plan", of, "--pattern", "bracket", "--trials", "12", "--accuracy", "x=0.5 mm", "--json"];
+        let mut report = json(home.path(), &[&args[..], more].concat());
+        report["timing"] = Value::Null;
+        report
+    };
+    let of_result = plan("out", &[]);
+    assert_eq!(of_result["settings"]["friction"], 0.3);
+    assert_eq!(of_result, plan("v.toml", &["--friction", "0.3"]));
+    assert_eq!(plan("out", &["--friction", "0"])["settings"]["friction"], 0.0);
+    let args = ["plan", "out", "--cor", "0.1", "--pattern", "bracket", "--accuracy", "x=0.01"];
+    let refused = run(home.path(), &args);
+    assert!(
+        refused.starts_with("exit 2") && refused.contains("is a result, which has been decided"),
+        "{refused}"
+    );
+}
+
 #[test]
 fn a_plan_comes_back_with_outcomes_and_gets_its_verdict() {
     let home = home();

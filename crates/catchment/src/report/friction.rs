@@ -1,13 +1,13 @@
 //! Friction: as versioned JSON, as text, as records for programs.
 
 use super::envelope::{Body, Envelope};
-use super::jams::{FeatureReport, ShareReport};
+use super::jams::{FeatureReport, ShareReport, more_pairs};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
 use super::text::{grouped, line, number, row, wrapped};
 use crate::acceptance::{Outcome, Warning};
 use crate::design::Design;
-use crate::run::jams::Touching;
+use crate::run::jams::Sticks;
 use crate::study::friction::{Friction, Kept, Rung, Settings};
 use serde::{Serialize, Serializer};
 
@@ -88,6 +88,10 @@ pub struct StickingReport {
     pub count: usize,
     /// Their share.
     pub share: f64,
+    /// The least of the frictions at which these poses are lost.
+    pub critical_least: f64,
+    /// The middle one of them.
+    pub critical_median: f64,
     /// The feature of the fixed half.
     pub fixed: FeatureReport,
     /// The feature of the moving half.
@@ -134,9 +138,11 @@ impl FrictionReport {
         timing: Option<Timing>,
     ) -> Self {
         let (poses, features) = &found.first;
-        let sticking = |touching: &Touching| StickingReport {
+        let sticking = |Sticks { touching, critical }: &Sticks| StickingReport {
             count: touching.count,
             share: touching.count as f64 / (*poses).max(1) as f64,
+            critical_least: critical.first().copied().unwrap_or_default(),
+            critical_median: critical.get(critical.len() / 2).copied().unwrap_or_default(),
             fixed: (&touching.fixed).into(),
             moving: (&touching.moving).into(),
         };
@@ -195,6 +201,17 @@ impl FrictionReport {
         text
     }
 
+    /// The largest friction that was tried.
+    fn top(&self) -> f64 {
+        self.curve.last().map_or(0.0, |rung| rung.friction)
+    }
+
+    /// A friction up to which something docks, in words: `beyond 0.5` where that is all of them.
+    pub(super) fn up_to(&self, friction: f64) -> String {
+        let top = self.top();
+        if friction >= top { format!("beyond {top}") } else { format!("{friction:.3}") }
+    }
+
     fn kept_lines(&self, text: &mut String) {
         if self.curve.first().is_none_or(|rung| rung.aligned.count == 0) {
             line(text, "  nothing docks without friction: there is nothing that friction could take");
@@ -202,15 +219,11 @@ impl FrictionReport {
         }
         line(text, "  of what docks without friction");
         for kept in &self.kept {
-            let [lo, hi] = kept.ci95;
-            let top = self.curve.last().map_or(0.0, |rung| rung.friction);
-            let to = |friction: f64| {
-                if friction >= top { format!("beyond {top}") } else { format!("{friction:.3}") }
-            };
             let friction = if kept.is_top {
-                format!("beyond {top}, the largest that was tried")
+                format!("beyond {}, the largest that was tried", self.top())
             } else {
-                format!("up to a friction of {:.3}  ({lo:.3} … {})", kept.friction, to(hi))
+                let [lo, hi] = kept.ci95.map(|friction| self.up_to(friction));
+                format!("up to a friction of {:.3}  ({lo} … {hi})", kept.friction)
             };
             let share = format!("{:.0} % docks", 100.0 * kept.share);
             line(text, &format!("  {share:<15}{friction}"));
@@ -225,10 +238,15 @@ impl FrictionReport {
         text.push('\n');
         line(text, &format!("  what sticks where the first are lost ({})", poses(*count)));
         for pair in features.iter().take(SHOWN) {
-            wrapped(text, &format!("  {:>8}   ", percent(pair.share)), &pair.words());
+            let [least, median] = [pair.critical_least, pair.critical_median].map(|mu| format!("{mu:.3}"));
+            wrapped(
+                text,
+                &format!("  {:>8}   ", percent(pair.share)),
+                &format!("{}: from a friction of {least} on, half of them by {median}", pair.words()),
+            );
         }
         if features.len() > SHOWN {
-            line(text, &format!("  and {} pairs more", features.len() - SHOWN));
+            line(text, &more_pairs(features.len() - SHOWN));
         }
     }
 

@@ -10,7 +10,7 @@ pub use found::{
 };
 
 use super::envelope::{Body, Envelope};
-use super::resting::{Told, said};
+use super::resting::{Told, friction_line, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
 use super::text::{grouped, line, number, row, wrapped};
@@ -55,6 +55,7 @@ impl JamsReport {
             let said = crate::acceptance::Warning::Undecided { cells: undecided };
             warnings.push(said.into());
         }
+        warnings.extend(hardly_held(&body.found).map(|said| WarningReport::note(&said)));
         Self::of(body, warnings, timing)
     }
 
@@ -117,6 +118,10 @@ impl JamsReport {
         wrapped(text, &format!("  {:<15}", format!("jam {number}")), &share);
         let told = self.told();
         said(text, "  rests", &format!("{}{}", told.place(&jam.pose), told.above(jam.above_mated_d)));
+        if let Some(symmetry) = jam.docked_with_symmetry {
+            let turned = "the mated pose, turned by a symmetry of the halves: it counts as docked";
+            said(text, "  turned", &format!("{turned} where the design says symmetry = {symmetry}"));
+        }
         let wide = told.extent(&jam.pose, &jam.extent);
         if !wide.is_empty() {
             said(text, "  anywhere in", &wide);
@@ -125,7 +130,12 @@ impl JamsReport {
             if let Some(held) = &examined.immobility {
                 said(text, "  order", &held.words());
             }
-            said(text, "  held", &told.held(examined));
+            let friction = self.settings.friction;
+            // Friction stops a half just before all contacts of the mated pose close: how it would be held there says nothing.
+            if friction == 0.0 || jam.docked_with_symmetry.is_none() {
+                said(text, "  held", &told.held(examined, friction));
+                friction_line(text, examined, friction);
+            }
             said(text, "  out", &self.out(examined));
         }
         let asked = self.settings.certified && jam.examined.is_some();
@@ -164,14 +174,14 @@ impl JamsReport {
             );
         }
         if self.features.len() > SHOWN {
-            line(text, &format!("  and {} pairs more", self.features.len() - SHOWN));
+            line(text, &more_pairs(self.features.len() - SHOWN));
         }
     }
 
     /// Jams and what touches in each as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = "jam count share share_lo share_hi of_jams of_failures expected x y roll pitch yaw height above_mated order \
-                    slope_lo slope_hi curvature firmness rise_at_most climb_at_most depth_at_least depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
+                    slope_lo slope_hi curvature firmness rise_at_most holds_from slips_until symmetry climb_at_most depth_at_least depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
                     moving_name moving_part moving_x moving_y moving_z";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         for (k, jam) in self.jams.iter().enumerate() {
@@ -190,6 +200,10 @@ impl JamsReport {
             record.push(or_nothing(held.and_then(|held| held.curvature_per_d)));
             record.push(examined.map_or("", |examined| examined.firmness.name()).to_owned());
             record.push(or_nothing(examined.and_then(|examined| examined.rise_at_most_d)));
+            let sticks = examined.and_then(|examined| examined.sticks);
+            record.push(or_nothing(sticks.and_then(|sticks| sticks.holds_from)));
+            record.push(or_nothing(sticks.and_then(|sticks| sticks.slips_until)));
+            record.push(jam.docked_with_symmetry.map_or_else(String::new, |n| n.to_string()));
             record.push(or_nothing(way.map(|way| way.climb_at_most_d)));
             record.extend([jam.depth_at_least_d, jam.depth_on_grid_d].map(or_nothing));
             record.push(way.map_or("", |way| way.to.name()).to_owned());
@@ -211,6 +225,36 @@ impl JamsReport {
     }
 }
 
+/// Which jams are held by hardly more friction than they slip at, as a sentence: there rigid halves and those of engines part.
+fn hardly_held(found: &JamsFound) -> Option<String> {
+    /// So many times the friction at which it slips is hardly more: engines let a wedged pyramid go up to 1.05 times there (`docs/friction.md`).
+    const HARDLY: f64 = 1.1;
+    let friction = found.settings.friction;
+    let is_hardly_held = |jam: &JamReport| {
+        let examined = jam.examined.as_ref().filter(|examined| examined.is_held_by_friction(friction));
+        let slips_until = examined.and_then(|examined| examined.sticks?.slips_until);
+        slips_until.is_some_and(|until| friction < HARDLY * until)
+    };
+    let jams: Vec<String> = (1..)
+        .zip(&found.jams)
+        .filter(|(_, jam)| is_hardly_held(jam))
+        .map(|(number, _)| number.to_string())
+        .collect();
+    let which = match jams.as_slice() {
+        [] => return None,
+        [one] => format!("jam {one} is"),
+        [most @ .., last] => format!("jams {} and {last} are", most.join(", ")),
+    };
+    Some(format!(
+        "{which} held by hardly more friction than would let it slip: rigid halves stick there, and halves that give, as those of engines do, may let go"
+    ))
+}
+
+/// How many pairs of features are not told.
+pub(super) fn more_pairs(count: usize) -> String {
+    format!("  and {} {} more", grouped(count), if count == 1 { "pair" } else { "pairs" })
+}
+
 /// A share of 1 with one decimal.
 pub(super) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
@@ -222,3 +266,16 @@ fn with_interval(share: &ShareReport) -> String {
 
 /// Jams and pairs of features that are told.
 const SHOWN: usize = 6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_pair_is_one() {
+        assert_eq!(
+            [1, 2, 1200].map(more_pairs),
+            ["  and 1 pair more", "  and 2 pairs more", "  and 1 200 pairs more"]
+        );
+    }
+}

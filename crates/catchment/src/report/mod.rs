@@ -30,6 +30,7 @@ mod check;
 pub mod compare;
 mod comparison;
 mod convergence;
+mod doubting;
 mod ending;
 mod envelope;
 mod export;
@@ -82,6 +83,7 @@ pub use comparison::{
     MethodResult,
 };
 pub use convergence::{ConvergenceBody, ConvergenceReport};
+pub use doubting::Doubts;
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
@@ -96,7 +98,7 @@ pub use jams::{
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
 pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
-pub use resting::HeldReport;
+pub use resting::{HeldReport, ThresholdsReport};
 pub use rests::{RestReport, RestsBody, RestsReport};
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use save::{Saved, Target};

@@ -1,5 +1,6 @@
 //! What became of listed pose errors: the table as it came with what was found out, or JSON.
 
+use super::doubting::Doubts;
 use super::ending::{EndContact, Endings, words};
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
@@ -31,6 +32,8 @@ pub struct OutcomesReport<'a> {
     pub ends: &'a [End],
     /// Why each did not dock, where that can be told; `None` where there is nothing to tell of this design.
     pub reasons: Option<Vec<Option<Reason>>>,
+    /// Which of them could as well have stuck on their way, with friction.
+    doubts: Option<&'a Doubts<'a>>,
     /// Doubts about the answer.
     pub warnings: Vec<WarningReport>,
     /// The numbers of the rows that were finished, where it was stopped before all of them were.
@@ -43,6 +46,7 @@ pub struct OutcomeRows<'a> {
     table: &'a PoseTable<'a>,
     rows: Box<dyn Iterator<Item = (usize, Vec<String>)> + Send + 'a>,
     endings: Endings<'a>,
+    doubts: Option<&'a Doubts<'a>>,
     /// The first row that has not come.
     next: usize,
     /// Decided, but some before them are not.
@@ -50,14 +54,15 @@ pub struct OutcomeRows<'a> {
 }
 
 impl<'a> OutcomeRows<'a> {
-    /// Of a table whose poses are decided for a problem.
-    pub fn new(problem: &'a Problem, table: &'a PoseTable<'a>) -> Self {
+    /// Of a table whose poses are decided for a problem; with friction, what Coulomb's law leaves open of them.
+    pub fn new(problem: &'a Problem, table: &'a PoseTable<'a>, doubts: Option<&'a Doubts<'a>>) -> Self {
         let rows = Box::new(table.rows().enumerate());
-        Self { problem, table, rows, endings: Endings::new(problem), next: 0, waiting: BTreeMap::new() }
+        let (endings, waiting) = (Endings::new(problem), BTreeMap::new());
+        Self { problem, table, rows, endings, doubts, next: 0, waiting }
     }
 
     /// The names of the columns: those of the table, `outcome`, the final errors, the height of the COR there in D, what touches there in
-    /// words, and `reason` where there is something to tell.
+    /// words, `may_stick` with friction, and `reason` where there is something to tell.
     ///
     /// # Errors
     /// As for [`OutcomesReport::to_csv`].
@@ -66,6 +71,9 @@ impl<'a> OutcomeRows<'a> {
         header.push("outcome".to_owned());
         header.extend(self.table.names().map(|name| format!("final_{name}")));
         header.extend(["final_height".to_owned(), "contacts".to_owned()]);
+        if self.doubts.is_some() {
+            header.push("may_stick".to_owned());
+        }
         if self.problem.may_cross() {
             header.push("reason".to_owned());
         }
@@ -103,6 +111,9 @@ impl<'a> OutcomeRows<'a> {
         let (height, contacts) = self.endings.of(end).unzip();
         row.push(height.map_or_else(String::new, number_in_table));
         row.push(contacts.map_or_else(String::new, |contacts| words(&contacts)));
+        if let Some(doubts) = self.doubts {
+            row.push(if doubts.may_stick(number) { "yes" } else { "no" }.to_owned());
+        }
         if self.problem.may_cross() {
             let reason = Reason::of(self.problem, end.outcome, &end.error);
             row.push(reason.map_or("", Reason::name).to_owned());
@@ -158,6 +169,9 @@ struct Row {
     final_height_d: Option<f64>,
     /// What touches there.
     contacts: Vec<EndContact>,
+    /// Whether it slipped by a place where Coulomb's law would let it stick as well; with friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    may_stick: Option<bool>,
     /// Columns that were carried through.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     carried: BTreeMap<String, String>,
@@ -170,17 +184,18 @@ impl<'a> OutcomesReport<'a> {
         table: &'a PoseTable<'a>,
         method: &Method,
         followed: &'a Followed,
+        doubts: Option<&'a Doubts<'a>>,
     ) -> Self {
         let Followed { acceptance, ends, finished } = followed;
         let objections = problem.objections();
-        let doubts = objections.iter().map(WarningReport::note);
-        let warnings = doubts.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
+        let notes = objections.iter().map(WarningReport::note);
+        let warnings = notes.chain(acceptance.warnings.iter().cloned().map(WarningReport::from)).collect();
         let reason = |end: &End| Reason::of(problem, end.outcome, &end.error);
         let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());
         let (design, settings) = (problem.design(), method.settings());
         let finished = finished.as_deref();
         let mut report =
-            Self { problem, design, table, settings, acceptance, ends, reasons, warnings, finished };
+            Self { problem, design, table, settings, acceptance, ends, reasons, doubts, warnings, finished };
         let partial = report.partial().map(|partial| WarningReport::note(&partial));
         report.warnings.extend(partial);
         report
@@ -234,7 +249,7 @@ impl<'a> OutcomesReport<'a> {
     /// # Errors
     /// If a row cannot be written, which text in memory gives no reason for.
     pub fn to_csv(&self) -> Result<String, csv::Error> {
-        let mut rows = OutcomeRows::new(self.problem, self.table);
+        let mut rows = OutcomeRows::new(self.problem, self.table, self.doubts);
         let mut text = rows.header()?;
         for (number, end) in self.told().zip(self.ends) {
             text.push_str(&rows.push(number, *end)?);
@@ -265,6 +280,7 @@ impl<'a> OutcomesReport<'a> {
                 last: measured(&end.error),
                 final_height_d: height,
                 contacts: contacts.unwrap_or_default(),
+                may_stick: self.doubts.map(|doubts| doubts.may_stick(number)),
                 carried: carried.iter().map(|(k, name)| (name.clone(), row[*k].clone())).collect(),
             }
         });
@@ -293,6 +309,12 @@ impl<'a> OutcomesReport<'a> {
         if crossed > 0 {
             let jammed = format!("{crossed} of the jammed {}", if crossed == 1 { "is" } else { "are" });
             lines.push(format!("{jammed} crossed: a layer rests on one that is not its partner"));
+        }
+        if let Some(doubts) = self.doubts {
+            let may_stick = self.told().filter(|number| doubts.may_stick(*number)).count();
+            lines.push(format!(
+                "{may_stick} came by a place where Coulomb's law would let them stick as well"
+            ));
         }
         let carried: Vec<String> = self.table.carried().into_iter().map(shown).collect();
         if !carried.is_empty() {

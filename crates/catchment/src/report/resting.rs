@@ -3,7 +3,7 @@
 use super::text::{significant, wrapped};
 use super::{ContactReport, ExaminedReport, ExtentReport, FeatureReport};
 use crate::design::Design;
-use crate::method::descent::{Immobility, Order};
+use crate::method::descent::{Immobility, Order, Sticking};
 use crate::pose::{Dof, PoseError};
 use crate::run::jams::Firmness;
 use serde::{Deserialize, Serialize};
@@ -51,9 +51,44 @@ impl HeldReport {
     }
 }
 
+/// From which friction on a rest may stick, by Coulomb's law ([`crate::method::descent::sticking()`]).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ThresholdsReport {
+    /// From this friction on forces exist that hold it, 0 where contacts alone do; null: at none.
+    pub holds_from: Option<f64>,
+    /// Up to this friction there is a way to slip; null: at any.
+    pub slips_until: Option<f64>,
+}
+
+impl From<Sticking> for ThresholdsReport {
+    fn from(found: Sticking) -> Self {
+        let Sticking { holds_from, slips_until } = found;
+        Self { holds_from, slips_until }
+    }
+}
+
+impl ThresholdsReport {
+    /// In words.
+    pub(super) fn words(&self) -> String {
+        match (self.holds_from, self.slips_until) {
+            (None, _) => "slips, whatever the friction".to_owned(),
+            (Some(0.0), _) => "none is needed, contacts alone hold it".to_owned(),
+            (Some(from), None) => format!("may stick from {from:.3} on, and may slip at any"),
+            (Some(from), Some(until)) => format!("may stick from {from:.3} on, slips until {until:.3}"),
+        }
+    }
+}
+
 /// A line of a place, wrapped.
 pub(super) fn said(text: &mut String, name: &str, words: &str) {
     wrapped(text, &format!("  {name:<15}"), words);
+}
+
+/// From which friction on it may stick: where friction is asked about, or contacts alone do not hold it.
+pub(super) fn friction_line(text: &mut String, examined: &ExaminedReport, friction: f64) {
+    if let Some(sticks) = examined.sticks.filter(|_| friction > 0.0 || examined.immobility.is_none()) {
+        said(text, "  friction", &sticks.words());
+    }
 }
 
 /// What touches, in words, the same pairs said once: `rim on wall, twice`.
@@ -87,9 +122,15 @@ impl<'a> Told<'a> {
         Self { design }
     }
 
-    /// How firmly it is held, in words.
-    pub(super) fn held(self, examined: &ExaminedReport) -> String {
+    /// How firmly it is held, in words; with so much friction.
+    pub(super) fn held(self, examined: &ExaminedReport, friction: f64) -> String {
         let push = self.length(examined.push_d);
+        let ExaminedReport { back, pushed, .. } = examined;
+        if examined.is_held_by_friction(friction) {
+            return format!(
+                "by friction alone: contacts alone do not hold it; {back} of {pushed} poses beside it stay or come back"
+            );
+        }
         let rise = match (examined.firmness, examined.rise_at_most_d) {
             (Firmness::Level, Some(rise)) => {
                 format!("near-level: pushed {push} one way it rises by {} only", self.fine(rise))
@@ -106,7 +147,7 @@ impl<'a> Told<'a> {
             }
             (firmness, None) => format!("{}: walls all around", firmness.name()),
         };
-        format!("{rise}; {} of {} poses beside it came back", examined.back, examined.pushed)
+        format!("{rise}; {back} of {pushed} poses beside it came back")
     }
 
     /// How far a half must be lifted, in words.

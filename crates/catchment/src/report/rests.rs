@@ -2,7 +2,7 @@
 
 use super::envelope::{Body, Envelope};
 use super::jams::shares;
-use super::resting::{Told, said};
+use super::resting::{Told, friction_line, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
 use super::text::{grouped, line, number, row, wrapped};
@@ -174,7 +174,8 @@ impl RestsReport {
             if let Some(held) = &examined.immobility {
                 said(text, "  order", &held.words());
             }
-            said(text, "  held", &told.held(examined));
+            said(text, "  held", &told.held(examined, 0.0));
+            friction_line(text, examined, 0.0);
             said(text, "  depth", &self.out(rest));
         }
         let asked = self.settings.certified && rest.examined.is_some();
@@ -201,7 +202,7 @@ impl RestsReport {
     /// Rests as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = "rest count share share_lo share_hi docked x y roll pitch yaw height above_mated order slope_lo slope_hi free curvature \
-                    firmness depth_at_most depth_at_least depth_on_grid leads_to touching";
+                    firmness holds_from slips_until depth_at_most depth_at_least depth_on_grid leads_to touching";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         let or_nothing = |value: Option<f64>| value.map_or_else(String::new, number);
         for (k, rest) in self.rests.iter().enumerate() {
@@ -216,6 +217,9 @@ impl RestsReport {
             record.push(held.map_or_else(String::new, |held| held.free.to_string()));
             record.push(or_nothing(held.and_then(|held| held.curvature_per_d)));
             record.push(rest.examined.map_or("", |examined| examined.firmness.name()).to_owned());
+            let sticks = rest.examined.and_then(|examined| examined.sticks);
+            record.push(or_nothing(sticks.and_then(|sticks| sticks.holds_from)));
+            record.push(or_nothing(sticks.and_then(|sticks| sticks.slips_until)));
             record.push(or_nothing(rest.depth_at_most_d));
             record.extend([rest.depth_at_least_d, rest.depth_on_grid_d].map(or_nothing));
             record.push(rest.leads_to.map_or_else(String::new, |to| (to + 1).to_string()));

@@ -2,6 +2,9 @@
 
 mod text;
 
+#[cfg(feature = "figure")]
+pub(in crate::report) use text::chance;
+
 use super::envelope::{Body, Envelope};
 use super::schema::{Timing, WarningReport};
 use super::text::number;

@@ -23,7 +23,7 @@
 use super::coulomb::is_still;
 use super::motion::{Motion, State};
 use super::projection::{MAX_COORDINATES, Vector, dot};
-use super::sticking::{DOWN, Touching};
+use super::sticking::{DOWN, Sticking, Touching};
 use super::{Pair, Settings};
 use crate::contact::{Contact, Meeting};
 use crate::pose::{CorPose, PoseError};
@@ -132,6 +132,11 @@ impl Holding {
     /// Whether the preload alone is held.
     pub fn is_held(&mut self, friction: f64) -> bool {
         self.preload(friction).is_some()
+    }
+
+    /// From which friction on the preload alone may be held, and until which it slips: [`super::sticking()`] with what touches here.
+    pub fn sticking(&mut self) -> Sticking {
+        self.touching.thresholds()
     }
 
     /// How many times a load may be added to the preload until the half leaves; infinite where no such load moves it, none where the preload alone

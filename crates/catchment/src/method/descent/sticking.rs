@@ -140,7 +140,7 @@ impl Touching {
         u.filter(|u| !is_still(u))
     }
 
-    fn thresholds(&mut self) -> Sticking {
+    pub(super) fn thresholds(&mut self) -> Sticking {
         self.coulomb = Coulomb::patient();
         let holds_from = self.holds_from(MOST, HOLDS_TO);
         let slips_until = holds_from.and_then(|holds| self.slips_until(holds));

@@ -20,7 +20,7 @@ pub fn friction(report: &FrictionReport) -> Picture {
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let marked = report.kept.iter().find(|kept| kept.share == MARKED);
     let story = marked.map_or_else(String::new, |kept| {
-        let [lo, hi] = kept.ci95.map(|friction| format!("{friction:.3}"));
+        let [lo, hi] = kept.ci95.map(|friction| report.up_to(friction));
         let share = short(100.0 * kept.share);
         if kept.is_top {
             format!(
@@ -127,12 +127,18 @@ mod tests {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
         let settings = Settings { motions: Some(200), ..Settings::default() };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
-        let report = FrictionReport::new(problem.design(), &found, Vec::new(), None);
+        let mut report = FrictionReport::new(problem.design(), &found, Vec::new(), None);
         let picture = friction(&report);
         look("friction", &picture);
         assert!(picture.svg().contains("what sticks first") && picture.svg().contains("static test"));
         assert!(!picture.svg().contains("NaN"));
         let told = report.table();
         assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+        assert!(told.contains("from a friction of"), "{told}");
+        // An interval that ends at the largest friction that was tried is open there.
+        for kept in &mut report.kept {
+            (kept.friction, kept.ci95, kept.is_top) = (0.276, [0.044, 0.5], false);
+        }
+        assert!(friction(&report).svg().contains("a friction of 0.276 (0.044 … beyond 0.5)"));
     }
 }

@@ -55,15 +55,23 @@ pub fn jams(design: &Design, found: &JamsFound, connector: &Connector) -> Result
         .map(|(outcome, share)| format!("{} {}", outcome.name(), percent(share.share)))
         .collect();
     let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
-    let panels: Vec<Panel<'_>> =
-        found.jams.iter().take(SHOWN).enumerate().map(|(k, jam)| jam_panel(design, k + 1, jam)).collect();
+    let panels: Vec<Panel<'_>> = found
+        .jams
+        .iter()
+        .take(SHOWN)
+        .enumerate()
+        .map(|(k, jam)| jam_panel(design, found, k + 1, jam))
+        .collect();
     draw_all(design, connector, &story, &panels)
 }
 
-fn jam_panel<'a>(design: &Design, number: usize, jam: &'a JamReport) -> Panel<'a> {
+fn jam_panel<'a>(design: &Design, found: &JamsFound, number: usize, jam: &'a JamReport) -> Panel<'a> {
     let tail = jam.examined.map(|examined| {
-        let level =
-            if examined.firmness == Firmness::Level { "near-level" } else { examined.firmness.name() };
+        let level = match examined.firmness {
+            _ if examined.is_held_by_friction(found.settings.friction) => "held by friction alone",
+            Firmness::Level => "near-level",
+            firmness => firmness.name(),
+        };
         let lifted = |climb| Told::of(design).lifted(climb);
         let way = examined
             .way_out
@@ -173,7 +181,7 @@ fn draw(
     }
     let placed = placement.of(design);
     let patches: Vec<Patch> = shown.contacts.iter().map(|contact| patch(contact, placed)).collect();
-    let plane = Plane::through(connector, &patches);
+    let plane = Plane::showing(design, connector, &placement, &patches);
     let view = View::along(design, connector, std::slice::from_ref(&placement), plane)?;
     let rect = Rect { x: x + 52.0, y: y + WORDS, w: SECTION[0], h: SECTION[1] };
     let frame = view.frame(rect);

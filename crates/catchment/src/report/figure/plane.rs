@@ -6,7 +6,9 @@
 //!                                                         it passes through as many contacts as it can
 //! ```
 
-use crate::connector::Connector;
+use super::section::{Placement, cut};
+use crate::connector::{Connector, Half};
+use crate::design::Design;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
@@ -41,6 +43,42 @@ impl Patch {
     }
 }
 
+/// Where a patch is seen at one place, however deep: a point, or an edge straight across the plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stroke {
+    /// Along the plane and upwards, in D.
+    pub(super) at: [f64; 2],
+    /// How far beside the axis, from where to where, in D.
+    reach: [f64; 2],
+}
+
+impl Stroke {
+    /// Whether a plane so far beside the axis meets it, or passes it as near as `close`.
+    pub(super) fn holds(&self, offset: f64, close: f64) -> bool {
+        (self.reach[0] - close..=self.reach[1] + close).contains(&offset)
+    }
+
+    const fn middle(&self) -> f64 {
+        f64::midpoint(self.reach[0], self.reach[1])
+    }
+}
+
+impl Patch {
+    /// Its points in a world so turned that planes are those of constant y, by where they are seen.
+    pub(super) fn strokes(&self, turn: &DMat3) -> Vec<Stroke> {
+        let mut strokes: Vec<Stroke> = Vec::new();
+        for point in &self.points {
+            let DVec3 { x, y, z } = *turn * *point;
+            let same = |stroke: &&mut Stroke| (stroke.at[0] - x).hypot(stroke.at[1] - z) < IN_PLANE;
+            match strokes.iter_mut().find(same) {
+                Some(Stroke { reach: [lo, hi], .. }) => (*lo, *hi) = (lo.min(y), hi.max(y)),
+                None => strokes.push(Stroke { at: [x, z], reach: [y, y] }),
+            }
+        }
+        strokes
+    }
+}
+
 /// Nearer than this is in the plane, in D.
 const IN_PLANE: f64 = 2e-3;
 /// Horizontal parts below this say no direction.
@@ -58,26 +96,18 @@ impl Plane {
     pub(super) fn through(connector: &Connector, patches: &[Patch]) -> Self {
         let usual = Self::across(connector);
         let Some(azimuth) = direction(patches) else { return usual };
-        let across = DVec2::from_angle(azimuth).perp();
-        let reach = |patch: &Patch| {
-            let offsets = patch.points.iter().map(|point| point.truncate().dot(across));
-            offsets.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
-        };
-        let holds = |offset: f64, patch: &Patch| {
-            let (lo, hi) = reach(patch);
-            (lo - IN_PLANE..=hi + IN_PLANE).contains(&offset)
-        };
-        let counts = |offset: f64| patches.iter().filter(|patch| holds(offset, patch)).count();
+        let turn = DMat3::from_rotation_z(-azimuth);
+        let strokes: Vec<Vec<Stroke>> = patches.iter().map(|patch| patch.strokes(&turn)).collect();
+        let holds =
+            |offset: f64, strokes: &[Stroke]| strokes.iter().any(|stroke| stroke.holds(offset, IN_PLANE));
+        let counts = |offset: f64| strokes.iter().filter(|strokes| holds(offset, strokes)).count();
         let is_usual = azimuth.abs() < NO_ANGLE;
-        let all = patches.iter().all(|patch| usual.offsets.iter().any(|offset| holds(*offset, patch)));
+        let all = strokes.iter().all(|strokes| usual.offsets.iter().any(|offset| holds(*offset, strokes)));
         if is_usual && (all || usual.offsets.len() > 1) {
             return usual;
         }
-        let middle = |patch: &Patch| {
-            let (lo, hi) = reach(patch);
-            f64::midpoint(lo, hi)
-        };
-        let best = patches.iter().map(middle).chain(is_usual.then_some(0.0)).max_by(|a, b| {
+        let middles = strokes.iter().flatten().map(Stroke::middle);
+        let best = middles.chain(is_usual.then_some(0.0)).max_by(|a, b| {
             // Of as many the one that is nearer to the axis.
             counts(*a).cmp(&counts(*b)).then(b.abs().total_cmp(&a.abs()))
         });
@@ -85,15 +115,55 @@ impl Plane {
         Self { azimuth: if is_usual { 0.0 } else { azimuth }, offsets: vec![offset], through_contacts: true }
     }
 
+    /// The plane through what touches; the usual one where that shows next to nothing of either half, as at a corner or a side, or where nothing
+    /// touches; turned about the axis where that one would show the fixed half as a plain block.
+    pub(super) fn showing(
+        design: &Design,
+        connector: &Connector,
+        placement: &Placement,
+        patches: &[Patch],
+    ) -> Self {
+        /// Less than so much of what the usual cut shows of a half is next to nothing.
+        const SLIVER: f64 = 0.2;
+        let (usual, plane) = (Self::across(connector), Self::through(connector, patches));
+        let halves =
+            [(&connector.fixed, (DMat3::IDENTITY, DVec3::ZERO)), (&connector.moving, placement.of(design))];
+        let shows = |(half, at): (&Half, _)| {
+            area(&plane.outlines(half, at)) >= SLIVER * area(&usual.outlines(half, at))
+        };
+        if plane.through_contacts && halves.into_iter().all(shows) {
+            return plane;
+        }
+        if usual.offsets.len() > 1 || usual.is_told_by(&connector.fixed) {
+            return usual;
+        }
+        let turned = [PI / 4.0, -PI / 4.0, PI / 2.0].map(|azimuth| Self { azimuth, ..usual.clone() });
+        turned.into_iter().find(|plane| plane.is_told_by(&connector.fixed)).unwrap_or(usual)
+    }
+
+    /// Whether the profile of a half varies along the plane: it is no plain block there.
+    fn is_told_by(&self, half: &Half) -> bool {
+        /// A block fills its bounds but for less than this share.
+        const BLOCK: f64 = 0.02;
+        let outlines = self.outlines(half, (DMat3::IDENTITY, DVec3::ZERO));
+        let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for point in outlines.iter().flatten() {
+            for (k, value) in point.iter().enumerate() {
+                (lo[k], hi[k]) = (lo[k].min(*value), hi[k].max(*value));
+            }
+        }
+        area(&outlines) < (1.0 - BLOCK) * (hi[0] - lo[0]) * (hi[1] - lo[1])
+    }
+
+    /// A half of this rotation and face centre, cut.
+    fn outlines(&self, half: &Half, (rotation, face): (DMat3, DVec3)) -> Vec<Vec<[f64; 2]>> {
+        let turn = self.turn();
+        self.offsets.iter().flat_map(|y| cut(half, turn * rotation, turn * face, *y)).collect()
+    }
+
     /// Turns the world so that the plane is one of constant y.
     pub(super) fn turn(&self) -> DMat3 {
         if self.azimuth == 0.0 { DMat3::IDENTITY } else { DMat3::from_rotation_z(-self.azimuth) }
-    }
-
-    /// How far a point is beside the plane, in D.
-    pub(super) fn beside(&self, point: DVec3) -> f64 {
-        let y = (self.turn() * point).y;
-        self.offsets.iter().map(|offset| (y - offset).abs()).fold(f64::INFINITY, f64::min)
     }
 
     /// What its direction is called on an axis: `x`, or `along 30°` from x.
@@ -106,6 +176,15 @@ impl Plane {
         }
         format!("along {:.0}° from x", self.azimuth.to_degrees()).replace('-', "−")
     }
+}
+
+/// What outlines enclose, those of holes taken away, in D².
+fn area(outlines: &[Vec<[f64; 2]>]) -> f64 {
+    let one = |outline: &Vec<[f64; 2]>| -> f64 {
+        let next = outline.iter().cycle().skip(1);
+        outline.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - b[0] * a[1])).sum()
+    };
+    outlines.iter().map(one).sum::<f64>().abs()
 }
 
 /// The angle from x of the main horizontal direction of the normals, or else of the ways home, or of the contacts; none where nothing touches.
@@ -141,6 +220,7 @@ fn direction(patches: &[Patch]) -> Option<f64> {
 mod tests {
     use super::super::testing::{pyramid, v_face, x_face};
     use super::*;
+    use crate::pose::Dof;
 
     fn patch(points: &[[f64; 3]], normal: [f64; 3]) -> Patch {
         let points = points.iter().copied().map(DVec3::from_array).collect();
@@ -153,7 +233,8 @@ mod tests {
             [patch(&[[0.3, 0.1, 0.0]], [-0.7, 0.0, 0.7]), patch(&[[-0.2, 0.1, 0.0]], [0.7, 0.0, 0.7])];
         let plane = Plane::through(&pyramid(), &contacts);
         assert_eq!((plane.azimuth, plane.offsets.as_slice()), (0.0, &[0.1][..]));
-        assert!(contacts.iter().all(|contact| plane.beside(contact.points[0]) < 1e-12));
+        let in_plane = |contact: &Patch| contact.strokes(&plane.turn())[0].holds(plane.offsets[0], 1e-12);
+        assert!(contacts.iter().all(in_plane));
         // The same turned by 50°: what was y = 0.1 is as far beside the axis.
         let by = DMat3::from_rotation_z(50f64.to_radians());
         let turned: Vec<Patch> = contacts
@@ -180,6 +261,46 @@ mod tests {
         // Turned about the axis by a little: what is at x = 0.3 is off along y.
         let plane = Plane::through(&pyramid(), &[beside(DMat3::from_rotation_z(0.02), DVec3::ZERO)]);
         assert!((plane.azimuth.to_degrees() + 71.0).abs() < 2.0, "{plane:?}");
+    }
+
+    /// A side that touches along the border of the halves, where a cut shows a block and no other half.
+    #[test]
+    fn where_next_to_nothing_would_be_seen_the_usual_cut_is_shown() {
+        use crate::report::schema::testing::design;
+        let design = design([Dof::X, Dof::Pitch].into_iter().collect());
+        let mated = Placement::mated(&design, 0.0);
+        for y in [-0.5, 0.5] {
+            let slopes = [-1.0, 1.0].map(|x| patch(&[[0.4 * x, y, 0.2]], [-0.7 * x, 0.0, 0.7]));
+            assert_eq!(Plane::through(&pyramid(), &slopes).offsets, [y]);
+            assert_eq!(Plane::showing(&design, &pyramid(), &mated, &slopes), Plane::across(&pyramid()));
+        }
+        let inside = [-1.0, 1.0].map(|x| patch(&[[0.4 * x, 0.1, 0.2]], [-0.7 * x, 0.0, 0.7]));
+        assert_eq!(Plane::showing(&design, &pyramid(), &mated, &inside).offsets, [0.1]);
+    }
+
+    /// The 3-D X-Face is level along x and y.
+    #[test]
+    fn a_profile_that_varies_is_looked_for() {
+        use crate::report::schema::testing::design;
+        let design = design(crate::pose::DofSet::ALL);
+        let mated = Placement::mated(&design, 0.0);
+        let text = "[connector]\nfamily = \"x-face-3d\"\n";
+        let problem =
+            crate::problem::Problem::of(crate::design::read(text, ".".as_ref()).unwrap().design).unwrap();
+        let plane = Plane::showing(&design, problem.connector(), &mated, &[]);
+        assert!((plane.azimuth.abs() - PI / 4.0).abs() < 1e-12 && plane.offsets == [0.0], "{plane:?}");
+        assert_eq!(Plane::showing(&design, &pyramid(), &mated, &[]), Plane::across(&pyramid()));
+    }
+
+    /// Two points of one feature on either side of a plane are not in it; an edge straight across is.
+    #[test]
+    fn only_what_lies_in_the_plane_is_in_it() {
+        let apart = patch(&[[0.3, -0.14, 0.0], [0.1, -0.38, 0.0]], [-0.7, 0.0, 0.7]);
+        let strokes = apart.strokes(&DMat3::IDENTITY);
+        assert_eq!(strokes.len(), 2);
+        assert!(strokes.iter().all(|stroke| !stroke.holds(-0.26, 5e-3)));
+        let edge = patch(&[[0.3, -0.25, 0.0], [0.3, 0.25, 0.0]], [-0.7, 0.0, 0.7]);
+        assert!(matches!(edge.strokes(&DMat3::IDENTITY)[..], [stroke] if stroke.holds(0.1, 0.0)));
     }
 
     #[test]

@@ -6,7 +6,7 @@
 use super::draw::axis::{Frame, Scale, Units, short};
 use super::draw::colour::{self, Rgb, hex, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline};
-use super::plane::{Patch, Plane};
+use super::plane::{Patch, Plane, Stroke};
 use super::{FigureError, Picture};
 use crate::connector::{Connector, Half, Surface};
 use crate::design::Design;
@@ -263,16 +263,14 @@ impl<'a> View<'a> {
     /// Where the halves touch: full in the plane of the cut, hollow where that is seen through to.
     pub(super) fn contacts(&self, svg: &mut Svg, frame: &Frame, patches: &[Patch]) {
         for patch in patches {
-            // What touches all along an edge is seen at one place as a rule.
+            let in_cut = |stroke: &Stroke| self.plane.offsets.iter().any(|y| stroke.holds(*y, CLOSE));
+            let mut strokes = patch.strokes(&self.turn);
+            strokes.sort_by_key(|stroke| !in_cut(stroke));
             let mut shown: Vec<[f64; 2]> = Vec::new();
-            let reach = patch.points.iter().map(|point| (self.turn * *point).y);
-            let (lo, hi) =
-                reach.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| (lo.min(y), hi.max(y)));
-            let in_cut = self.plane.offsets.iter().any(|y| (lo - CLOSE..=hi + CLOSE).contains(y));
-            for point in &patch.points {
-                let at = self.seen(frame, *point);
+            for stroke in strokes {
+                let at = self.place(frame, stroke.at);
                 if seen_apart(&mut shown, at) {
-                    contact_mark(svg, at, in_cut || self.plane.beside(*point) < CLOSE);
+                    contact_mark(svg, at, in_cut(&stroke));
                 }
             }
         }

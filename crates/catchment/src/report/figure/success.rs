@@ -5,6 +5,7 @@ use super::draw::axis::{Units, short};
 use super::draw::chart::{Chart, Line, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
+use crate::report::success::chance;
 use crate::report::{DockingReport, SuccessesReport};
 
 /// Colour of what is required.
@@ -21,16 +22,13 @@ pub fn success(report: &SuccessesReport) -> Picture {
     let mut svg = Svg::new(bars.x + bars.w + 70.0, top + size[1] + 56.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
     let head = &report.success;
-    let [lo, hi] = head.ci95.map(|share| short(100.0 * share));
+    let [lo, hi] = head.ci95.map(chance);
     let of = if report.robots.len() > 1 {
         format!(" of {}, the least of all,", head.robot)
     } else {
         String::new()
     };
-    let story = format!(
-        "success{of} {} %, from {lo} to {hi} % with 95 % confidence",
-        short(100.0 * head.probability)
-    );
+    let story = format!("success{of} {}, from {lo} to {hi} with 95 % confidence", chance(head.probability));
     svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
     let lines = lines(report);
     let rect = Rect { x: left, y: top, w: size[0], h: size[1] };
@@ -153,6 +151,10 @@ mod tests {
         let picture = success(&report);
         look("success", &picture);
         assert!(picture.svg().contains("90 % required") && picture.svg().contains("arm B"));
+        let head = chance(report.success.probability);
+        assert!(
+            picture.svg().contains(&format!("success of {}, the least of all, {head}", report.success.robot))
+        );
         assert!(!picture.svg().contains("NaN"));
     }
 }

@@ -4,7 +4,7 @@ use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
 use super::plane::{Patch, Plane};
-use super::section::{Placement, View, approach_axis, cut, describe};
+use super::section::{Placement, View, approach_axis, describe};
 use super::solid::touching;
 use super::{FigureError, Picture};
 use crate::acceptance::Outcome;
@@ -32,8 +32,10 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     let meeting = path.waypoints.iter().find(|w| !w.touches.is_empty()).unwrap_or(first);
     // What docks touches all around at its end; what misses, nowhere.
     let jams = path.outcome == Outcome::Jammed;
-    let patches = patches(design, if jams { last } else { meeting });
-    let view = View::along(design, connector, &placements, plane(connector, &patches))?;
+    let shown = if jams { last } else { meeting };
+    let patches = patches(design, shown);
+    let plane = Plane::showing(design, connector, &placed(shown), &patches);
+    let view = View::along(design, connector, &placements, plane)?;
     let in_space = if is_planar(design) { 0.0 } else { SPACE + 50.0 };
     let (left, height) = (430.0, 400.0);
     let mut svg = Svg::new(960.0 + in_space, height + 130.0);
@@ -82,22 +84,6 @@ pub fn trajectory(design: &Design, connector: &Connector, path: &Trajectory) -> 
     }
     errors(&mut svg, design, &path.waypoints, Rect { x: 590.0 + in_space, y: 74.0, w: 340.0, h: height });
     Ok(Picture::of(svg))
-}
-
-/// The plane through what touches; the usual one where that shows next to nothing of the fixed half, as at one of its corners.
-fn plane(connector: &Connector, patches: &[Patch]) -> Plane {
-    /// Less than so much of what the usual cut shows of the fixed half, from side to side, is next to nothing.
-    const SLIVER: f64 = 0.3;
-    let (usual, plane) = (Plane::across(connector), Plane::through(connector, patches));
-    if width(connector, &plane) < SLIVER * width(connector, &usual) { usual } else { plane }
-}
-
-/// How wide the fixed half is from side to side where it is cut, in D.
-fn width(connector: &Connector, plane: &Plane) -> f64 {
-    let cuts = plane.offsets.iter().flat_map(|y| cut(&connector.fixed, plane.turn(), DVec3::ZERO, *y));
-    let sides = cuts.flatten().map(|[x, _]| x);
-    let (lo, hi) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
-    (hi - lo).max(0.0)
 }
 
 /// How wide the halves are drawn in space, in SVG units.

@@ -5,7 +5,7 @@ use crate::contact::FeatureKind;
 use crate::design::Design;
 use crate::merit::sum::wilson95;
 use crate::pose::{Dof, PoseError};
-use crate::report::resting::HeldReport;
+use crate::report::resting::{HeldReport, ThresholdsReport};
 use crate::run::jams::{Examined, Firmness, Jam, Jams, Named, PUSH, Settings, Touched, Touching};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -21,6 +21,9 @@ pub struct JamsFound {
     pub outcomes: BTreeMap<Outcome, ShareReport>,
     /// The same of poses drawn from the errors that a robot makes; null where none were given.
     pub expected: Option<BTreeMap<Outcome, ShareReport>>,
+    /// The table that those poses come from; null where they were not measured.
+    #[serde(default)]
+    pub measured: Option<String>,
     /// The jams, the one with most of the poses first.
     pub jams: Vec<JamReport>,
     /// Which pairs of features touch in jams, the one that does so most often first.
@@ -59,6 +62,9 @@ pub struct JamReport {
     pub height_d: f64,
     /// How far it is above the mated pose, in D.
     pub above_mated_d: f64,
+    /// It is the mated pose turned by a symmetry of the halves, and counts as docked where the design has `symmetry` of this; null where it is not.
+    #[serde(default)]
+    pub docked_with_symmetry: Option<u32>,
     /// What touches.
     pub contacts: Vec<ContactReport>,
     /// What was found out about it; null of jams that were not examined.
@@ -134,6 +140,9 @@ pub struct ExaminedReport {
     pub weakest: PoseError,
     /// By which order contacts alone hold it; null where they do not hold the load, as where friction does.
     pub immobility: Option<HeldReport>,
+    /// From which friction on it may stick; null where it touches nothing.
+    #[serde(default)]
+    pub sticks: Option<ThresholdsReport>,
     /// The lowest way out that was found; null where none was.
     pub way_out: Option<WayOutReport>,
     /// Poses a little off that were followed.
@@ -168,6 +177,7 @@ impl JamsFound {
             motions: found.motions(),
             outcomes: shares(found.counts),
             expected: found.expected.map(shares),
+            measured: found.measured.clone(),
             jams: found.jams.iter().map(|jam| JamReport::of(design, found, jam)).collect(),
             features: found.pairs.iter().map(pair).collect(),
         }
@@ -207,12 +217,20 @@ impl From<&Touched> for ContactReport {
 
 impl From<&Examined> for ExaminedReport {
     fn from(examined: &Examined) -> Self {
-        let Examined { held, immobility, way_out, pushed, back } = *examined;
+        let Examined { held, immobility, sticking, way_out, pushed, back } = *examined;
         let way_out =
             way_out.map(|way| WayOutReport { climb_at_most_d: way.climb, to: way.to, over: way.over });
         let (firmness, rise_at_most_d, weakest) = (held.firmness, held.rise, held.weakest);
         let immobility = immobility.map(HeldReport::from);
-        Self { firmness, push_d: PUSH, rise_at_most_d, weakest, immobility, way_out, pushed, back }
+        let sticks = sticking.map(ThresholdsReport::from);
+        Self { firmness, push_d: PUSH, rise_at_most_d, weakest, immobility, sticks, way_out, pushed, back }
+    }
+}
+
+impl ExaminedReport {
+    /// Whether nothing but so much friction holds it.
+    pub(in crate::report) fn is_held_by_friction(&self, friction: f64) -> bool {
+        friction > 0.0 && (self.firmness == Firmness::Ridge || self.immobility.is_none())
     }
 }
 
@@ -233,6 +251,7 @@ impl JamReport {
             places: jam.places,
             height_d: jam.height,
             above_mated_d: jam.above,
+            docked_with_symmetry: jam.symmetry,
             contacts: jam.contacts.iter().map(ContactReport::from).collect(),
             examined: jam.examined.as_ref().map(ExaminedReport::from),
             depth_on_grid_d: jam.depth_on_grid,

@@ -174,11 +174,17 @@ impl SuccessesReport {
             Factor { is_more: true, factor, .. } => {
                 format!("{required} still holds with all of them {} times as large", significant(factor))
             }
+            Factor { factor, ci95: [lo, hi], .. } if lo <= 0.0 => {
+                format!("{required} with all of them times {factor:.2}   (95 %: at most {hi:.2})")
+            }
             Factor { factor, ci95: [lo, hi], .. } => {
                 format!("{required} with all of them times {factor:.2}   (95 %: {lo:.2} … {hi:.2})")
             }
         };
         row(text, "together", &said);
+        if all.factor > 0.0 && all.ci95[0] <= 0.0 && !all.is_less && !all.is_more {
+            row(text, "", "more motions would tell");
+        }
     }
 
     /// `1.250 mm`, `0.0250 D` or `3.00°`.
@@ -233,7 +239,7 @@ fn told_fit(text: &mut String, robot: &DockingReport, fit: &FitReport) {
 const FEW: usize = 50;
 
 /// `98.76 %`; between that and certainty as many digits as tell them apart.
-fn chance(probability: f64) -> String {
+pub(in crate::report) fn chance(probability: f64) -> String {
     let left = 1.0 - probability;
     match left {
         l if l > 0.0 && l < 5e-5 => format!("{:.4} %", 100.0 * probability),
@@ -255,4 +261,32 @@ fn rounded(count: f64) -> usize {
     }
     let scale = 10f64.powf(count.log10().floor() - 1.0).max(1.0);
     ((count / scale).round() * scale) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exec::Exec;
+    use crate::poses::{Robot, Spread};
+    use crate::problem::Problem;
+    use crate::report::schema::testing::design;
+    use crate::study::success::{Settings, run};
+
+    /// An interval that begins at nothing says only where it ends.
+    #[test]
+    fn a_factor_that_is_known_from_above_alone_is_told_so() {
+        let problem = Problem::of(design([Dof::X].into_iter().collect())).unwrap();
+        let errors = Spread::normal(PoseError { x: 0.2, ..PoseError::default() });
+        let robots = [Robot { name: "robot".to_owned(), errors }];
+        let settings = Settings { motions: Some(100), ..Settings::default() };
+        let found = run(&problem, &robots, &settings, &Exec::new()).unwrap();
+        let mut report = SuccessesReport::new(problem.design(), &found, Vec::new(), None);
+        let all = &mut report.robots[0].tolerable.all;
+        *all = Factor { factor: 1.08, ci95: [0.0, 1.12], is_more: false, is_less: false };
+        let told = report.table();
+        assert!(told.contains("times 1.08   (95 %: at most 1.12)\n"), "{told}");
+        assert!(told.contains("more motions would tell") && told.lines().all(|l| l.chars().count() <= 80));
+        report.robots[0].tolerable.all.ci95[0] = 0.9;
+        assert!(report.table().contains("(95 %: 0.90 … 1.12)") && !report.table().contains("more motions"));
+    }
 }

@@ -10,7 +10,7 @@
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
 
 /// How long [`abandon`] waits for steps that have begun: a disk that does not answer must not hold the process.
@@ -46,6 +46,26 @@ pub fn abandon() {
     for path in std::mem::take(&mut gate.unfinished) {
         // The process ends; what cannot be removed now is removed by the next start.
         let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+    }
+}
+
+/// The same where memory ran out: waits for nobody, and asks for as good as no memory. A folder that somebody is just working on is left
+/// to the next start, and so is everything where the list of it is just being changed.
+pub fn abandon_at_once() {
+    let mut gate = match GATE.try_lock() {
+        Ok(gate) => gate,
+        Err(TryLockError::Poisoned(gate)) => gate.into_inner(),
+        Err(TryLockError::WouldBlock) => return,
+    };
+    gate.shut = true;
+    let idle = gate.busy == 0;
+    for path in std::mem::take(&mut gate.unfinished) {
+        // The process ends; what cannot be removed now is removed by the next start.
+        let _ = match fs::symlink_metadata(&path) {
+            Ok(meta) if !meta.is_dir() => fs::remove_file(&path),
+            Ok(_) if idle => fs::remove_dir_all(&path),
+            _ => Ok(()),
+        };
     }
 }
 

@@ -1,8 +1,8 @@
 //! Writing: complete or not at all, and never over what others wrote.
 //!
 //! ```text
-//!   file      .name.PID.tmp  ──write, fsync──▶  rename to name
-//!   folder    .name.PID.tmp/ ──fill, manifest, fsync──▶  exchange with name  ──look again──▶  remove the old
+//!   file      .name.PID.MARK.tmp  ──write, fsync──▶  rename to name
+//!   folder    .name.PID.MARK.tmp/ ──fill, manifest, fsync──▶  exchange with name  ──look again──▶  remove the old
 //! ```
 //!
 //! Everything is written beside its place under a temporary name and takes the place when it is on the disk. Whoever
@@ -27,9 +27,9 @@ mod temporary;
 #[cfg(test)]
 mod tests;
 
-pub use disk::abandon;
 use disk::is_mount_point;
 pub(crate) use disk::permit;
+pub use disk::{abandon, abandon_at_once};
 pub use manifest::MANIFEST;
 
 use manifest::Manifest;

@@ -1,9 +1,12 @@
 //! What is being written, beside its place; and what a killed process left there.
 //!
 //! ```text
-//!   .NAME.PID.tmp   new, not complete; after an exchange: old, to be removed
-//!   .NAME.PID.old   old, stepped aside where the system cannot exchange
+//!   .NAME.PID.MARK.tmp   new, not complete; after an exchange: old, to be removed
+//!   .NAME.PID.MARK.old   old, stepped aside where the system cannot exchange
 //! ```
+//!
+//! MARK is a digest of what stands before it, which nobody writes by chance: what has it is ours, whatever is in it. What looks alike
+//! without it is another's, unless it holds a manifest, or nothing at all.
 //!
 //! Whoever writes holds a lock on it, which ends with the process. So the next start knows what nobody works on any
 //! more, on every machine that sees the same disk. Where the system knows no such locks, left-overs stay.
@@ -11,6 +14,8 @@
 use super::disk::permit;
 use super::manifest::Manifest;
 use super::{WriteError, parent};
+use crate::design::hex;
+use sha2::{Digest, Sha256};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
@@ -102,12 +107,18 @@ impl Drop for Temporary {
 pub(super) fn hidden(place: &Path, number: usize, ending: &str) -> Result<PathBuf, WriteError> {
     let name = place.file_name().ok_or_else(|| WriteError::NoName { path: place.to_owned() })?;
     let mut hidden = start(name);
-    hidden.push(std::process::id().to_string());
-    if number > 0 {
-        hidden.push(format!("-{number}"));
-    }
-    hidden.push(format!(".{ending}"));
+    let id = std::process::id();
+    let number = if number > 0 { format!("{id}-{number}") } else { id.to_string() };
+    let mark = mark(&hidden, &number);
+    hidden.push(format!("{number}.{mark}.{ending}"));
     Ok(place.with_file_name(hidden))
+}
+
+/// What shows that a hidden name is from here.
+pub(super) fn mark(start: &OsStr, number: &str) -> String {
+    const DIGITS: usize = 8;
+    let digest = Sha256::new().chain_update(start.as_encoded_bytes()).chain_update(number).finalize();
+    hex(&digest)[..DIGITS].to_owned()
 }
 
 fn start(name: &OsStr) -> OsString {
@@ -117,13 +128,16 @@ fn start(name: &OsStr) -> OsString {
     start
 }
 
-/// The ending of a hidden name of this start, if it is one.
-fn ending(name: &OsStr, start: &OsStr) -> Option<&'static str> {
+/// The ending of a hidden name of this start, if it is one, and whether it has its mark.
+fn ending(name: &OsStr, start: &OsStr) -> Option<(&'static str, bool)> {
     let rest = name.as_encoded_bytes().strip_prefix(start.as_encoded_bytes())?;
-    let (number, ending) = std::str::from_utf8(rest).ok()?.split_once('.')?;
+    let (number, rest) = std::str::from_utf8(rest).ok()?.split_once('.')?;
+    let marked = rest.split_once('.').filter(|(found, _)| *found == mark(start, number));
+    let ending = marked.map_or(rest, |(_, ending)| ending);
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let is_number = number.split_once('-').map_or_else(|| digits(number), |(a, b)| digits(a) && digits(b));
-    [NEW, ASIDE].into_iter().find(|known| is_number && ending == *known)
+    let known = [NEW, ASIDE].into_iter().find(|known| is_number && ending == *known)?;
+    Some((known, marked.is_some()))
 }
 
 /// Whether somebody else holds the lock; if not, it is taken.
@@ -167,14 +181,15 @@ pub(super) fn sweep(place: &Path) -> Result<(), WriteError> {
     let Some(name) = place.file_name() else { return Ok(()) };
     let start = start(name);
     let Ok(entries) = fs::read_dir(parent(place)) else { return Ok(()) };
-    let mut left: Vec<(&'static str, PathBuf)> = entries
+    let mut left: Vec<(&'static str, bool, PathBuf)> = entries
         .filter_map(Result::ok)
         .filter_map(|entry| {
-            Some((ending(&entry.file_name(), &start)?, place.with_file_name(entry.file_name())))
+            let (ending, marked) = ending(&entry.file_name(), &start)?;
+            Some((ending, marked, place.with_file_name(entry.file_name())))
         })
         .collect();
     left.sort(); // what stepped aside comes first: it may be all there is
-    for (ending, path) in left {
+    for (ending, marked, path) in left {
         let Ok(meta) = fs::symlink_metadata(&path) else { continue };
         if !meta.is_file() && !meta.is_dir() {
             continue;
@@ -186,20 +201,19 @@ pub(super) fn sweep(place: &Path) -> Result<(), WriteError> {
         }
         let at = |error| WriteError::at(&path, error);
         let permit = permit();
-        if ending == ASIDE && fs::symlink_metadata(place).is_err() {
+        let manifest = if meta.is_dir() { Manifest::read(&path) } else { None };
+        if ending == ASIDE && (marked || manifest.is_some()) && fs::symlink_metadata(place).is_err() {
             permit.rename_to_new(&path, place).map_err(at)?;
-        } else if meta.is_dir()
-            && let Some(manifest) = Manifest::read(&path)
-        {
+        } else if let Some(manifest) = manifest {
             match manifest.strange(&path).map_err(at)? {
                 None => manifest.remove(&path, &permit).map_err(at)?,
                 Some(strange) => {
                     return Err(WriteError::Strange { path, name: strange.name, changed: strange.changed });
                 }
             }
-        } else if ending == NEW {
+        } else if ending == NEW && marked {
             permit.remove_tree(&path).map_err(at)?;
-        } else {
+        } else if meta.is_dir() {
             // Its manifest went last; if it is not empty, it is not from here.
             let _ = permit.remove_dir(&path);
         }

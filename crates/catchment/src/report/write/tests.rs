@@ -244,11 +244,33 @@ fn left_overs_are_put_in_order_and_nothing_of_others_is() {
     let at = |name: &str| home.path().join(name);
     // Old stepped aside, new not complete: the old one returns.
     save(&at(".out.1.old"), 1).unwrap();
+    let ours = |number: &str| format!(".out.{number}.{}.tmp", temporary::mark(".out.".as_ref(), number));
     fs::create_dir(at(".out.1.tmp")).unwrap();
-    fs::write(at(".out.1.tmp/a"), "half").unwrap();
-    fs::write(at(".out.1-3.tmp"), "half a file").unwrap();
+    fs::create_dir(at(&ours("1"))).unwrap();
+    fs::write(at(&ours("1")).join("a"), "half").unwrap();
+    fs::write(at(&ours("1-3")), "half a file").unwrap();
     check_folder(&at("out"), KIND).unwrap();
     assert_eq!((names(home.path()), saved(&at("out"))), (vec!["out".to_owned()], Some(1)));
+    // What looks like ours.
+    fs::create_dir(at(".out.123.tmp")).unwrap();
+    fs::write(at(".out.123.tmp/notes"), "mine").unwrap();
+    fs::write(at(".out.77.tmp"), "mine").unwrap();
+    fs::write(at(".out.77.01234567.tmp"), "mine").unwrap();
+    for name in [".new.5.old", ".new.6.old/notes"] {
+        let path = at(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, "mine").unwrap();
+    }
+    check_folder(&at("out"), KIND).unwrap();
+    check_file(&at("new"), true).unwrap();
+    let others =
+        [".new.5.old", ".new.6.old/notes", ".out.123.tmp/notes", ".out.77.01234567.tmp", ".out.77.tmp"];
+    for name in others {
+        assert_eq!(fs::read(at(name)).unwrap(), b"mine", "{name}");
+    }
+    for name in others.map(|name| at(name.split('/').next().unwrap())) {
+        permit().remove_tree(&name).unwrap();
+    }
     // Nobody else's names.
     for name in [".out.x.tmp", ".out.1.bak", "out.1.tmp", ".out.1-.tmp", ".other.1.tmp"] {
         fs::write(at(name), "").unwrap();
@@ -268,6 +290,36 @@ fn left_overs_are_put_in_order_and_nothing_of_others_is() {
     check_folder(&at("out"), KIND).unwrap();
     assert_eq!(saved(&at("out")), Some(1));
     assert_eq!(names(home.path()).len(), 6);
+}
+
+/// In a process of its own, which writes no more.
+#[test]
+fn a_process_without_memory_leaves_nothing_unfinished() {
+    const HERE: &str = "CATCHMENT_TEST_ABANDON";
+    if let Some(home) = std::env::var_os(HERE) {
+        let home = Path::new(&home);
+        let (half, _open) = Temporary::file(&home.join("a.json")).unwrap();
+        let folder = Temporary::folder(&home.join("out")).unwrap();
+        fs::write(folder.path.join("half"), "half").unwrap();
+        // Somebody works on a folder: it stays, and files go.
+        let busy = home.ends_with("busy").then(permit);
+        abandon_at_once();
+        assert!(!half.path.exists() && folder.path.exists() == busy.is_some());
+        // Their drops would wait for leave to write, which nobody has any more.
+        std::mem::forget((half, folder));
+        return;
+    }
+    let home = home();
+    for name in ["idle", "busy"] {
+        let inner = home.path().join(name);
+        fs::create_dir(&inner).unwrap();
+        let itself = "report::write::tests::a_process_without_memory_leaves_nothing_unfinished";
+        let child =
+            Command::new(std::env::current_exe().unwrap()).arg(itself).env(HERE, &inner).output().unwrap();
+        assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stdout));
+        check_folder(&inner.join("out"), KIND).unwrap();
+        assert!(names(&inner).is_empty());
+    }
 }
 
 #[test]

@@ -5,8 +5,8 @@ use super::firmness::normal;
 use crate::acceptance::Stream;
 use crate::design::Alignment;
 use crate::pose::{Dof, PoseError};
-use crate::poses::Distribution;
-use crate::poses::covariance::cholesky;
+use crate::poses::covariance::{IDENTITY, cholesky};
+use crate::poses::{Distribution, Spread};
 
 /// Numbers that a pose takes.
 const EACH: u64 = 10;
@@ -55,6 +55,43 @@ pub(super) fn poses(
         PoseError::from_array(std::array::from_fn(|j| mean[j] + off[j]))
     };
     Ok((0..count).map(pose).collect())
+}
+
+/// A spread as settings have it; none of measured errors, which are no law.
+pub(super) fn law(spread: &Spread, samples: u32, seed: u64) -> Option<Distribution> {
+    match spread {
+        Spread::Normal { mean, sigma, correlation } if *correlation == IDENTITY => {
+            Some(Distribution::Normal { mean: *mean, sigma: *sigma })
+        }
+        Spread::Normal { mean, sigma, correlation } => {
+            let sigma = sigma.to_array();
+            let entry = |i: usize, j: usize| sigma[i] * sigma[j] * correlation[i][j];
+            let covariance = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+            Some(Distribution::Correlated { mean: *mean, covariance, samples, seed })
+        }
+        Spread::Uniform { mean, half_width } => {
+            Some(Distribution::Uniform { mean: *mean, half_width: *half_width })
+        }
+        Spread::Measured { .. } => None,
+    }
+}
+
+/// Poses that were measured: each once, or as many as are wanted of more.
+pub(super) fn measured(
+    rows: &[PoseError],
+    alignment: &Alignment,
+    count: usize,
+    seed: u64,
+) -> Result<Vec<PoseError>, JamsError> {
+    for row in rows {
+        check(&row.to_array(), alignment, f64::is_finite)?;
+    }
+    if rows.len() <= count {
+        return Ok(rows.to_vec());
+    }
+    let stream = Stream::new(seed);
+    let any = |k: usize| (stream.uniform(EACH * k as u64) * rows.len() as f64) as usize;
+    Ok((0..count).map(|k| rows[any(k).min(rows.len() - 1)]).collect())
 }
 
 /// Sizes of errors, of those alone that occur.

@@ -8,11 +8,20 @@ use crate::contact::Features;
 use crate::design::Alignment;
 use crate::pose::{CorPose, Dof, DofSet, PoseError, ROTATIONS, angle_between, euler_axes, step_length};
 use glam::{DMat3, DQuat, DVec2, DVec3};
+use std::f64::consts::TAU;
 
 /// What is locked may move by less than this, in D or radians: rounding.
 const LOCKED: f64 = 1e-6;
 /// Pairs of symmetries that are looked at, at most: those of two rounds.
 const MOST: usize = 600;
+
+/// A pose no farther from a mated one is docked, in D: motions end nearer.
+const DOCKED: f64 = 0.01;
+
+/// The largest number that divides both.
+const fn common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}
 
 /// The symmetries of a pair.
 pub(in crate::run) struct Images {
@@ -73,6 +82,23 @@ impl Images {
             }
         }
         best
+    }
+
+    /// The order n of the turns about the approach axis that lead from the mated pose to its images, where this pose, so high above the mated one, is one
+    /// of them: as good as docked where the design has n-fold symmetry.
+    pub(in crate::run) fn symmetry(&self, pose: &CorPose, above: f64) -> Option<u32> {
+        /// A turn in parts of 15°, of which all that are looked for are made.
+        const PARTS: u32 = 24;
+        let mated = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
+        let is_near = |other: &CorPose| self.distance(other, pose) <= DOCKED;
+        if above.abs() > DOCKED || is_near(&mated) || !self.each(&mated).any(|image| is_near(&image)) {
+            return None;
+        }
+        let parts = self.each(&mated).map(|image| {
+            let angle = image.rotation.x_axis.y.atan2(image.rotation.x_axis.x).rem_euclid(TAU);
+            (angle / TAU * f64::from(PARTS)).round() as u32 % PARTS
+        });
+        Some(PARTS / parts.fold(PARTS, common_divisor))
     }
 
     /// How far a pose is off another one, whose error is given: lateral offset of the COR, and the turns of the Euler angles that lead there

@@ -39,9 +39,9 @@ use crate::contact::{FeatureKind, Features};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Resolution;
 use crate::method::Decide;
-use crate::method::descent::{self, FrictionOutOfRange, Immobility};
+use crate::method::descent::{self, FrictionOutOfRange, Immobility, Sticking};
 use crate::pose::{Dof, PoseError};
-use crate::poses::Distribution;
+use crate::poses::{Distribution, Spread};
 use crate::problem::Problem;
 use clusters::Cluster;
 use glam::DVec3;
@@ -49,7 +49,7 @@ use images::Images;
 use rayon::prelude::*;
 use rests::{Follow, Rested, Which};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -97,6 +97,8 @@ pub struct Jams {
     pub counts: [usize; 4],
     /// The same of poses drawn from the errors that a robot makes.
     pub expected: Option<[usize; 4]>,
+    /// The table that those come from, where they were measured.
+    pub measured: Option<String>,
     /// Where they jam, the jam with most of them first.
     pub jams: Vec<Jam>,
     /// Which pairs of features touch in jams, the one that does so most often first.
@@ -120,6 +122,8 @@ pub struct Jam {
     pub extent: [[f64; 2]; 5],
     /// At how many places that are images of each other rests were seen; 1 where they lie all over.
     pub places: usize,
+    /// It is the mated pose turned by a symmetry of the halves, of this order: with that `symmetry` in the design it counts as docked.
+    pub symmetry: Option<u32>,
     /// What touches.
     pub contacts: Vec<Touched>,
     /// What was found out about it; none of those beyond those that are examined.
@@ -174,6 +178,9 @@ pub struct Examined {
     pub held: Held,
     /// By which order contacts alone hold it; none where they do not hold the load, as where friction does.
     pub immobility: Option<Immobility>,
+    /// From which friction on it may stick, and until which it slips: nothing where contacts alone hold it; none where it touches
+    /// nothing.
+    pub sticking: Option<Sticking>,
     /// The lowest way out that was found; none where none was.
     pub way_out: Option<WayOut>,
     /// Poses a little off, all around, that were followed.
@@ -244,6 +251,34 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Jams, 
     by(problem, settings, &descent::Settings::with_friction(settings.friction)?, exec)
 }
 
+/// The same; and the poses that a robot is expected to come at are those of its spread, each measured one once where there are no more of them than
+/// motions.
+///
+/// # Errors
+/// See [`JamsError`].
+pub fn run_for(
+    problem: &Problem,
+    settings: &Settings,
+    spread: &Spread,
+    exec: &Exec,
+) -> Result<Jams, JamsError> {
+    let motions = motions_of(problem, settings);
+    let samples = u32::try_from(motions).unwrap_or(u32::MAX);
+    let errors = draw::law(spread, samples, settings.seed ^ BRANCH);
+    let settings = Settings { errors, ..settings.clone() };
+    let followed_by = descent::Settings::with_friction(settings.friction)?;
+    let Spread::Measured { source, poses } = spread else {
+        return by(problem, &settings, &followed_by, exec);
+    };
+    let drawn = draw::measured(poses, problem.alignment(), motions, settings.seed ^ BRANCH)?;
+    let found = of(problem, &settings, &followed_by, Some(drawn), exec)?;
+    Ok(Jams { measured: Some(source.clone()), ..found })
+}
+
+fn motions_of(problem: &Problem, settings: &Settings) -> usize {
+    settings.motions.unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()))
+}
+
 /// The same by motions of one's own, whose friction is that of the settings.
 pub(super) fn by(
     problem: &Problem,
@@ -251,8 +286,22 @@ pub(super) fn by(
     followed_by: &descent::Settings,
     exec: &Exec,
 ) -> Result<Jams, JamsError> {
-    let motions =
-        settings.motions.unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()));
+    let draw = |errors| {
+        draw::poses(errors, problem.alignment(), motions_of(problem, settings), settings.seed ^ BRANCH)
+    };
+    let drawn = settings.errors.as_ref().map(draw).transpose()?;
+    of(problem, settings, followed_by, drawn, exec)
+}
+
+/// The same; with the poses at which a robot is expected to come.
+fn of(
+    problem: &Problem,
+    settings: &Settings,
+    followed_by: &descent::Settings,
+    drawn: Option<Vec<PoseError>>,
+    exec: &Exec,
+) -> Result<Jams, JamsError> {
+    let motions = motions_of(problem, settings);
     if motions == 0 {
         return Err(JamsError::Nothing);
     }
@@ -263,10 +312,6 @@ pub(super) fn by(
     let Domain::Poses(poses) = Domain::random(problem.alignment(), motions, settings.seed) else {
         return Err(JamsError::Nothing);
     };
-    let drawn = match &settings.errors {
-        Some(errors) => Some(draw::poses(errors, problem.alignment(), motions, settings.seed ^ BRANCH)?),
-        None => None,
-    };
     let of_box = follow.all(&poses, exec)?;
     let of_errors = drawn.map(|poses| follow.all(&poses, exec)).transpose()?;
     let counts = count(&of_box);
@@ -276,7 +321,10 @@ pub(super) fn by(
         of_box.into_iter().chain(of_errors.into_iter().flatten()).filter_map(|(_, rested)| rested).collect();
     let images = Images::of(&features, problem.alignment());
     let found = clusters::gather(problem, &rests, &images, settings.seed, exec)?;
-    let jam = |cluster: &Cluster| Jam::of(problem, &features, &rests, own, expected.is_some(), cluster);
+    let jam = |cluster: &Cluster| {
+        let found = Jam::of(problem, &features, &rests, own, expected.is_some(), cluster);
+        Jam { symmetry: images.symmetry(&rests[cluster.middle].pose, found.above), ..found }
+    };
     let mut jams: Vec<Jam> = found.iter().map(jam).collect();
     let seen = exec.install(|| {
         let examine = |(k, cluster): (usize, &Cluster)| {
@@ -291,8 +339,8 @@ pub(super) fn by(
         jam.examined = Some(examined);
     }
     depth::tell(problem, jams.iter_mut().collect(), settings.resolution.as_ref(), settings.certified, exec)?;
-    let pairs = touching(problem, &features, &rests[..own]);
-    Ok(Jams { settings, counts, expected, jams, pairs })
+    let pairs = touching(problem, &features, &rests[..own]).into_iter().map(|(pair, _)| pair).collect();
+    Ok(Jams { settings, counts, expected, measured: None, jams, pairs })
 }
 
 fn count(ends: &[(Outcome, Option<Rested>)]) -> [usize; 4] {
@@ -303,7 +351,8 @@ impl Jams {
     /// With every place that the jams of a problem have, and numbers that mean nothing: what requirements are tried on.
     pub fn form(settings: &Settings) -> Self {
         let expected = settings.errors.as_ref().map(|_| [0; 4]);
-        Self { settings: settings.clone(), counts: [0; 4], expected, jams: Vec::new(), pairs: Vec::new() }
+        let (jams, pairs) = (Vec::new(), Vec::new());
+        Self { settings: settings.clone(), counts: [0; 4], expected, measured: None, jams, pairs }
     }
 
     /// How many random poses of the error box were followed.
@@ -341,6 +390,7 @@ impl Jam {
             above: rest.height - problem.pair().mated_height(),
             extent: cluster.extent,
             places: cluster.places,
+            symmetry: None,
             contacts: rest.touched(problem, features),
             examined: None,
             depth_on_grid: None,
@@ -349,45 +399,61 @@ impl Jam {
     }
 }
 
-/// The features that touch where poses stick, each followed at a friction of its own; how many of them stick there.
+/// A pair of features on which poses stick, and at which frictions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sticks {
+    /// The pair, and on how many poses it touches.
+    pub touching: Touching,
+    /// The critical frictions of these poses, ascending.
+    pub critical: Vec<f64>,
+}
+
+/// The features that touch where poses stick, each followed at a friction of its own, with those frictions; how many of them stick there.
 pub(crate) fn what_sticks(
     problem: &Problem,
     poses: &[(PoseError, f64)],
     exec: &Exec,
-) -> Result<(usize, Vec<Touching>), Cancelled> {
+) -> Result<(usize, Vec<Sticks>), Cancelled> {
     let features = Features::of(problem.pair());
     let motions = descent::Settings::default();
     let follow = Follow { problem, features: &features, motions: &motions, which: Which::Jams };
     let rest = |(pose, friction): &(PoseError, f64)| {
         exec.check()?;
         let settings = descent::Settings { friction: *friction, ..descent::Settings::default() };
-        Ok(follow.rested(&descent::settle(problem.pair(), pose, &settings)))
+        let rested = follow.rested(&descent::settle(problem.pair(), pose, &settings));
+        Ok(rested.map(|rested| (rested, *friction)))
     };
-    let rests: Vec<Option<Rested>> =
+    let rests: Vec<Option<(Rested, f64)>> =
         exec.install(|| poses.par_iter().map(rest).collect::<Result<_, Cancelled>>())?;
-    let rests: Vec<Rested> = rests.into_iter().flatten().collect();
-    Ok((rests.len(), touching(problem, &features, &rests)))
+    let (rests, frictions): (Vec<Rested>, Vec<f64>) = rests.into_iter().flatten().unzip();
+    let sticks = touching(problem, &features, &rests).into_iter().map(|(touching, at)| {
+        let mut critical: Vec<f64> = at.into_iter().map(|k| frictions[k]).collect();
+        critical.sort_by(f64::total_cmp);
+        Sticks { touching, critical }
+    });
+    Ok((rests.len(), sticks.collect()))
 }
 
-/// The pairs of features that touch in rests, by their names, in the order of how many do: a person changes all features of a name, or none.
-fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<Touching> {
-    let mut pairs: BTreeMap<[String; 2], Touching> = BTreeMap::new();
-    for rest in rests {
-        let mut here: BTreeSet<[String; 2]> = BTreeSet::new();
+/// The pairs of features that touch in rests and the numbers of these rests, by their names, in the order of how many do: a person changes all features of
+/// a name, or none.
+fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<(Touching, Vec<usize>)> {
+    let mut pairs: BTreeMap<[String; 2], (Touching, Vec<usize>)> = BTreeMap::new();
+    for (number, rest) in rests.iter().enumerate() {
         for met in &rest.met {
-            let names = Rested::names(features, met);
-            if here.insert(names.clone()) {
-                let touching = || {
-                    let Touched { fixed, moving, .. } = rest.name(problem, features, met);
-                    Touching { count: 0, fixed, moving }
-                };
-                pairs.entry(names).or_insert_with(touching).count += 1;
+            let touching = || {
+                let Touched { fixed, moving, .. } = rest.name(problem, features, met);
+                (Touching { count: 0, fixed, moving }, Vec::new())
+            };
+            let (pair, at) = pairs.entry(Rested::names(features, met)).or_insert_with(touching);
+            if at.last() != Some(&number) {
+                at.push(number);
+                pair.count += 1;
             }
         }
     }
-    let mut pairs: Vec<Touching> = pairs.into_values().collect();
+    let mut pairs: Vec<(Touching, Vec<usize>)> = pairs.into_values().collect();
     // Stable: of equals the one whose name comes first.
-    pairs.sort_by_key(|pair| std::cmp::Reverse(pair.count));
+    pairs.sort_by_key(|(pair, _)| std::cmp::Reverse(pair.count));
     pairs
 }
 

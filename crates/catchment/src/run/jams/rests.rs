@@ -7,7 +7,7 @@ use crate::acceptance::{Outcome, Stream};
 use crate::connector::Side;
 use crate::contact::{Contact, Features};
 use crate::exec::{Cancelled, Exec};
-use crate::method::descent::{self, Follower, Holding, Rest, TOUCHING, immobility};
+use crate::method::descent::{self, Follower, Holding, Rest, Sticking, TOUCHING, immobility};
 use crate::pose::{CorPose, PoseError, angle_between, face_from_cor, step_length};
 use crate::problem::Problem;
 use glam::DVec3;
@@ -152,10 +152,14 @@ impl Follow<'_> {
             Which::Jams => Leaving::Jam,
             Which::All => Leaving::Rest { is_level: held.firmness == Firmness::Level },
         };
-        let holding = Holding::at_rest(pair, &rest.error, rest.height, TOUCHING);
-        let immobility = holding.and_then(|holding| immobility(pair, &holding, &rest.error, seed));
+        let mut holding = Holding::at_rest(pair, &rest.error, rest.height, TOUCHING);
+        let immobility = holding.as_ref().and_then(|holding| immobility(pair, holding, &rest.error, seed));
+        let sticking = match immobility {
+            Some(_) => Some(Sticking { holds_from: Some(0.0), slips_until: Some(0.0) }),
+            None => holding.as_mut().map(Holding::sticking),
+        };
         let way_out = escape::way_out(pair, rest, self.motions, leaving, seed);
-        Examined { held, immobility, way_out, pushed, back }
+        Examined { held, immobility, sticking, way_out, pushed, back }
     }
 }
 

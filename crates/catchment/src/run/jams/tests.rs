@@ -229,3 +229,19 @@ fn a_jam_is_as_deep_as_is_certain() {
     let rough = Settings { friction: 0.1, ..settings };
     assert_eq!(run(&problem, &rough, &Exec::new()).unwrap_err(), JamsError::Depth(DepthError::Friction));
 }
+
+/// On one facet both thresholds of a rest that friction holds are its slope.
+#[test]
+fn what_a_facet_holds_by_friction_may_stick_from_its_slope_on() {
+    let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
+    let problem = problem(text);
+    let settings = Settings { motions: Some(50), friction: 0.3, ..Settings::default() };
+    let found = run(&problem, &settings, &Exec::new()).unwrap();
+    assert!(!found.jams.is_empty());
+    for examined in found.jams.iter().filter_map(|jam| jam.examined) {
+        let Sticking { holds_from, slips_until } = examined.sticking.unwrap();
+        assert!((holds_from.unwrap() - 0.2).abs() < 1e-6, "{holds_from:?}");
+        assert!((slips_until.unwrap() - 0.2).abs() < 1e-3, "{slips_until:?}");
+        assert!(examined.immobility.is_none());
+    }
+}

@@ -26,7 +26,7 @@ use crate::method::correction::Z95;
 use crate::method::descent::{self, Follower, FrictionOutOfRange};
 use crate::pose::PoseError;
 use crate::problem::Problem;
-use crate::run::jams::{Touching, what_sticks};
+use crate::run::jams::{Sticks, what_sticks};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -69,7 +69,7 @@ pub struct Friction {
     /// Up to which friction most of what docks without it docks still.
     pub kept: Vec<Kept>,
     /// Poses that are lost first and stick somewhere, and the features that touch there, those that do so most often first.
-    pub first: (usize, Vec<Touching>),
+    pub first: (usize, Vec<Sticks>),
     /// Poses that dock without friction, not at some friction of the ladder, and again at a larger one.
     pub come_back: usize,
 }

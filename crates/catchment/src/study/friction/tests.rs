@@ -21,6 +21,8 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
             assert!(kept.ci95[0] <= kept.friction && kept.friction <= kept.ci95[1]);
             assert!(!kept.is_top);
         }
+        // Nothing bends the way, so that more friction never helps.
+        assert!(found.rungs.windows(2).all(|two| two[1].tally.counts[0] <= two[0].tally.counts[0]));
         let last = found.rungs[3].tally;
         // What starts within the depth of the seat is docked as it is.
         assert_eq!((last.lost + last.counts[0], last.gained, found.come_back), (docked, 0, 0));
@@ -28,7 +30,9 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
         // Nothing bends the way here: the static test is right, but where it begins within a step of the seat.
         assert!(found.rungs.iter().all(|rung| rung.tally.static_wrong <= 2), "{:?}", found.rungs);
         assert_eq!(found.first.0, AT_LEAST);
-        assert_eq!(found.first.1[0].count, AT_LEAST);
+        let Sticks { touching, critical } = &found.first.1[0];
+        assert_eq!((touching.count, critical.len()), (AT_LEAST, AT_LEAST));
+        assert!(critical.iter().all(|friction| (friction - slope).abs() <= EXACT), "{family:?} {critical:?}");
     }
 }
 
@@ -46,6 +50,10 @@ fn tallies_add_up_and_threads_change_nothing() {
         assert_eq!(tally.counts[0] + tally.lost, docked + tally.gained, "{friction}");
         assert!(tally.may_stick <= tally.counts[0] && tally.static_docks <= docked);
     }
+    // Up to less friction more of them dock still.
+    assert!(
+        found.kept.windows(2).all(|two| two[0].share > two[1].share && two[0].friction <= two[1].friction)
+    );
     let direct = |friction: f64| {
         let Domain::Poses(poses) = Domain::random(problem.alignment(), 120, 3) else { unreachable!() };
         let settings = descent::Settings::with_friction(friction).unwrap();

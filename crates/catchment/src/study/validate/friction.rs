@@ -42,6 +42,8 @@ const MOST: f64 = 1.0;
 const STEPS: usize = 20;
 /// Bisections of an end: to MOST / STEPS / 2⁴ = 0.003.
 const HALVINGS: usize = 4;
+/// The finest steps that bisections lead to, per coefficient of the ladder.
+const FINE: usize = 1 << HALVINGS;
 /// So many disagreements more than the fewest are clearly more.
 const CLEARLY: usize = 4;
 /// Steps after which a motion creeps; others take tens to hundreds.
@@ -66,9 +68,8 @@ pub(super) fn estimate(
         tried.push((friction, count));
         Ok::<_, Cancelled>(count >= enough)
     };
-    let step = MOST / STEPS as f64;
     for k in 0..=STEPS {
-        if look(k as f64 * step, &mut tried)? {
+        if look(coefficient(k * FINE), &mut tried)? {
             break;
         }
     }
@@ -78,15 +79,12 @@ pub(super) fn estimate(
     let ends = [(0..=last).find(is_best), (0..=last).rev().find(is_best)].map(Option::unwrap_or_default);
     let broken = !(ends[0]..=ends[1]).all(|k| is_best(&k));
     let open = ends[1] == last;
-    let mut interval = ends.map(|k| k as f64 * step);
-    for (k, away) in [(0, -step), (1, step)] {
-        if (k == 0 && ends[0] == 0) || (k == 1 && open) {
-            continue;
-        }
-        let mut worse = interval[k] + away;
+    let mut interval = ends.map(|k| k * FINE);
+    for (k, worse) in [(0, interval[0].checked_sub(FINE)), (1, (!open).then_some(interval[1] + FINE))] {
+        let Some(mut worse) = worse else { continue };
         for _ in 0..HALVINGS {
-            let middle = f64::midpoint(interval[k], worse);
-            look(middle, &mut tried)?;
+            let middle = usize::midpoint(interval[k], worse);
+            look(coefficient(middle), &mut tried)?;
             if tried.last().is_some_and(|(_, count)| *count <= fewest) {
                 interval[k] = middle;
             } else {
@@ -96,7 +94,13 @@ pub(super) fn estimate(
     }
     let fewest = tried.iter().map(|(_, count)| *count).min().unwrap_or(0);
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let interval = interval.map(coefficient);
     Ok((FrictionFound { fewest, interval, open, broken, tried }, followed))
+}
+
+/// So many of the finest steps: by one division, so that 0.3 is the number nearest to it and is written so.
+fn coefficient(fine: usize) -> f64 {
+    MOST * fine as f64 / (STEPS * FINE) as f64
 }
 
 /// Trials that fare otherwise than was seen, and whose border is farther than the limit; when there are `enough` of them no more are counted.
@@ -133,4 +137,16 @@ fn beyond(
         followed += found.iter().map(|(_, count)| count).sum::<usize>();
     }
     Ok((count, followed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_are_written_as_they_are_meant() {
+        let ladder: Vec<String> = (0..=STEPS).map(|k| coefficient(k * FINE).to_string()).collect();
+        assert_eq!([&ladder[3], &ladder[6], &ladder[7], &ladder[12]], ["0.15", "0.3", "0.35", "0.6"]);
+        assert!((0..=STEPS * FINE).all(|k| coefficient(k).to_string().len() <= "0.003125".len()));
+    }
 }
