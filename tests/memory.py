@@ -2,6 +2,8 @@
 
     python3 tests/memory.py PROGRAM [DESIGN…]
 
+Designs are those of `designs`, of its gallery, and those of its systems that are connectors; the other systems have their own commands.
+
 The program gets 1 byte of memory, refuses, and says what it needs; it gets that, and so on until it runs, and the system says what it
 took at most. What the same design takes to be checked is taken off. Fails where a command takes more than BESIDE more than it expected:
 threads, tables of the report and the allocator's own are in no estimate. Unix, Python's own library alone.
@@ -43,7 +45,35 @@ COMMANDS = [
     "zraa",
     "zraa -o out.png",
     "check",
+    "window --motions 20",
+    "success --error-sigma x=0.1 --motions 100",
+    "jams --motions 20 --examine 1",
+    "jams --motions 20 --examine 1 --resolution 24 -o out.png",
+    "friction --motions 20 --frictions 0.1",
+    "rests --motions 20 --examine 1",
+    "hold",
+    "chance --push 1 --pose x=0.1 --trials 1",
+    "plan --accuracy x=0.01 --pattern grid --steps x=3",
+    "solids --slices 8 -o out.obj",
+    "classify",
+    "invert",
+    "report --resolution 8 --leave-out window -o out.html",
+    "sweep --over cor=0,1 --resolution 8 --samples 0 -o out",
 ]
+# What is above the connector, or reads two parts: the whole command line; {} is the folder of designs.
+SYSTEMS = [
+    "compose {}/systems/hook.toml {}/systems/loop.toml -o out.png",
+    "compose {}/systems/boat.toml {}/systems/block.toml",
+    "chain {}/systems/chain.toml --chains 100",
+    "chain {}/systems/o-ring.toml --chains 10",
+    "chain {}/systems/p-sequence.toml --chains 10",
+    "place {}/meshes/assembled-socket.obj {}/meshes/assembled-plug.ply --unit mm --drawn assembled --figure out.png",
+    "invert {}/pyramid.toml --heights {}/systems/wanted-bowl.csv -o out.toml",
+    "validate {}/trials/pyramid-arc.csv {}/bench-pyramid-arc.toml --accuracy x=0.5mm,y=0.5mm",
+    "catalog --figure 4.2 -o out.png",
+]
+# They have no budget, or take only part of it.
+WITHOUT = {"check", "classify", "validate", "latch"}
 
 
 def measured(program, args, folder):
@@ -76,27 +106,41 @@ def weighed(program, args, folder):
 
 def main():
     program = str(Path(sys.argv[1]).resolve())
-    designs = [Path(path) for path in sys.argv[2:]] or sorted((ROOT / "designs").glob("*.toml"))
+    designs = [Path(path) for path in sys.argv[2:]]
+    whole = not designs
+    for folder in ("", "gallery", "systems"):
+        found = sorted((ROOT / "designs" / folder).glob("*.toml")) if whole else []
+        designs += [path for path in found if "\n[connector]" in f"\n{path.read_text()}" and "\n[chain]" not in path.read_text()]
     worst, failed, ran = {}, [], 0
+
+    def told(stem, command, args, base, folder):
+        nonlocal ran
+        code, most, needs = (*measured(program, args, folder)[:2], None) if args[0] in WITHOUT else weighed(program, args, folder)
+        if code not in (0, 2, None):
+            failed.append(f"{stem}: {command}: it ended with {code}")
+        if code not in (0, None):
+            print(f"{stem:20} {command:62} not for this design", flush=True)
+            return
+        ran += 1
+        took = max(most - base, 0.0)
+        shown = "-" if needs is None else f"{needs:.1f}"
+        print(f"{stem:20} {command:62} expected {shown:>8} MiB, took {took:7.1f} MiB{' in the first minutes' if code is None else ''}", flush=True)
+        beside = took - (needs or 0.0)
+        worst[command] = max(worst.get(command, (float("-inf"),)), (beside, took, needs or 0.0, stem))
+        if beside > BESIDE:
+            failed.append(f"{stem}: {command}: {took:.0f} MiB, expected {shown}")
+
     for design in designs:
         _, base, _ = measured(program, ["check", str(design.resolve())], ".")
         for command in COMMANDS:
             name, *options = command.split()
             with tempfile.TemporaryDirectory() as folder:
                 (Path(folder) / "poses.csv").write_text("x\n" + "0.01\n" * 20_000)
-                args = [name, str(design.resolve()), *options]
-                code, most, needs = (*measured(program, args, folder)[:2], None) if name == "check" else weighed(program, args, folder)
-            if code not in (0, None):
-                print(f"{design.stem:20} {command:62} not for this design", flush=True)
-                continue
-            ran += 1
-            took = max(most - base, 0.0)
-            shown = "-" if needs is None else f"{needs:.1f}"
-            print(f"{design.stem:20} {command:62} expected {shown:>8} MiB, took {took:7.1f} MiB{' in the first minutes' if code is None else ''}", flush=True)
-            beside = took - (needs or 0.0)
-            worst[command] = max(worst.get(command, (float("-inf"),)), (beside, took, needs or 0.0, design.stem))
-            if beside > BESIDE:
-                failed.append(f"{design.stem}: {command}: {took:.0f} MiB, expected {shown}")
+                told(design.stem, command, [name, str(design.resolve()), *options], base, folder)
+    _, base, _ = measured(program, ["check", str(ROOT / "designs/v-face.toml")], ".")
+    for command in SYSTEMS if whole else []:
+        with tempfile.TemporaryDirectory() as folder:
+            told("-", command.replace("{}/", ""), [word.replace("{}", str(ROOT / "designs")) for word in command.split()], base, folder)
     print("\n| command | most beside what was expected | expected | took | design |\n|---|---|---|---|---|")
     for command, (beside, took, needs, stem) in worst.items():
         print(f"| `{command}` | {beside:+.0f} MiB | {needs:.1f} MiB | {took:.1f} MiB | {stem} |")

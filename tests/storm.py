@@ -2,6 +2,7 @@
 
     python3 tests/storm.py PROGRAM [COUNT] [--seed SEED] [--from NUMBER] [--mib 1024] [--longest 20] [--keep FOLDER]
 
+Every subcommand has its part; where the program has one that is neither here nor in LEFT_OUT, nothing is run.
 Every run must end with exit code 0, 1, 2, 130 or 143, say something where it is 2, steer no terminal, call nothing a bug and leave
 nothing unfinished. A run that takes more than --longest seconds of the processor is interrupted, must hear that, and is counted. The same seed and number
 give the same run; what failed is named with both, and kept with --keep. Unix, Python's own library alone.
@@ -15,6 +16,7 @@ import re
 import resource
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -28,6 +30,7 @@ PIECES = [b"\0", b"\x1b[2J", b"\xff\xfe", b"\xef\xbb\xbf", b"\n", b"\r", b",", b
           b"null", b"\xe2\x80\xae", b"\xc2\x9b", b"////////", b"true", b"[[", b"#", b";"]
 METHODS = "transport descent flood steepest meyer partition kinematic drop all".split()
 AXES = "x y roll pitch yaw".split()
+LEFT_OUT = {"view": "serves until it is ended; its requests have a fuzz target", "help": "clap's own"}
 
 
 def corpus(name):
@@ -65,30 +68,42 @@ def spoilt(dice, seed, others):
     return bytes(data[: 1 << 20])
 
 
+class Dice(random.Random):
+    """Calm ones make what the program can compute, so that not all ends at the door."""
+
+    calm = False
+
+
 def number(dice):
+    if dice.calm:
+        return f"{dice.uniform(0.05, 0.3):.3g}"
     return dice.choice(NUMBERS) if dice.random() < 0.15 else f"{dice.uniform(-0.2, 1):.3g}"
 
 
 def length(dice):
+    if dice.calm:
+        return number(dice)
     return number(dice) + dice.choice(["", "", "", "", " D", " deg", " mm", " parsec"])
 
 
 def resolution(dice):
     kind = dice.random()
-    if kind < 0.7:
-        return str(dice.randint(1, 6))
+    if kind < 0.7 or dice.calm:
+        return str(dice.randint(3, 6) if dice.calm else dice.randint(1, 6))
     if kind < 0.85:
         return f"{dice.randint(1, 6)},{dice.choice(AXES)}={dice.randint(1, 9)}"
     return dice.choice([f"{dice.choice(AXES)}={number(dice)}", number(dice), "", "=", "1e3", "x=,y"])
 
 
 def pose(dice):
+    if dice.calm:
+        return f"x={number(dice)}"
     return ",".join(f"{dice.choice(AXES)}={length(dice)}" for _ in range(dice.randint(0, 4)))
 
 
 def design_options(dice):
     args = []
-    if dice.random() < 0.5:
+    if dice.random() < 0.5 and not dice.calm:
         args += ["--free", ",".join(dice.sample(AXES, dice.randint(1, 3)))]
     if dice.random() < 0.2:
         args += ["--cor", length(dice)]
@@ -109,6 +124,8 @@ def drop_options(dice):
 
 def exec_options(dice):
     args = []
+    if dice.calm:
+        return args
     if dice.random() < 0.2:
         args += ["--threads", dice.choice(["0", "1", "2", "9", number(dice)])]
     if dice.random() < 0.2:
@@ -174,6 +191,120 @@ def compare(dice):
     return args + exec_options(dice) + dice.choice([[], ["--json"], ["-o", "out"]])
 
 
+def value(dice, *usual):
+    return number(dice) if dice.random() < 0.1 and not dice.calm else str(dice.choice(usual))
+
+
+def written(dice, *endings):
+    """Prints, or writes a file as well, now and then one whose name says nothing."""
+    return dice.choice([[], [], ["--json"], ["-o", "out." + dice.choice([*endings, "txt"])], ["-o", "d.toml", "--force"]])
+
+
+def study(dice):
+    """What rests on exact motions, few of them."""
+    command = dice.choice("window success jams friction rests hold".split())
+    args = [command, "d.toml"] + design_options(dice) + exec_options(dice)
+    if command == "hold":
+        args += ["--directions", value(dice, 1, 7, 72)]
+        args += dice.choice([[], ["--pose", pose(dice)], ["--play", length(dice)], ["--lever", length(dice)], ["--preload", number(dice)]])
+    else:
+        args += ["--motions", value(dice, 100, 120) if command == "success" else value(dice, 0, 5, 20)]
+    if command in ("jams", "rests"):
+        args += ["--examine", value(dice, 0, 1)]
+        args += dice.choice([[], [], ["--resolution", resolution(dice)], ["--certified"]])
+    if command == "window":
+        args += dice.choice([[], ["--fix", pose(dice)], ["--proportions", pose(dice)]])
+    if command == "success":
+        args += ["--cells", value(dice, 0, 3)]
+        args += dice.choice([["--robots", "robots.toml"], ["--error-sigma", pose(dice)], ["--error-uniform", pose(dice)],
+                             ["--error-measured", "p.csv"]])
+    if command == "friction":
+        args += ["--frictions", ",".join(value(dice, 0.1, 0.5) for _ in range(dice.randint(1, 2)))]
+    elif command in ("window", "success", "jams", "hold") and dice.random() < 0.2:
+        args += ["--friction", value(dice, 0.1, 0.5)]
+    if dice.random() < 0.06:
+        args += ["--require", "sum<=" + number(dice)]
+    return args + written(dice, "svg", "png", "csv", "json")
+
+
+def chance(dice):
+    args = ["chance", "d.toml"] + design_options(dice) + exec_options(dice)
+    args += ["--trials", value(dice, 1, 2), "--overall", value(dice, 100), "--timeout", value(dice, 0.1, 0.3)]
+    args += dice.choice([[], ["--dynamics", "dynamics.toml"], ["--draw", f"friction={number(dice)}..{number(dice)}", "--push", number(dice)],
+                         ["--draw", f"speed={length(dice)} ± {number(dice)}"]])
+    args += dice.choice([[], ["--pose", pose(dice)], ["--poses", "p.csv"], ["--times", "1," + value(dice, 2, 3)],
+                         ["--map", ",".join(dice.choices(AXES, k=2)), "--cells", value(dice, 1, 2)], ["--error-sigma", pose(dice)]])
+    return args + written(dice, "svg", "png", "csv", "json")
+
+
+def bench(dice):
+    """A test on the bench, planned or judged."""
+    if dice.random() < 0.5:
+        args = ["validate", "tried.csv", "d.toml", "--accuracy", pose(dice)]
+        args += dice.choice([[], [], ["--estimate-friction"], ["--limit", value(dice, 1, 3)]])
+    else:
+        args = ["plan", "d.toml", "--accuracy", pose(dice)]
+        args += dice.choice([["--pattern", "grid", "--steps", f"x={value(dice, 2, 3)},pitch={value(dice, 2)}"],
+                             ["--pattern", "lattice", "--step", length(dice), "--max", pose(dice)],
+                             ["--pattern", "arc", "--lever", length(dice), "--pitch", "0..10:5 deg"],
+                             ["--pattern", "bracket", "--trials", value(dice, 4, 12), "--lines", value(dice, 1, 2)]])
+        args += dice.choice([[], ["--repeats", value(dice, 2)], ["--blocks", value(dice, 2)], ["--in-order"], ["--symmetric"]])
+    args += dice.choice([[], ["--figure", "pics.svg"], ["--figure", "out.csv"], ["--offsets-at", "cor"]])
+    return args + design_options(dice) + written(dice, "csv", "json", "svg", "png")
+
+
+def place(dice):
+    parts = dice.choice([["socket.obj", "plug.ply"], ["socket.obj", "plug.ply"], ["meshes/socket.stl", "meshes/plug.stl"]])
+    args = ["place", *parts, "--unit", dice.choice(["mm", "m", "in"])] + exec_options(dice)
+    ways = ["+x", "-y", "+z", "z"]
+    args += dice.choice([[], ["--drawn", "assembled"], ["--drawn", "facing"], ["--approach=" + dice.choice(ways)], ["--facing-fixed=" + dice.choice(ways)]])
+    return args + dice.choice([[], ["-o", "out.toml"], ["-o", "out.toml", "--figure", "pics.svg"], ["-o", parts[0], "--force"]])
+
+
+def page(dice):
+    args = ["report", dice.choice(["d.toml", "d.toml", "s", "s.zarr"]), "-o", "out.html"] + exec_options(dice)
+    return args + ["--resolution", resolution(dice), "--leave-out", "jams", "--leave-out", "window"] + dice.choice([[], [], design_options(dice)])
+
+
+def systems(dice):
+    """What stands above the connector."""
+    command = dice.choice("solids classify catalog invert compose latch chain".split())
+    of_design = [command, "d.toml"] + design_options(dice)
+    if command == "solids":
+        return of_design + ["--slices", value(dice, 2, 3), "--strips", value(dice, 1, 2)] + written(dice, "vtp", "obj", "svg", "png")
+    if command == "classify":
+        return of_design + dice.choice([[], ["--json"]])
+    if command == "catalog":
+        return dice.choice([["catalog", "--append", "d.toml"], ["catalog", "--where", "gendering=" + dice.choice(["Ungendered", "x"])],
+                            ["catalog", "--as-printed", "1.1"], ["catalog", "show", dice.choice(["DRAGON", "x"])], ["catalog", "--csv"],
+                            ["catalog", "design", "polybot", "-o", "d.toml", "--force"], ["catalog", "--figure", "4.2", "-o", "out.svg"]])
+    if command == "invert":
+        args = of_design + dice.choice([[], ["--heights", "heights.csv"], ["--heights", "v.toml"], ["--pitch", "-5..5 deg/3"], ["--yaw", number(dice)]])
+        return args + dice.choice([[], ["--backing", number(dice)], ["--min-feature", length(dice)]]) + written(dice, "toml", "svg", "png")
+    if command == "compose":
+        regions = ["region.csv", "region.svg", "hook.toml", "loop.toml", "v.toml"]
+        args = ["compose", dice.choice(regions), dice.choice(regions), "--headings", value(dice, 2, 3)] + exec_options(dice)
+        args += dice.choice([[], ["--heading", "-5..5 deg"], ["--heading", length(dice)], ["--frames", "world"],
+                             ["--keep-out", f"{dice.choice(regions)},{dice.choice(regions)}"]])
+        return args + dice.choice([[], ["--outline"]]) + written(dice, "svg", "png", "csv")
+    if command == "latch":
+        return dice.choice([["latch", "latch.toml"], ["latch", "latch.toml", "-o", "out"], ["latch", "--table", "-o", "out.csv"]])
+    args = ["chain", "chain.toml", "--chains", value(dice, 1, 5)] + exec_options(dice)
+    args += dice.choice([[], ["--modules", value(dice, 2, 3)], ["--modules", "2..4"], ["--joint-sigma", "1 deg," + length(dice)]])
+    return args + written(dice, "svg", "png", "csv", "json")
+
+
+def many(dice):
+    """Several designs or tables."""
+    if dice.random() < 0.2:
+        return ["reproduce", dice.choice(["2.1", "2.1", "9.9"])] + dice.choice([[], ["--json"], ["--csv"], ["-o", "out"]]) + exec_options(dice)
+    args = ["sweep", "d.toml", "--resolution", resolution(dice), "--samples", value(dice, 0, 10)] + design_options(dice) + exec_options(dice)
+    for _ in range(dice.randint(1, 2)):
+        key = dice.choice(["cor", "rho", "aspect_ratio", "errors.x", "family", "connector.moving.mesh", "nothing"])
+        args += ["--over", key + "=" + dice.choice(["0,1", "0.5", "-1..1/2", "1..2 deg/3", "cone,v-face", length(dice)])]
+    return args + dice.choice([[], ["--json"], ["-o", "out"]])
+
+
 def single(dice):
     command = dice.choice(["trace", "zraa", "export", "check", "check"])
     args = [command, "d.toml"] + design_options(dice)
@@ -182,7 +313,7 @@ def single(dice):
     if command == "export":
         return args + ["-o", "out"] + (drop_options(dice) if dice.random() < 0.3 else [])
     if command != "check":
-        args += dice.choice([[], [], ["-o", "out." + dice.choice(["svg", "png", "csv", "json", "xyz", "zarr"])]])
+        args += dice.choice([[], [], ["-o", "out." + dice.choice(["svg", "png", "glb", "csv", "json", "xyz", "zarr"])]])
     return args + dice.choice([[], ["--json"]])
 
 
@@ -199,13 +330,43 @@ def words(dice):
     return [word for word in data.replace(b"\0", b"").split(b"\n")]
 
 
+# Who makes command lines of which subcommands, and how often.
+KINDS = {
+    run: (6, ["run"]),
+    outcome: (4, ["outcome"]),
+    slices: (2, ["slices"]),
+    compare: (5, ["compare"]),
+    single: (4, ["trace", "zraa", "export", "check"]),
+    small: (1, ["new", "schema", "completions", "man", "--help"]),
+    words: (3, []),
+    study: (5, ["window", "success", "jams", "friction", "rests", "hold"]),
+    chance: (2, ["chance"]),
+    bench: (3, ["plan", "validate"]),
+    place: (2, ["place"]),
+    page: (1, ["report"]),
+    systems: (5, ["solids", "classify", "catalog", "invert", "compose", "latch", "chain"]),
+    many: (2, ["sweep", "reproduce"]),
+}
+
+
+def subcommands(program):
+    """Those that the program lists in its help."""
+    listed = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
+    return set(re.findall(r"^  ([a-z]+)(?:  |$)", listed.split("Commands:\n")[1].split("\n\n")[0], re.MULTILINE))
+
+
 class Storm:
     def __init__(self, program, longest, keep):
         self.program, self.most, self.keep = str(Path(program).resolve()), longest, keep
         self.home = Path(tempfile.mkdtemp(prefix="storm-"))
         self.work = self.home / "work"
+        covered = {name for _, names in KINDS.values() for name in names if not name.startswith("-")} | set(LEFT_OUT)
+        differ = covered ^ subcommands(self.program)
+        assert not differ, f"the program and the storm do not have the same subcommands: {sorted(differ)}"
         self.tables, self.meshes = corpus("poses"), corpus("stl")
-        self.designs = corpus("design") + [path.read_bytes() for path in sorted((ROOT / "designs").glob("*.toml"))]
+        self.others, self.beside = self.files_beside()
+        self.sound = [path.read_bytes() for path in sorted((ROOT / "designs").glob("*.toml"))]
+        self.designs = corpus("design") + self.sound
         self.codes, self.commands = collections.Counter(), collections.Counter()
         self.largest, self.longest, self.slow, self.faults = (0, ""), (0.0, ""), [], []
         self.results = self.home / "results"
@@ -217,6 +378,28 @@ class Storm:
             code, _, _, said = self.start(args, self.results)
             assert code == 0, said
         self.stored = [path.relative_to(self.results) for path in sorted(self.results.rglob("*")) if path.is_file()]
+
+    @staticmethod
+    def files_beside():
+        """By what they are called: files that other commands read, and by what they are spoilt with."""
+        read = lambda path: (ROOT / "designs" / path).read_bytes()
+        files = {
+            "robots.toml": read("robots/robots.toml"),
+            "arm-d.csv": read("robots/arm-d.csv"),
+            "dynamics.toml": read("robots/dynamics.toml"),
+            "tried.csv": read("trials/pyramid-arc.csv"),
+            "socket.obj": read("meshes/assembled-socket.obj"),
+            "plug.ply": read("meshes/assembled-plug.ply"),
+            "heights.csv": read("systems/wanted-bowl.csv"),
+            "hook.toml": read("systems/hook.toml"),
+            "loop.toml": read("systems/loop.toml"),
+            "latch.toml": read("systems/latch.toml"),
+            "chain.toml": read("systems/chain.toml").replace(b"../x-face.toml", b"x.toml"),
+            "region.csv": b"x,y,ring\n0,0,a\n40,0,a\n40,30,a\n0,30,a\n10,10,b\n20,10,b\n15,20,b\n",
+            "region.svg": b'<svg xmlns="http://www.w3.org/2000/svg"><g><path d="M0 0L30 0L30 20C20 30 10 30 0 20Z"/></g></svg>',
+        }
+        beside = {"v.toml": read("v-face.toml"), "x.toml": read("x-face.toml")}
+        return files, beside
 
     def start(self, args, folder):
         """Exit code (minus the signal), kilobytes, seconds of the processor and what it said."""
@@ -260,12 +443,16 @@ class Storm:
         """A folder with a design, a table and stored results, some of them spoilt; and the command."""
         shutil.rmtree(self.work, ignore_errors=True)
         self.work.mkdir()
-        kind = dice.choices([run, outcome, slices, compare, single, small, words], weights=[6, 4, 2, 5, 4, 1, 3])[0]
+        dice.calm = dice.random() < 0.4
+        kind = dice.choices(list(KINDS), weights=[weight for weight, _ in KINDS.values()])[0]
         args = kind(dice)
+        assert kind is words or args[0] in KINDS[kind][1], args
         design = dice.choice(self.designs)
-        if dice.random() < 0.35:
+        if dice.calm:
+            design = self.design if kind in (compare, chance, page) else dice.choice(self.sound)
+        elif dice.random() < 0.35:
             design = spoilt(dice, design, self.designs)
-        if kind is compare:
+        if kind in (compare, page):
             shutil.copytree(self.results, self.work, dirs_exist_ok=True)
             if dice.random() < 0.5:
                 design = self.design
@@ -276,19 +463,25 @@ class Storm:
             shutil.copytree(self.results / "s", self.work / "out")
         (self.work / "d.toml").write_bytes(design)
         table = dice.choice(self.tables)
-        (self.work / "p.csv").write_bytes(spoilt(dice, table, self.tables) if dice.random() < 0.5 else table)
+        table = b"x\n0.1\n-0.2\n" if dice.calm else spoilt(dice, table, self.tables) if dice.random() < 0.5 else table
+        (self.work / "p.csv").write_bytes(table)
         (self.work / "s").mkdir(exist_ok=True)
+        for name, data in self.beside.items():
+            (self.work / name).write_bytes(data)
+        seeds = list(self.others.values())
+        for name, data in self.others.items():
+            (self.work / name).write_bytes(spoilt(dice, data, seeds) if dice.random() < 0.25 and not dice.calm else data)
         (self.work / "meshes").mkdir()
         for name in ("plug.stl", "socket.stl"):
             mesh = (ROOT / "designs/meshes" / name).read_bytes()
-            mesh = spoilt(dice, dice.choice([mesh, *self.meshes]), self.meshes) if dice.random() < 0.3 else mesh
+            mesh = spoilt(dice, dice.choice([mesh, *self.meshes]), self.meshes) if dice.random() < 0.3 and not dice.calm else mesh
             (self.work / "meshes" / name).write_bytes(mesh)
         return kind, args
 
     def one(self, seed, count):
-        dice = random.Random(f"{seed}/{count}")
+        dice = Dice(f"{seed}/{count}")
         kind, args = self.prepare(dice)
-        if dice.random() < 0.05 and kind is not words:
+        if dice.random() < 0.05 and kind is not words and not dice.calm:
             args[dice.randrange(len(args))] = dice.choice(["", "-", "--", "\x1b[2J", "x" * 300, "é\u202e", number(dice)])
         if self.keep:
             shutil.rmtree(self.keep / "last", ignore_errors=True)
@@ -313,7 +506,7 @@ class Storm:
                     shutil.copytree(self.keep / "last", self.keep / f"{seed}-{count}", dirs_exist_ok=True)
                     (self.keep / f"{seed}-{count}" / "ARGS").write_text(shown + "\n" + text)
         self.codes[code] += 1
-        self.commands[kind.__name__] += 1
+        self.commands["words" if kind is words else args[0] if args else ""] += 1
         self.largest = max(self.largest, (kilobytes, f"{count}: {shown}"))
         self.longest = max(self.longest, (took, f"{count}: {shown}"))
 

@@ -4,9 +4,13 @@
 
 #![expect(unsafe_code, reason = "an allocator has no safe form; all calls go to the system's unchanged")]
 
+use catchment::report::write::abandon_at_once;
 use catchment_cli::ExitStatus;
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
 use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 #[global_allocator]
 static ALLOCATOR: OrLeave = OrLeave;
@@ -43,15 +47,34 @@ fn given(memory: *mut u8, size: usize) -> *mut u8 {
     memory
 }
 
-/// Says that memory ran out and ends the process, allocating nothing.
+/// How long other threads wait for the one that ends the process.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+thread_local! {
+    static LEAVES: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Says that memory ran out, removes what is unfinished where it can, and ends the process, allocating next to nothing.
 #[cold]
 #[expect(clippy::exit, reason = "an allocator can neither return an error nor unwind")]
 fn leave(size: usize) -> ! {
+    static LEAVING: AtomicBool = AtomicBool::new(false);
+    let code = i32::from(ExitStatus::Failed.code());
+    if LEAVES.replace(true) {
+        // There was not even enough to tidy up; the next start does.
+        std::process::exit(code);
+    }
+    if LEAVING.swap(true, Ordering::Relaxed) {
+        // Another thread ends the process, unless it waits for this one.
+        std::thread::sleep(PATIENCE);
+        std::process::exit(code);
+    }
     // Standard error has no buffer, and numbers are written piece by piece.
     let _ = writeln!(
         io::stderr(),
         "catchment: out of memory: the system refused {size} bytes; use a coarser grid (--resolution), fewer threads (--threads), \
          or raise its limit"
     );
-    std::process::exit(i32::from(ExitStatus::Failed.code()));
+    abandon_at_once();
+    std::process::exit(code);
 }

@@ -173,15 +173,37 @@ mod tests {
         Cli::command().debug_assert();
     }
 
+    fn corpus(name: &str) -> Vec<Vec<u8>> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(name);
+        let mut paths: Vec<PathBuf> =
+            std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        paths.sort();
+        paths.iter().map(|path| std::fs::read(path).unwrap()).collect()
+    }
+
+    /// Requests to `view` and thousands of spoilt ones: nobody is let in without the token.
+    #[test]
+    fn spoilt_requests_are_let_in_with_the_token_alone() {
+        const RUNS: usize = 5000;
+        let seeds = corpus("request");
+        let mut dice = mutate::Dice::new(11);
+        let mut admitted = 0;
+        for number in 0..seeds.len() + RUNS {
+            let seed = seeds.get(number).cloned().unwrap_or_else(|| dice.one(&seeds).clone());
+            let head = if number < seeds.len() { seed } else { mutate::spoilt(&mut dice, &seed, &seeds) };
+            if let Some(path) = crate::admitted(&head, 9, "token") {
+                admitted += 1;
+                assert!(String::from_utf8_lossy(&head).contains(&format!("/token/{path}")));
+            }
+        }
+        assert!((2..RUNS).contains(&admitted), "{admitted} of {RUNS} let in");
+    }
+
     /// Command lines and thousands of spoilt ones, a word per line: read or refused with a message that steers no terminal.
     #[test]
     fn spoilt_command_lines_are_read_or_refused() {
         const RUNS: usize = 2000;
-        let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/arguments");
-        let mut paths: Vec<PathBuf> =
-            std::fs::read_dir(corpus).unwrap().map(|entry| entry.unwrap().path()).collect();
-        paths.sort();
-        let seeds: Vec<Vec<u8>> = paths.iter().map(|path| std::fs::read(path).unwrap()).collect();
+        let seeds = corpus("arguments");
         let mut dice = mutate::Dice::new(9);
         let mut refused = 0;
         for number in 0..seeds.len() + RUNS {

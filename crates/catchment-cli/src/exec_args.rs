@@ -34,8 +34,16 @@ impl Running {
     /// From now on, and until this goes away, the process may be left in the middle of a step: nothing is kept before the end, and
     /// nothing is written.
     pub(crate) fn may_be_left(&self) {
+        self.may_be_left_after(|| ());
+    }
+
+    /// The same where something is kept before the end: `last` says what.
+    pub(crate) fn may_be_left_after(&self, last: impl Fn() + Send + 'static) {
         let bar = self.bar.clone();
-        signals::may_leave(move || bar.finish_and_clear());
+        signals::may_leave(move || {
+            bar.finish_and_clear();
+            last();
+        });
     }
 
     /// Prints something while the progress bar makes room.

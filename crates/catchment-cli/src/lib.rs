@@ -47,3 +47,8 @@ pub fn complaint(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
     usage::silence(&mut usage);
     Some(usage::still_steering(&usage).unwrap_or_else(|| usage.to_string()))
 }
+
+/// What the head of a request to `view` asks for below its token, if it is let in.
+pub fn admitted(head: &[u8], port: u16, token: &str) -> Option<String> {
+    command::admitted(head, port, token)
+}

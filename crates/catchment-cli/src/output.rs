@@ -125,9 +125,11 @@ pub(crate) struct FigureArgs {
 }
 
 impl FigureArgs {
-    /// Which picture is asked for. Refuses what cannot be written in the end, before anything is computed.
-    pub(crate) fn kind(&self) -> Result<Option<&'static str>, Failure> {
+    /// Which picture is asked for. Refuses what cannot be written in the end, also where the file is to be written, before
+    /// anything is computed.
+    pub(crate) fn kind(&self, file: &FileArgs) -> Result<Option<&'static str>, Failure> {
         let Some(path) = &self.figure else { return Ok(None) };
+        check_apart(Some(path), file.output.as_deref())?;
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
         let Some(kind) = ["png", "svg"].into_iter().find(|kind| kind.eq_ignore_ascii_case(ending)) else {
             let message = format!("cannot tell what to draw into {}", path.display());
@@ -163,6 +165,26 @@ pub(crate) fn check_place(path: &Path, replace: bool) -> Result<(), Failure> {
     write::check_file(path, replace).map_err(refused)
 }
 
+/// Refuses two files of one command that are one and the same, whatever they are called: the second would replace the first, or fail when
+/// everything is computed.
+pub(crate) fn check_apart(first: Option<&Path>, second: Option<&Path>) -> Result<(), Failure> {
+    let Some((first, second)) = first.zip(second) else { return Ok(()) };
+    if place(first)? != place(second)? {
+        return Ok(());
+    }
+    let message = format!("{} and {} are the same file", first.display(), second.display());
+    Err(Failure::with_help(message, Some("give two names".to_owned())))
+}
+
+/// Where a path leads, whatever way it takes.
+fn place(path: &Path) -> Result<PathBuf, Failure> {
+    let place = write::place(path)?;
+    let parent = place.parent().filter(|parent| !parent.as_os_str().is_empty());
+    // A folder that is not there is told where the file is looked at.
+    let folder = parent.unwrap_or_else(|| Path::new(".")).canonicalize().unwrap_or_default();
+    Ok(folder.join(place.file_name().unwrap_or_default()))
+}
+
 /// What cannot be written, with the option that helps.
 fn refused(error: WriteError) -> Failure {
     match error {
@@ -183,7 +205,10 @@ pub(crate) fn written(path: &Path) {
 
 /// Something is complete, whatever happens from now on.
 pub(crate) fn kept(what: &str) {
-    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).push(what.to_owned());
+    let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
+    if !written.iter().any(|known| known == what) {
+        written.push(what.to_owned());
+    }
 }
 
 /// What is there although the command did not come to its end.
@@ -232,6 +257,23 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8], replace: bool) -> Result<(),
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_file_by_two_names_is_found() {
+        let dir = tempfile::tempdir().unwrap();
+        let at = |name: &str| dir.path().join(name);
+        std::fs::create_dir(at("in")).unwrap();
+        let apart = |a: &str, b: &str| check_apart(Some(&at(a)), Some(&at(b))).is_ok();
+        assert!(apart("a.png", "b.png") && apart("a.png", "in/a.png") && apart("no/a.png", "a.png"));
+        assert!(!apart("a.png", "./a.png") && !apart("a.png", "in/../a.png"));
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("in", at("link")).unwrap();
+            std::os::unix::fs::symlink("in/a.png", at("b.png")).unwrap();
+            assert!(!apart("link/a.png", "in/a.png") && !apart("b.png", "in/a.png"));
+        }
+        assert!(check_apart(None, Some(&at("a.png"))).is_ok());
+    }
 
     #[test]
     fn a_file_is_replaced_only_when_asked_and_nothing_is_left_behind() {

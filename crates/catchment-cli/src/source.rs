@@ -4,7 +4,7 @@ use crate::failure::{Failure, diagnostic};
 use catchment::design::{Finding, Findings, SourceText};
 use catchment::poses::{TextError, read_text};
 use catchment::problem::ProblemError;
-use miette::{LabeledSpan, NamedSource, Report};
+use miette::{LabeledSpan, MietteError, MietteSpanContents, Report, SourceCode, SourceSpan, SpanContents};
 use std::fs::File;
 use std::io;
 use std::ops::Range;
@@ -44,13 +44,46 @@ fn report(source: Option<&SourceText>, finding: Finding) -> Report {
         return Report::new(diagnostic);
     };
     let span = first_line(&source.text, span);
-    if is_too_wide_around(source, span.start) {
+    let lines = around(&source.text, span.start);
+    if source.text[lines.clone()].lines().any(|line| line.len() > WIDEST) {
         let (line, column) = source.line_column(span.start);
         diagnostic.message = format!("{name}, line {line}, column {column}: {}", diagnostic.message);
         return Report::new(diagnostic);
     }
-    diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, span)]);
-    Report::new(diagnostic).with_source_code(NamedSource::new(name, printable(&source.text)))
+    let label = span.start - lines.start..span.end - lines.start;
+    diagnostic.labels = Some(vec![LabeledSpan::new_with_span(None, label)]);
+    let before = source.line_column(lines.start).0 - 1;
+    Report::new(diagnostic).with_source_code(Excerpt { name, text: printable(&source.text[lines]), before })
+}
+
+/// Longest line that is shown, in bytes.
+const WIDEST: usize = 300;
+
+/// Lines of a text and how many come before them: what is shown of it costs the same however long it is.
+#[derive(Debug)]
+struct Excerpt {
+    name: String,
+    text: String,
+    before: usize,
+}
+
+impl SourceCode for Excerpt {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let read = self.text.read_span(span, lines_before, lines_after)?;
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.clone(),
+            read.data(),
+            *read.span(),
+            self.before + read.line(),
+            read.column(),
+            read.line_count(),
+        )))
+    }
 }
 
 /// A span that ends with the line it starts in.
@@ -59,11 +92,11 @@ fn first_line(text: &str, span: Range<usize>) -> Range<usize> {
     span.start..span.end.min(end.max(span.start))
 }
 
-/// Whether the line of `byte`, or one beside it, is too long to show.
-fn is_too_wide_around(source: &SourceText, byte: usize) -> bool {
-    const WIDEST: usize = 300;
-    let (line, _) = source.line_column(byte);
-    source.text.lines().skip(line.saturating_sub(2)).take(3).any(|line| line.len() > WIDEST)
+/// The line of `byte` with those before and behind it.
+fn around(text: &str, byte: usize) -> Range<usize> {
+    let start_of = |byte: usize| text[..byte].rfind('\n').map_or(0, |at| at + 1);
+    let end_of = |byte: usize| text[byte..].find('\n').map_or(text.len(), |at| byte + at + 1);
+    start_of(start_of(byte).saturating_sub(1))..end_of(end_of(byte))
 }
 
 /// The text with control characters replaced, byte for byte: a file must not steer the terminal. A return to the start of the
@@ -85,9 +118,10 @@ fn printable(text: &str) -> String {
 impl Failure {
     /// Everything that is wrong with a text, each in its place.
     pub(crate) fn of_findings(findings: Findings) -> Self {
-        let Findings { source, list, omitted } = findings;
+        let Findings { source, mut list, omitted } = findings;
         let count = list.len() + omitted;
-        let shown = if omitted > 0 {
+        list.truncate(Findings::MOST);
+        let shown = if count > list.len() {
             format!(", of which the first {} are shown", list.len())
         } else {
             String::new()
@@ -124,6 +158,30 @@ mod tests {
         assert!(shown(&wide, 10..20).len() < 200);
         let tall = "pieces = [\n".to_owned() + &"[0, 0, 0],\n".repeat(1000);
         assert!(shown(&tall, 9..tall.len()).len() < 500);
+    }
+
+    #[test]
+    fn a_long_text_is_shown_by_the_lines_around() {
+        let text = "a = 1\n".repeat(20_000);
+        let told = shown(&text, 6 * 10_000..6 * 10_000 + 1);
+        for line in ["d.toml:10001:1", "10000 │ a = 1", "10001 │ a = 1", "10002 │ a = 1"] {
+            assert!(told.contains(line), "{told}");
+        }
+        assert!(!told.contains("10003") && !told.contains("9999 "), "{told}");
+        let few = "a\nb\nc\nd";
+        for (at, lines) in [(0, "a\nb\n"), (2, "a\nb\nc\n"), (4, "b\nc\nd"), (6, "c\nd"), (7, "c\nd")] {
+            assert_eq!(&few[around(few, at)], lines, "{at}");
+        }
+    }
+
+    #[test]
+    fn the_first_findings_are_shown_and_all_are_counted() {
+        let finding = |k: usize| Finding { message: format!("wrong {k}"), help: None, span: Some(0..1) };
+        let list = (0..50).map(finding).collect();
+        let source = Some(SourceText::new("d.toml", "a = 1\n"));
+        let failure = Failure::of_findings(Findings { source, list, omitted: 7 });
+        assert_eq!(failure.text().lines().count(), Findings::MOST);
+        assert!(format!("{failure:?}").contains("57 problems in d.toml, of which the first 20 are shown"));
     }
 
     #[test]

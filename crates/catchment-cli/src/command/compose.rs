@@ -68,6 +68,7 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help("--keep-out needs two files".to_owned(), Some(help)));
     }
     let running = args.exec.start()?;
+    running.may_be_left();
     let exec = &running.exec;
     if matches!(kind, Some("svg" | "png")) {
         ensure_fits(0, exec)?;

@@ -79,6 +79,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
         .length_d(&design.scale())
         .map_err(|complaint| Failure::with_help(format!("--min-feature: {complaint}"), complaint.help()))?;
     let running = args.exec.start()?;
+    running.may_be_left();
     let exec = &running.exec;
     if matches!(kind, Some("svg" | "png")) {
         ensure_fits(0, exec)?;

@@ -70,10 +70,12 @@ fn of_table(args: &LatchArgs) -> Result<ExitStatus, Failure> {
 }
 
 fn of_design(args: &LatchArgs, design: &Path) -> Result<ExitStatus, Failure> {
+    let folder = args.file.folder(KIND)?;
+    // A pipe may be waited for, which does not listen.
+    let source = read_table(design)?;
     let exec = Exec::new();
     signals::listen(&exec.cancel_flag())?;
-    let folder = args.file.folder(KIND)?;
-    let (latch, geometry) = Latch::read(read_table(design)?)?;
+    let (latch, geometry) = Latch::read(source)?;
     let (forces, record) = (Forces::new()?, press::record(&latch, &geometry)?);
     let drawn = Drawn { latch: &latch, geometry: &geometry, record: &record, forces: &forces };
     let mut files: Files = Vec::new();

@@ -34,6 +34,8 @@ mod view;
 mod window;
 mod zraa;
 
+pub(crate) use view::admitted;
+
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use clap::Subcommand;

@@ -8,6 +8,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::{Choice, MethodArgs};
 use crate::output::{kept, tell, written};
+use crate::signals;
 use catchment::design::SourceText;
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
@@ -72,7 +73,10 @@ pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
     let exec = &running.exec;
     let base = plan.base().clone();
     let parts = args.output.as_deref().map(Parts::beside);
+    let (kept_so_far, designs) = (parts.clone(), plan.len());
+    running.may_be_left_after(move || tell_kept(kept_so_far.as_ref(), designs));
     let found = compute(plan, parts.as_ref(), exec)?;
+    signals::must_stay();
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: exec.threads() };
     let report = SweepReport::new(&base, found, Some(timing));
     let json = report.to_json()?;
@@ -126,13 +130,19 @@ fn compute(plan: Plan, parts: Option<&Parts>, exec: &Exec) -> Result<Sweep, Fail
     let designs = plan.len();
     let keep: &dyn Keep = parts;
     plan.run(keep, exec).map_err(|error| {
-        let finished = parts.count();
-        if finished > 0 {
-            let place = parts.folder().display();
-            kept(&format!("{finished} of {designs} designs in {place}, from where the same command goes on"));
-        }
+        tell_kept(Some(parts), designs);
         refused(error)
     })
+}
+
+/// Says which designs are finished and kept.
+fn tell_kept(parts: Option<&Parts>, designs: usize) {
+    let Some((parts, finished)) = parts.map(|parts| (parts, parts.count())).filter(|(_, count)| *count > 0)
+    else {
+        return;
+    };
+    let place = parts.folder().display();
+    kept(&format!("{finished} of {designs} designs in {place}, from where the same command goes on"));
 }
 
 /// Why there is no sweep, at the option that it is about.

@@ -72,7 +72,7 @@ pub(crate) struct ValidateArgs {
 pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
-    let drawing = args.figure.kind()?;
+    let drawing = args.figure.kind(&args.file)?;
     let problem = args.design.problem()?;
     let settings = Settings {
         accuracy: accuracy(&args.accuracy, &problem)?,

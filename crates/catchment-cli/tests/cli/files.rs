@@ -157,4 +157,12 @@ fn left_overs_of_a_killed_run_go() {
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
     does(home.path(), &whole);
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
+    // What only looks like one is another's.
+    fs::create_dir(home.path().join(".out.123.tmp")).unwrap();
+    fs::write(home.path().join(".out.123.tmp/notes"), "mine").unwrap();
+    fs::write(home.path().join(".s.json.77.tmp"), "mine").unwrap();
+    does(home.path(), &whole);
+    does(home.path(), &["schema", "-o", "s.json"]);
+    assert_eq!(entries(home.path()), [".out.123.tmp", ".s.json.77.tmp", "out", "s.json", "v.toml"]);
+    assert_eq!(entries(&home.path().join(".out.123.tmp")), ["notes"]);
 }

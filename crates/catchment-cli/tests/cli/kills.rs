@@ -6,119 +6,15 @@
 //!
 //! `CATCHMENT_KILLS=300` kills so often; the moments follow from the seed and from how fast the machine is.
 
+mod writers;
+
 use super::{catchment, entries, home};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-
-const POSES: &str = "poses.csv";
-const TARGET: &str = "target";
-
-/// A command that writes to [`TARGET`], in two versions.
-struct Writer {
-    name: &'static str,
-    versions: [&'static [&'static str]; 2],
-}
-
-const WRITERS: [Writer; 14] = [
-    Writer {
-        name: "run -o",
-        versions: [
-            &["run", "v.toml", "--resolution", "6", "--samples", "0", "-o", TARGET],
-            &["run", "v.toml", "--resolution", "7", "--samples", "0", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "run -o NAME.zarr",
-        versions: [
-            &["run", "v.toml", "--resolution", "6", "--samples", "0", "-o", "target.zarr"],
-            &["run", "v.toml", "--resolution", "7", "--samples", "0", "-o", "target.zarr"],
-        ],
-    },
-    Writer {
-        name: "slices -o",
-        versions: [
-            &["slices", "v.toml", "--resolution", "6", "-o", TARGET],
-            &["slices", "v.toml", "--resolution", "7", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "sweep -o",
-        versions: [
-            &["sweep", "v.toml", "--over", "cor=0,1", "--resolution", "6", "--samples", "0", "-o", TARGET],
-            &["sweep", "v.toml", "--over", "cor=0,1", "--resolution", "7", "--samples", "0", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "outcome -o --force",
-        versions: [
-            &["outcome", "v.toml", "--poses", POSES, "-o", TARGET, "--force"],
-            &["outcome", "v.toml", "--poses", POSES, "--json", "-o", TARGET, "--force"],
-        ],
-    },
-    Writer {
-        name: "export -o",
-        versions: [
-            &["export", "pyramid.toml", "--pose", "x=0.1", "-o", TARGET],
-            &["export", "pyramid.toml", "--pose", "x=0.2", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "run --figures",
-        versions: [
-            &["run", "v.toml", "--resolution", "6", "--samples", "0", "--figures", TARGET],
-            &["run", "v.toml", "--resolution", "7", "--samples", "0", "--figures", TARGET],
-        ],
-    },
-    Writer {
-        name: "run --method all -o",
-        versions: [
-            &["run", "v.toml", "--free", "x", "--method", "all", "--resolution", "6", "-o", TARGET],
-            &["run", "v.toml", "--free", "x", "--method", "all", "--resolution", "7", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "run --sensitivity -o",
-        versions: [
-            &["run", "v.toml", "--sensitivity", "--samples", "20", "-o", TARGET],
-            &["run", "v.toml", "--sensitivity", "--samples", "30", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "run --converge -o",
-        versions: [
-            &["run", "v.toml", "--free", "x", "--converge", "--time-limit", "100ms", "-o", TARGET],
-            &["run", "v.toml", "--free", "x", "--converge", "--time-limit", "150ms", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "compare -o",
-        versions: [
-            &["compare", "v.toml", "--methods", "flood,meyer", "--resolution", "6", "-o", TARGET],
-            &["compare", "v.toml", "--methods", "flood,meyer", "--resolution", "8", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "reproduce -o",
-        versions: [
-            &["reproduce", "2.1", "-o", TARGET],
-            &["reproduce", "2.1", "--threads", "1", "-o", TARGET],
-        ],
-    },
-    Writer {
-        name: "trace -o --force",
-        versions: [
-            &["trace", "v.toml", "--pose", "x=0.1", "-o", "target.svg", "--force"],
-            &["trace", "v.toml", "--pose", "x=0.2", "-o", "target.svg", "--force"],
-        ],
-    },
-    Writer {
-        name: "new -o --force",
-        versions: [&["new", "cone", "-o", TARGET, "--force"], &["new", "pyramid", "-o", TARGET, "--force"]],
-    },
-];
+use writers::{TARGET, WRITERS, furnished};
 
 /// What is sent, one after another.
 const SIGNALS: [&[&str]; 5] = [&["-KILL"], &["-KILL"], &["-TERM"], &["-INT"], &["-TERM", "-TERM"]];
@@ -165,9 +61,7 @@ fn killed_at_any_moment_old_or_new_is_there() {
     let mut seed = 7;
     let (mut killed, mut replaced, mut swept) = (0, 0, 0);
     for writer in WRITERS {
-        let home = home();
-        fs::copy(super::designs().join("pyramid.toml"), home.path().join("pyramid.toml")).unwrap();
-        fs::write(home.path().join(POSES), "x,pitch\n0.1,0\n0.2,0.1\n9,0\n").unwrap();
+        let home = furnished(&writer);
         let target =
             home.path().join(writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap());
         let finish = |version: usize| {

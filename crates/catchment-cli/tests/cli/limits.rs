@@ -208,6 +208,104 @@ fn a_header_of_a_million_names_is_refused_in_linear_time() {
     assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
 }
 
+/// What is told of a text costs no more than what is shown of it.
+#[test]
+fn texts_in_which_nothing_is_right_are_refused_in_seconds_and_in_little_memory() {
+    let home = home();
+    let put = |name: &str, text: String| fs::write(home.path().join(name), text).unwrap();
+    let many = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+    put("heights.csv", "x,y,height\n".to_owned() + &"a,b,c\n".repeat(300_000));
+    put("few.csv", "x,y,height\n".to_owned() + &"0,0,0\n".repeat(300_000));
+    put("rings.csv", "x,y,ring\n".to_owned() + &many(60_000, &|k| format!("{k},{k},r{k}\n")));
+    put("bad.csv", "x,y\n".to_owned() + &"q,q\n".repeat(5000));
+    // Every two sides of it cross.
+    let star = |k: usize| {
+        let angle = std::f64::consts::TAU * (k * 500 % 1001) as f64 / 1001.0;
+        format!("{},{}\n", 100.0 * angle.cos(), 100.0 * angle.sin())
+    };
+    put("star.csv", "x,y\n".to_owned() + &many(1001, &star));
+    put(
+        "keys.toml",
+        "[connector]\nfamily = \"cone\"\n".to_owned() + &many(100_000, &|k| format!("wid{k} = 1\n")),
+    );
+    let deep =
+        |outline: &str| format!("<svg>{}{outline}{}</svg>", "<g>\n".repeat(20_000), "</g>".repeat(20_000));
+    put("deep.svg", deep("<path d='M0 0L1 0L1 1z'/>"));
+    let part = "parts = [{ profile = \"deep.svg\", height = 0.5 }]";
+    put(
+        "deep.toml",
+        format!(
+            "[connector]\nwidth = 1.0\nface_height = 0.0\n[connector.fixed]\n{part}\n[connector.moving]\n{part}\n"
+        ),
+    );
+    for (args, says) in [
+        (
+            "invert v.toml --heights heights.csv",
+            "300000 problems in heights.csv, of which the first 20 are shown",
+        ),
+        ("invert v.toml --heights few.csv", "the grid has 300000 places"),
+        ("compose rings.csv rings.csv", "more than 10000 corners"),
+        ("compose bad.csv bad.csv", "10000 problems in bad.csv, of which the first 20 are shown"),
+        ("compose star.csv star.csv", "problems in star.csv, of which the first 20 are shown"),
+        ("check keys.toml", "100000 problems in keys.toml, of which the first 20 are shown"),
+        ("check deep.toml", "more than 256 elements within each other"),
+        ("compose deep.svg deep.svg", "more than 256 elements within each other"),
+    ] {
+        let started = Instant::now();
+        let output = limited(home.path(), "ulimit -v 500000", args);
+        let said = told(&output).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(2), "{args}: {said}");
+        assert!(said.contains(says) && said.len() < 20_000, "{args}: {said}");
+        assert!(started.elapsed() < Duration::from_secs(10), "{args}: {:?}", started.elapsed());
+    }
+}
+
+/// A pipe in the place of a file may be what somebody wants (`<(…)`), and nobody may ever write into it.
+#[test]
+fn who_waits_for_a_pipe_listens() {
+    let home = home();
+    let dir = home.path();
+    for name in ["pipe.stl", "pipe.csv", "pipe.toml"] {
+        assert!(Command::new("mkfifo").arg(dir.join(name)).status().unwrap().success());
+    }
+    let half = "mesh = \"pipe.stl\"";
+    let design = format!(
+        "[connector]\nwidth = 1.0\nface_height = 0.0\n[connector.fixed]\n{half}\n[connector.moving]\n{half}\n"
+    );
+    fs::write(dir.join("m.toml"), design).unwrap();
+    for args in [
+        &["check", "m.toml"][..],
+        &["run", "m.toml"],
+        &["sweep", "m.toml", "--over", "cor=0,1"],
+        &["sweep", "m.toml", "--over", "cor=0,1", "-o", "out"],
+        &["invert", "v.toml", "--heights", "pipe.csv"],
+        &["invert", "v.toml", "--heights", "m.toml"],
+        &["compose", "pipe.csv", "pipe.csv"],
+        &["place", "pipe.stl", "pipe.stl", "--unit", "mm"],
+        &["latch", "pipe.toml"],
+        &["chain", "pipe.toml"],
+        &["outcome", "v.toml", "--poses", "pipe.csv"],
+    ] {
+        let mut child =
+            catchment(dir).args(args).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(300));
+        let asked = Instant::now();
+        Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+        while child.try_wait().unwrap().is_none() {
+            if asked.elapsed() > Duration::from_secs(10) {
+                child.kill().unwrap();
+                panic!("{args:?} does not hear");
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        // Without a handler the signal itself is the answer.
+        let code = child.wait().unwrap().code();
+        assert!(matches!(code, None | Some(143)), "{args:?}: {code:?}");
+    }
+    let output = limited(dir, "true", "check <(cat v.toml)");
+    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+}
+
 #[test]
 fn names_that_every_row_would_repeat_are_counted() {
     let home = home();

@@ -65,6 +65,29 @@ fn poses_with_units_come_back_with_their_outcomes() {
     assert!((table[4][5].parse::<f64>().unwrap() - 90.0).abs() < 1e-9);
 }
 
+/// In the valley of a pyramid of AR ½ Coulomb's law leaves open from 0.577 to 0.612 whether a half sticks.
+#[test]
+fn with_friction_a_column_says_what_may_have_stuck() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("poses.csv"), "x,y\n0.2,0.2\n0.05,0\n").unwrap();
+    let design = designs().join("pyramid.toml").display().to_string();
+    let table = |friction: &str, more: &[&str]| {
+        let args = ["outcome", &design, "--poses", "poses.csv", "--friction", friction];
+        let output = catchment(home.path()).args(args).args(more).output().unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        (output.stdout, String::from_utf8(output.stderr).unwrap())
+    };
+    let (csv, said) = table("0.59", &[]);
+    let rows = cells(&csv);
+    let column = rows[0].iter().position(|name| name == "may_stick").unwrap();
+    assert_eq!((rows[1][2].as_str(), rows[1][column].as_str()), ("aligned", "yes"));
+    assert!(said.contains("came by a place where Coulomb's law would let them stick as well"), "{said}");
+    let report: serde_json::Value = serde_json::from_slice(&table("0.59", &["--json"]).0).unwrap();
+    assert_eq!(report["poses"][0]["may_stick"], true);
+    assert_eq!(cells(&table("0.5", &[]).0)[1][column], "no");
+    assert!(!cells(&table("0", &[]).0)[0].contains(&"may_stick".to_owned()));
+}
+
 #[test]
 fn the_same_poses_as_json_for_any_number_of_threads() {
     let [one, two] = ["1", "2"].map(|threads| outcome(TABLE, &["--json", "--threads", threads]).stdout);
@@ -276,12 +299,18 @@ fn interrupted(folder: &std::path::Path, args: &[&str], signal: &str) -> std::pr
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Until the handler stands the signal ends the process without a code: a thread beside the main one and the worker.
+    // Until the handler stands the signal ends the process without a code: there is a thread that waits for it then.
     let tasks = format!("/proc/{}/task", child.id());
-    while fs::read_dir(&tasks).unwrap().count() < 3 {
+    let listens = || {
+        let names = fs::read_dir(&tasks)
+            .unwrap()
+            .filter_map(|task| fs::read_to_string(task.ok()?.path().join("comm")).ok());
+        names.into_iter().any(|name| name.trim() == "signals")
+    };
+    while !listens() {
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
-    std::thread::sleep(std::time::Duration::from_millis(300));
+    std::thread::sleep(std::time::Duration::from_millis(100));
     let pid = child.id().to_string();
     assert!(std::process::Command::new("kill").args([signal, &pid]).status().unwrap().success());
     child.wait_with_output().unwrap()

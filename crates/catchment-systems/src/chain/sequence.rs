@@ -16,7 +16,7 @@
 
 use super::kinematics::nearest_quarter;
 use super::shape::{Latch, Reading, Shape, latches};
-use catchment::design::{Finding, Findings, SourceText};
+use catchment::design::{Finding, Findings, Found, SourceText};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -181,10 +181,13 @@ fn ring(corners: &[usize]) -> Vec<Step> {
 /// Everything that is wrong with it, each in its place.
 pub fn table(source: &SourceText) -> Result<Vec<Step>, Findings> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(source.text.as_bytes());
-    let mut wrong: Vec<Finding> = Vec::new();
+    let mut wrong = Found::default();
     let joints: Vec<Option<usize>> = match reader.headers() {
         Ok(names) => names.iter().skip(1).map(joint_of).collect(),
-        Err(error) => return Err(refused(source, vec![Finding::new(error.to_string(), None)])),
+        Err(error) => {
+            wrong.push(Finding::new(error.to_string(), None));
+            return Err(wrong.of(source.clone()));
+        }
     };
     if joints.is_empty() || joints.contains(&None) {
         let help = "the header is time_s and a column module_N for each joint".to_owned();
@@ -222,7 +225,7 @@ pub fn table(source: &SourceText) -> Result<Vec<Step>, Findings> {
         }
         steps.push(Step { time_s, commands });
     }
-    if wrong.is_empty() { Ok(steps) } else { Err(refused(source, wrong)) }
+    if wrong.is_empty() { Ok(steps) } else { Err(wrong.of(source.clone())) }
 }
 
 fn joint_of(name: &str) -> Option<usize> {
@@ -231,10 +234,6 @@ fn joint_of(name: &str) -> Option<usize> {
 
 fn first_line(source: &SourceText) -> usize {
     source.text.find('\n').unwrap_or(source.text.len())
-}
-
-fn refused(source: &SourceText, list: Vec<Finding>) -> Findings {
-    Findings { source: Some(source.clone()), list, omitted: 0 }
 }
 
 #[cfg(test)]

@@ -380,6 +380,14 @@ fn what_is_wrong_with_a_file_is_said_in_its_place() {
     ] {
         assert!(said("a.csv", text).contains(expected), "{text:?}: {}", said("a.csv", text));
     }
+    let corners = |count: usize| "x,y\n".to_owned() + &"0,0\n".repeat(count);
+    assert!(said("a.csv", &corners(10_001)).contains("the outline has more than 10000 corners"));
+    assert!(said("a.csv", &corners(10_000)).contains("the ring is open"));
+    let deep = |count: usize| {
+        format!("<svg>{}<path d=\"M0 0L1 0L0 1Z\"/>{}</svg>", "<g>".repeat(count), "</g>".repeat(count))
+    };
+    assert_eq!(said("a.svg", &deep(254)), "nothing");
+    assert!(said("a.svg", &deep(255)).contains("more than 256 elements within each other"));
     for (text, expected) in [
         ("<svg><path d=\"M0 0L1 0L0 1\"/></svg>", "is open"),
         ("<svg><path d=\"M0 0L2 2L2 0L0 2Z\"/></svg>", "crosses itself"),

@@ -1,7 +1,7 @@
 //! Wanted heights as a table `x,y,height`, in D, over a grid; planes over triangles between its places.
 
 use super::Heights;
-use catchment::design::{Finding, Findings, SourceText};
+use catchment::design::{Finding, Findings, Found, SourceText};
 use catchment::method::zraa::HeightFacet;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
@@ -15,50 +15,57 @@ const MOST: usize = 900;
 /// # Errors
 /// Everything that is wrong with the table, in its place.
 pub fn wanted_from_table(source: SourceText) -> Result<Heights, Findings> {
-    let mut found = Vec::new();
-    let rows = rows(&source.text, &mut found);
-    let heights = if found.is_empty() { grid(&rows, &mut found) } else { Heights::default() };
-    if found.is_empty() {
-        Ok(heights)
-    } else {
-        Err(Findings { source: Some(source), list: found, omitted: 0 })
+    let mut found = Found::default();
+    let (rows, count) = rows(&source.text, &mut found);
+    if count > MOST {
+        let help = format!("at most {MOST} are taken");
+        found.push(Finding::new(format!("the grid has {count} places"), Some(help)));
     }
+    let heights = if found.is_empty() { grid(&rows, &mut found) } else { Heights::default() };
+    if found.is_empty() { Ok(heights) } else { Err(found.of(source)) }
 }
 
-fn rows(text: &str, found: &mut Vec<Finding>) -> Vec<(DVec3, Range<usize>)> {
+/// The first rows, of which no more are kept than are taken, and how many there are.
+fn rows(text: &str, found: &mut Found) -> (Vec<(DVec3, Range<usize>)>, usize) {
     const COLUMNS: [&str; 3] = ["x", "y", "height"];
-    let mut rows = Vec::new();
+    let (mut rows, mut count) = (Vec::new(), 0);
     let mut start = 0;
     let mut named = false;
     for line in text.split_inclusive('\n') {
         let span = start..start + line.trim_end().len();
         start += line.len();
-        let fields: Vec<&str> = line.trim().split(',').map(str::trim).collect();
+        // One more than there should be shows that there are too many.
+        let fields: Vec<&str> = line.trim().splitn(COLUMNS.len() + 1, ',').map(str::trim).collect();
         if line.trim().is_empty() || line.starts_with('#') {
             continue;
         }
         let mut refuse = |message: String, help: &str| {
-            found.push(Finding::new(message, Some(help.to_owned())).at(Some(span.clone())));
+            found.push_with(|| Finding::new(message, Some(help.to_owned())).at(Some(span.clone())));
         };
         if !named {
             named = true;
             if fields != COLUMNS {
                 refuse(format!("the columns are not {}", COLUMNS.join(",")), "the first line is: x,y,height");
-                return rows;
+                return (rows, count);
             }
             continue;
         }
         let numbers: Vec<f64> =
             fields.iter().filter_map(|f| f.parse().ok()).filter(|v: &f64| v.is_finite()).collect();
         match numbers[..] {
-            [x, y, z] if fields.len() == 3 => rows.push((DVec3::new(x, y, z), span)),
+            [x, y, z] if fields.len() == COLUMNS.len() => {
+                count += 1;
+                if rows.len() < MOST {
+                    rows.push((DVec3::new(x, y, z), span));
+                }
+            }
             _ => refuse("the line is not three finite numbers".to_owned(), "x, y and height, in D"),
         }
     }
-    rows
+    (rows, count)
 }
 
-fn grid(rows: &[(DVec3, Range<usize>)], found: &mut Vec<Finding>) -> Heights {
+fn grid(rows: &[(DVec3, Range<usize>)], found: &mut Found) -> Heights {
     // Numbers of the same bits are the same place; −0 is 0.
     let key = |v: f64| (v + 0.0).to_bits();
     let mut places: BTreeMap<(u64, u64), f64> = BTreeMap::new();
@@ -76,10 +83,7 @@ fn grid(rows: &[(DVec3, Range<usize>)], found: &mut Vec<Finding>) -> Heights {
         values.sort_by(f64::total_cmp);
         values.dedup();
     }
-    if places.len() > MOST {
-        let help = format!("at most {MOST} are taken");
-        found.push(Finding::new(format!("the grid has {} places", places.len()), Some(help)));
-    } else if xs.len() < 2 || ys.len() < 2 || xs.len() * ys.len() != places.len() {
+    if xs.len() < 2 || ys.len() < 2 || xs.len() * ys.len() != places.len() {
         let message =
             format!("{} places do not make a grid of {} x by {} y", places.len(), xs.len(), ys.len());
         let help =

@@ -237,4 +237,9 @@ fn what_is_wrong_with_a_table_is_said_in_its_place() {
     assert!(said("x,y,height\n0,0,nan\n").contains("w.csv:2:1: the line is not three finite numbers"));
     assert!(said("x,y,height\n0,0,0\n0,0,1\n").contains("w.csv:3:1: (0, 0) is there twice"));
     assert!(said("x,y,height\n0,0,0\n1,0,0\n0,1,0\n").contains("3 places do not make a grid of 2 x by 2 y"));
+    assert!(said("x,y,height\n0,0,0,0\n").contains("w.csv:2:1: the line is not three finite numbers"));
+    assert!(said(&("x,y,height\n".to_owned() + &"0,0,0\n".repeat(901))).contains("the grid has 901 places"));
+    let many = "x,y,height\n".to_owned() + &"a,b,c\n".repeat(1000);
+    let refused = wanted_from_table(SourceText::new("w.csv", many)).unwrap_err();
+    assert_eq!((refused.list.len(), refused.omitted), (20, 980));
 }

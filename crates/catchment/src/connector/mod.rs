@@ -37,6 +37,8 @@ pub(crate) use place::turn_between;
 pub use problem::{Problem, Side};
 pub use source::{FileBytes, Read, Source, UnitProblem};
 pub use step::StepProblem;
+#[doc(hidden)]
+pub use step::bodies_of_answer;
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
 use crate::design::{

@@ -78,9 +78,51 @@ pub struct Findings {
 }
 
 impl Findings {
+    /// Findings that are kept and shown: who has more will not read them.
+    pub const MOST: usize = 20;
+
     /// The file, where there is one.
     pub fn path(&self) -> Option<&Path> {
         self.source.as_ref().map(|source| source.path.as_path())
+    }
+}
+
+/// Findings as they come: the first [`Findings::MOST`] are kept, the others are counted and cost nothing.
+#[derive(Debug, Default)]
+pub struct Found {
+    list: Vec<Finding>,
+    omitted: usize,
+}
+
+impl Found {
+    /// Adds one.
+    pub fn push(&mut self, finding: Finding) {
+        self.push_with(|| finding);
+    }
+
+    /// Adds one, which is spelled out only if it is kept.
+    pub fn push_with(&mut self, finding: impl FnOnce() -> Finding) {
+        if self.list.len() < Findings::MOST {
+            self.list.push(finding());
+        } else {
+            self.omitted += 1;
+        }
+    }
+
+    /// How many there are.
+    pub const fn len(&self) -> usize {
+        self.list.len() + self.omitted
+    }
+
+    /// Whether nothing was found.
+    pub const fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// What was found in a text, in the order of its places.
+    pub fn of(mut self, source: SourceText) -> Findings {
+        self.list.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
+        Findings { source: Some(source), list: self.list, omitted: self.omitted }
     }
 }
 
@@ -114,6 +156,20 @@ impl std::error::Error for Findings {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_first_findings_are_kept_and_the_others_counted() {
+        let mut found = Found::default();
+        assert!(found.is_empty());
+        for k in (0..30).rev() {
+            found.push(Finding::new(k.to_string(), None).at(Some(k..k + 1)));
+        }
+        found.push_with(|| panic!("nobody reads it"));
+        assert_eq!(found.len(), 31);
+        let findings = found.of(SourceText::new("d.toml", ""));
+        assert_eq!((findings.list.len(), findings.omitted), (Findings::MOST, 11));
+        assert!(findings.list.is_sorted_by_key(|finding| finding.span.clone().map(|span| span.start)));
+    }
 
     #[test]
     fn a_finding_is_told_with_its_place() {

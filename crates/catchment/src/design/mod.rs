@@ -46,7 +46,7 @@ pub use content::{Contents, MeshContent, Meshed};
 pub use docked::Docked;
 pub use edit::{key_path, with_key};
 pub use family::{Family, FamilySpec};
-pub use finding::{FilesInMemory, Finding, Findings, SourceText};
+pub use finding::{FilesInMemory, Finding, Findings, Found, SourceText};
 pub use load::{LoadError, load};
 pub use model::{ConnectorSpec, Design, HalfSpec, LengthUnit, OwnSpec, WidthFrom};
 pub use overrides::parse_dofs;

@@ -1,6 +1,7 @@
 //! Problems: complaints with their places in the file.
 
 use super::complaint::Complaint;
+use super::finding::Findings;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
@@ -52,8 +53,8 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Problems that are listed: who has more will not read them.
-    pub const MOST: usize = 50;
+    /// Problems that are listed.
+    pub const MOST: usize = Findings::MOST;
 
     /// Sorts and shortens a list, of which `omitted` complaints were dropped before.
     pub(super) fn new(mut found: Vec<(Complaint, Range<usize>)>, omitted: usize, text: &str) -> Self {

@@ -59,7 +59,7 @@ impl<'t> Reader<'t> {
         };
         for error in syntax {
             let span = error.span().unwrap_or(0..0);
-            reader.note(Complaint::Syntax { message: error.message().to_owned() }, span.clone());
+            reader.note(|| Complaint::Syntax { message: error.message().to_owned() }, span.clone());
             if reader.broken.len() < MOST_KEPT {
                 reader.broken.push(span);
             }
@@ -76,9 +76,9 @@ impl<'t> Reader<'t> {
         }
     }
 
-    fn note(&mut self, complaint: Complaint, span: Range<usize>) {
+    fn note(&mut self, complaint: impl FnOnce() -> Complaint, span: Range<usize>) {
         if self.found.len() < MOST_KEPT {
-            self.found.push((complaint, span));
+            self.found.push((complaint(), span));
         } else {
             self.omitted += 1;
         }
@@ -86,6 +86,11 @@ impl<'t> Reader<'t> {
 
     /// Notes a problem, unless it is the echo of a syntax error at the same place.
     pub(super) fn complain(&mut self, complaint: Complaint, span: Range<usize>) {
+        self.complain_with(|| complaint, span);
+    }
+
+    /// The same; it is spelled out only if it is kept.
+    fn complain_with(&mut self, complaint: impl FnOnce() -> Complaint, span: Range<usize>) {
         let echo = self.broken.iter().any(|b| b.start <= span.end && span.start <= b.end);
         if !echo {
             self.note(complaint, span);
@@ -125,7 +130,7 @@ impl<'t> Reader<'t> {
             if table.keys().any(|key| key.name == written) {
                 continue;
             }
-            let complaint = Complaint::UnknownKey {
+            let complaint = || Complaint::UnknownKey {
                 key: shortened(written),
                 table: table.name(),
                 meant: nearest(written, table.keys().map(|key| key.name)),
@@ -135,7 +140,7 @@ impl<'t> Reader<'t> {
                     .map(Table::name),
                 known: table.keys().map(|key| key.name).collect(),
             };
-            self.complain(complaint, name.span());
+            self.complain_with(complaint, name.span());
         }
     }
 

@@ -238,6 +238,9 @@ fn hopeless_text_is_refused_quickly_and_briefly() {
     let found = problems(&many);
     assert_eq!(found.list.len(), Problems::MOST);
     assert_eq!(found.list.len() + found.omitted, 2000);
+    let strange: Vec<String> = (0..2000).map(|k| format!("key{k} = 1\n")).collect();
+    let found = problems(&(strange.concat() + "[connector]\nfamily = \"cone\""));
+    assert_eq!((found.list.len(), found.omitted), (Problems::MOST, 2000 - Problems::MOST));
     let large = "#".repeat(LARGEST_FILE + 1);
     assert!(matches!(problem(&large).complaint, Complaint::TooLarge { .. }));
 }

@@ -8,7 +8,8 @@
 //!
 //! A name is *near* an error if one of its words is the error's. Words end at what is no letter, where letters and digits
 //! meet, and where capitals begin (`deltaX`). A word is the error's also as rx, ry, rz, tx or ty, and with a decoration
-//! glued to it: a d, delta, err or offset before or behind, a unit behind (`dx`, `xerr`, `xmm`). A name with a single
+//! glued to it: a d, delta, err, offset or pos before or behind, a unit behind (`dx`, `xerr`, `xpos`, `xmm`). A word for a rotation and
+//! an axis beside or glued to it are an angle (`theta_z`, `rotx`). A name with a single
 //! word beside decorations and units is near as well where one slip turns that word into roll, pitch or yaw (`rol`).
 //!
 //! Names with control characters, or with characters that show nothing (a byte order mark), are refused whatever they say.
@@ -29,7 +30,12 @@ const UNITS: [(&str, Unit); 8] = [
     ("rad", Unit::Radians),
 ];
 /// What people put around the name of an error.
-const DECORATIONS: [&str; 9] = ["d", "delta", "δ", "e", "err", "error", "off", "offset", "misalignment"];
+const DECORATIONS: [&str; 12] =
+    ["d", "delta", "δ", "e", "err", "error", "off", "offset", "misalignment", "pos", "position", "shift"];
+/// What people call a rotation, beside the axis that it is about.
+const TURNS: [&str; 6] = ["theta", "θ", "rot", "rotation", "ang", "angle"];
+/// The axes of rotations, and their errors.
+const ABOUT: [(&str, Dof); 3] = [("x", Dof::Roll), ("y", Dof::Pitch), ("z", Dof::Yaw)];
 /// Other names of the errors, in the order of [`Dof::ALL`].
 const SYNONYMS: [&str; 5] = ["tx", "ty", "rx", "ry", "rz"];
 /// Columns that the answer adds, beside the final errors.
@@ -110,7 +116,8 @@ fn near(name: &str) -> Option<String> {
     let fitting = |dof: Dof, word: &str| {
         unit(word).filter(|(_, unit)| matches!(unit, Unit::Degrees | Unit::Radians) == dof.is_rotation())
     };
-    let (dof, glued) = words.iter().find_map(|word| error_in(word)).or_else(|| {
+    let turned = turn_in(&words).map(|dof| (dof, ""));
+    let (dof, glued) = turned.or_else(|| words.iter().find_map(|word| error_in(word))).or_else(|| {
         let mut own = words.iter().filter(|w| unit(w).is_none() && !DECORATIONS.contains(&w.as_str()));
         let (word, None) = (own.next()?, own.next()) else { return None };
         let meant = nearest(word, ["roll", "pitch", "yaw"])?;
@@ -119,6 +126,21 @@ fn near(name: &str) -> Option<String> {
     let symbol = std::iter::once(glued).chain(words.iter().map(String::as_str)).find_map(|w| fitting(dof, w));
     let base = dof.name();
     Some(symbol.map_or_else(|| base.to_owned(), |(symbol, _)| format!("{base}_{symbol}")))
+}
+
+/// The angle that words say by a rotation and its axis.
+fn turn_in(words: &[String]) -> Option<Dof> {
+    let about = |word: &str| ABOUT.iter().find(|(axis, _)| *axis == word).map(|(_, dof)| *dof);
+    let is_turn = |word: &str| {
+        let turn = |word: &str| TURNS.contains(&word);
+        turn(word) || DECORATIONS.iter().any(|d| word.strip_prefix(d).is_some_and(turn))
+    };
+    let glued = |word: &String| {
+        TURNS.iter().find_map(|turn| about(word.strip_prefix(turn).or_else(|| word.strip_suffix(turn))?))
+    };
+    words.iter().find_map(glued).or_else(|| {
+        words.iter().any(|word| is_turn(word)).then(|| words.iter().find_map(|word| about(word))).flatten()
+    })
 }
 
 /// The words of a name in small letters.
@@ -203,6 +225,23 @@ mod tests {
             ("PITCH", "pitch"),
             ("yawdeg", "yaw_deg"),
             ("d_ptich", "pitch"),
+            ("xpos", "x"),
+            ("pos_x", "x"),
+            ("posX [mm]", "x_mm"),
+            ("position y", "y"),
+            ("yposition", "y"),
+            ("x shift", "x"),
+            ("theta_z", "yaw"),
+            ("theta_x", "roll"),
+            ("dtheta_y", "pitch"),
+            ("θz", "yaw"),
+            ("rot_z", "yaw"),
+            ("rotz", "yaw"),
+            ("zrot", "yaw"),
+            ("rotation_y_deg", "pitch_deg"),
+            ("angle x (rad)", "roll_rad"),
+            ("roll angle", "roll"),
+            ("RotX", "roll"),
         ] {
             let fault = read(name).expect_err(name);
             let help = format!("did you mean {meant}? A column to be carried through needs another name");
@@ -252,6 +291,12 @@ mod tests {
             "proxy",
             "matrix",
             "exit",
+            "position",
+            "angle",
+            "rotor",
+            "z_mm",
+            "pos_z",
+            "angle of the camera",
         ] {
             assert_eq!(read(name), Ok(None), "{name}");
         }

@@ -82,6 +82,11 @@ fn threemf_files() {
 }
 
 #[test]
+fn answers_about_step_files() {
+    replay("step", targets::step_answer);
+}
+
+#[test]
 fn drawings() {
     replay("drawing", targets::drawing);
 }

@@ -3,7 +3,7 @@
 
 #![allow(dead_code, reason = "a fuzz target is a program that runs one of them")]
 
-use catchment::connector::{Connector, FileBytes, Source, stl};
+use catchment::connector::{Connector, FileBytes, Source, bodies_of_answer, stl};
 use catchment::design::{
     Design, FileSpec, OutlineSpec, PartSpec, Problems, Quantity, ShapeSpec, SourceText, Treatment,
 };
@@ -81,6 +81,29 @@ pub(crate) fn ply_file(bytes: &[u8]) {
 /// The same of 3MF files.
 pub(crate) fn threemf_file(bytes: &[u8]) {
     mesh_file("half.3mf", bytes);
+}
+
+/// An answer of the interpreter that meshes STEP files: triangles of which closed solids are made as of any others, or a reason.
+pub(crate) fn step_answer(bytes: &[u8]) {
+    match bodies_of_answer(bytes) {
+        Ok(bodies) => {
+            let triangles: Vec<_> = bodies.into_iter().flatten().collect();
+            let half = || Source::Triangles(triangles.clone());
+            match Connector::from_sources(&half(), &half(), 0.0, Mount::X) {
+                Ok(connector) => {
+                    for surface in &connector.fixed.surfaces {
+                        assert!(surface.volume() > 0.0);
+                        assert!(surface.vertices.iter().all(|v| v.is_finite()));
+                    }
+                }
+                Err(problems) => assert!((2..120).contains(&problems.len()), "{} problems", problems.len()),
+            }
+        }
+        Err(problems) => {
+            assert_eq!(problems.len(), 1);
+            assert!(!problems[0].to_string().chars().any(char::is_control), "{}", problems[0]);
+        }
+    }
 }
 
 /// What the readers of drawings accept makes a solid when it is extruded.

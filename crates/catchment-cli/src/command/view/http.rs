@@ -127,6 +127,13 @@ fn more(stream: &mut TcpStream, bytes: &mut Vec<u8>, end: Instant) -> Result<(),
     }
 }
 
+/// What the head of a request asks for below this token, if it is let in: for the fuzzer.
+pub(super) fn admitted(head: &[u8], port: u16, token: &str) -> Option<String> {
+    let (request, _) = parsed(head).ok()?;
+    let gate = Gate { port, token: token.to_owned() };
+    gate.admit(request).ok().map(|request| request.path)
+}
+
 /// The head of a request, and the length of its body.
 fn parsed(head: &[u8]) -> Result<(Request, usize), Response> {
     let head = std::str::from_utf8(head).map_err(|_| bad())?;
@@ -238,6 +245,9 @@ mod tests {
         assert_eq!(ask("/abc/run", &["localhost:9"], &["http://localhost:9"]), Ok("run".to_owned()));
         // Below the token names are compared, never opened.
         assert_eq!(ask("/abc/../../etc/passwd", here, &[]), Ok("../../etc/passwd".to_owned()));
+        let head = |path: &str| format!("GET {path} HTTP/1.1\r\nHost: localhost:9\r\n\r\n");
+        assert_eq!(admitted(head("/abc/run").as_bytes(), 9, "abc"), Some("run".to_owned()));
+        assert_eq!(admitted(head("/abd/run").as_bytes(), 9, "abc"), None);
         for path in ["/", "/abc", "/abd/", "/ab/", "abc/", "//abc/", "/abc%2f/", "http://127.0.0.1:9/abc/"] {
             assert_eq!(ask(path, here, &[]), Err(404), "{path}");
         }

@@ -47,6 +47,11 @@ const PATIENCE: Duration = Duration::from_millis(30);
 /// Connections that are answered at a time; a browser opens six.
 const MOST_CONNECTIONS: usize = 32;
 
+/// What the head of a request asks for below this token, if it is let in.
+pub(crate) fn admitted(head: &[u8], port: u16, token: &str) -> Option<String> {
+    http::admitted(head, port, token)
+}
+
 pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     // What is wrong with the design is told here, where it has its place in the file.
     args.design.problem()?;

@@ -1,9 +1,10 @@
 //! Rings as a table: `x,y` or `x,y,ring`, a corner a line. Lines that begin with `#` are left out.
 
-use super::rings::{Ring, region};
+use super::rings::{MOST_CORNERS, Ring, region, too_many};
 use super::{Measure, Read, ReadError};
-use catchment::design::{Finding, LengthUnit, Quantity, SourceText, Unit, nearest};
+use catchment::design::{Finding, Found, LengthUnit, Quantity, SourceText, Unit, nearest};
 use glam::DVec2;
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// A record: its fields with their places.
@@ -12,7 +13,10 @@ struct Record {
     span: Range<usize>,
 }
 
-/// The records of a text.
+/// Columns that are looked at: there is no use for more than three.
+const MOST_COLUMNS: usize = 100;
+
+/// The records of a text: the names of the columns and, if there are so many, one corner more than are taken.
 fn records(text: &str) -> Result<Vec<Record>, Finding> {
     let mut reader = ::csv::ReaderBuilder::new()
         .has_headers(false)
@@ -21,7 +25,7 @@ fn records(text: &str) -> Result<Vec<Record>, Finding> {
         .trim(::csv::Trim::All)
         .from_reader(text.as_bytes());
     let mut records = Vec::new();
-    for record in reader.records() {
+    for record in reader.records().take(MOST_CORNERS + 2) {
         let record = record.map_err(|error| Finding::new(error.to_string(), None))?;
         let start = record.position().map_or(0, |p| p.byte() as usize);
         // The reader may say where the line before ended.
@@ -30,6 +34,7 @@ fn records(text: &str) -> Result<Vec<Record>, Finding> {
         let mut from = start;
         let fields = record
             .iter()
+            .take(MOST_COLUMNS)
             .map(|field| {
                 // A field with quotes in it is written otherwise than it reads: its place is that of the record.
                 let place =
@@ -63,7 +68,7 @@ struct Columns {
     unit: Unit,
 }
 
-fn columns(header: &Record, found: &mut Vec<Finding>) -> Option<Columns> {
+fn columns(header: &Record, found: &mut Found) -> Option<Columns> {
     const HELP: &str = "the first line names the columns: x,y or x,y,ring; units in brackets: x [cm], y [cm]";
     let mut places: [Option<(usize, Option<String>)>; 3] = [const { None }; 3];
     let before = found.len();
@@ -114,15 +119,17 @@ fn columns(header: &Record, found: &mut Vec<Finding>) -> Option<Columns> {
 }
 
 pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
-    let mut found = Vec::new();
-    let mut rings: Vec<(String, Ring)> = Vec::new();
+    let mut found = Found::default();
+    let mut rings: Vec<Ring> = Vec::new();
     let mut measure = Measure::Millimetres;
     let all = records(&source.text).unwrap_or_else(|finding| {
         found.push(finding);
         Vec::new()
     });
     if let Some((header, rows)) = all.split_first() {
-        if let Some(columns) = columns(header, &mut found) {
+        if rows.len() > MOST_CORNERS {
+            found.push(too_many());
+        } else if let Some(columns) = columns(header, &mut found) {
             if columns.unit == Unit::D {
                 measure = Measure::Widths;
             }
@@ -132,36 +139,41 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> 
         let help = Some("it has a line for the names of the columns and one for each corner".to_owned());
         found.push(Finding::new("the table is empty", help));
     }
-    let rings = rings.into_iter().map(|(_, ring)| ring).collect();
     region(source, stem, measure, rings, found, Vec::new())
 }
 
-fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<(String, Ring)>, found: &mut Vec<Finding>) {
+fn fill(rows: &[Record], columns: &Columns, rings: &mut Vec<Ring>, found: &mut Found) {
     let factor = match columns.unit {
         Unit::Length(unit) => unit.metres() / LengthUnit::Mm.metres(),
         _ => 1.0,
     };
+    // The rings so far by their labels, of which the last is still open.
+    let mut begun: HashSet<&str> = HashSet::new();
+    let mut open = None;
     for row in rows {
-        let label = columns.ring.and_then(|k| row.fields.get(k)).map_or("", |(text, _)| text).to_owned();
+        let label = columns.ring.and_then(|k| row.fields.get(k)).map_or("", |(text, _)| text.as_str());
         let coordinates = [columns.x, columns.y].map(|k| {
             let Some((text, span)) = row.fields.get(k) else {
                 let message = "a coordinate is missing in this line";
-                found.push(Finding::new(message, None).at(Some(row.span.clone())));
+                found.push_with(|| Finding::new(message, None).at(Some(row.span.clone())));
                 return None;
             };
             number(text, span).map_err(|finding| found.push(finding)).ok()
         });
         let [Some(x), Some(y)] = coordinates else { continue };
-        let corner = (DVec2::new(x, y) * factor, row.span.clone());
-        match rings.iter_mut().position(|(name, _)| *name == label) {
-            Some(known) if known + 1 == rings.len() => rings[known].1.corners.push(corner),
-            Some(_) => {
+        if open != Some(label) {
+            if !begun.insert(label) {
                 let message =
                     format!("ring `{label}` was left open: another ring began before it went on here");
                 let help = "the corners of a ring follow each other".to_owned();
                 found.push(Finding::new(message, Some(help)).at(Some(row.span.clone())));
+                continue;
             }
-            None => rings.push((label, Ring { corners: vec![corner] })),
+            open = Some(label);
+            rings.push(Ring::default());
+        }
+        if let Some(ring) = rings.last_mut() {
+            ring.corners.push((DVec2::new(x, y) * factor, row.span.clone()));
         }
     }
     if found.is_empty() && rings.is_empty() {

@@ -3,14 +3,12 @@
 use super::super::region::{REACH, Region, node, turn};
 use super::super::sweep::Bracket;
 use super::{Measure, Read, ReadError};
-use catchment::design::{Finding, Findings, SourceText};
+use catchment::design::{Finding, Found, SourceText};
 use glam::DVec2;
 use std::ops::Range;
 
 /// Most corners of a file: every two sides are compared.
 pub(super) const MOST_CORNERS: usize = 10_000;
-/// Problems that are told; more are counted.
-const MOST_TOLD: usize = 20;
 
 /// A ring as written: its corners, each with its place in the text.
 #[derive(Debug, Default, Clone)]
@@ -24,7 +22,7 @@ pub(super) fn region(
     name: String,
     measure: Measure,
     mut rings: Vec<Ring>,
-    mut found: Vec<Finding>,
+    mut found: Found,
     notes: Vec<String>,
 ) -> Result<Read, ReadError> {
     if found.is_empty() {
@@ -52,26 +50,26 @@ pub(super) fn region(
     if found.is_empty() {
         return Ok(Read { name, region: Bracket::exact(region), measure, notes });
     }
-    found.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
-    let omitted = found.len().saturating_sub(MOST_TOLD);
-    found.truncate(MOST_TOLD);
-    Err(Findings { source: Some(source), list: found, omitted }.into())
+    Err(found.of(source).into())
 }
 
 fn shown(p: DVec2) -> String {
     format!("({}, {})", p.x, p.y)
 }
 
-fn wrong(rings: &[Ring], measure: Measure) -> Vec<Finding> {
-    let mut found = Vec::new();
+/// What is said of a file with more corners than are taken.
+pub(super) fn too_many() -> Finding {
+    let message = format!("the outline has more than {MOST_CORNERS} corners");
+    Finding::new(message, Some("leave corners out that a tenth of a mm does not need".to_owned()))
+}
+
+fn wrong(rings: &[Ring], measure: Measure) -> Found {
+    let mut found = Found::default();
     let unit = measure.symbol();
     let corners: usize = rings.iter().map(|ring| ring.corners.len()).sum();
     if corners > MOST_CORNERS {
-        let message = format!("the outline has {corners} corners, and more than {MOST_CORNERS} are too many");
-        return vec![Finding::new(
-            message,
-            Some("leave corners out that a tenth of a mm does not need".to_owned()),
-        )];
+        found.push(too_many());
+        return found;
     }
     for ring in rings {
         for (p, span) in &ring.corners {
@@ -90,8 +88,8 @@ fn wrong(rings: &[Ring], measure: Measure) -> Vec<Finding> {
 }
 
 /// Sides of which one passes through another, or a side that runs back along the one before it.
-fn crossings(rings: &[Ring]) -> Vec<Finding> {
-    let mut found = Vec::new();
+fn crossings(rings: &[Ring]) -> Found {
+    let mut found = Found::default();
     let side = |ring: &Ring, k: usize| {
         let next = (k + 1) % ring.corners.len();
         [ring.corners[k].0, ring.corners[next].0]
@@ -123,15 +121,18 @@ fn crossings(rings: &[Ring]) -> Vec<Finding> {
             let signs = |a, b, c, d| turn(a, b, c).signum() * turn(a, b, d).signum();
             if signs(p, q, c, d) < 0 && signs(c, d, p, q) < 0 {
                 let whose = if r == s { "the outline crosses itself" } else { "two rings cross" };
-                let message = format!(
-                    "{whose}: the side from {} to {} passes through the one from {} to {}",
-                    shown(ends[0]),
-                    shown(ends[1]),
-                    shown(others[0]),
-                    shown(others[1])
-                );
-                let help = "rings may touch but not cross; give the parts of a set as rings of their own";
-                found.push(Finding::new(message, Some(help.to_owned())).at(at.clone()));
+                // In a star every two sides do.
+                found.push_with(|| {
+                    let message = format!(
+                        "{whose}: the side from {} to {} passes through the one from {} to {}",
+                        shown(ends[0]),
+                        shown(ends[1]),
+                        shown(others[0]),
+                        shown(others[1])
+                    );
+                    let help = "rings may touch but not cross; give the parts of a set as rings of their own";
+                    Finding::new(message, Some(help.to_owned())).at(at.clone())
+                });
             }
         }
     }

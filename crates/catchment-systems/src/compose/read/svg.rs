@@ -3,23 +3,28 @@
 use super::super::region::REACH;
 use super::rings::{MOST_CORNERS, Ring, region};
 use super::{Measure, Read, ReadError};
-use catchment::design::{Finding, LengthUnit, Quantity, SourceText, Unit};
+use catchment::design::{Finding, Found, LengthUnit, Quantity, SourceText, Unit};
 use glam::DVec2;
 use kurbo::{BezPath, PathEl};
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 use std::ops::Range;
 
 /// Curves of a path are replaced by chords that leave them by at most this, in mm.
 const CHORD_ERROR: f64 = 0.01;
+/// Most elements of a picture.
+const MOST_NODES: u32 = 100_000;
+/// Most elements within each other.
+const DEEPEST: usize = 256;
 /// Elements that hold others and move none of them.
 const HOLDERS: [&str; 2] = ["svg", "g"];
 /// Elements that draw something that is not read.
 const OTHER_SHAPES: [&str; 7] = ["rect", "circle", "ellipse", "polygon", "polyline", "line", "use"];
 
 pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
-    let (mut found, mut rings, mut curved) = (Vec::new(), Vec::new(), false);
+    let (mut found, mut rings, mut curved) = (Found::default(), Vec::new(), false);
     let mut measure = Measure::Millimetres;
-    match Document::parse(&source.text) {
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    match Document::parse_with_options(&source.text, options) {
         Err(error) => {
             let at = error.pos();
             let line = source
@@ -39,8 +44,19 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> 
                 measure = Measure::Widths;
             }
             let factor = scale(root, &mut found);
-            for node in document.descendants().filter(Node::is_element) {
+            // Not by recursion: a hostile picture is deep.
+            let mut open = vec![(root, 1)];
+            while let Some((node, depth)) = open.pop() {
                 element(node, factor, &mut rings, &mut curved, &mut found);
+                if depth == DEEPEST && node.has_children() {
+                    let help = "ungroup in the drawing program".to_owned();
+                    let start = node.range().start;
+                    let message = format!("more than {DEEPEST} elements within each other");
+                    found.push(Finding::new(message, Some(help)).at(Some(start..start + 1)));
+                    continue;
+                }
+                // The last is taken first.
+                open.extend(node.children().filter(Node::is_element).rev().map(|child| (child, depth + 1)));
             }
             if found.is_empty() && rings.is_empty() {
                 let help = "it needs at least one <path d=\"…\">".to_owned();
@@ -60,7 +76,7 @@ pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> 
 }
 
 /// Lengths of one user unit: a mm, unless the picture says its width.
-fn scale(root: Node<'_, '_>, found: &mut Vec<Finding>) -> f64 {
+fn scale(root: Node<'_, '_>, found: &mut Found) -> f64 {
     let (Some(width), Some(view)) = (root.attribute_node("width"), root.attribute("viewBox")) else {
         return 1.0;
     };
@@ -81,13 +97,7 @@ fn scale(root: Node<'_, '_>, found: &mut Vec<Finding>) -> f64 {
     }
 }
 
-fn element(
-    node: Node<'_, '_>,
-    factor: f64,
-    rings: &mut Vec<Ring>,
-    curved: &mut bool,
-    found: &mut Vec<Finding>,
-) {
+fn element(node: Node<'_, '_>, factor: f64, rings: &mut Vec<Ring>, curved: &mut bool, found: &mut Found) {
     let name = node.tag_name().name();
     if let Some(transform) =
         node.attribute_node("transform").filter(|_| HOLDERS.contains(&name) || name == "path")
@@ -152,13 +162,7 @@ fn within_reach(path: &BezPath, factor: f64) -> bool {
     })
 }
 
-fn path_rings(
-    path: &BezPath,
-    factor: f64,
-    span: &Range<usize>,
-    rings: &mut Vec<Ring>,
-    found: &mut Vec<Finding>,
-) {
+fn path_rings(path: &BezPath, factor: f64, span: &Range<usize>, rings: &mut Vec<Ring>, found: &mut Found) {
     let mut ring = Ring::default();
     let mut ended = |ring: &mut Ring, closed: bool| {
         let ring = std::mem::take(ring);

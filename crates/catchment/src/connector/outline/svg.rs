@@ -18,6 +18,8 @@ const NOT_DRAWN: [&str; 10] =
 const NOT_READ: [&str; 6] = ["text", "use", "image", "foreignObject", "svg", "switch"];
 /// Most elements of a picture.
 const MOST_NODES: u32 = 100_000;
+/// Most elements within each other.
+const DEEPEST: usize = 256;
 /// Most attributes of an element.
 const MOST_ATTRIBUTES: usize = 200;
 /// Most curves of a path: each has a corner at least.
@@ -78,12 +80,14 @@ pub(super) fn metres(text: &str) -> Result<Option<f64>, OutlineProblem> {
 pub(super) fn read(text: &str, within: Within) -> Result<Vec<Stroke>, OutlineProblem> {
     let document = parse(text)?;
     let mut loops = Vec::new();
+    // Lines are not counted from the start for every element.
+    let breaks: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
     // Not by recursion: a hostile picture is deep.
-    let mut open = vec![(document.root_element(), Affine::FLIP_Y)];
+    let mut open = vec![(document.root_element(), Affine::FLIP_Y, 1)];
     let mut corners = 0;
-    while let Some((node, outer)) = open.pop() {
+    while let Some((node, outer, depth)) = open.pop() {
         let name = node.tag_name().name();
-        let line = document.text_pos_at(node.range().start).row as usize;
+        let line = 1 + breaks.partition_point(|at| *at < node.range().start);
         let syntax = |message: String| OutlineProblem::Syntax { line, message };
         let is_root = node == document.root_element();
         let is_hidden = node.attribute("display") == Some("none");
@@ -114,8 +118,11 @@ pub(super) fn read(text: &str, within: Within) -> Result<Vec<Stroke>, OutlinePro
             }
             loops.extend(strokes);
         }
+        if depth == DEEPEST && node.has_children() {
+            return Err(syntax(format!("more than {DEEPEST} elements within each other: ungroup them")));
+        }
         // The last is taken first.
-        open.extend(node.children().filter(Node::is_element).rev().map(|child| (child, frame)));
+        open.extend(node.children().filter(Node::is_element).rev().map(|child| (child, frame, depth + 1)));
     }
     Ok(loops)
 }

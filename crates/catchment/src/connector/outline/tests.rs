@@ -94,6 +94,8 @@ fn what_is_wrong_with_a_drawing_is_said_with_its_line() {
     assert!(svg("<rect width='3e4' height='2'/>").contains("check the unit"));
     assert!(svg("<path d='M0 0A1e300 1e300 0 0 1 1e300 5'/>").contains("far too large"));
     assert!(svg("<g>").starts_with("line "));
+    let deep = format!("{}<path d='M0 0h5v5z'/>{}", "<g>\n".repeat(300), "</g>".repeat(300));
+    assert!(svg(&deep).starts_with("line 256: more than 256 elements within each other"));
     assert_eq!(svg("<defs/>"), "there is no closed outline in the drawing");
     let dxf = |entity: &str| {
         drawing("a.dxf", &format!("0\nSECTION\n2\nENTITIES\n{entity}\n0\nENDSEC\n")).unwrap_err().to_string()

@@ -200,5 +200,15 @@ fn meshed(bytes: &[u8], asked: &Asked, spec: &FileSpec, exec: &Exec) -> Result<H
     reply::read(&answer, &program, spec.treatment)
 }
 
+/// The triangles of every body that an answer of the interpreter holds: for tests and the fuzzer, which have no interpreter.
+///
+/// # Errors
+/// What the answer refuses, or that it is broken.
+#[doc(hidden)]
+pub fn bodies_of_answer(answer: &[u8]) -> Result<Vec<Vec<[glam::DVec3; 3]>>, Vec<MeshProblem>> {
+    let held = reply::read(answer, "python3", crate::design::Treatment::DEFAULT)?;
+    Ok(held.bodies.iter().map(|body| body.iter().map(|triangle| triangle.corners).collect()).collect())
+}
+
 #[cfg(test)]
 mod tests;
