@@ -5,7 +5,8 @@
 
     cli.md           what every command says with --help
     design-file.md   every key of a design file, from `catchment schema`, which the one table of keys makes
-    fields.md        every field of the JSON reports, from the snapshot that a test holds the program to
+    fields.md        every field of the JSON reports with its type (site/report_fields.py)
+    python.md        every public name of the Python package, from its files (site/python_reference.py)
     measurements.md  rates that the benches stored (crates/catchment/benches/rates.json)
 """
 
@@ -15,6 +16,9 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+
+import python_reference
+import report_fields
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ROOT / "docs/reference"
@@ -83,7 +87,7 @@ def design_file(program: str) -> str:
     text = f"""# Design file
 
 {MADE}A design is a TOML file. `catchment new pyramid` prints a commented one, `catchment check` says everything that is wrong with one, each with its place, and
-`#:schema` in its first line lets an editor check it while it is written (`catchment schema -o schema.json`). Numbers without a unit are in D (lengths) and radians
+`#:schema` in its first line lets an editor check it while it is written (`catchment schema -o schema.json`, [the same here](../../designs/schema.json)). Numbers without a unit are in D (lengths) and radians
 (angles); with one they are text: `"5 mm"`, `"10 deg"`. [Parts as their files have them](../parts.md) shows the keys of halves at work.
 """
     for name, key in schema["properties"].items():
@@ -95,18 +99,13 @@ def design_file(program: str) -> str:
     return text + "\n## Beside the tables\n\n| key | value | what it says |\n|---|---|---|\n" + "\n".join(rows(top, "")) + "\n"
 
 
-def fields() -> str:
-    snapshot = (ROOT / "crates/catchment-cli/tests/cli/snapshots/cli__wire__fields.snap").read_text(encoding="utf-8")
-    listed = snapshot.split("---\n", 2)[2].rstrip()
-    text = f"""# Fields of the JSON reports
+def fields(program: str) -> str:
+    return f"""# Fields of the JSON reports
 
 {MADE}Every command with `--json` prints one object with the same head: `schema` (the version of the format), `catchment` (of the program) and `kind`. Lengths are in D and angles in
-radians. [Versions](../versions.md) says what may change. `[]` stands for the entries of a list; the fields of `settings` are the method's own.
-"""
-    for block in re.split(r"\n(?=\S)", listed):
-        kind, _, below = block.partition("\n")
-        text += f"\n## {kind}\n\n```text\n{below.replace('  .', '.')}\n```\n"
-    return text
+radians. [Versions](../versions.md) says what may change. `[]` stands for the entries of a list; the fields of `settings` are the method's own. Types are those of values that the
+program printed for this page: *number* is a float, and *null* says that nothing is there. The [JSON schema of design files](../../designs/schema.json) is another one.
+""" + report_fields.sections(program)
 
 
 def measurements() -> str:
@@ -132,7 +131,8 @@ def main() -> None:
     pages = {
         "cli.md": cli(program),
         "design-file.md": design_file(program),
-        "fields.md": fields(),
+        "fields.md": fields(program),
+        "python.md": python_reference.page(MADE),
         "measurements.md": measurements(),
     }
     if sys.argv[2:]:

@@ -16,7 +16,7 @@ export const catchment = (...given) => execFileSync(program, given, { cwd: root,
 
 /** The page of a design, as a file. */
 export function written(design, ...given) {
-    const path = join(home, `${design}-${given.join("").replace(/\W/g, "")}.html`);
+    const path = join(home, `${design.replace(/\W/g, "-")}-${given.join("").replace(/\W/g, "")}.html`);
     if (!existsSync(path)) catchment("report", `designs/${design}.toml`, ...given, "-o", path);
     return path;
 }

@@ -21,9 +21,9 @@ def in_the_repository(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
 
 
-def program(*words: object) -> str:
+def program(*words: object, cwd: Path = ROOT) -> str:
     """What the program prints."""
-    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=True, cwd=ROOT)
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=True, cwd=cwd)
     return done.stdout
 
 

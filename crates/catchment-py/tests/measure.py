@@ -1,6 +1,9 @@
-"""How fast Python is beside the program: prints figures, asserts nothing but that both say the same.
+"""How fast Python is beside the program: prints figures, and asserts that both say the same.
 
-    python crates/catchment-py/tests/measure.py [POSES]
+    python crates/catchment-py/tests/measure.py [POSES] [--ratchet]
+
+With --ratchet it fails where a figure is far from what is asked for (an answer in 1 s, 0.95 of the program's rate): in seconds of the processor, which a busy
+machine stretches little, and with so much room that a slow one passes.
 
 Seconds are of the processor (of all threads), so that a busy machine counts as an idle one; in brackets those of the clock.
 """
@@ -17,6 +20,8 @@ import numpy as np
 
 import catchment
 
+#: Seconds of the processor from import to answer; share of the program's rate.
+ANSWERS_WITHIN, LEAST_RATE = 3.0, 0.8
 DESIGNS = Path(__file__).resolve().parents[3] / "designs"
 PROGRAM = str(Path(sys.executable).with_name("catchment"))
 
@@ -37,7 +42,11 @@ def of_child(*words: str) -> tuple[float, float]:
 def main() -> None:
     took, clock = of_child(sys.executable, "-c", ANSWER)
     print(f"import to answer on the V-Face  {took:6.2f} s  ({clock:.2f})")
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100_000
+    ratchet = "--ratchet" in sys.argv
+    numbers = [word for word in sys.argv[1:] if word != "--ratchet"]
+    count = int(numbers[0]) if numbers else 100_000
+    if ratchet and took > ANSWERS_WITHIN:
+        raise SystemExit(f"from import to answer took {took:.2f} s of the processor, more than {ANSWERS_WITHIN}")
     for name in ("v-face", "x-face-3d"):
         problem = catchment.load(DESIGNS / f"{name}.toml")
         half = np.array([problem.error_box.get(axis, 0.0) for axis in ("x", "y", "roll", "pitch", "yaw")])
@@ -60,6 +69,8 @@ def main() -> None:
             f"{name:10} {count} poses: program {program:6.2f} s ({program_clock:.2f}), "
             f"follow_many {own:6.2f} s ({own_clock:.2f}): {program / own:.2f} of its rate"
         )
+        if ratchet and program / own < LEAST_RATE:
+            raise SystemExit(f"{name}: follow_many has {program / own:.2f} of the program's rate, less than {LEAST_RATE}")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -86,17 +87,36 @@ def thread_names(process: int) -> Iterator[str]:
             yield task.joinpath("comm").read_text().strip()
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/python.md", "crates/catchment-py/README.md"])
+@pytest.mark.parametrize("page", ["docs/python.md", "crates/catchment-py/README.md"])
 def test_the_lines_of_the_pages_run(page: str) -> None:
+    assert isinstance(run_blocks(page)["result"], catchment.Result)
+
+
+def test_the_lines_of_the_readme_run_with_nothing_but_the_wheel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "README.md").read_text()
+    console = re.findall(r"```console\n(.*?)```", text, re.DOTALL)[0]
+    install, *commands = [line.removeprefix("$ ") for line in console.splitlines()]
+    assert install.startswith(f"pip install catchment-{catchment.__version__}-") and len(commands) == 2
+    for command in commands:
+        words = shlex.split(command)
+        assert words.pop(0) == "catchment"
+        said = subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=True, env={**os.environ, "NO_COLOR": "1"})
+    # What the page shows is what the last of them prints.
+    assert f"```text\n{said.stdout}```" in text
+    result = run_blocks("README.md")["result"]
+    assert isinstance(result, catchment.Result)
+    assert bytes_of(result.json) == bytes_of(program("run", "v-face.toml", "--json", cwd=tmp_path))
+
+
+def run_blocks(page: str) -> dict[str, object]:
+    """The names that the lines of Python of a page leave, all in a row."""
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     assert blocks
     names: dict[str, object] = {}
     for block in blocks:
         exec(compile(block, page, "exec"), names)
-    result = names["result"]
-    assert isinstance(result, catchment.Result)
-    if page == "README.md":
-        assert bytes_of(result.json) == bytes_of(program("run", "designs/v-face.toml", "--json"))
+    return names
 
 
 def test_types_are_whole() -> None:

@@ -71,7 +71,8 @@ class Problem:
     drawn: "facing": each half in a frame of its own, facing +z; "assembled": both in one frame, docked, and `approach` is
     the direction in which the moving half comes ("-z").
     face_height: z of the face centre in each half's own frame, in `unit`; found where it is left out.
-    cor: centre of rotation in front of the face centre; rotation_length: how far one radian counts as; both in D or with a unit.
+    cor: centre of rotation in front of the face centre, in D or with a unit.
+    rotation_length: how far one radian counts as when motion is damped, in D or with a unit.
     error_box: half-widths of the errors to consider, such as {"x": "20 mm", "yaw": "30 deg"}.
     """
 
@@ -241,18 +242,24 @@ class Problem:
     ) -> Result:
         """The area of acceptance: which pose errors contact corrects.
 
-        method: how outcomes are decided; `catchment.methods()` lists them. settings: those of the method,
-        such as {"friction": 0.2}.
-        resolution: cells per axis of the error grid: 30, {"x": 40, "yaw": 24}. poses: instead of a grid, so many random poses.
-        samples: random poses followed exactly to correct the Sum, 0 for none; or budget: as many as can be followed in
-        these seconds, of which the grid takes half at most; or tolerance: until the 95 % interval is ± this share of the Sum.
+        method: how outcomes are decided; `catchment.methods()` lists them.
+        settings: those of the method, such as {"friction": 0.2}.
+        resolution: cells per axis of the error grid: 30, {"x": 40, "yaw": 24}.
+        poses: instead of a grid, so many random poses.
+        samples: random poses followed exactly to correct the Sum, 0 for none.
+        budget: instead of samples, as many as can be followed in these seconds, of which the grid takes half at most.
+        tolerance: instead of samples, until the 95 % interval is ± this share of the Sum.
+        seed: of the random poses.
         error_sigma, error_uniform: errors of a robot, normal or uniform, such as {"x": "1 mm", "yaw": "2 deg"}: adds `success`.
         require: what must hold of the report, such as "onaa.edge>=0.3"; `Result.unmet` says what does not.
-        heights: keep the heights of first contact. jams: also where poses jam, and on what; window: also the largest box of
-        errors that all dock; both stand in the report.
+        heights: keep the heights of first contact.
+        jams: the report also says where poses jam, and on what.
+        window: the report also has the largest box of errors that all dock.
         client: a dask.distributed.Client: parts of the grid (or of the random poses) are decided on its workers, by methods
-        that decide each pose by itself (descent, drop); parts: into how many.
-        threads (0: one per core), memory (bytes), progress (True, or a function of the share and the stage): change no bit.
+        that decide each pose by itself (descent, drop).
+        parts: into how many parts a client's work is cut.
+        threads, memory, progress: change no bit. 0 threads are one per core; memory is a limit in bytes; progress is True or a
+        function of the share and the stage.
         Ctrl-C ends it with KeyboardInterrupt.
         """
         asked = Asked(
@@ -288,7 +295,7 @@ class Problem:
         """Where one pose error comes to rest, by exact quasi-static motion.
 
         pose: "x=5 mm,pitch=10 deg", {"x": "5 mm", "pitch": 0.2}, or x, y, roll, pitch, yaw in D and radians.
-        settings: such as {"friction": 0.2}.
+        settings: of the method, such as {"friction": 0.2}.
         """
         outcome, end = self._native.follow(self._pose(pose), method, as_json(settings), how())
         return End(outcome, np.asarray(end))
@@ -334,8 +341,8 @@ class Problem:
     ) -> Report:
         """The largest box of errors around zero that all dock: what a datasheet may say. `report["window"]`.
 
-        fix: half-widths that are given ({"x": "2 mm"}); the others grow. proportions: of those that are not given; what is
-        not named does not occur. Without them: the proportions of the error box.
+        fix: half-widths that are given ({"x": "2 mm"}); the others grow.
+        proportions: of those that are not given; what is not named does not occur. Without them: those of the error box.
         motions: random poses of the certificate.
         """
         run_how = how(threads, memory, progress)
@@ -358,8 +365,9 @@ class Problem:
     ) -> Report:
         """Where it jams instead of docking, on which features, how firmly. `report["jams"]`.
 
-        motions: random poses that are followed. examine: how many jams are looked at closely. certified: also how far each must be
-        lifted at least.
+        motions: random poses that are followed.
+        examine: how many jams are looked at closely.
+        certified: also how far each must be lifted at least.
         """
         expected = _expected(error_sigma, error_uniform)
         run_how = how(threads, memory, progress)

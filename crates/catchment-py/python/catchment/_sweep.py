@@ -90,7 +90,8 @@ def sweep(
     output: a folder for report, table, pictures and a Zarr group, written when all is done. Until then finished designs are
     kept beside it: the same call goes on from there. Several seeds: a folder seed-1, seed-2 … each in it.
     client: a dask.distributed.Client: designs are computed on its workers, a task each; what a lost worker had is computed
-    again elsewhere. The report is that of one machine, byte for byte but for `timing`.
+    again elsewhere. The report is that of one machine, byte for byte but for `timing`. A design is never cut: by `confluence`,
+    the default, a grid is one task, however large; `Problem.run(method="descent", client=client)` cuts one grid into parts.
     Everything else as in `Problem.run`.
     """
     axes = [f"{key}={values if isinstance(values, str) else _values(key, values)}" for key, values in over.items()]
