@@ -246,7 +246,7 @@ impl fmt::Display for Warning {
             Self::OutsideSample { sum_grid, ci95: [lo, hi] } => write!(
                 f,
                 "the accepted cells measure {sum_grid:.4}, outside the 95 % interval {lo:.4} … {hi:.4}: the grid is too \
-                 coarse or its method biased; the Sum does not rest on it, but ONAA, centred edge and tolerances do"
+                 coarse or its method biased; slices and pictures rest on it, the Sum, ONAA, centred edge and tolerances do not"
             ),
             Self::NoInterval => write!(
                 f,
@@ -255,8 +255,8 @@ impl fmt::Display for Warning {
             ),
             Self::Ambiguous { cells, of } => write!(
                 f,
-                "{cells} of {of} cells are ambiguous, too many to follow each exactly: ONAA, centred edge and \
-                 tolerances rest on the method's guess there, the Sum with its interval does not"
+                "{cells} of {of} cells are ambiguous, too many to follow each exactly: slices and pictures rest \
+                 on the method's guess there, the Sum with its interval, ONAA, centred edge and tolerances do not"
             ),
             Self::StepDependence { changed, of, ci95: [lo, hi] } => write!(
                 f,

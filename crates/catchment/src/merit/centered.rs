@@ -11,6 +11,8 @@
 //! The box grows from zero until it meets a rejected cell, or the border of the error box, beyond which nothing is
 //! known. It ends on cell borders, so its half-width is right to half a cell along the axis that stopped it. With
 //! an even number of cells no centre lies at zero; the cells that meet there all count.
+//!
+//! Where poses can be followed one by one, a run seeks it by them instead ([`crate::run`]).
 
 use super::{MeritError, advance, axis_number, gap, grid_of};
 use crate::acceptance::{Acceptance, Outcome};
@@ -27,6 +29,8 @@ pub struct CenteredBox {
     pub half_widths: Vec<(Dof, f64)>,
     /// The border of the error box stopped it: it may be larger.
     pub reaches_border: bool,
+    /// Whether it was found by following poses, so that it does not rest on cells.
+    pub is_followed: bool,
 }
 
 /// The largest centred cube after each axis is divided by its range: `scale` = 1 is the whole error box.
@@ -84,6 +88,7 @@ fn grow_from_zero(acceptance: &Acceptance, halves: &[f64], exec: &Exec) -> Resul
         scale,
         half_widths: grid.axes.iter().zip(halves).map(|(axis, half)| (axis.dof, scale * half)).collect(),
         reaches_border: scale >= border,
+        is_followed: false,
     })
 }
 

@@ -31,6 +31,8 @@ pub struct Onaa {
     /// Where it lies: `(axis, lower border, upper border)` in D and radians, in the order of the grid's axes. Of
     /// several, the one whose centre is nearest to zero. Empty if the edge is 0.
     pub bounds: Vec<(Dof, f64, f64)>,
+    /// Whether its size was found by following poses, so that it does not rest on cells.
+    pub is_followed: bool,
 }
 
 impl Onaa {
@@ -42,7 +44,8 @@ impl Onaa {
         let grid = grid_of(acceptance)?;
         let accepted = Mask::of(&grid.shape(), &acceptance.outcomes, |o| o == Outcome::Aligned, exec)?;
         let fitting = Fitting::largest(&grid.shape(), accepted, exec)?;
-        Ok(Self { edge: fitting.edge.value(), bounds: fitting.nearest_to_zero(grid, exec) })
+        let bounds = fitting.nearest_to_zero(grid, exec);
+        Ok(Self { edge: fitting.edge.value(), bounds, is_followed: false })
     }
 
     /// The form that the dissertation's planar tables print.
@@ -252,7 +255,7 @@ mod tests {
     fn nothing_accepted_has_no_cube_and_everything_is_the_whole_box() {
         let g = grid(&[5, 5], &[1.0, 1.0]);
         let of = |all| Onaa::of(&accept(&g, |_| all), &Exec::new()).unwrap();
-        assert_eq!(of(false), Onaa { edge: 0.0, bounds: Vec::new() });
+        assert_eq!(of(false), Onaa { edge: 0.0, bounds: Vec::new(), is_followed: false });
         assert_eq!(of(true).edge, 1.0);
     }
 }

@@ -160,6 +160,9 @@ pub struct OnaaReport {
     pub edge: f64,
     /// Where it lies; empty if the edge is 0.
     pub bounds: Vec<Interval>,
+    /// Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    #[serde(default)]
+    pub followed: bool,
 }
 
 /// The largest n-cube around zero in the accepted set.
@@ -171,6 +174,9 @@ pub struct CenteredReport {
     pub bounds: Vec<Interval>,
     /// The border of the error box stopped it: it may be larger.
     pub reaches_border: bool,
+    /// Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    #[serde(default)]
+    pub followed: bool,
 }
 
 /// How far one error may go alone.
@@ -380,7 +386,7 @@ impl WarningReport {
 impl From<Onaa> for OnaaReport {
     fn from(onaa: Onaa) -> Self {
         let bounds = onaa.bounds.into_iter().map(|(axis, lo, hi)| Interval { axis, lo, hi }).collect();
-        Self { edge: onaa.edge, bounds }
+        Self { edge: onaa.edge, bounds, followed: onaa.is_followed }
     }
 }
 
@@ -388,7 +394,7 @@ impl From<CenteredBox> for CenteredReport {
     fn from(found: CenteredBox) -> Self {
         let bounds =
             found.half_widths.into_iter().map(|(axis, h)| Interval { axis, lo: -h, hi: h }).collect();
-        Self { edge: found.scale, bounds, reaches_border: found.reaches_border }
+        Self { edge: found.scale, bounds, reaches_border: found.reaches_border, followed: found.is_followed }
     }
 }
 

@@ -49,6 +49,9 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
     if let Some(centered) = &report.centered {
         let more = if centered.reaches_border { ", up to the error box" } else { "" };
         row(&mut text, "centred edge", &format!("{:.4}   around zero{more}", centered.edge));
+        if centered.followed {
+            row(&mut text, "", "in both all poses that were followed dock");
+        }
     }
     if let Some(s) = &report.success {
         let outside = format!("{} of the errors lie outside the error box", percent(s.outside));

@@ -29,6 +29,11 @@ impl Judge<'_> {
     pub(super) fn as_follow(&self) -> &dyn Follow {
         self.own.unwrap_or(&self.descent)
     }
+
+    /// Whether it follows exact motions, which a grid that rests on them, or was corrected by them, may ask for more.
+    fn is_descent(&self) -> bool {
+        self.own.is_none_or(|own| own.info().name == "descent")
+    }
 }
 
 /// Decides every pose of the plan.
@@ -69,26 +74,32 @@ pub(super) fn finish(
     if judge.own.is_some() || corrected.is_some() || doubts.is_some() {
         acceptance.warnings.extend(judge.as_follow().doubt(problem, run.seed, exec)?);
     }
-    let mut merits = Merits::of(&acceptance, problem.alignment(), exec)?;
-    if let (Some(_), Domain::Grid(grid)) = (&corrected, &plan.domain) {
-        // What follows random poses exactly can follow some along the axes.
-        let steps = (STEPS * affordable(problem.pair()).sqrt()).max(LEAST_STEPS) as usize;
-        merits.tolerances = followed(grid, steps, |poses| {
-            let decided = judge.as_follow().follow(problem, Domain::Poses(poses), exec);
-            Ok::<_, RunError>(decided?.0.outcomes)
-        })?;
-    }
-    let success = match &run.errors {
-        Some(distribution) => Some(success(&acceptance, distribution, exec)?),
-        None => None,
-    };
     let motions = plan.method.motions();
-    let jams = if run.jams { Some(jams::by(problem, &run.jams_settings(), &motions, exec)?) } else { None };
     let window =
         if run.window { Some(window::by(problem, &run.window_settings(), &motions, exec)) } else { None };
     if let Some(Err(WindowError::Cancelled(error))) = window {
         return Err(error.into());
     }
+    let mut merits = Merits::of(&acceptance, problem.alignment(), exec)?;
+    if let Domain::Grid(grid) = &plan.domain
+        && (corrected.is_some() || judge.own.is_some())
+    {
+        // What follows random poses exactly can follow some along the axes, and about the largest cubes.
+        let steps = (STEPS * affordable(problem.pair()).sqrt()).max(LEAST_STEPS) as usize;
+        merits.tolerances = followed(grid, steps, |poses| {
+            let decided = judge.as_follow().follow(problem, Domain::Poses(poses), exec);
+            Ok::<_, RunError>(decided?.0.outcomes)
+        })?;
+        if judge.is_descent() {
+            let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
+            window::follow_cubes(&mut merits, centered, problem, grid, run.seed, &motions, exec)?;
+        }
+    }
+    let success = match &run.errors {
+        Some(distribution) => Some(success(&acceptance, distribution, exec)?),
+        None => None,
+    };
+    let jams = if run.jams { Some(jams::by(problem, &run.jams_settings(), &motions, exec)?) } else { None };
     let seating = Seating::of(problem, &acceptance, &motions, run.seed, exec)?;
     Ok(Answer {
         problem: problem.clone(),

@@ -20,17 +20,21 @@
 //! Not promised: that no pose of the window fails, only how few. The window ends at the error box. Undecided poses count as failures.
 //! Lengths in D, angles in radians.
 
+mod cube;
 mod search;
 #[cfg(test)]
 mod tests;
 
+pub(super) use cube::follow as follow_cubes;
+
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
+use crate::merit::centered::CenteredBox;
 use crate::method::Decide;
 use crate::method::descent::{self, FrictionOutOfRange, Touch};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
-use search::{Search, Space};
+use search::{Search, Shrunk, Space, WINDOWS};
 use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
@@ -194,6 +198,16 @@ pub enum WindowError {
 }
 
 impl Window {
+    /// The same as a cube, of a window in the proportions of the error box.
+    pub(super) fn cube(&self) -> CenteredBox {
+        CenteredBox {
+            scale: self.scale,
+            half_widths: self.axes.iter().map(|side| (side.axis, side.half_width)).collect(),
+            reaches_border: self.worst.is_none(),
+            is_followed: true,
+        }
+    }
+
     /// With every place that the window of a problem has, and numbers that mean nothing: what requirements are tried on.
     pub fn form(problem: &Problem) -> Self {
         let none = Reach { to: 0.0, is_border: false };
@@ -221,12 +235,6 @@ fn place(error: &PoseError) -> String {
     said.join(", ")
 }
 
-/// The window is so much smaller than the nearest pose that was seen to fail.
-const MARGIN: f64 = 1e-3;
-/// Windows that are tried before it is given up.
-const WINDOWS: usize = 50;
-/// Below this scale, as a share of the largest, there is no window.
-const NONE: f64 = 1e-4;
 /// Allowed chance that the certificate of the first window is wrong, and of all later ones together: 5 %.
 const FIRST_CHANCE: f64 = 0.0498;
 const LATER_CHANCE: f64 = 0.0002;
@@ -272,33 +280,18 @@ pub(super) fn by(
         return Err(WindowError::NotDocked { outcome: home });
     }
     let mut search = Search::new(problem, space, settings.seed, motions_by);
-    search.directions(exec)?;
-    search.moves(exec)?;
-    let mut redrawn = 0;
-    let (scale, certificate) = loop {
-        let scale = search.window(MARGIN);
-        if scale <= NONE * search.space().border() {
-            let error = search.worst().unwrap_or_default();
-            let outcome = outcome_of(&error);
-            let given = settings.fixed.iter().flatten().any(|half_width| *half_width > 0.0);
-            return Err(if given {
-                WindowError::GivenFails { error, outcome }
-            } else {
-                WindowError::AtHome { error, outcome }
-            });
-        }
-        if !search.certify(scale, motions, redrawn, exec)? {
-            let at_most =
-                if motions == 0 { 1.0 } else { ((1.0 / chance(redrawn)).ln() / motions as f64).min(1.0) };
-            break (scale, Certificate { motions, failing_at_most: at_most, redrawn });
-        }
-        redrawn += 1;
-        if redrawn == WINDOWS {
-            let error = search.worst().unwrap_or_default();
-            return Err(WindowError::Scattered { windows: redrawn, error });
-        }
-        search.moves(exec)?;
+    let Some(Shrunk { scale, redrawn }) = search.shrink(motions, exec)? else {
+        let error = search.worst().unwrap_or_default();
+        let outcome = outcome_of(&error);
+        let given = settings.fixed.iter().flatten().any(|half_width| *half_width > 0.0);
+        return Err(match search.has_room() {
+            true => WindowError::Scattered { windows: WINDOWS, error },
+            false if given => WindowError::GivenFails { error, outcome },
+            false => WindowError::AtHome { error, outcome },
+        });
     };
+    let at_most = if motions == 0 { 1.0 } else { ((1.0 / chance(redrawn)).ln() / motions as f64).min(1.0) };
+    let certificate = Certificate { motions, failing_at_most: at_most, redrawn };
     let half_widths = search.space().half_widths(scale);
     let mut followed = search.followed();
     let mut axes = Vec::new();

@@ -28,6 +28,12 @@ const BATCH: usize = 64;
 const QUIET: usize = 512;
 /// The same of halves whose motions take long.
 const LEAST_QUIET: f64 = 128.0;
+/// The window is so much smaller than the nearest pose that was seen to fail.
+const MARGIN: f64 = 1e-3;
+/// Windows that are tried before it is given up.
+pub(super) const WINDOWS: usize = 50;
+/// Below this scale, as a share of the largest, there is no window.
+const NONE: f64 = 1e-4;
 /// Random poses between two looks at whether one failed.
 const CERTIFIED_AT_ONCE: usize = 4096;
 /// Beyond so many batches of moves what is found is good enough; the certificate has the last word.
@@ -44,6 +50,8 @@ pub(super) struct Space {
     growing: [f64; 5],
     /// The scale at which the first of them meets the error box.
     border: f64,
+    /// The middle of the boxes.
+    center: [f64; 5],
 }
 
 impl Space {
@@ -74,7 +82,24 @@ impl Space {
         let grows = |axis: &Dof| growing[axis.index()] > 0.0;
         let ends = |axis: Dof| alignment.half_range(axis) / growing[axis.index()];
         let border = Dof::ALL.into_iter().filter(grows).map(ends).fold(f64::INFINITY, f64::min);
-        if border.is_finite() { Ok(Self { fixed, growing, border }) } else { Err(WindowError::Nothing) }
+        let center = [0.0; 5];
+        if border.is_finite() {
+            Ok(Self { fixed, growing, border, center })
+        } else {
+            Err(WindowError::Nothing)
+        }
+    }
+
+    /// All free errors grow about a place, in the proportions of the error box: at scale 1 as large as that.
+    pub(super) fn about(problem: &Problem, center: [f64; 5]) -> Self {
+        let alignment = problem.alignment();
+        let (mut growing, mut border) = ([0.0; 5], 1.0f64);
+        for axis in alignment.free.iter() {
+            let most = alignment.half_range(axis);
+            growing[axis.index()] = most;
+            border = border.min(1.0 - center[axis.index()].abs() / most);
+        }
+        Self { fixed: [0.0; 5], growing, border, center }
     }
 
     /// One error grows, the others are within these half-widths.
@@ -83,7 +108,7 @@ impl Space {
         growing[axis.index()] = 1.0;
         let mut fixed = others;
         fixed[axis.index()] = 0.0;
-        Self { fixed, growing, border: problem.alignment().half_range(axis) }
+        Self { fixed, growing, border: problem.alignment().half_range(axis), center: [0.0; 5] }
     }
 
     pub(super) const fn border(&self) -> f64 {
@@ -95,8 +120,12 @@ impl Space {
     }
 
     fn pose(&self, u: &Direction, scale: f64) -> PoseError {
-        let widths = self.half_widths(scale);
-        PoseError::from_array(std::array::from_fn(|k| u[k] * widths[k]))
+        self.within(u, &self.half_widths(scale))
+    }
+
+    /// The pose at shares of these half-widths.
+    fn within(&self, shares: &Direction, widths: &[f64; 5]) -> PoseError {
+        PoseError::from_array(std::array::from_fn(|k| self.center[k] + shares[k] * widths[k]))
     }
 
     fn grows(&self, k: usize) -> bool {
@@ -146,6 +175,13 @@ struct Failing {
     along: Direction,
 }
 
+/// A window in which no random pose failed.
+pub(super) struct Shrunk {
+    pub(super) scale: f64,
+    /// How many before it had one that did.
+    pub(super) redrawn: usize,
+}
+
 /// The search, and what it knows.
 pub(super) struct Search<'a> {
     problem: &'a Problem,
@@ -184,8 +220,13 @@ impl<'a> Search<'a> {
     }
 
     /// The same, by a margin less where something did.
-    pub(super) fn window(&self, margin: f64) -> f64 {
+    fn window(&self, margin: f64) -> f64 {
         self.nearest.map_or(self.space.border, |failing| failing.scale * (1.0 - margin))
+    }
+
+    /// Whether anything is left of the window.
+    pub(super) fn has_room(&self) -> bool {
+        self.window(MARGIN) > NONE * self.space.border
     }
 
     /// The nearest pose that fails.
@@ -193,8 +234,25 @@ impl<'a> Search<'a> {
         self.nearest.map(|failing| self.space.pose(&failing.along, failing.scale))
     }
 
+    /// Looks for what fails, and makes the window smaller until no random pose of it does. None where poses fail however small it is, or lie all
+    /// over: [`Self::worst`] has one of them.
+    pub(super) fn shrink(&mut self, motions: usize, exec: &Exec) -> Result<Option<Shrunk>, Cancelled> {
+        self.directions(exec)?;
+        for redrawn in 0..WINDOWS {
+            self.moves(exec)?;
+            if !self.has_room() {
+                return Ok(None);
+            }
+            let scale = self.window(MARGIN);
+            if !self.certify(scale, motions, redrawn, exec)? {
+                return Ok(Some(Shrunk { scale, redrawn }));
+            }
+        }
+        Ok(None)
+    }
+
     /// Looks along every direction of {−1, 0, 1}ⁿ.
-    pub(super) fn directions(&mut self, exec: &Exec) -> Result<(), Cancelled> {
+    fn directions(&mut self, exec: &Exec) -> Result<(), Cancelled> {
         let all = self.space.all();
         self.try_batches(&all, 0.0, LOOKS, exec)
     }
@@ -212,7 +270,7 @@ impl<'a> Search<'a> {
     }
 
     /// Moves about the nearest pose that fails, and elsewhere, until many in a row find none nearer.
-    pub(super) fn moves(&mut self, exec: &Exec) -> Result<(), Cancelled> {
+    fn moves(&mut self, exec: &Exec) -> Result<(), Cancelled> {
         let mut quiet = 0;
         let enough = (QUIET as f64 * affordable(self.problem.pair()).sqrt()).max(LEAST_QUIET) as usize;
         let last = self.batches + MOST_BATCHES;
@@ -345,13 +403,7 @@ impl<'a> Search<'a> {
 
     /// Follows random poses all over the window of this scale, a stream of their own for every round; where one fails, the nearest failing pose is
     /// sought from it on, and true is returned.
-    pub(super) fn certify(
-        &mut self,
-        scale: f64,
-        motions: usize,
-        round: usize,
-        exec: &Exec,
-    ) -> Result<bool, Cancelled> {
+    fn certify(&mut self, scale: f64, motions: usize, round: usize, exec: &Exec) -> Result<bool, Cancelled> {
         const BRANCH: u64 = 0xce27;
         let random = self.random.branch(BRANCH).branch(round as u64);
         let mut done = 0;
@@ -363,7 +415,7 @@ impl<'a> Search<'a> {
                 exec.check()?;
                 let u: Direction =
                     std::array::from_fn(|j| 2.0 * random.uniform(5 * k as u64 + j as u64) - 1.0);
-                let error = PoseError::from_array(std::array::from_fn(|j| u[j] * widths[j]));
+                let error = space.within(&u, &widths);
                 Ok((follower.follow(&error).outcome != Outcome::Aligned).then_some(u))
             };
             let failed: Vec<Option<Direction>> = exec.install(|| {
