@@ -71,9 +71,9 @@ advisories:
 sbom:
     cargo cyclonedx --manifest-path crates/catchment-cli/Cargo.toml --all-features --format json --describe binaries
 
-# kill the program at random moments while it writes; what is there must be old or new, complete
+# end the program at random moments while it writes, and refuse it memory at any; what is there must be old or new, complete
 kills count='300':
-    CATCHMENT_KILLS={{ count }} cargo test --locked -p catchment-cli --test cli killed -- --nocapture
+    CATCHMENT_KILLS={{ count }} cargo test --locked -p catchment-cli --test cli kills:: -- --nocapture
 
 # accept the program's new output after reading it: runs the snapshot tests, shows what changed
 golden:

@@ -5,5 +5,6 @@ mod allocation;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    allocation::faults::prepare();
     catchment_cli::run().into()
 }

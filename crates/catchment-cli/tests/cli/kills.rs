@@ -122,6 +122,59 @@ fn killed_at_any_moment_old_or_new_is_there() {
     assert!(killed > 0);
 }
 
+/// As above, but it is the system that refuses memory: one request, or all from one on. More of them with `CATCHMENT_KILLS`.
+#[test]
+fn refused_memory_at_any_request_old_or_new_is_there() {
+    let thorough = std::env::var("CATCHMENT_KILLS").is_ok();
+    let factor = if thorough { 1.2 } else { 4.0 };
+    let (mut refused, mut left) = (0, 0);
+    for writer in WRITERS {
+        let home = furnished(&writer);
+        let target =
+            home.path().join(writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap());
+        let finish = |version: usize| {
+            let output = catchment(home.path()).args(writer.versions[version]).output().unwrap();
+            assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        };
+        let mut files = Vec::new();
+        for version in 0..2 {
+            finish(version);
+            if target.is_file() {
+                files.push(fs::read(&target).unwrap());
+            }
+        }
+        let expected = entries(home.path());
+        // Some hundred requests come before the program has begun.
+        let mut request = 100.0;
+        for number in 0.. {
+            let wish = format!("{:.0}{}", request, if number % 2 == 0 { "" } else { ".." });
+            let case = format!("{}, request {wish}", writer.name);
+            let output = catchment(home.path())
+                .args(writer.versions[number % 2])
+                .env("CATCHMENT_REFUSED_REQUEST", wish)
+                .output()
+                .unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            if output.status.success() {
+                break;
+            }
+            assert_eq!(output.status.code(), Some(2), "{case}: {}, {said}", output.status);
+            assert!(said.contains("out of memory: the system refused"), "{case}: {said}");
+            assert!(is_whole(&target, &files), "{case}: lost or mixed");
+            refused += 1;
+            left += usize::from(entries(home.path()) != expected);
+            finish((number + 1) % 2);
+            assert!(is_whole(&target, &files), "{case}: lost or mixed after the next start");
+            let mut there = entries(home.path());
+            there.retain(|name| name != "target.parts");
+            assert_eq!(there, expected, "{case}: left-overs after the next start");
+            request *= factor;
+        }
+    }
+    println!("{refused} refused, {left} of them left something, all of it put in order");
+    assert!(refused > 3 * WRITERS.len());
+}
+
 /// The handler stands when its thread does.
 #[cfg(target_os = "linux")]
 fn wait_for_handler(pid: u32) {
