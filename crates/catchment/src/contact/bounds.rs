@@ -190,11 +190,22 @@ impl Four {
         self.center[2] - self.half[2] - (moving.center[2] + moving.half[2])
     }
 
-    /// Whether anything of the two parts may be as close as `reach`.
+    /// Whether gaps between anything of the two parts may be between −`deep` and `front`, the latter no more than the former, where features count
+    /// with a slack. What overlaps along a normal of a part's cone does not lie in front of its plane.
     #[inline]
-    pub(super) fn is_near(&self, moving: &Self, reach: f32, rounding: f32) -> f32x4 {
-        let (most, beside) = self.most(moving, reach, rounding);
-        let reach = f32x4::splat(reach + 2.0 * rounding);
+    pub(super) fn is_near(
+        &self,
+        moving: &Self,
+        [front, deep]: [f32; 2],
+        slack: Option<usize>,
+        rounding: f32,
+    ) -> f32x4 {
+        let (most, beside) = self.most(moving, deep, rounding);
+        let [front, reach] = [front, deep].map(|reach| f32x4::splat(reach + 2.0 * rounding));
+        let before = |part: &Self| match slack {
+            Some(slack) => part.cones[slack][0].simd_gt(f32x4::splat(Cone::ROUNDING)).bitselect(front, reach),
+            None => reach,
+        };
         let apart = [0, 1, 2].map(|k| moving.center[k] - self.center[k]);
         let dot = |a: &[f32x4; 3], b: &[f32x4; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let size = |n: &[f32x4; 3], half: &[f32x4; 3]| {
@@ -202,9 +213,9 @@ impl Four {
         };
         // Else in front of the plane that all of the other part lies behind.
         let ahead =
-            (dot(&self.normal, &apart) - size(&self.normal, &moving.half)).simd_le(self.ahead + reach);
-        let behind =
-            (-dot(&moving.normal, &apart) - size(&moving.normal, &self.half)).simd_le(moving.ahead + reach);
+            (dot(&self.normal, &apart) - size(&self.normal, &moving.half)).simd_le(self.ahead + before(self));
+        let behind = (-dot(&moving.normal, &apart) - size(&moving.normal, &self.half))
+            .simd_le(moving.ahead + before(moving));
         // Or above it by more than the slope of the fixed plane makes of the reach.
         let slope = f32x4::ONE + self.slope[0].abs() + self.slope[1].abs();
         let under = most.simd_ge(-reach * slope);

@@ -5,6 +5,7 @@
 use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve};
 use super::element::Element;
+use super::search::Gaps;
 use super::turned::{Turned, VERTICAL};
 use super::{Contact, Lattice, Pair};
 use glam::{DMat3, DVec2, DVec3};
@@ -64,7 +65,7 @@ impl<'a> Envelope<'a> {
     /// Everything that carries the moving half, or is closer than `reach` along its normal, with the COR at `position`.
     pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<Contact>) {
         out.clear();
-        self.turned.contacts(position, reach, SEAM, |(contact, _)| out.push(contact));
+        self.turned.contacts(position, Gaps::within(reach), SEAM, |(contact, _)| out.push(contact));
     }
 
     /// Heights over a lattice of *COR* positions, x fastest; −∞ where the halves pass each other by.

@@ -50,6 +50,7 @@ pub(crate) use feature::Sets;
 pub use feature::{Feature, Features, Kind as FeatureKind, Lie};
 pub use mirror::Mirror;
 pub use nearby::Nearby;
+pub(crate) use nearby::chord;
 pub(crate) use play::play_on;
 pub use play::{Play, play};
 pub(crate) use raster::fill_convex;

@@ -13,6 +13,7 @@
 use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, ROUNDING, Sieve, Window};
 use super::element::Meeting;
+use super::search::Gaps;
 use super::turned::Turned;
 use super::{Contact, Pair};
 use crate::pose::{CorPose, PoseError};
@@ -136,7 +137,7 @@ impl<'a> Nearby<'a> {
     pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
         let reach = if self.turned.pair.trees.is_some() { reach.min(MET) } else { reach };
         out.clear();
-        self.turned.contacts(position, reach, SEAM, |contact| out.push(contact));
+        self.turned.contacts(position, Gaps::within(reach), SEAM, |contact| out.push(contact));
     }
 
     /// As [`Nearby::contacts`], counting also what touches beyond the border of its feature by up to `seam`, in D.
@@ -148,7 +149,20 @@ impl<'a> Nearby<'a> {
         out: &mut Vec<(Contact, Meeting)>,
     ) {
         out.clear();
-        self.turned.contacts(position, reach, seam, |contact| out.push(contact));
+        self.turned.contacts(position, Gaps::within(reach), seam, |contact| out.push(contact));
+    }
+
+    /// As [`Nearby::contacts_within`], only what overlaps by more than `touching`, and by up to `reach`.
+    pub(crate) fn overlaps_within(
+        &mut self,
+        position: DVec3,
+        [touching, reach]: [f64; 2],
+        seam: f64,
+        out: &mut Vec<(Contact, Meeting)>,
+    ) {
+        out.clear();
+        let gaps = Gaps { deep: reach, front: -touching };
+        self.turned.contacts(position, gaps, seam, |contact| out.push(contact));
     }
 
     /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than
@@ -159,7 +173,7 @@ impl<'a> Nearby<'a> {
 }
 
 /// Furthest that a unit vector is apart after the two rotations: 2 sin(θ/2).
-fn chord(a: &DMat3, b: &DMat3) -> f64 {
+pub(crate) fn chord(a: &DMat3, b: &DMat3) -> f64 {
     let d = *a - *b;
     let squares = d.x_axis.length_squared() + d.y_axis.length_squared() + d.z_axis.length_squared();
     (0.5 * squares).sqrt()

@@ -26,6 +26,19 @@ impl Pair {
     /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`; `placed` is scratch for the
     /// moving vertices.
     pub(crate) fn overlaps(&self, rotation: &DMat3, position: DVec3, placed: &mut Vec<DVec3>) -> bool {
+        match &self.trees {
+            Some(trees) => trees.is_passed(self, rotation, position),
+            None => self.overlaps_by_plan(rotation, position, placed),
+        }
+    }
+
+    /// The same without trees.
+    pub(super) fn overlaps_by_plan(
+        &self,
+        rotation: &DMat3,
+        position: DVec3,
+        placed: &mut Vec<DVec3>,
+    ) -> bool {
         self.moving_shapes.iter().any(|moving| {
             placed.clear();
             let between = Between::new(self, moving, rotation, position);
@@ -111,7 +124,7 @@ fn pierce(fixed: &Shape, moving: &Shape, placed: &[DVec3], rotation: &DMat3) -> 
 }
 
 /// Whether the segment between `ends` passes through a convex polygon of this unit normal.
-fn passes<I: Iterator<Item = DVec3> + Clone>(
+pub(super) fn passes<I: Iterator<Item = DVec3> + Clone>(
     ends: [DVec3; 2],
     normal: DVec3,
     corners: impl Fn() -> I,

@@ -5,7 +5,7 @@ use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
 use super::nearby::MET;
 use super::overlap::Between;
-use super::search::{Asked, Carried, Number, Trees};
+use super::search::{Asked, Carried, Gaps, Number, Trees};
 use super::shape::Shape;
 use super::{Contact, Pair};
 use crate::pose::CorPose;
@@ -39,7 +39,7 @@ struct Near {
     rotation: DMat3,
     position: DVec3,
     counts: Counts,
-    reach: f64,
+    gaps: Gaps,
     elements: Vec<(Number, Element)>,
 }
 
@@ -154,18 +154,18 @@ impl<'a> Turned<'a> {
         carried
     }
 
-    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`; a foot may lie
-    /// beyond the border of its feature by `seam`.
+    /// Everything with such a gap along its normal, with the COR at `position`; a foot may lie beyond the border of its feature by `seam`. Deeper than
+    /// that the halves are not near each other along this normal: they passed.
     pub(super) fn contacts(
         &mut self,
         position: DVec3,
-        reach: f64,
+        gaps: Gaps,
         seam: f64,
         mut meet: impl FnMut((Contact, Meeting)),
     ) {
         if let Some(trees) = self.trees {
             // Feet may lie beyond both borders.
-            self.look_near(trees, position, reach + 2.0 * seam);
+            self.look_near(trees, position, gaps.widened(2.0 * seam));
         }
         let Self { pair, rotation, counts, .. } = &*self;
         // What was found for a wider slack is asked again.
@@ -177,8 +177,7 @@ impl<'a> Turned<'a> {
         });
         for element in self.elements.iter().chain(near) {
             let gap = element.gap(position);
-            // Deeper than `reach` the halves are not near each other along this normal: they passed.
-            if gap.abs() > reach {
+            if !gaps.hold(gap) {
                 continue;
             }
             let Some(point) = self.foot(element, position, seam) else { continue };
@@ -188,15 +187,16 @@ impl<'a> Turned<'a> {
         }
     }
 
-    /// Sees to it that what was found last is what may touch within `reach` here, or more.
-    fn look_near(&mut self, trees: &Trees, position: DVec3, reach: f64) {
+    /// Sees to it that what was found last is what has such gaps here, or more.
+    fn look_near(&mut self, trees: &Trees, position: DVec3, gaps: Gaps) {
         let Self { pair, rotation, counts, near, .. } = self;
         let holds = |near: &Near| {
             near.position == position
                 && near.rotation == *rotation
                 && near.counts.lowest == counts.lowest
                 && near.counts.slack >= counts.slack
-                && near.reach >= reach
+                && near.gaps.deep >= gaps.deep
+                && near.gaps.front >= gaps.front
         };
         if let Some(k) = near.iter().position(holds) {
             near[k..].rotate_left(1);
@@ -204,9 +204,10 @@ impl<'a> Turned<'a> {
         }
         let mut elements = if near.len() < KEPT { Vec::new() } else { near.remove(0).elements };
         // What a motion tries is where it may go on.
-        let reach = reach.max(MET + 2.0 * SEAM);
-        trees.near(pair, rotation, position, *counts, reach, &mut elements);
-        near.push(Near { rotation: *rotation, position, counts: *counts, reach, elements });
+        let least = MET + 2.0 * SEAM;
+        let gaps = Gaps { deep: gaps.deep.max(least), front: gaps.front.max(least) };
+        trees.near(pair, rotation, position, *counts, gaps, &mut elements);
+        near.push(Near { rotation: *rotation, position, counts: *counts, gaps, elements });
     }
 
     /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than

@@ -57,7 +57,7 @@ fn both<'a>(pair: &'a Pair, rotation: &DMat3, counts: Counts) -> [Turned<'a>; 2]
 
 fn contacts(turned: &mut Turned<'_>, position: DVec3, reach: f64) -> Vec<(Contact, Meeting)> {
     let mut out = Vec::new();
-    turned.contacts(position, reach, SEAM, |contact| out.push(contact));
+    turned.contacts(position, Gaps::within(reach), SEAM, |contact| out.push(contact));
     out
 }
 
@@ -86,6 +86,21 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
     let counts = Counts { slack: slack.max(FLUSH), lowest: -0.5 };
     let [mut listed, mut searched] = both(pair, &pose.rotation, counts);
     let position = pose.lateral.extend(z - below.min(reach));
+    prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
+    // What overlaps alone, and whether an edge passes through.
+    let lower = position - DVec3::Z * (0.5 * reach);
+    let overlaps = |turned: &mut Turned<'_>| {
+        let mut out = Vec::new();
+        let gaps = Gaps { deep: reach, front: -1e-9 };
+        turned.contacts(lower, gaps, SEAM, |contact| out.push(contact));
+        out
+    };
+    prop_assert_eq!(overlaps(&mut searched), overlaps(&mut listed));
+    let trees = pair.trees.as_ref().unwrap();
+    for at in [position, lower] {
+        let by_plan = pair.overlaps_by_plan(&pose.rotation, at, &mut Vec::new());
+        prop_assert_eq!(trees.is_passed(pair, &pose.rotation, at), by_plan);
+    }
     prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
     // What was found is asked for again, and less of it.
     let fewer = Counts { slack: 0.5 * counts.slack, ..counts };

@@ -14,7 +14,7 @@
 use super::super::motion::{Motion, State};
 use super::super::projection::Vector;
 use super::{BORDER, FAR_SIDE, LANDING, SUPPORT};
-use crate::contact::{Contact, Meeting};
+use crate::contact::{Contact, Meeting, chord};
 
 /// Most trials of a step: bisection alone takes some 35 to [`NOWHERE`].
 const MOST_TRIALS: usize = 60;
@@ -27,6 +27,8 @@ const TRUSTED: f64 = 1e-6;
 const CLOSE: f64 = 1e-6;
 /// What was open by less than this share of its overlap before a step had been passed earlier, behind a wall.
 const PASSED_BEFORE: f64 = 0.25;
+/// So a gap that counts has closed by this many times what the body moved at most, with room for edges, whose feet move, too.
+const CLOSED_BY: f64 = 2.0;
 /// False position keeps off the ends of its interval by this share of it.
 const EDGE: f64 = 1e-6;
 
@@ -226,12 +228,12 @@ impl Motion<'_> {
     /// Of what overlaps at `next`, `at` from `state`, what was met first if gaps close evenly.
     fn first_met(&mut self, state: &State, next: &State, at: f64) -> Option<Event> {
         let (_, closed) = self.horizon(at);
+        let closed = closed.min(CLOSED_BY * self.moved_by(state, next));
         self.look(next);
         let mut touched = std::mem::take(&mut self.sliding.touched);
-        self.nearby.contacts_within(next.cor, closed + LANDING, BORDER, &mut touched);
+        self.nearby.overlaps_within(next.cor, [LANDING, closed + LANDING], BORDER, &mut touched);
         let first = touched
             .iter()
-            .filter(|(contact, _)| contact.gap < -LANDING)
             .filter_map(|&(contact, meeting)| {
                 let before = self.pair.contact(&contact, &meeting, &state.rotation, state.cor).gap;
                 // A gap that was not open before is that of a feature which has only now come near: others first.
@@ -242,6 +244,11 @@ impl Motion<'_> {
             .map(|(_, (contact, meeting))| Event { contact, meeting, kind: Kind::Met });
         self.sliding.touched = touched;
         first
+    }
+
+    /// How far any point of the body is moved at most.
+    fn moved_by(&self, from: &State, to: &State) -> f64 {
+        from.cor.distance(to.cor) + self.radius * chord(&from.rotation, &to.rotation)
     }
 
     /// Whether the halves overlap at `state`.
