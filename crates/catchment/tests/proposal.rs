@@ -258,3 +258,40 @@ fn a_unit_that_nobody_says_is_asked_for() {
     assert!(matches!(&refused, ProposalError::NoUnit { guess: LengthUnit::Mm, .. }), "{refused}");
     assert!(refused.to_string().contains("the part is 40 × 40 × "), "{refused}");
 }
+
+/// A plate has no seat in a hollow; with the ball that was bought for it, it has.
+#[test]
+fn a_bought_ball_is_part_of_a_half() {
+    let folder = tempfile::tempdir().unwrap();
+    let hollow = family("pyramid", "");
+    let mut dice = Dice(11);
+    let fixed = write(folder.path(), "hollow.stl", &hollow.connector().fixed, &dice.frame());
+    let corner = |k: usize| {
+        let sign = |bit: usize| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };
+        DVec3::new(0.5 * sign(0), 0.5 * sign(1), 0.1 * f64::from(k >> 2 & 1 == 1))
+    };
+    let plate = Half { surfaces: vec![convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()] };
+    // In its file the plate lies with its face to +x.
+    let frame = DAffine3 {
+        matrix3: DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X),
+        translation: DVec3::new(30.0, -7.0, 12.0),
+    };
+    let moving = write(folder.path(), "plate.stl", &plate, &frame);
+    let parts = [fixed, moving];
+    let alone = propose(&parts, &settings(Frames::Facing), &folder.path().join("d.toml"), &Exec::new());
+    assert!(matches!(alone, Err(ProposalError::NoSeat { .. })), "{alone:?}");
+    let ball = "{ sphere = { radius = 8 }, at = [38, -7, 12] }".to_owned();
+    let with = [Vec::new(), vec![ball.clone()]];
+    let found = proposed(&parts, folder.path(), &Settings { with, ..settings(Frames::Facing) });
+    assert!(found.text.contains("parts = [") && found.text.contains(&ball), "{}", found.text);
+    assert!(found.text.contains("facing = \"+x\""), "{}", found.text);
+    let free = found.problem.alignment().free;
+    assert!(free.contains(Dof::X) && free.contains(Dof::Y), "{free:?}");
+    let off = PoseError { x: 0.2, y: -0.1, ..PoseError::default() };
+    assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
+    // What is wrong with a part is said as of a design.
+    let with = [vec!["{ spere = { radius = 8 } }".to_owned()], Vec::new()];
+    let wrong = Settings { with, ..settings(Frames::Facing) };
+    let wrong = propose(&parts, &wrong, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
+    assert!(matches!(wrong, ProposalError::Problem(_)) && format!("{wrong}").contains("spere"), "{wrong}");
+}

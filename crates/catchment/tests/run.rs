@@ -277,41 +277,52 @@ fn the_pyramid_over_x_y_and_yaw_measures_half_pi() {
     }
 }
 
-/// Of random poses in the largest cube, and in the largest around zero, practically all dock: two and five free errors, with a sharp seat and with play.
+/// Of random poses in the largest cube, and in the largest around zero, practically all dock, and a cube 2 % larger holds one that does not: two to five
+/// free errors, with a sharp seat and with play.
 #[test]
-fn what_a_run_claims_docks() {
+fn what_a_run_claims_docks_and_hardly_more_does() {
     let planar = [Dof::X, Dof::Pitch].into_iter().collect::<DofSet>();
     let turned = [Dof::X, Dof::Yaw].into_iter().collect::<DofSet>();
-    // Of the 3-D X-Face cells claim too much: a cube of 0.167 where the exact window is one of 0.148, in whose corners 0.9 % fail. It must not become worse.
-    for (family, free, cells, least) in [
-        (Family::VFace, planar, 100, 0.999),
-        (Family::XFace, planar, 100, 0.999),
-        (Family::PinHole, turned, 60, 0.999),
-        (Family::Pyramid, DofSet::ALL, 12, 0.999),
-        (Family::XFace3d, DofSet::ALL, 12, 0.99),
+    for (family, free, cells) in [
+        (Family::VFace, planar, 100),
+        (Family::XFace, planar, 100),
+        (Family::PinHole, turned, 60),
+        (Family::Pyramid, DofSet::ALL, 12),
+        (Family::XFace3d, DofSet::ALL, 12),
     ] {
         let problem = problem(family, free);
-        let merits = run("confluence", cells, 0).on(&problem, &Exec::new()).unwrap().merits;
+        let merits = run("confluence", cells, 500).on(&problem, &Exec::new()).unwrap().merits;
         let (onaa, centred) = (merits.onaa.unwrap(), merits.centered.unwrap());
-        assert!(onaa.edge > 0.0 && centred.scale > 0.0, "{family:?}");
+        assert!(onaa.is_followed && centred.is_followed && onaa.edge >= centred.scale, "{family:?}");
+        assert!(centred.scale > 0.0, "{family:?}");
         let around_zero: Vec<_> =
             centred.half_widths.iter().map(|(dof, half)| (*dof, -half, *half)).collect();
-        for bounds in [&onaa.bounds, &around_zero] {
-            let poses = if family == Family::PinHole { 500 } else { 10_000 };
+        let of_box = |share: f64, dof: Dof| share / problem.alignment().half_range(dof);
+        let docking = |bounds: &[(Dof, f64, f64)], poses: usize, place: &dyn Fn(f64) -> f64| {
             let Domain::Poses(drawn) = Domain::random(problem.alignment(), poses, 11) else { unreachable!() };
             let inside = |drawn: &PoseError| {
                 let mut error = drawn.to_array();
                 for (dof, lo, up) in bounds {
-                    let share = 0.5 + 0.5 * error[dof.index()] / problem.alignment().half_range(*dof);
-                    error[dof.index()] = lo + (up - lo) * share;
+                    let at = place(of_box(error[dof.index()], *dof));
+                    error[dof.index()] = f64::midpoint(*lo, *up) + 0.5 * (up - lo) * at;
                 }
                 PoseError::from_array(error)
             };
             let domain = Domain::Poses(drawn.iter().map(inside).collect());
             let settings = descent::Settings::default();
             let (found, _) = descent::run(problem.pair(), domain, &settings, &Exec::new()).unwrap();
-            let docks = found.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count();
-            assert!(docks as f64 >= least * poses as f64, "{family:?} {bounds:?}: {docks} of {poses}");
+            found.outcomes.iter().filter(|outcome| **outcome == Outcome::Aligned).count()
+        };
+        for bounds in [&onaa.bounds, &around_zero] {
+            let poses = if family == Family::PinHole { 500 } else { 10_000 };
+            let docks = docking(bounds, poses, &|share| share);
+            assert!(docks as f64 >= 0.999 * poses as f64, "{family:?} {bounds:?}: {docks} of {poses}");
+            // Larger ones fail in their corners and on their faces first, unless the error box ends them.
+            let is_cut =
+                bounds.iter().any(|(dof, lo, up)| -of_box(*lo, *dof) > 0.99 || of_box(*up, *dof) > 0.99);
+            let outer = |share: f64| 1.02 * (3.0 * share).clamp(-1.0, 1.0);
+            let fewer = poses.min(4000);
+            assert!(is_cut || docking(bounds, fewer, &outer) < fewer, "{family:?} {bounds:?}: too small");
         }
     }
 }

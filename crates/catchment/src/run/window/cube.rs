@@ -35,14 +35,14 @@ pub(in crate::run) fn follow(
     motions_by: &descent::Settings,
     exec: &Exec,
 ) -> Result<(), Cancelled> {
-    let about = |center: [f64; 5]| about(problem, center, seed, motions_by, exec);
+    let about = |center: [f64; 5], least: f64| about(problem, center, least, seed, motions_by, exec);
     let sides = |scale: f64| -> Vec<(Dof, f64)> {
         grid.axes.iter().map(|axis| (axis.dof, 0.5 * scale * (axis.hi - axis.lo))).collect()
     };
     let centered = if let Some(known) = centered {
         known
     } else {
-        let Cube { scale, reaches_border } = about([0.0; 5])?;
+        let Cube { scale, reaches_border } = about([0.0; 5], 0.0)?;
         CenteredBox { scale, half_widths: sides(scale), reaches_border, is_followed: true }
     };
     let mut center = [0.0; 5];
@@ -50,7 +50,9 @@ pub(in crate::run) fn follow(
     for (axis, lo, hi) in &of_cells {
         center[axis.index()] = 0.5 * (lo + hi);
     }
-    let elsewhere = if of_cells.is_empty() { 0.0 } else { about(center)?.scale };
+    // What is no larger than the centred one is not told.
+    let is_elsewhere = center.iter().any(|middle| middle.abs() > 1e-9);
+    let elsewhere = if is_elsewhere { about(center, centered.scale)?.scale } else { 0.0 };
     let (edge, center) =
         if centered.scale >= elsewhere { (centered.scale, [0.0; 5]) } else { (elsewhere, center) };
     let bounds = |(axis, half): (Dof, f64)| (axis, center[axis.index()] - half, center[axis.index()] + half);
@@ -69,6 +71,7 @@ struct Cube {
 fn about(
     problem: &Problem,
     center: [f64; 5],
+    least: f64,
     seed: u64,
     motions_by: &descent::Settings,
     exec: &Exec,
@@ -76,11 +79,11 @@ fn about(
     let none = Cube { scale: 0.0, reaches_border: false };
     let middle = descent::outcome(problem.pair(), &PoseError::from_array(center), motions_by).outcome;
     let space = Space::about(problem, center);
-    if middle != Outcome::Aligned || space.border() <= 0.0 {
+    if middle != Outcome::Aligned || space.border() <= least {
         return Ok(none);
     }
     let mut search = Search::new(problem, space, seed, motions_by);
     let random = descent::Settings::default().default_samples(problem.pair());
-    let found = search.shrink(random, exec)?;
+    let found = search.shrink(random, least, exec)?;
     Ok(found.map_or(none, |found| Cube { scale: found.scale, reaches_border: search.worst().is_none() }))
 }

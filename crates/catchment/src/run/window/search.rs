@@ -188,6 +188,8 @@ pub(super) struct Search<'a> {
     settings: descent::Settings,
     space: Space,
     nearest: Option<Failing>,
+    /// No window below this scale is asked for.
+    least: f64,
     random: Stream,
     batches: u64,
     followed: usize,
@@ -200,6 +202,7 @@ impl<'a> Search<'a> {
             settings: settings.clone(),
             space,
             nearest: None,
+            least: 0.0,
             random: Stream::new(seed),
             batches: 0,
             followed: 0,
@@ -226,7 +229,7 @@ impl<'a> Search<'a> {
 
     /// Whether anything is left of the window.
     pub(super) fn has_room(&self) -> bool {
-        self.window(MARGIN) > NONE * self.space.border
+        self.window(MARGIN) > self.least.max(NONE * self.space.border)
     }
 
     /// The nearest pose that fails.
@@ -235,8 +238,14 @@ impl<'a> Search<'a> {
     }
 
     /// Looks for what fails, and makes the window smaller until no random pose of it does. None where poses fail however small it is, or lie all
-    /// over: [`Self::worst`] has one of them.
-    pub(super) fn shrink(&mut self, motions: usize, exec: &Exec) -> Result<Option<Shrunk>, Cancelled> {
+    /// over ([`Self::worst`] has one of them), and where it is not above `least`, below which nobody asks.
+    pub(super) fn shrink(
+        &mut self,
+        motions: usize,
+        least: f64,
+        exec: &Exec,
+    ) -> Result<Option<Shrunk>, Cancelled> {
+        self.least = least;
         self.directions(exec)?;
         for redrawn in 0..WINDOWS {
             self.moves(exec)?;
@@ -274,7 +283,7 @@ impl<'a> Search<'a> {
         let mut quiet = 0;
         let enough = (QUIET as f64 * affordable(self.problem.pair()).sqrt()).max(LEAST_QUIET) as usize;
         let last = self.batches + MOST_BATCHES;
-        while quiet < enough && self.batches < last {
+        while quiet < enough && self.batches < last && self.has_room() {
             let random = self.random.branch(self.batches);
             self.batches += 1;
             let all: Vec<Direction> =
@@ -342,7 +351,7 @@ impl<'a> Search<'a> {
         for (number, batch) in all.chunks(BATCH).enumerate() {
             exec.report((number * BATCH) as f64 / all.len() as f64, "directions");
             let to = if self.nearest.is_some() { INSIDE * self.scale() } else { self.space.border };
-            if to > from {
+            if to > from && self.has_room() {
                 let share = (looks as f64 * (to - from) / whole).ceil() as usize;
                 self.try_all(batch, [from, to], share.max(1), exec)?;
             }
