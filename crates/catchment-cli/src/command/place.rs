@@ -4,7 +4,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file};
-use catchment::design::{LengthUnit, parse_dofs};
+use catchment::design::{FileSpec, LengthUnit, parse_dofs};
 use catchment::pose::DofSet;
 use catchment::report::figure;
 use catchment::study::proposal::{Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
@@ -21,6 +21,7 @@ use std::path::{Component, Path, PathBuf};
     catchment place socket.stl plug.stl --unit mm -o design.toml --figure pair.png\n  \
     catchment place base.obj tool.obj --unit m --drawn assembled --approach=-z -o design.toml\n  \
     catchment place plate.3mf plate.3mf --facing-fixed +y        the same part twice; the design on stdout\n  \
+    catchment place block.stl plate.stl --unit mm --with-moving 'sphere = { radius = 6 }, at = [21, 0, 8]'\n  \
     catchment check design.toml                                 what was understood\n  \
     catchment run design.toml -o out                            and what it forgives")]
 pub(crate) struct PlaceArgs {
@@ -33,6 +34,13 @@ pub(crate) struct PlaceArgs {
     /// Unit of files that do not say it, and of the design: um, mm, cm, m or in
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<LengthUnit>,
+    /// What belongs to the fixed half beside its file: another file, or a bought part as the design has it, such as
+    /// 'sphere = { radius = 6 }, at = [21, 0, 8]' (docs/parts.md), in the coordinates of its file; may be repeated
+    #[arg(long, value_name = "PART")]
+    with_fixed: Vec<String>,
+    /// The same of the moving half
+    #[arg(long, value_name = "PART")]
+    with_moving: Vec<String>,
     /// In which frames the parts are drawn
     #[arg(long, value_enum, default_value_t = Drawn::Auto, help_heading = "Instead of what is found")]
     drawn: Drawn,
@@ -94,7 +102,7 @@ const WORTH: f64 = 0.01;
 
 pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     let kind = files(args)?;
-    let settings = settings(args)?;
+    let mut settings = settings(args)?;
     let running = args.exec.start()?;
     if kind.is_some() {
         figure::ensure_fits(0, &running.exec)?;
@@ -110,6 +118,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help(format!("there is no file {}", absent.join(", nor ")), Some(help)));
     }
     let parts = [part(&args.fixed, place)?, part(&args.moving, place)?];
+    settings.with = [more(&args.with_fixed, args, place)?, more(&args.with_moving, args, place)?];
     running.may_be_left();
     let found = propose(&parts, &settings, place, &running.exec).map_err(refused)?;
     // All of it is there before any of it is written.
@@ -176,7 +185,39 @@ fn settings(args: &PlaceArgs) -> Result<Settings, Failure> {
         unit: args.unit,
         free: args.free,
         name: args.name.clone(),
+        with: [Vec::new(), Vec::new()],
     })
+}
+
+/// Further parts as elements of a design's list: a file by its name, everything else as it was written.
+fn more(parts: &[String], args: &PlaceArgs, place: &Path) -> Result<Vec<String>, Failure> {
+    let one = |text: &String| {
+        let text = text.trim();
+        if text.starts_with('{') || text.contains('=') {
+            if text.lines().count() > 1 {
+                let help = "write it in one line, as an inline table".to_owned();
+                return Err(Failure::with_help("a part of several lines".to_owned(), Some(help)));
+            }
+            return Ok(if text.starts_with('{') { text.to_owned() } else { format!("{{ {text} }}") });
+        }
+        let path = Path::new(text);
+        if !path.exists() {
+            let help =
+                "name a file, or write a part as a design has it: 'sphere = { radius = 6 }, at = [21, 0, 8]'";
+            return Err(Failure::with_help(format!("there is no file {text}"), Some(help.to_owned())));
+        }
+        let written = part(path, place)?.written;
+        let name = written.replace('\\', "\\\\").replace('"', "\\\"");
+        if FileSpec::new(path, 1.0).may_say_its_unit() {
+            return Ok(format!("{{ mesh = \"{name}\" }}"));
+        }
+        let Some(unit) = args.unit else {
+            let help = "--unit mm?".to_owned();
+            return Err(Failure::with_help(format!("{text} does not say its unit"), Some(help)));
+        };
+        Ok(format!("{{ mesh = \"{name}\", unit = \"{}\" }}", unit.symbol()))
+    };
+    parts.iter().map(one).collect()
 }
 
 /// What was chosen, what came next, and what to look at.

@@ -74,6 +74,11 @@ pub(crate) fn of_file(file: &FileSpec, side: Side, exec: &Exec) -> Result<Half, 
     source::alone(file, side, &source::disk::read, exec)
 }
 
+/// The half that a design says, files read from disk: of any size.
+pub(crate) fn of_half(spec: &HalfSpec, side: Side, exec: &Exec) -> Result<Half, Vec<Problem>> {
+    Ok(Source::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)?.half)
+}
+
 /// How large a half may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Size {

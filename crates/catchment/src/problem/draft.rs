@@ -64,6 +64,11 @@ impl Draft {
         if is_measured { measure::measured(draft, exec) } else { Ok(draft) }
     }
 
+    /// The text of a design without a D, which nobody asks for: lengths in its unit, what is round drawn roughly.
+    pub(crate) fn read_roughly(source: SourceText) -> Result<Self, ProblemError> {
+        Self::read_as(source, Width::Provisional(None)).map(|(draft, _)| draft)
+    }
+
     /// The same with what is known of D; and whether that was needed.
     pub(super) fn read_as(source: SourceText, width: Width) -> Result<(Self, bool), ProblemError> {
         let folder = source.path.parent().unwrap_or_else(|| Path::new(""));

@@ -44,6 +44,39 @@ fn stem(path: &Path) -> String {
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// What draws a half: its file, or a list of parts that begins with it.
+fn drawn(part: &PartFile, with: &[String], unit: LengthUnit) -> Vec<String> {
+    let is_step = FileSpec::new(&part.path, 1.0).is_step();
+    let step = "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".";
+    let mesh = format!("mesh = {}", quoted(&part.written));
+    let stated = (!says_its_unit(&part.path)).then(|| format!("unit = \"{}\"", unit.symbol()));
+    let mut lines = Vec::new();
+    if with.is_empty() {
+        lines.push(mesh);
+        lines.extend(is_step.then(|| step.to_owned()));
+        lines.extend(stated.map(|unit| unit + " # of the file, which does not say it"));
+    } else {
+        lines.extend(is_step.then(|| step.to_owned()));
+        lines.push("# The file, and what belongs to it, in its coordinates.".to_owned());
+        lines.push("parts = [".to_owned());
+        let first = [Some(mesh), stated].into_iter().flatten().collect::<Vec<_>>().join(", ");
+        lines.push(format!("    {{ {first} }},"));
+        lines.extend(with.iter().map(|one| format!("    {one},")));
+        lines.push("]".to_owned());
+    }
+    lines
+}
+
+/// A design that says no more than what draws the halves.
+pub(super) fn halves(parts: &[PartFile; 2], settings: &Settings) -> String {
+    let unit = design_unit(settings);
+    let mut text = format!("[connector]\nunit = \"{}\"\n", unit.symbol());
+    for ((name, part), with) in ["fixed", "moving"].into_iter().zip(parts).zip(&settings.with) {
+        let _ = writeln!(text, "\n[connector.{name}]\n{}", drawn(part, with, unit).join("\n"));
+    }
+    text
+}
+
 /// The design; lengths of `judged` times `scale` are in its unit.
 pub(super) fn text(
     parts: &[PartFile; 2],
@@ -94,14 +127,8 @@ pub(super) fn text(
     let to_axis = [-judged.center, judged.offset - judged.center];
     for (k, name) in ["fixed", "moving"].into_iter().enumerate() {
         line(&format!("\n[connector.{name}]"));
-        line(&format!("mesh = {}", quoted(&parts[k].written)));
-        if FileSpec::new(&parts[k].path, 1.0).is_step() {
-            line(
-                "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".",
-            );
-        }
-        if !says_its_unit(&parts[k].path) {
-            line(&format!("unit = \"{}\" # of the file, which does not say it", unit.symbol()));
+        for words in drawn(&parts[k], &settings.with[k], unit) {
+            line(&words);
         }
         if let Lie::Facing { fixed, moving, turned } = judged.lie {
             line("# Where it faces in its file, which is turned to +z.");

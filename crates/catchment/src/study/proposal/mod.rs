@@ -24,9 +24,9 @@ mod way;
 
 pub use way::{Lie, Way};
 
-use crate::connector::{Half, Side, of_file};
+use crate::connector::{Half, Side, of_file, of_half};
 use crate::contact::told::{Told, number};
-use crate::design::{FileSpec, FileUnit, LengthUnit, SourceText};
+use crate::design::{ConnectorSpec, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{DofSet, PoseError};
 use crate::problem::{Draft, Problem, ProblemError, findings};
@@ -62,6 +62,9 @@ pub struct Settings {
     pub free: Option<DofSet>,
     /// The name of the design.
     pub name: Option<String>,
+    /// What belongs to the fixed and to the moving half beside its file, which no export has: bought balls, pins, more files. Each as an element of the
+    /// design's list of parts, `{ sphere = { radius = 6 }, at = [21, 0, 8] }`, in the coordinates of the half's file.
+    pub with: [Vec<String>; 2],
 }
 
 /// A part.
@@ -193,7 +196,7 @@ pub fn propose(
     place: &Path,
     exec: &Exec,
 ) -> Result<Proposal, ProposalError> {
-    let halves = read(parts, settings, exec)?;
+    let halves = read(parts, settings, place, exec)?;
     exec.check()?;
     let unit = halves.each_ref().map(middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
@@ -297,9 +300,18 @@ fn sort(found: Vec<Result<Judged, String>>, judged: &mut Vec<Judged>, refused: &
 }
 
 /// The halves, in the unit of the design.
-fn read(parts: &[PartFile; 2], settings: &Settings, exec: &Exec) -> Result<[Half; 2], ProposalError> {
+fn read(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    place: &Path,
+    exec: &Exec,
+) -> Result<[Half; 2], ProposalError> {
     let unit = design_unit(settings);
+    let composed = composed(parts, settings, place)?;
     let one = |part: &PartFile, side: Side| {
+        if let Some(spec) = &composed[usize::from(side == Side::Moving)] {
+            return of_half(spec, side, exec);
+        }
         let mut spec = FileSpec::new(&part.path, 1.0);
         if says_its_unit(&part.path) {
             (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit.metres());
@@ -324,6 +336,22 @@ fn read(parts: &[PartFile; 2], settings: &Settings, exec: &Exec) -> Result<[Half
         }
     }
     Ok([fixed, moving])
+}
+
+/// The halves that are more than their files, as a design says it.
+fn composed(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    place: &Path,
+) -> Result<[Option<HalfSpec>; 2], ProposalError> {
+    if settings.with.iter().all(Vec::is_empty) {
+        return Ok([None, None]);
+    }
+    let text = file::halves(parts, settings);
+    let draft = Draft::read_roughly(SourceText::new(place, text))?;
+    let ConnectorSpec::Own(own) = draft.design().connector.clone() else { return Ok([None, None]) };
+    let [fixed, moving] = settings.with.each_ref().map(|with| !with.is_empty());
+    Ok([fixed.then_some(own.fixed), moving.then_some(own.moving)])
 }
 
 /// The unit of the design.
