@@ -291,7 +291,7 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
         (Family::XFace3d, DofSet::ALL, 12),
     ] {
         let problem = problem(family, free);
-        let merits = run("confluence", cells, 500).on(&problem, &Exec::new()).unwrap().merits;
+        let merits = run("confluence", cells, 4000).on(&problem, &Exec::new()).unwrap().merits;
         let (onaa, centred) = (merits.onaa.unwrap(), merits.centered.unwrap());
         assert!(onaa.is_followed && centred.is_followed && onaa.edge >= centred.scale, "{family:?}");
         assert!(centred.scale > 0.0, "{family:?}");

@@ -73,8 +73,6 @@ struct Built {
     axis: DVec3,
     angles: [f64; 2],
     leaf: Leaf,
-    /// By what it is divided from others.
-    place: f64,
 }
 
 impl Tree {
@@ -134,44 +132,18 @@ impl Tree {
     }
 }
 
-/// Components of normals that differ by more than this, of 2, part features first.
-const APART: f64 = 0.9;
-
-/// Divides features by their kind, which says what they meet; then by which way they face, where that differs much: what is near each other and faces
-/// otherwise touches other things; then across the longest side of the box around them.
+/// Divides features across the longest side of the box around them.
 fn halves(features: &mut [Built]) -> (&mut [Built], &mut [Built]) {
-    let extent = |features: &[Built], low: fn(&Built) -> DVec3, high: fn(&Built) -> DVec3| {
-        let least = features.iter().map(low).fold(DVec3::INFINITY, DVec3::min);
-        (least, features.iter().map(high).fold(DVec3::NEG_INFINITY, DVec3::max))
-    };
-    let longest = |sides: DVec3| {
-        let is_longest = |e: &DVec3| e.dot(sides) == sides.max_element();
-        [DVec3::X, DVec3::Y, DVec3::Z].into_iter().find(is_longest).unwrap_or(DVec3::X)
-    };
-    // How many lie below a place, once all have been put in one.
-    let below = |features: &[Built], middle: f64| features.iter().filter(|f| f.place < middle).count();
-    let last = features.iter().map(|f| f.leaf.kind).max();
-    let (back, front) = extent(features, |f| f.axis, |f| f.axis);
-    let (low, high) = extent(features, |f| f.low, |f| f.high);
-    let (turn, side) = (longest(front - back), longest(high - low));
-    for f in features.iter_mut() {
-        f.place = f64::from(u8::from(Some(f.leaf.kind) == last));
-    }
-    let mut middle = below(features, 1.0);
-    if middle == 0 && (front - back).max_element() > APART {
-        for f in features.iter_mut() {
-            f.place = turn.dot(f.axis);
-        }
-        middle = below(features, 0.5 * turn.dot(back + front));
-    } else if middle == 0 {
-        for f in features.iter_mut() {
-            f.place = side.dot(f.low + f.high);
-        }
-        middle = features.len() / 2;
-    }
+    let low = features.iter().map(|f| f.low).fold(DVec3::INFINITY, DVec3::min);
+    let high = features.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
+    let size = high - low;
+    let longest = |e: &DVec3| e.dot(size) == size.max_element();
+    let along = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().find(longest).unwrap_or(DVec3::X);
+    let place = |f: &Built| along.dot(f.low + f.high);
     let number = |f: &Built| (f.leaf.shape, f.leaf.kind, f.leaf.index);
+    let middle = features.len() / 2;
     features.select_nth_unstable_by(middle, |a, b| {
-        a.place.total_cmp(&b.place).then_with(|| number(a).cmp(&number(b)))
+        place(a).total_cmp(&place(b)).then_with(|| number(a).cmp(&number(b)))
     });
     features.split_at_mut(middle)
 }
@@ -201,7 +173,7 @@ fn features(number: u32, shape: &Shape, out: &mut Vec<Built>) {
         let leaf = Leaf { shape: number, kind, index };
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         leaf.points(shape, |p| (low, high) = (low.min(p), high.max(p)));
-        out.push(Built { low, high, axis, angles: SLACKS.map(angle), leaf, place: 0.0 });
+        out.push(Built { low, high, axis, angles: SLACKS.map(angle), leaf });
     };
     for (facet, index) in shape.facets.iter().zip(0..) {
         add(Kind::Facet, index, facet.normal, &|_| 0.0);

@@ -10,7 +10,7 @@ use crate::merit::Merits;
 use crate::merit::success::success;
 use crate::merit::tolerance::followed;
 use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop};
-use crate::method::{Decided, Doubts, Follow, Method, affordable, descent};
+use crate::method::{Decide, Decided, Doubts, Follow, Method, affordable, descent};
 use crate::problem::Problem;
 
 /// What follows random poses and doubtful cells exactly: the method itself where it decides each pose by itself (descents would know
@@ -92,7 +92,12 @@ pub(super) fn finish(
         })?;
         if judge.is_descent() {
             let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
-            window::follow_cubes(&mut merits, centered, problem, grid, run.seed, &motions, exec)?;
+            let random = corrected.as_ref().map_or_else(
+                || motions.default_samples(problem.pair()),
+                |corrected| corrected.found.descents,
+            );
+            let by = window::CubeSearch { seed: run.seed, random, motions: &motions };
+            window::follow_cubes(&mut merits, centered, problem, grid, &by, exec)?;
         }
     }
     let success = match &run.errors {

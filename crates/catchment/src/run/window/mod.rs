@@ -25,7 +25,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-pub(super) use cube::follow as follow_cubes;
+pub(super) use cube::{Search as CubeSearch, follow as follow_cubes};
 
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
@@ -280,7 +280,7 @@ pub(super) fn by(
         return Err(WindowError::NotDocked { outcome: home });
     }
     let mut search = Search::new(problem, space, settings.seed, motions_by);
-    let Some(Shrunk { scale, redrawn }) = search.shrink(motions, 0.0, exec)? else {
+    let Some(Shrunk { scale, redrawn }) = search.shrink(motions, exec)? else {
         let error = search.worst().unwrap_or_default();
         let outcome = outcome_of(&error);
         let given = settings.fixed.iter().flatten().any(|half_width| *half_width > 0.0);

@@ -190,6 +190,8 @@ pub(super) struct Search<'a> {
     nearest: Option<Failing>,
     /// No window below this scale is asked for.
     least: f64,
+    /// After so many motions what is found is good enough.
+    most: usize,
     random: Stream,
     batches: u64,
     followed: usize,
@@ -203,10 +205,25 @@ impl<'a> Search<'a> {
             space,
             nearest: None,
             least: 0.0,
+            most: usize::MAX,
             random: Stream::new(seed),
             batches: 0,
             followed: 0,
         }
+    }
+
+    /// Ends it after so many motions, more or less.
+    #[must_use]
+    pub(super) const fn within(mut self, most: usize) -> Self {
+        self.most = most;
+        self
+    }
+
+    /// Gives up on what is not above this scale.
+    #[must_use]
+    pub(super) const fn above(mut self, least: f64) -> Self {
+        self.least = least;
+        self
     }
 
     pub(super) const fn space(&self) -> &Space {
@@ -238,14 +255,8 @@ impl<'a> Search<'a> {
     }
 
     /// Looks for what fails, and makes the window smaller until no random pose of it does. None where poses fail however small it is, or lie all
-    /// over ([`Self::worst`] has one of them), and where it is not above `least`, below which nobody asks.
-    pub(super) fn shrink(
-        &mut self,
-        motions: usize,
-        least: f64,
-        exec: &Exec,
-    ) -> Result<Option<Shrunk>, Cancelled> {
-        self.least = least;
+    /// over ([`Self::worst`] has one of them), and where it is no larger than asked for. Once it has taken enough motions, no random poses are drawn any more.
+    pub(super) fn shrink(&mut self, motions: usize, exec: &Exec) -> Result<Option<Shrunk>, Cancelled> {
         self.directions(exec)?;
         for redrawn in 0..WINDOWS {
             self.moves(exec)?;
@@ -253,7 +264,7 @@ impl<'a> Search<'a> {
                 return Ok(None);
             }
             let scale = self.window(MARGIN);
-            if !self.certify(scale, motions, redrawn, exec)? {
+            if self.followed > self.most || !self.certify(scale, motions, redrawn, exec)? {
                 return Ok(Some(Shrunk { scale, redrawn }));
             }
         }
@@ -283,7 +294,7 @@ impl<'a> Search<'a> {
         let mut quiet = 0;
         let enough = (QUIET as f64 * affordable(self.problem.pair()).sqrt()).max(LEAST_QUIET) as usize;
         let last = self.batches + MOST_BATCHES;
-        while quiet < enough && self.batches < last && self.has_room() {
+        while quiet < enough && self.batches < last && self.has_room() && self.followed < self.most {
             let random = self.random.branch(self.batches);
             self.batches += 1;
             let all: Vec<Direction> =

@@ -29,6 +29,9 @@ const CLOSE: f64 = 1e-6;
 const PASSED_BEFORE: f64 = 0.25;
 /// So a gap that counts has closed by this many times what the body moved at most, with room for edges, whose feet move, too.
 const CLOSED_BY: f64 = 2.0;
+/// Of halves of many facets, where what a step may reach is most of a part, overlaps are looked for down to this, in D: deeper ones are seen by
+/// edges that pass through facets, and the step is halved.
+const DEEPEST_MET: f64 = 2e-3;
 /// False position keeps off the ends of its interval by this share of it.
 const EDGE: f64 = 1e-6;
 
@@ -208,9 +211,14 @@ impl Motion<'_> {
 
     /// What comes of a step of length `at` from `state` that ends at `next`.
     fn judge(&mut self, state: &State, next: State, at: f64, carrying: &[usize], wary: bool) -> Trial {
-        if let Some(event) = self.first_met(state, &next, at) {
+        let closed = CLOSED_BY * self.moved_by(state, &next);
+        let closed = closed.min(self.horizon(at).1);
+        let reach = if self.pair.asks_trees() { closed.min(DEEPEST_MET) } else { closed };
+        if let Some(event) = self.first_met(state, &next, reach) {
             return Trial::Passed(next, event);
         }
+        // Only of what was not looked at it is asked whether it overlaps.
+        let wary = wary || reach < closed;
         let holds = carrying.iter().map(|&k| {
             let (before, meeting) = self.contacts[k];
             let contact = self.pair.contact(&before, &meeting, &next.rotation, next.cor);
@@ -225,13 +233,11 @@ impl Motion<'_> {
         }
     }
 
-    /// Of what overlaps at `next`, `at` from `state`, what was met first if gaps close evenly.
-    fn first_met(&mut self, state: &State, next: &State, at: f64) -> Option<Event> {
-        let (_, closed) = self.horizon(at);
-        let closed = closed.min(CLOSED_BY * self.moved_by(state, next));
+    /// Of what overlaps at `next` by up to `reach`, what was met first from `state` on if gaps close evenly.
+    fn first_met(&mut self, state: &State, next: &State, reach: f64) -> Option<Event> {
         self.look(next);
         let mut touched = std::mem::take(&mut self.sliding.touched);
-        self.nearby.overlaps_within(next.cor, [LANDING, closed + LANDING], BORDER, &mut touched);
+        self.nearby.overlaps_within(next.cor, [LANDING, reach + LANDING], BORDER, &mut touched);
         let first = touched
             .iter()
             .filter_map(|&(contact, meeting)| {
