@@ -92,10 +92,8 @@ pub(super) fn finish(
         })?;
         if judge.is_descent() {
             let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
-            let random = corrected.as_ref().map_or_else(
-                || motions.default_samples(problem.pair()),
-                |corrected| corrected.found.descents,
-            );
+            let most = motions.default_samples(problem.pair());
+            let random = corrected.as_ref().map_or(most, |corrected| corrected.found.descents.min(most));
             let by = window::CubeSearch { seed: run.seed, random, motions: &motions };
             window::follow_cubes(&mut merits, centered, problem, grid, &by, exec)?;
         }
