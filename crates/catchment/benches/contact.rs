@@ -31,8 +31,9 @@ fn main() {
         descents(&mut rates, name, &pair(&format!("{name}.toml")));
     }
     for count in FACETS {
-        funnel(&mut rates, count);
+        lathed(&mut rates, &format!("a funnel of {count}"), || meshes::funnel(count));
     }
+    lathed(&mut rates, "a cone of 960 slivers", || meshes::cone(160));
     rates.finish();
 }
 
@@ -42,11 +43,11 @@ const FACETS: [usize; 3] = [1_000, 10_000, 100_000];
 const HEIGHTS: usize = 50;
 const MOTIONS: usize = 10;
 
-/// A filleted funnel as CAD exports it: the whole check, heights of first contact, motions. Its heights are the judge's at a thousand
+/// A filleted funnel as CAD exports it, or a cone: the whole check, heights of first contact, motions. Heights are the judge's at a thousand
 /// triangles, which the tests of the room hold.
-fn funnel(rates: &mut Rates, count: usize) {
+fn lathed(rates: &mut Rates, name: &str, halves: impl Fn() -> [meshes::Triangles; 2]) {
     let build = || {
-        let [fixed, moving] = meshes::funnel(count).map(Source::Triangles);
+        let [fixed, moving] = halves().map(Source::Triangles);
         let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).expect("sound meshes");
         let alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
         let pair = Pair::new(&connector, &alignment);
@@ -65,9 +66,9 @@ fn funnel(rates: &mut Rates, count: usize) {
         |e: &PoseError| CorPose::from_error(e, pair.alignment.center_of_rotation, pair.alignment.free);
     let heights = || poses.iter().map(|e| pair.height(&placed(e))).collect::<Vec<_>>();
     let known = heights();
-    rates.measure(&format!("check of a funnel of {count}"), "checks", 1, &mut || drop(build()), None);
+    rates.measure(&format!("check of {name}"), "checks", 1, &mut || drop(build()), None);
     rates.measure(
-        &format!("poses of a funnel of {count}"),
+        &format!("poses of {name}"),
         "heights",
         HEIGHTS,
         &mut || assert_eq!(heights(), known),
@@ -75,7 +76,7 @@ fn funnel(rates: &mut Rates, count: usize) {
     );
     let settings = descent::Settings::default();
     rates.measure(
-        &format!("random poses of a funnel of {count}"),
+        &format!("random poses of {name}"),
         "descents",
         MOTIONS,
         &mut || {

@@ -6,7 +6,7 @@ use catchment::connector::{Half, convex_hull, stl};
 use catchment::design::LengthUnit;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
-use catchment::study::proposal::{Frames, Lie, PartFile, Proposal, ProposalError, Settings, propose};
+use catchment::study::proposal::{Beside, Frames, Lie, PartFile, Proposal, ProposalError, Settings, propose};
 use glam::{DAffine3, DMat3, DVec2};
 use std::f64::consts::FRAC_PI_2;
 use std::fs;
@@ -281,7 +281,7 @@ fn a_bought_ball_is_part_of_a_half() {
     let alone = propose(&parts, &settings(Frames::Facing), &folder.path().join("d.toml"), &Exec::new());
     assert!(matches!(alone, Err(ProposalError::NoSeat { .. })), "{alone:?}");
     let ball = "{ sphere = { radius = 8 }, at = [38, -7, 12] }".to_owned();
-    let with = [Vec::new(), vec![ball.clone()]];
+    let with = [Vec::new(), vec![Beside::Part(ball.clone())]];
     let found = proposed(&parts, folder.path(), &Settings { with, ..settings(Frames::Facing) });
     assert!(found.text.contains("parts = [") && found.text.contains(&ball), "{}", found.text);
     assert!(found.text.contains("facing = \"+x\""), "{}", found.text);
@@ -290,8 +290,26 @@ fn a_bought_ball_is_part_of_a_half() {
     let off = PoseError { x: 0.2, y: -0.1, ..PoseError::default() };
     assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
     // What is wrong with a part is said as of a design.
-    let with = [vec!["{ spere = { radius = 8 } }".to_owned()], Vec::new()];
+    let with = [vec![Beside::Part("{ spere = { radius = 8 } }".to_owned())], Vec::new()];
     let wrong = Settings { with, ..settings(Frames::Facing) };
     let wrong = propose(&parts, &wrong, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
     assert!(matches!(wrong, ProposalError::Problem(_)) && format!("{wrong}").contains("spere"), "{wrong}");
+    // The plate in two files is the plate; a file whose unit nobody says is named with its own size.
+    let half = |shift: f64| {
+        let corners: Vec<_> = (0..8).map(corner).map(|p| DVec3::new(0.5 * p.x + shift, p.y, p.z)).collect();
+        Half { surfaces: vec![convex_hull(&corners).unwrap()] }
+    };
+    let first = write(folder.path(), "first \"half\".stl", &half(-0.24), &frame);
+    let second = write(folder.path(), "second.stl", &half(0.24), &frame);
+    let parts = [parts[0].clone(), first];
+    let with = [Vec::new(), vec![Beside::File(second), Beside::Part(ball)]];
+    let settings = Settings { with, ..settings(Frames::Facing) };
+    let found = proposed(&parts, folder.path(), &settings);
+    assert_eq!(found.problem.follow(&off).outcome, Outcome::Aligned);
+    let nobody = Settings { unit: None, ..settings };
+    let refused = propose(&parts, &nobody, &folder.path().join("d.toml"), &Exec::new()).unwrap_err();
+    assert!(
+        matches!(&refused, ProposalError::NoUnit { path, .. } if path.ends_with("hollow.stl")),
+        "{refused}"
+    );
 }

@@ -4,10 +4,10 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file};
-use catchment::design::{FileSpec, LengthUnit, parse_dofs};
+use catchment::design::{LengthUnit, parse_dofs};
 use catchment::pose::DofSet;
 use catchment::report::figure;
-use catchment::study::proposal::{Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
+use catchment::study::proposal::{Beside, Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
 use clap::{Args, ValueEnum};
 use std::path::{Component, Path, PathBuf};
 
@@ -118,7 +118,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help(format!("there is no file {}", absent.join(", nor ")), Some(help)));
     }
     let parts = [part(&args.fixed, place)?, part(&args.moving, place)?];
-    settings.with = [more(&args.with_fixed, args, place)?, more(&args.with_moving, args, place)?];
+    settings.with = [beside(&args.with_fixed, place)?, beside(&args.with_moving, place)?];
     running.may_be_left();
     let found = propose(&parts, &settings, place, &running.exec).map_err(refused)?;
     // All of it is there before any of it is written.
@@ -146,6 +146,9 @@ fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     for path in args.output.iter().chain(&args.figure) {
         for part in [&args.fixed, &args.moving] {
             check_apart(Some(path), Some(part))?;
+        }
+        for said in args.with_fixed.iter().chain(&args.with_moving).filter(|said| is_file(said)) {
+            check_apart(Some(path), Some(Path::new(said)))?;
         }
         check_place(path, args.force)?;
     }
@@ -189,35 +192,30 @@ fn settings(args: &PlaceArgs) -> Result<Settings, Failure> {
     })
 }
 
-/// Further parts as elements of a design's list: a file by its name, everything else as it was written.
-fn more(parts: &[String], args: &PlaceArgs, place: &Path) -> Result<Vec<String>, Failure> {
+/// What was named beside a half's file: a file, or an element of a design's list of parts.
+fn beside(said: &[String], place: &Path) -> Result<Vec<Beside>, Failure> {
     let one = |text: &String| {
-        let text = text.trim();
-        if text.starts_with('{') || text.contains('=') {
-            if text.lines().count() > 1 {
-                let help = "write it in one line, as an inline table".to_owned();
-                return Err(Failure::with_help("a part of several lines".to_owned(), Some(help)));
+        if is_file(text) {
+            let path = Path::new(text);
+            if !path.exists() {
+                let help = "name a file, or write a part as a design has it: 'sphere = { radius = 6 }, at = [21, 0, 8]'";
+                return Err(Failure::with_help(format!("there is no file {text}"), Some(help.to_owned())));
             }
-            return Ok(if text.starts_with('{') { text.to_owned() } else { format!("{{ {text} }}") });
+            return Ok(Beside::File(part(path, place)?));
         }
-        let path = Path::new(text);
-        if !path.exists() {
-            let help =
-                "name a file, or write a part as a design has it: 'sphere = { radius = 6 }, at = [21, 0, 8]'";
-            return Err(Failure::with_help(format!("there is no file {text}"), Some(help.to_owned())));
+        if text.trim().lines().count() > 1 {
+            let help = "write it in one line, as an inline table".to_owned();
+            return Err(Failure::with_help("a part of several lines".to_owned(), Some(help)));
         }
-        let written = part(path, place)?.written;
-        let name = written.replace('\\', "\\\\").replace('"', "\\\"");
-        if FileSpec::new(path, 1.0).may_say_its_unit() {
-            return Ok(format!("{{ mesh = \"{name}\" }}"));
-        }
-        let Some(unit) = args.unit else {
-            let help = "--unit mm?".to_owned();
-            return Err(Failure::with_help(format!("{text} does not say its unit"), Some(help)));
-        };
-        Ok(format!("{{ mesh = \"{name}\", unit = \"{}\" }}", unit.symbol()))
+        let text = text.trim();
+        Ok(Beside::Part(if text.starts_with('{') { text.to_owned() } else { format!("{{ {text} }}") }))
     };
-    parts.iter().map(one).collect()
+    said.iter().map(one).collect()
+}
+
+/// Whether it names a file, and is no part by itself.
+fn is_file(said: &str) -> bool {
+    !said.trim_start().starts_with('{') && (!said.contains('=') || Path::new(said).exists())
 }
 
 /// What was chosen, what came next, and what to look at.

@@ -11,10 +11,10 @@ mod writers;
 use super::{catchment, entries, home};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use writers::{TARGET, WRITERS, furnished};
+use writers::{TARGET, WRITERS, Writer, furnished};
 
 /// What is sent, one after another.
 const SIGNALS: [&[&str]; 5] = [&["-KILL"], &["-KILL"], &["-TERM"], &["-INT"], &["-TERM", "-TERM"]];
@@ -54,6 +54,51 @@ fn random(state: &mut u64) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
+/// A folder in which a command has written both of its versions, one over the other.
+struct Both {
+    writer: Writer,
+    home: tempfile::TempDir,
+    target: PathBuf,
+    /// The bytes of either, where it is a file.
+    files: Vec<Vec<u8>>,
+    /// What lies in the folder after that.
+    expected: Vec<String>,
+    /// How long the faster one took.
+    lasts: Duration,
+}
+
+impl Both {
+    fn of(writer: Writer) -> Self {
+        let home = furnished(&writer);
+        let name = writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap();
+        let target = home.path().join(name);
+        let mut expected = entries(home.path());
+        expected.push((*name).to_owned());
+        expected.sort();
+        let mut both = Self { writer, home, target, files: Vec::new(), expected, lasts: Duration::MAX };
+        for version in 0..2 {
+            let started = Instant::now();
+            both.finish(version);
+            both.lasts = both.lasts.min(started.elapsed());
+            if both.target.is_file() {
+                both.files.push(fs::read(&both.target).unwrap());
+            }
+        }
+        both
+    }
+
+    /// Writes a version to its end.
+    fn finish(&self, version: usize) {
+        let output = catchment(self.home.path()).args(self.writer.versions[version]).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+
+    /// Whether what is there is one of them.
+    fn is_one_of_them(&self) -> bool {
+        is_whole(&self.target, &self.files)
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn killed_at_any_moment_old_or_new_is_there() {
@@ -61,30 +106,12 @@ fn killed_at_any_moment_old_or_new_is_there() {
     let mut seed = 7;
     let (mut killed, mut replaced, mut swept) = (0, 0, 0);
     for writer in WRITERS {
-        let home = furnished(&writer);
-        let target =
-            home.path().join(writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap());
-        let finish = |version: usize| {
-            let output = catchment(home.path()).args(writer.versions[version]).output().unwrap();
-            assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-        };
-        let mut files = Vec::new();
-        let mut expected = entries(home.path());
-        expected.push(target.file_name().unwrap().to_str().unwrap().to_owned());
-        expected.sort();
-        let mut lasts = Duration::MAX;
-        for version in 0..2 {
-            let started = Instant::now();
-            finish(version);
-            lasts = lasts.min(started.elapsed());
-            if target.is_file() {
-                files.push(fs::read(&target).unwrap());
-            }
-        }
+        let both = Both::of(writer);
+        let Both { writer, home, target, expected, lasts, .. } = &both;
         for number in 0..wanted.div_ceil(WRITERS.len()) {
             let case = format!("{}, kill {number}", writer.name);
             let before =
-                fs::read_dir(&target).is_ok().then(|| fs::read(target.join(".catchment.json")).unwrap());
+                fs::read_dir(target).is_ok().then(|| fs::read(target.join(".catchment.json")).unwrap());
             let mut child = catchment(home.path())
                 .args(writer.versions[number % 2])
                 .stdout(Stdio::null())
@@ -100,20 +127,20 @@ fn killed_at_any_moment_old_or_new_is_there() {
             let status = child.wait().unwrap();
             assert!(matches!(status.code(), None | Some(0 | 130 | 143)), "{case}: {status}");
             killed += usize::from(status.code() != Some(0));
-            assert!(is_whole(&target, &files), "{case}: lost or mixed");
+            assert!(both.is_one_of_them(), "{case}: lost or mixed");
             replaced += usize::from(
                 before.is_some_and(|old| fs::read(target.join(".catchment.json")).unwrap() != old),
             );
             // Who has heard the signal, or two of them, leaves nothing but the finished designs of a sweep.
             let mut left = entries(home.path());
             left.retain(|name| name != "target.parts");
-            let tidy = status.code().is_none() || left == expected;
+            let tidy = status.code().is_none() || left == *expected;
             assert!(tidy, "{case}: {status}, but {:?}", entries(home.path()));
-            swept += usize::from(entries(home.path()) != expected);
+            swept += usize::from(entries(home.path()) != *expected);
             // Nothing is swept but by whoever begins next.
-            finish((number + 1) % 2);
-            assert!(is_whole(&target, &files), "{case}: lost or mixed after the next start");
-            assert_eq!(entries(home.path()), expected, "{case}: left-overs after the next start");
+            both.finish((number + 1) % 2);
+            assert!(both.is_one_of_them(), "{case}: lost or mixed after the next start");
+            assert_eq!(entries(home.path()), *expected, "{case}: left-overs after the next start");
         }
     }
     println!(
@@ -129,21 +156,8 @@ fn refused_memory_at_any_request_old_or_new_is_there() {
     let factor = if thorough { 1.2 } else { 10.0 };
     let (mut refused, mut left) = (0, 0);
     for writer in WRITERS {
-        let home = furnished(&writer);
-        let target =
-            home.path().join(writer.versions[0].iter().find(|word| word.starts_with(TARGET)).unwrap());
-        let finish = |version: usize| {
-            let output = catchment(home.path()).args(writer.versions[version]).output().unwrap();
-            assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-        };
-        let mut files = Vec::new();
-        for version in 0..2 {
-            finish(version);
-            if target.is_file() {
-                files.push(fs::read(&target).unwrap());
-            }
-        }
-        let expected = entries(home.path());
+        let both = Both::of(writer);
+        let Both { writer, home, expected, .. } = &both;
         // Some hundred requests come before the program has begun.
         let mut request = 100.0;
         for number in 0.. {
@@ -160,14 +174,14 @@ fn refused_memory_at_any_request_old_or_new_is_there() {
             }
             assert_eq!(output.status.code(), Some(2), "{case}: {}, {said}", output.status);
             assert!(said.contains("out of memory: the system refused"), "{case}: {said}");
-            assert!(is_whole(&target, &files), "{case}: lost or mixed");
+            assert!(both.is_one_of_them(), "{case}: lost or mixed");
             refused += 1;
-            left += usize::from(entries(home.path()) != expected);
-            finish((number + 1) % 2);
-            assert!(is_whole(&target, &files), "{case}: lost or mixed after the next start");
+            left += usize::from(entries(home.path()) != *expected);
+            both.finish((number + 1) % 2);
+            assert!(both.is_one_of_them(), "{case}: lost or mixed after the next start");
             let mut there = entries(home.path());
             there.retain(|name| name != "target.parts");
-            assert_eq!(there, expected, "{case}: left-overs after the next start");
+            assert_eq!(there, *expected, "{case}: left-overs after the next start");
             request *= factor;
         }
     }

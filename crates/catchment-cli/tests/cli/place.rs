@@ -218,3 +218,18 @@ fn a_blocked_approach_is_told_in_millimetres() {
     let told = run(home.path(), &[&parts[..], &["--drawn=assembled", "--approach=+x"]].concat());
     assert!(told.starts_with("exit 2") && told.contains("blocked: ") && told.contains(" mm above"), "{told}");
 }
+
+/// What is read is not written over, by whatever option it was named.
+#[test]
+fn what_belongs_to_a_half_is_not_written_over() {
+    let home = home();
+    let ball = "parts/assembled-plug.ply";
+    let bytes = fs::read(home.path().join(ball)).unwrap();
+    for with in ["--with-fixed", "--with-moving"] {
+        let told = run(home.path(), &[&PARTS[..], &[with, ball, "-o", ball, "--force"]].concat());
+        assert!(told.starts_with("exit 2") && told.contains("assembled-plug.ply"), "{told}");
+    }
+    assert_eq!(fs::read(home.path().join(ball)).unwrap(), bytes);
+    let told = run(home.path(), &[&PARTS[..], &["--with-moving", "parts/none.stl"]].concat());
+    assert!(told.contains("there is no file parts/none.stl") && told.contains("help: "), "{told}");
+}

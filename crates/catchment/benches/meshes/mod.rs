@@ -54,26 +54,6 @@ pub(crate) fn funnel(count: usize) -> [Triangles; 2] {
     let rings = ((count as f64 / 8.0).sqrt().round() as usize).max(4);
     let sides = (count / (2 * rings + 4)).max(8);
     let mut face = profile(rings);
-    let lathe = |line: &[DVec2]| {
-        let single = |p: DVec3| p.as_vec3().as_dvec3();
-        let corner = |p: DVec2, k: usize| {
-            let (sine, cosine) = (TAU * (k % sides) as f64 / sides as f64).sin_cos();
-            single(DVec3::new(p.x * cosine, p.x * sine, p.y))
-        };
-        let mut triangles = Triangles::new();
-        for ends in line.windows(2) {
-            for k in 0..sides {
-                let [a, b] = [corner(ends[0], k), corner(ends[0], k + 1)];
-                let [d, c] = [corner(ends[1], k), corner(ends[1], k + 1)];
-                triangles.extend(
-                    [[a, c, b], [a, d, c]]
-                        .into_iter()
-                        .filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]),
-                );
-            }
-        }
-        triangles
-    };
     let bottom = face[0].y;
     let back = bottom - BACK;
     // From the bottom of the face over the rim down the outside to the middle of the back.
@@ -85,5 +65,34 @@ pub(crate) fn funnel(count: usize) -> [Triangles; 2] {
     }
     let plug =
         [&face[..], &[DVec2::new(RADIUS, 0.0), DVec2::new(RADIUS, -BACK), DVec2::new(0.0, -BACK)]].concat();
-    [lathe(&socket), lathe(&plug)]
+    [lathe(&socket, sides), lathe(&plug, sides)]
+}
+
+/// The same halves with a cone for a face: long thin triangles that meet in its tip, as many as it has sides.
+pub(crate) fn cone(sides: usize) -> [Triangles; 2] {
+    let body = |tip: f64, back: f64| {
+        let line = [(0.0, tip), (MOUTH, 0.0), (RADIUS, 0.0), (RADIUS, back), (0.0, back)];
+        lathe(&line.map(|(radius, z)| DVec2::new(radius, z)), sides)
+    };
+    [body(-MOUTH, -MOUTH - BACK), body(MOUTH, -BACK)]
+}
+
+/// A profile (radius, z) turned about z.
+fn lathe(line: &[DVec2], sides: usize) -> Triangles {
+    let single = |p: DVec3| p.as_vec3().as_dvec3();
+    let corner = |p: DVec2, k: usize| {
+        let (sine, cosine) = (TAU * (k % sides) as f64 / sides as f64).sin_cos();
+        single(DVec3::new(p.x * cosine, p.x * sine, p.y))
+    };
+    let mut triangles = Triangles::new();
+    for ends in line.windows(2) {
+        for k in 0..sides {
+            let [a, b] = [corner(ends[0], k), corner(ends[0], k + 1)];
+            let [d, c] = [corner(ends[1], k), corner(ends[1], k + 1)];
+            triangles.extend(
+                [[a, c, b], [a, d, c]].into_iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]),
+            );
+        }
+    }
+    triangles
 }

@@ -41,9 +41,7 @@ pub use step::StepProblem;
 pub use step::bodies_of_answer;
 pub use surface::{Edge, Facet, Surface, SurfaceError};
 
-use crate::design::{
-    ConnectorSpec, Contents, Design, FamilySpec, FileSpec, FilesInMemory, HalfSpec, OwnSpec,
-};
+use crate::design::{ConnectorSpec, Contents, Design, FamilySpec, FilesInMemory, HalfSpec, OwnSpec};
 use crate::exec::Exec;
 use crate::pose::{Mount, PoseError};
 use glam::{DAffine3, DVec3};
@@ -69,12 +67,7 @@ impl Half {
     }
 }
 
-/// The half that one mesh file holds, read from disk, as its scale makes it: of any size.
-pub(crate) fn of_file(file: &FileSpec, side: Side, exec: &Exec) -> Result<Half, Vec<Problem>> {
-    source::alone(file, side, &source::disk::read, exec)
-}
-
-/// The half that a design says, files read from disk: of any size.
+/// The half that a design says, files read from disk, as their scales make it: of any size.
 pub(crate) fn of_half(spec: &HalfSpec, side: Side, exec: &Exec) -> Result<Half, Vec<Problem>> {
     Ok(Source::of(spec, side, &source::disk::read)?.build(side, Size::Any, exec)?.half)
 }

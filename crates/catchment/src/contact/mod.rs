@@ -169,6 +169,12 @@ impl Pair {
         self.trees.as_ref().filter(|_| !self.lists)
     }
 
+    /// The same halves without trees: motions list what may touch.
+    #[cfg(test)]
+    pub(crate) fn without_trees(&self) -> Self {
+        Self { trees: None, lists: true, ..self.clone() }
+    }
+
     /// Whether all motion near the mated pose leads to it, as `find` says, which is asked once.
     pub(crate) fn is_homing(&self, find: impl FnOnce() -> bool) -> bool {
         *self.homing.get_or_init(find)

@@ -9,10 +9,14 @@
 //! equals the first in the order of that list counts. Parts are bounded in single precision and left out where they are lower, or apart, by more than
 //! that rounds ([`super::bounds`]); features are bounded in double precision and left out where they are [`SURE`] to be lower.
 
+mod near;
+mod pass;
+
+pub(super) use near::Gaps;
+
 use super::bounds::{Four, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
 use super::element::Element;
-use super::overlap::{Between, passes};
 use super::shape::Shape;
 use super::tree::{Child, Kind, Leaf, MARGIN, SLACKS, Tree};
 use super::turned::VERTICAL;
@@ -325,87 +329,6 @@ impl Carried {
     }
 }
 
-/// Which gaps count: down to −`deep`, up to `front`, which is no more.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Gaps {
-    pub(super) deep: f64,
-    pub(super) front: f64,
-}
-
-impl Gaps {
-    /// Up to as much either way.
-    pub(super) const fn within(reach: f64) -> Self {
-        Self { deep: reach, front: reach }
-    }
-
-    /// More by as much either way.
-    pub(super) const fn widened(self, by: f64) -> Self {
-        Self { deep: self.deep + by, front: self.front + by }
-    }
-
-    pub(super) fn hold(self, gap: f64) -> bool {
-        gap >= -self.deep && gap <= self.front
-    }
-}
-
-/// The search for what is near.
-struct Close<'a> {
-    turned: &'a Turned<'a>,
-    position: DVec3,
-    gaps: Gaps,
-    out: &'a mut Vec<(Number, Element)>,
-}
-
-impl Close<'_> {
-    /// Tries two parts.
-    fn descend(&mut self, fixed: &Side<'_>, moving: &Side<'_>) {
-        let Self { turned, position, gaps, out } = self;
-        if fixed.child.is_leaf && moving.child.is_leaf {
-            let (fixed, moving) =
-                (turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child));
-            let Some(number) = meeting(fixed, moving) else { return };
-            let element = turned.element(&number);
-            let near = element.filter(|element| gaps.hold(element.gap(*position)));
-            out.extend(near.map(|element| (number, element)));
-            return;
-        }
-        let turned = *turned;
-        let reach = [gaps.front as f32, gaps.deep as f32];
-        let test = |f: &Four, m: &Four| {
-            let near = f.is_near(m, reach, turned.cones, turned.rounding);
-            (near.to_bitmask(), [0.0; 4], [0.0; 4])
-        };
-        turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
-    }
-}
-
-/// The search for two features of which something holds.
-struct Any<'a, F> {
-    turned: &'a Turned<'a>,
-    is: F,
-    found: bool,
-}
-
-impl<F: Fn(&Leaf, &Leaf) -> bool> Any<'_, F> {
-    /// Tries two parts.
-    fn descend(&mut self, fixed: &Side<'_>, moving: &Side<'_>) {
-        if self.found {
-            return;
-        }
-        let turned = self.turned;
-        if fixed.child.is_leaf && moving.child.is_leaf {
-            self.found =
-                (self.is)(turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child));
-            return;
-        }
-        let test = |f: &Four, m: &Four| {
-            let near = f.is_near(m, [0.0; 2], None, turned.rounding);
-            (near.to_bitmask(), [0.0; 4], [0.0; 4])
-        };
-        turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
-    }
-}
-
 /// How much larger a part of the fixed half is that is divided first. Of a turned part the box is larger than it need be.
 const LARGER: f32 = 1.25;
 
@@ -450,26 +373,6 @@ impl Trees {
         search.found
     }
 
-    /// The elements with such gaps with the COR at `position`, in the order of the list of all.
-    pub(super) fn near(
-        &self,
-        pair: &Pair,
-        rotation: &DMat3,
-        position: DVec3,
-        counts: Counts,
-        gaps: Gaps,
-        out: &mut Vec<(Number, Element)>,
-    ) {
-        out.clear();
-        let turned = Turned::new(pair, self, rotation, position, counts);
-        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
-            let [fixed, moving] =
-                [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
-            Close { turned: &turned, position, gaps, out }.descend(&fixed, &moving);
-        }
-        out.sort_unstable_by_key(|(number, _)| *number);
-    }
-
     /// The element of two features, if it counts.
     pub(super) fn element(
         &self,
@@ -479,57 +382,6 @@ impl Trees {
         number: &Number,
     ) -> Option<Element> {
         Turned::new(pair, self, rotation, DVec3::ZERO, counts).element(number)
-    }
-
-    /// Whether an edge of one half passes through a facet of the other with the COR at `position`.
-    pub(super) fn is_pierced(&self, pair: &Pair, rotation: &DMat3, position: DVec3) -> bool {
-        self.any(pair, rotation, position, Child::are_facets, |f, m, [fixed, moving], between| {
-            fixed.pierces_at(f.index, moving, m.index, |p| between.seen(p))
-                || moving.pierces_at(m.index, fixed, f.index, |p| between.placed(p))
-        })
-    }
-
-    /// Whether a convex edge of one half passes through a facet of the other by more than touching.
-    pub(super) fn is_passed(&self, pair: &Pair, rotation: &DMat3, position: DVec3) -> bool {
-        self.any(pair, rotation, position, Child::may_pass, |f, m, [fixed, moving], between| {
-            match (f.kind, m.kind) {
-                (Kind::Facet, Kind::Ridge) => {
-                    let (facet, ridge) = (&fixed.facets[f.index as usize], &moving.ridges[m.index as usize]);
-                    let ends = ridge.ends.map(|k| between.placed(moving.at(k)));
-                    passes(ends, facet.normal, || facet.corners.iter().map(|k| fixed.at(*k)))
-                }
-                (Kind::Ridge, Kind::Facet) => {
-                    let (ridge, facet) = (&fixed.ridges[f.index as usize], &moving.facets[m.index as usize]);
-                    let corners = || facet.corners.iter().map(|k| between.placed(moving.at(*k)));
-                    passes(ridge.ends.map(|k| fixed.at(k)), *rotation * facet.normal, corners)
-                }
-                _ => false,
-            }
-        })
-    }
-
-    /// Whether of any two features near each other something holds.
-    fn any(
-        &self,
-        pair: &Pair,
-        rotation: &DMat3,
-        position: DVec3,
-        pairs: fn(Child, Child) -> bool,
-        is: impl Fn(&Leaf, &Leaf, [&Shape; 2], &Between) -> bool,
-    ) -> bool {
-        let all = Counts { slack: f64::INFINITY, lowest: f64::NEG_INFINITY };
-        let turned = Turned { pairs, ..Turned::new(pair, self, rotation, position, all) };
-        let is = |f: &Leaf, m: &Leaf| {
-            let (fixed, moving) = turned.shapes([f.shape, m.shape]);
-            is(f, m, [fixed, moving], &Between::new(pair, moving, rotation, position))
-        };
-        let mut search = Any { turned: &turned, is, found: false };
-        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
-            let [fixed, moving] =
-                [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
-            search.descend(&fixed, &moving);
-        }
-        search.found
     }
 }
 

@@ -217,6 +217,7 @@ mod kept {
 
     use crate::report::write;
     use crate::study::sweep::{Found, Keep};
+    use std::collections::BTreeSet;
     use std::fs;
     use std::io;
     use std::path::{Path, PathBuf};
@@ -254,24 +255,26 @@ mod kept {
 
         /// How many designs are kept.
         pub fn count(&self) -> usize {
-            self.files().len()
+            self.places().iter().filter(|place| place.exists()).count()
         }
 
-        fn files(&self) -> Vec<PathBuf> {
-            let Ok(entries) = fs::read_dir(&self.folder) else { return Vec::new() };
-            let own = |path: &PathBuf| {
-                let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-                let key = name.strip_suffix(".json").unwrap_or_default();
-                key.len() == DIGITS && key.bytes().all(|b| b.is_ascii_hexdigit())
+        /// Where designs are kept, or were to be kept by a process that was killed meanwhile.
+        fn places(&self) -> BTreeSet<PathBuf> {
+            let Ok(entries) = fs::read_dir(&self.folder) else { return BTreeSet::new() };
+            let place = |name: &str| {
+                let (key, _) = name.strip_prefix('.').unwrap_or(name).split_once(".json")?;
+                let is_key = key.len() == DIGITS && key.bytes().all(|b| b.is_ascii_hexdigit());
+                is_key.then(|| self.file(key))
             };
-            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(own).collect()
+            entries.filter_map(|entry| place(entry.ok()?.file_name().to_str()?)).collect()
         }
 
-        /// Removes them, and the folder if nothing else is in it.
+        /// Removes them, what killed processes left of them, and the folder if nothing else is in it.
         pub fn clear(&self) {
-            for path in self.files() {
+            for place in self.places() {
                 // Kept for the next time if it cannot be removed.
-                let _ = fs::remove_file(path);
+                let _ = fs::remove_file(&place);
+                let _ = write::sweep(&place);
             }
             let _ = fs::remove_dir(&self.folder);
         }
@@ -294,6 +297,7 @@ mod kept {
     #[cfg(test)]
     mod tests {
         use super::*;
+        use crate::report::write::faults::{self, Fault};
 
         #[test]
         fn what_is_kept_is_found_and_what_is_spoilt_is_not() {
@@ -311,6 +315,23 @@ mod kept {
             fs::remove_file(parts.folder().join("mine.txt")).unwrap();
             parts.clear();
             assert!(!parts.folder().exists());
+        }
+
+        #[test]
+        fn what_a_killed_process_left_goes_with_it() {
+            let home = tempfile::tempdir().unwrap();
+            let parts = Parts::beside(&home.path().join("out"));
+            let (key, found) = ("b".repeat(DIGITS), Found::Refused("no".to_owned()));
+            for after in 0.. {
+                faults::set(home.path(), Fault::Crash, after, true);
+                let kept = parts.keep(&key, &found).is_ok();
+                if !faults::clear(home.path()) {
+                    assert!(kept && after > 3);
+                    break;
+                }
+                parts.clear();
+                assert!(!parts.folder().exists(), "dead after {after} steps");
+            }
         }
     }
 }

@@ -94,7 +94,7 @@ pub(super) fn finish(
             let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
             let most = motions.default_samples(problem.pair());
             let random = corrected.as_ref().map_or(most, |corrected| corrected.found.descents.min(most));
-            let by = window::CubeSearch { seed: run.seed, random, motions: &motions };
+            let by = window::Effort { seed: run.seed, random, motions: &motions };
             window::follow_cubes(&mut merits, centered, problem, grid, &by, exec)?;
         }
     }

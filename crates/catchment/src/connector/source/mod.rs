@@ -177,15 +177,6 @@ pub(super) fn read_mesh(
     Ok((half, MeshContent { bodies, repairs, meshed, ..MeshContent::of(&file.bytes, triangles) }, scale))
 }
 
-/// The half that a mesh file holds, however large it is in D.
-pub(super) fn alone(spec: &FileSpec, side: Side, read: Read<'_>, exec: &Exec) -> Result<Half, Vec<Problem>> {
-    let refused = |error| Problem::Mesh { side, path: spec.path.clone(), error };
-    let file = fetch_mesh(spec, read).map_err(|error| vec![refused(error)])?;
-    let (half, ..) = read_mesh(spec, &file, mesh::part, exec)
-        .map_err(|problems| problems.into_iter().map(refused).collect::<Vec<_>>())?;
-    Ok(half)
-}
-
 /// As much of a mesh file as may be read; of a large one the beginning first.
 fn fetch_mesh(spec: &FileSpec, read: Read<'_>) -> Result<FileBytes, MeshProblem> {
     let format = Format::of(&spec.path);

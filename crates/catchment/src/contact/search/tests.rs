@@ -96,10 +96,9 @@ fn agree(pair: &Pair, pose: &CorPose, slack: f64, reach: f64, below: f64) -> Res
         out
     };
     prop_assert_eq!(overlaps(&mut searched), overlaps(&mut listed));
-    let trees = pair.trees.as_ref().unwrap();
     for at in [position, lower] {
         let by_plan = pair.overlaps_by_plan(&pose.rotation, at, &mut Vec::new());
-        prop_assert_eq!(trees.is_passed(pair, &pose.rotation, at), by_plan);
+        prop_assert_eq!(pair.overlaps(&pose.rotation, at, &mut Vec::new()), by_plan);
     }
     prop_assert_eq!(contacts(&mut searched, position, reach), contacts(&mut listed, position, reach));
     // What was found is asked for again, and less of it.

@@ -259,3 +259,35 @@ fn a_funnel_ends_in_the_mated_pose() {
     }
     assert!(docked > 6, "{docked}");
 }
+
+/// Trees change what is looked at, not what comes of it; also among slivers that meet in a tip, where most of what is near does not count.
+#[test]
+fn trees_change_no_motion() {
+    let [fixed, moving] = meshes::cone(90).map(Source::Triangles);
+    let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap();
+    let mut alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
+    alignment.center_of_rotation = 0.5;
+    let pair = Pair::new(&connector, &alignment);
+    let judge = pair.without_trees();
+    assert!(pair.asks_trees() && !judge.asks_trees());
+    let settings = Settings::default();
+    let (mut by_trees, mut by_list) = (Follower::new(&pair, &settings), Follower::new(&judge, &settings));
+    let mut seen = [0, 0];
+    for k in 0..16 {
+        let a = f64::from(k);
+        let (x, y) = (0.4 * a.sin(), 0.4 * (1.7 * a).cos());
+        let (roll, pitch) = (0.9 * (2.1 * a).sin(), 0.9 * (0.9 * a).cos());
+        let error = PoseError { x, y, roll, pitch, yaw: 0.0 };
+        let (found, expected) = (by_trees.come_to_rest(&error), by_list.come_to_rest(&error));
+        assert_eq!(found.outcome, expected.outcome, "{error:?}");
+        let apart = found.error.to_array().into_iter().zip(expected.error.to_array());
+        assert!(
+            apart.into_iter().all(|(a, b)| (a - b).abs() < 1e-6),
+            "{:?}, {:?}",
+            found.error,
+            expected.error
+        );
+        seen[usize::from(found.outcome == Outcome::Aligned)] += 1;
+    }
+    assert!(seen.iter().all(|count| *count > 2), "{seen:?}");
+}

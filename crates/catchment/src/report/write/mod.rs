@@ -36,7 +36,8 @@ use manifest::Manifest;
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use temporary::{ASIDE, Temporary, claim, hidden, sweep};
+pub(crate) use temporary::sweep;
+use temporary::{ASIDE, Temporary, claim, hidden};
 
 /// Links that lead to links that lead to links: the system's own limit.
 const LINKS: usize = 40;

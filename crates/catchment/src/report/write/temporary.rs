@@ -177,7 +177,7 @@ pub(super) fn claim(place: &Path) -> Option<File> {
 ///
 /// # Errors
 /// A left-over holds something that is not from this program.
-pub(super) fn sweep(place: &Path) -> Result<(), WriteError> {
+pub(crate) fn sweep(place: &Path) -> Result<(), WriteError> {
     let Some(name) = place.file_name() else { return Ok(()) };
     let start = start(name);
     let Ok(entries) = fs::read_dir(parent(place)) else { return Ok(()) };

@@ -15,7 +15,7 @@
 //! Not promised: that no pose in it fails, only that none did that was followed; they are about three times the random poses of the Sum. Nor that no larger
 //! cube lies elsewhere. Its middle is that of the cells' largest, or zero where that one is larger.
 
-use super::search::{self, Space};
+use super::search::{Search, Space};
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
@@ -26,8 +26,8 @@ use crate::method::descent;
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
 
-/// How they are sought.
-pub(in crate::run) struct Search<'a> {
+/// With which motions cubes are sought, and with how many.
+pub(in crate::run) struct Effort<'a> {
     pub(in crate::run) seed: u64,
     /// Random poses that must not fail in a cube; twice as many motions may go before.
     pub(in crate::run) random: usize,
@@ -40,7 +40,7 @@ pub(in crate::run) fn follow(
     centered: Option<CenteredBox>,
     problem: &Problem,
     grid: &Grid,
-    by: &Search<'_>,
+    by: &Effort<'_>,
     exec: &Exec,
 ) -> Result<(), Cancelled> {
     let about = |center: [f64; 5], least: f64| about(problem, center, least, by, exec);
@@ -80,7 +80,7 @@ fn about(
     problem: &Problem,
     center: [f64; 5],
     least: f64,
-    by: &Search<'_>,
+    by: &Effort<'_>,
     exec: &Exec,
 ) -> Result<Cube, Cancelled> {
     let none = Cube { scale: 0.0, reaches_border: false };
@@ -89,7 +89,7 @@ fn about(
     if middle != Outcome::Aligned || space.border() <= least {
         return Ok(none);
     }
-    let search = search::Search::new(problem, space, by.seed, by.motions);
+    let search = Search::new(problem, space, by.seed, by.motions);
     let mut search = search.above(least).within(2 * by.random);
     let found = search.shrink(by.random, exec)?;
     Ok(found.map_or(none, |found| Cube { scale: found.scale, reaches_border: search.worst().is_none() }))

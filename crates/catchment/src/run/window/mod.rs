@@ -25,7 +25,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-pub(super) use cube::{Search as CubeSearch, follow as follow_cubes};
+pub(super) use cube::{Effort, follow as follow_cubes};
 
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};

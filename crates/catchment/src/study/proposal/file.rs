@@ -1,8 +1,9 @@
 //! The design file of a proposal: what every line is, and why it says what it says.
 
+use super::halves::{design_unit, says_its_unit};
 use super::judge::{Judged, Seat};
 use super::way::Lie;
-use super::{PartFile, Settings, design_unit, says_its_unit};
+use super::{Beside, PartFile, Settings};
 use crate::design::{FileSpec, LengthUnit};
 use crate::pose::{Dof, DofSet, Mount};
 use glam::DVec2;
@@ -44,27 +45,40 @@ fn stem(path: &Path) -> String {
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// What draws a half: its file, or a list of parts that begins with it.
-fn drawn(part: &PartFile, with: &[String], unit: LengthUnit) -> Vec<String> {
-    let is_step = FileSpec::new(&part.path, 1.0).is_step();
-    let step = "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".";
-    let mesh = format!("mesh = {}", quoted(&part.written));
+/// Facets stand for curved faces in a STEP file.
+const MESHED: &str =
+    "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".";
+
+/// The keys that name a file, and the unit of one that does not say it.
+fn named(part: &PartFile, unit: LengthUnit) -> (String, Option<String>) {
     let stated = (!says_its_unit(&part.path)).then(|| format!("unit = \"{}\"", unit.symbol()));
-    let mut lines = Vec::new();
-    if with.is_empty() {
-        lines.push(mesh);
-        lines.extend(is_step.then(|| step.to_owned()));
-        lines.extend(stated.map(|unit| unit + " # of the file, which does not say it"));
-    } else {
-        lines.extend(is_step.then(|| step.to_owned()));
-        lines.push("# The file, and what belongs to it, in its coordinates.".to_owned());
-        lines.push("parts = [".to_owned());
-        let first = [Some(mesh), stated].into_iter().flatten().collect::<Vec<_>>().join(", ");
-        lines.push(format!("    {{ {first} }},"));
-        lines.extend(with.iter().map(|one| format!("    {one},")));
-        lines.push("]".to_owned());
+    (format!("mesh = {}", quoted(&part.written)), stated)
+}
+
+/// An element of a list of parts.
+fn element(beside: &Beside, unit: LengthUnit) -> String {
+    match beside {
+        Beside::File(part) => {
+            let (mesh, stated) = named(part, unit);
+            format!("    {{ {} }},", std::iter::once(mesh).chain(stated).collect::<Vec<_>>().join(", "))
+        }
+        Beside::Part(text) => format!("    {text},"),
     }
-    lines
+}
+
+/// What draws a half: its file, or a list of parts that begins with it.
+fn drawn(part: &PartFile, with: &[Beside], unit: LengthUnit) -> Vec<String> {
+    let is_step = FileSpec::new(&part.path, 1.0).is_step();
+    let meshed = is_step.then(|| MESHED.to_owned());
+    if with.is_empty() {
+        let (mesh, stated) = named(part, unit);
+        let stated = stated.map(|unit| unit + " # of the file, which does not say it");
+        return [Some(mesh), meshed, stated].into_iter().flatten().collect();
+    }
+    let open = "# The file, and what belongs to it, in its coordinates.\nparts = [".to_owned();
+    let file = element(&Beside::File(part.clone()), unit);
+    let more = with.iter().map(|one| element(one, unit));
+    meshed.into_iter().chain([open, file]).chain(more).chain(["]".to_owned()]).collect()
 }
 
 /// A design that says no more than what draws the halves.

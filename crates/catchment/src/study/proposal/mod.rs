@@ -17,6 +17,7 @@
 //! a word; a proposal whose second best is nearly as good says so.
 
 mod file;
+mod halves;
 mod judge;
 mod relief;
 mod search;
@@ -24,13 +25,14 @@ mod way;
 
 pub use way::{Lie, Way};
 
-use crate::connector::{Half, Side, of_file, of_half};
+use crate::connector::Half;
 use crate::contact::told::{Told, number};
-use crate::design::{ConnectorSpec, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText};
+use crate::design::{LengthUnit, SourceText};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{DofSet, PoseError};
-use crate::problem::{Draft, Problem, ProblemError, findings};
-use glam::{DMat3, DVec2, DVec3};
+use crate::problem::{Draft, Problem, ProblemError};
+use glam::{DMat3, DVec2};
+use halves::{around, design_unit, middle_extent};
 use judge::{Judged, judge};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -62,9 +64,17 @@ pub struct Settings {
     pub free: Option<DofSet>,
     /// The name of the design.
     pub name: Option<String>,
-    /// What belongs to the fixed and to the moving half beside its file, which no export has: bought balls, pins, more files. Each as an element of the
-    /// design's list of parts, `{ sphere = { radius = 6 }, at = [21, 0, 8] }`, in the coordinates of the half's file.
-    pub with: [Vec<String>; 2],
+    /// What belongs to the fixed and to the moving half beside its file.
+    pub with: [Vec<Beside>; 2],
+}
+
+/// What belongs to a half beside its file, in the coordinates of that: what no export has, or has elsewhere.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Beside {
+    /// Another file.
+    File(PartFile),
+    /// A bought ball or pin, as an element of the design's list of parts: `{ sphere = { radius = 6 }, at = [21, 0, 8] }`.
+    Part(String),
 }
 
 /// A part.
@@ -196,7 +206,7 @@ pub fn propose(
     place: &Path,
     exec: &Exec,
 ) -> Result<Proposal, ProposalError> {
-    let halves = read(parts, settings, place, exec)?;
+    let halves = halves::read(parts, settings, place, exec)?;
     exec.check()?;
     let unit = halves.each_ref().map(middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
@@ -297,98 +307,6 @@ fn sort(found: Vec<Result<Judged, String>>, judged: &mut Vec<Judged>, refused: &
             Err(reason) => refused.push(reason),
         }
     }
-}
-
-/// The halves, in the unit of the design.
-fn read(
-    parts: &[PartFile; 2],
-    settings: &Settings,
-    place: &Path,
-    exec: &Exec,
-) -> Result<[Half; 2], ProposalError> {
-    let unit = design_unit(settings);
-    let composed = composed(parts, settings, place)?;
-    let one = |part: &PartFile, side: Side| {
-        if let Some(spec) = &composed[usize::from(side == Side::Moving)] {
-            return of_half(spec, side, exec);
-        }
-        let mut spec = FileSpec::new(&part.path, 1.0);
-        if says_its_unit(&part.path) {
-            (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit.metres());
-        }
-        of_file(&spec, side, exec)
-    };
-    let (fixed, moving) = match (one(&parts[0], Side::Fixed), one(&parts[1], Side::Moving)) {
-        (Ok(fixed), Ok(moving)) => (fixed, moving),
-        (fixed, moving) => {
-            let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
-            return Err(ProposalError::Problem(findings(&all).into()));
-        }
-    };
-    for (part, half) in parts.iter().zip([&fixed, &moving]) {
-        if settings.unit.is_none() && !says_its_unit(&part.path) {
-            let size = extent(half);
-            return Err(ProposalError::NoUnit {
-                path: part.path.clone(),
-                size: size.to_array(),
-                guess: guess(size),
-            });
-        }
-    }
-    Ok([fixed, moving])
-}
-
-/// The halves that are more than their files, as a design says it.
-fn composed(
-    parts: &[PartFile; 2],
-    settings: &Settings,
-    place: &Path,
-) -> Result<[Option<HalfSpec>; 2], ProposalError> {
-    if settings.with.iter().all(Vec::is_empty) {
-        return Ok([None, None]);
-    }
-    let text = file::halves(parts, settings);
-    let draft = Draft::read_roughly(SourceText::new(place, text))?;
-    let ConnectorSpec::Own(own) = draft.design().connector.clone() else { return Ok([None, None]) };
-    let [fixed, moving] = settings.with.each_ref().map(|with| !with.is_empty());
-    Ok([fixed.then_some(own.fixed), moving.then_some(own.moving)])
-}
-
-/// The unit of the design.
-fn design_unit(settings: &Settings) -> LengthUnit {
-    settings.unit.unwrap_or(LengthUnit::Mm)
-}
-
-/// Whether a file says its unit itself.
-fn says_its_unit(path: &Path) -> bool {
-    FileSpec::new(path, 1.0).may_say_its_unit()
-}
-
-/// The unit in which a part of this size is between a pea and a door, if it is one of the usual ones.
-fn guess(size: DVec3) -> LengthUnit {
-    match size.max_element() {
-        most if most < 1.0 => LengthUnit::M,
-        most if most < 4.0 => LengthUnit::In,
-        most if most < 5e3 => LengthUnit::Mm,
-        _ => LengthUnit::Um,
-    }
-}
-
-fn extent(half: &Half) -> DVec3 {
-    let (low, high) = around(half);
-    high - low
-}
-
-fn around(half: &Half) -> (DVec3, DVec3) {
-    let boxes = half.surfaces.iter().map(crate::connector::Surface::bounds);
-    boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
-}
-
-/// The middle one of a half's three extents.
-fn middle_extent(half: &Half) -> f64 {
-    let mut sides = extent(half).to_array();
-    sides.sort_by(f64::total_cmp);
-    sides[1]
 }
 
 /// Whether the boxes of the parts overlap or nearly touch.

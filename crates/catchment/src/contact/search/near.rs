@@ -1,0 +1,91 @@
+//! What is near, of halves of many facets.
+//!
+//! ```text
+//!        ╲ moving        gap > 0: in front; parts wholly in front of the plane that all of the other lies behind
+//!      ───╳────── fixed                     are apart by as much, whatever features of them meet
+//!          ╲             gap < 0: overlaps, at most `deep`
+//! ```
+
+use super::{Side, Trees, Turned, meeting};
+use crate::contact::Pair;
+use crate::contact::bounds::Four;
+use crate::contact::candidates::Counts;
+use crate::contact::element::Element;
+use crate::contact::search::Number;
+use glam::{DMat3, DVec3};
+
+/// Which gaps count: down to −`deep`, up to `front`, which is no more.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::contact) struct Gaps {
+    pub(in crate::contact) deep: f64,
+    pub(in crate::contact) front: f64,
+}
+
+impl Gaps {
+    /// Up to as much either way.
+    pub(in crate::contact) const fn within(reach: f64) -> Self {
+        Self { deep: reach, front: reach }
+    }
+
+    /// More by as much either way.
+    pub(in crate::contact) const fn widened(self, by: f64) -> Self {
+        Self { deep: self.deep + by, front: self.front + by }
+    }
+
+    pub(in crate::contact) fn hold(self, gap: f64) -> bool {
+        gap >= -self.deep && gap <= self.front
+    }
+}
+
+/// The search for what is near.
+struct Close<'a> {
+    turned: &'a Turned<'a>,
+    position: DVec3,
+    gaps: Gaps,
+    out: &'a mut Vec<(Number, Element)>,
+}
+
+impl Close<'_> {
+    /// Tries two parts.
+    fn descend(&mut self, fixed: &Side<'_>, moving: &Side<'_>) {
+        let Self { turned, position, gaps, out } = self;
+        if fixed.child.is_leaf && moving.child.is_leaf {
+            let (fixed, moving) =
+                (turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child));
+            let Some(number) = meeting(fixed, moving) else { return };
+            let element = turned.element(&number);
+            let near = element.filter(|element| gaps.hold(element.gap(*position)));
+            out.extend(near.map(|element| (number, element)));
+            return;
+        }
+        let turned = *turned;
+        let reach = [gaps.front as f32, gaps.deep as f32];
+        let test = |f: &Four, m: &Four| {
+            let near = f.is_near(m, reach, turned.cones, turned.rounding);
+            (near.to_bitmask(), [0.0; 4], [0.0; 4])
+        };
+        turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
+    }
+}
+
+impl Trees {
+    /// The elements with such gaps with the COR at `position`, in the order of the list of all.
+    pub(in crate::contact) fn near(
+        &self,
+        pair: &Pair,
+        rotation: &DMat3,
+        position: DVec3,
+        counts: Counts,
+        gaps: Gaps,
+        out: &mut Vec<(Number, Element)>,
+    ) {
+        out.clear();
+        let turned = Turned::new(pair, self, rotation, position, counts);
+        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
+            let [fixed, moving] =
+                [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
+            Close { turned: &turned, position, gaps, out }.descend(&fixed, &moving);
+        }
+        out.sort_unstable_by_key(|(number, _)| *number);
+    }
+}

@@ -1,0 +1,104 @@
+//! The halves of a proposal: a file each, and what belongs to it, in the unit of the design.
+
+use super::{Beside, PartFile, ProposalError, Settings, file};
+use crate::connector::{Half, Side, Surface, of_half};
+use crate::design::{ConnectorSpec, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText};
+use crate::exec::Exec;
+use crate::problem::{Draft, findings};
+use glam::DVec3;
+use std::path::Path;
+
+/// Reads them.
+pub(super) fn read(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    place: &Path,
+    exec: &Exec,
+) -> Result<[Half; 2], ProposalError> {
+    let [fixed, moving] = specs(parts, settings, place)?;
+    let halves = match (of_half(&fixed, Side::Fixed, exec), of_half(&moving, Side::Moving, exec)) {
+        (Ok(fixed), Ok(moving)) => [fixed, moving],
+        (fixed, moving) => {
+            let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
+            return Err(ProposalError::Problem(findings(&all).into()));
+        }
+    };
+    if settings.unit.is_none() {
+        for (part, with) in parts.iter().zip(&settings.with) {
+            let more = with.iter().filter_map(|beside| match beside {
+                Beside::File(file) => Some(file),
+                Beside::Part(_) => None,
+            });
+            let mut files = std::iter::once(part).chain(more);
+            if let Some(file) = files.find(|file| !says_its_unit(&file.path)) {
+                let alone = of_half(&mesh(file, settings), Side::Fixed, exec);
+                return Err(no_unit(file, &alone.unwrap_or_default()));
+            }
+        }
+    }
+    Ok(halves)
+}
+
+fn no_unit(part: &PartFile, half: &Half) -> ProposalError {
+    let size = extent(half);
+    ProposalError::NoUnit { path: part.path.clone(), size: size.to_array(), guess: guess(size) }
+}
+
+/// What the halves are, lengths in the unit of the design: a file, or, where more belongs to one of them, what a design would say.
+fn specs(parts: &[PartFile; 2], settings: &Settings, place: &Path) -> Result<[HalfSpec; 2], ProposalError> {
+    let files = parts.each_ref().map(|part| mesh(part, settings));
+    if settings.with.iter().all(Vec::is_empty) {
+        return Ok(files);
+    }
+    let draft = Draft::read_roughly(SourceText::new(place, file::halves(parts, settings)))?;
+    match draft.design().connector.clone() {
+        ConnectorSpec::Own(own) => Ok([own.fixed, own.moving]),
+        ConnectorSpec::Family(_) => Ok(files),
+    }
+}
+
+/// A file as a half.
+fn mesh(part: &PartFile, settings: &Settings) -> HalfSpec {
+    let mut spec = FileSpec::new(&part.path, 1.0);
+    if says_its_unit(&part.path) {
+        (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / design_unit(settings).metres());
+    }
+    HalfSpec::Mesh(spec)
+}
+
+/// The unit of the design.
+pub(super) fn design_unit(settings: &Settings) -> LengthUnit {
+    settings.unit.unwrap_or(LengthUnit::Mm)
+}
+
+/// Whether a file says its unit itself.
+pub(super) fn says_its_unit(path: &Path) -> bool {
+    FileSpec::new(path, 1.0).may_say_its_unit()
+}
+
+/// The unit in which a part of this size is between a pea and a door, if it is one of the usual ones.
+fn guess(size: DVec3) -> LengthUnit {
+    match size.max_element() {
+        most if most < 1.0 => LengthUnit::M,
+        most if most < 4.0 => LengthUnit::In,
+        most if most < 5e3 => LengthUnit::Mm,
+        _ => LengthUnit::Um,
+    }
+}
+
+fn extent(half: &Half) -> DVec3 {
+    let (low, high) = around(half);
+    high - low
+}
+
+pub(super) fn around(half: &Half) -> (DVec3, DVec3) {
+    let boxes = half.surfaces.iter().map(Surface::bounds);
+    boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
+}
+
+/// The middle one of a half's three extents.
+pub(super) fn middle_extent(half: &Half) -> f64 {
+    let mut sides = extent(half).to_array();
+    sides.sort_by(f64::total_cmp);
+    sides[1]
+}
