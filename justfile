@@ -34,6 +34,7 @@ site:
     cargo build --locked
     python3 site/reference.py target/debug/catchment
     python3 site/gallery.py --page
+    python3 site/transcripts.py target/debug/catchment
     mkdocs build --strict
 
 # measures the designs of the gallery again: just gallery peg-in-hole

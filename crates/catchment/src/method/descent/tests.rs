@@ -263,7 +263,7 @@ fn a_funnel_ends_in_the_mated_pose() {
 /// Trees change what is looked at, not what comes of it; also among slivers that meet in a tip, where most of what is near does not count.
 #[test]
 fn trees_change_no_motion() {
-    let [fixed, moving] = meshes::cone(90).map(Source::Triangles);
+    let [fixed, moving] = meshes::cone(160).map(Source::Triangles);
     let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap();
     let mut alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
     alignment.center_of_rotation = 0.5;
