@@ -257,6 +257,9 @@ def place(dice):
     parts = dice.choice([["socket.obj", "plug.ply"], ["socket.obj", "plug.ply"], ["meshes/socket.stl", "meshes/plug.stl"]])
     args = ["place", *parts, "--unit", dice.choice(["mm", "m", "in"])] + exec_options(dice)
     ways = ["+x", "-y", "+z", "z"]
+    beside = ["socket.obj", "plug.ply", "none.stl", "{ sphere = { radius = 2 }, at = [1, 0, 8] }", "box = [2, 2, " + length(dice) + "]", "x", "sphere = {"]
+    for option in dice.choice([[], [], ["--with-fixed"], ["--with-moving", "--with-moving"], ["--with-fixed", "--with-moving"]]):
+        args += [option, dice.choice(beside)]
     args += dice.choice([[], ["--drawn", "assembled"], ["--drawn", "facing"], ["--approach=" + dice.choice(ways)], ["--facing-fixed=" + dice.choice(ways)]])
     return args + dice.choice([[], ["-o", "out.toml"], ["-o", "out.toml", "--figure", "pics.svg"], ["-o", parts[0], "--force"]])
 
