@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use catchment::report::figure::Picture;
 use catchment::report::printable;
 use catchment::report::write::{self, WriteError};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -66,14 +66,18 @@ impl OutputArgs {
 
 /// A file beside what is printed; the end of its name says what is in it.
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new(FILES).multiple(true))]
 pub(crate) struct FileArgs {
     /// Also write this file; the end of its name (such as .svg) says what is in it
-    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, group = FILES)]
     output: Option<PathBuf>,
     /// Replace the file if it exists
-    #[arg(long, requires = "output")]
+    #[arg(long, requires = FILES)]
     force: bool,
 }
+
+/// Options that name files to write.
+const FILES: &str = "files";
 
 impl FileArgs {
     /// Which of the `known` endings the file has, where one is asked for. Refuses what cannot be written in the
@@ -116,11 +120,11 @@ impl FileArgs {
     }
 }
 
-/// A picture beside the file of [`FileArgs`].
+/// A picture beside the file of [`FileArgs`], whose `--force` is for both.
 #[derive(Debug, Args)]
 pub(crate) struct FigureArgs {
     /// Also draw it, as .png or .svg
-    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, group = FILES)]
     figure: Option<PathBuf>,
 }
 
@@ -135,18 +139,19 @@ impl FigureArgs {
             let message = format!("cannot tell what to draw into {}", path.display());
             return Err(Failure::with_help(message, Some("let its name end in .png or .svg".to_owned())));
         };
-        // --force is for the file of -o.
-        write::check_file(path, false).map_err(|error| {
-            let help = matches!(error, WriteError::Exists { .. });
-            Failure::with_help(error.to_string(), help.then(|| "move it away, or name another".to_owned()))
-        })?;
+        check_place(path, file.force)?;
         Ok(Some(kind))
     }
 
     /// Writes the picture, if one is asked for.
-    pub(crate) fn draw(&self, kind: Option<&str>, picture: Option<&Picture>) -> Result<(), Failure> {
+    pub(crate) fn draw(
+        &self,
+        kind: Option<&str>,
+        picture: Option<&Picture>,
+        file: &FileArgs,
+    ) -> Result<(), Failure> {
         match (&self.figure, kind, picture) {
-            (Some(path), Some(kind), Some(picture)) => write_file(path, &image(picture, kind)?, false),
+            (Some(path), Some(kind), Some(picture)) => write_file(path, &image(picture, kind)?, file.force),
             _ => Ok(()),
         }
     }

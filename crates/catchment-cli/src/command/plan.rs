@@ -160,7 +160,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
         (Some(kind), Some(picture)) => args.file.draw(kind, picture)?,
         _ => {}
     }
-    args.figure.draw(drawing, picture.as_ref())?;
+    args.figure.draw(drawing, picture.as_ref(), &args.file)?;
     args.asked.tell(&report, PlanReport::table)
 }
 

@@ -108,6 +108,6 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
         (Some(kind), Some(picture)) => args.file.draw(kind, picture)?,
         _ => {}
     }
-    args.figure.draw(drawing, picture.as_ref())?;
+    args.figure.draw(drawing, picture.as_ref(), &args.file)?;
     args.asked.tell(&report, ValidationReport::table)
 }

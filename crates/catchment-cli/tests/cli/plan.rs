@@ -162,6 +162,13 @@ fn requirements_files_and_pictures() {
     assert_eq!(with(&["--require", "plan.deciding>=100", "-o", "p.csv"]).status.code(), Some(1));
     assert_eq!(with(&["--require", "plan.of>=1", "-o", "q.csv"]).status.code(), Some(2));
     assert_eq!(with(&["--figure", "p.svg"]).status.code(), Some(0));
+    // --force is for pictures, too.
+    let again = with(&["--figure", "p.svg"]);
+    let said = String::from_utf8(again.stderr).unwrap();
+    assert!(again.status.code() == Some(2) && said.contains("--force replaces it"), "{said}");
+    assert_eq!(with(&["--figure", "p.svg", "--force"]).status.code(), Some(0));
+    assert_eq!(with(&["--figure", "p.svg", "-o", "p.json", "--force"]).status.code(), Some(0));
+    assert_eq!(with(&["--force"]).status.code(), Some(2));
     let read = |name: &str| fs::read_to_string(home.path().join(name)).unwrap();
     assert_eq!(serde_json::from_str::<Value>(&read("p.json")).unwrap()["kind"], "plan");
     assert!(read("p.svg").contains("12 trials at 12 poses") && !read("p.svg").contains("NaN"));
