@@ -105,6 +105,7 @@ pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
         })?;
     }
     let running = args.exec.start()?;
+    running.may_be_left();
     let long = asked.doubt(&settings, running.exec.threads());
     to_stderr(&long.into_iter().collect::<Vec<_>>());
     let found = ask(&problem, &asked, &settings, &running.exec)?;

@@ -52,6 +52,7 @@ pub(crate) fn run(args: &FrictionArgs) -> Result<ExitStatus, Failure> {
     let settings = args.settings();
     args.asked.check(&FrictionReport::new(problem.design(), &Friction::form(&settings), Vec::new(), None))?;
     let running = args.exec.start()?;
+    running.may_be_left();
     let found = follow(&problem, &settings, &running.exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);

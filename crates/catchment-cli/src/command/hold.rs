@@ -65,6 +65,7 @@ pub(crate) fn run(args: &HoldArgs) -> Result<ExitStatus, Failure> {
     let problem = args.design.problem()?;
     let settings = args.settings(&problem)?;
     let running = args.exec.start()?;
+    running.may_be_left();
     let found = find(&problem, &settings, &running.exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);

@@ -70,6 +70,7 @@ pub(crate) fn run(args: &JamsArgs) -> Result<ExitStatus, Failure> {
     let form = Jams { expected: spread.as_ref().map(|_| [0; 4]), ..Jams::form(&settings) };
     args.asked.check(&JamsReport::new(problem.design(), &form, Vec::new(), None))?;
     let running = args.exec.start()?;
+    running.may_be_left();
     let found = match &spread {
         Some(spread) => find_for(&problem, &settings, spread, &running.exec)?,
         None => find(&problem, &settings, &running.exec)?,

@@ -136,6 +136,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
     let drawing = args.figure.kind(&args.file)?;
     let running = args.exec.start()?;
+    running.may_be_left();
     let (problem, decided_with) = args.problem(&running.exec)?;
     let settings = args.settings(&problem, decided_with)?;
     let at = args.offsets_at.into();

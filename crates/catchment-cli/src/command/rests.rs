@@ -65,6 +65,7 @@ pub(crate) fn run(args: &RestsArgs) -> Result<ExitStatus, Failure> {
         certified: args.certified,
     };
     let running = args.exec.start()?;
+    running.may_be_left();
     let found: Rests = find(&problem, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);

@@ -97,6 +97,7 @@ pub(crate) fn run(args: &SuccessArgs) -> Result<ExitStatus, Failure> {
         friction: args.friction,
     };
     let running = args.exec.start()?;
+    running.may_be_left();
     let found = ask(&problem, &robots, &settings, &running.exec)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);

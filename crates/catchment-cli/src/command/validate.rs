@@ -89,6 +89,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
         ValidationReport::new(problem.design(), &Validation::form(&problem, &settings), at, Vec::new(), None);
     args.asked.check(&form)?;
     let running = args.exec.start()?;
+    running.may_be_left();
     let found = judge(&problem, &table.rows, &settings, &running.exec)?;
     let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
         let poses: Vec<PoseError> = found.trials.iter().map(|trial| trial.tried.error).collect();
