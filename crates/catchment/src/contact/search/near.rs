@@ -6,12 +6,11 @@
 //!          ╲             gap < 0: overlaps, at most `deep`
 //! ```
 
-use super::{Side, Trees, Turned, meeting};
+use super::{Number, Side, Trees, Turned, meeting};
 use crate::contact::Pair;
 use crate::contact::bounds::Four;
 use crate::contact::candidates::Counts;
 use crate::contact::element::Element;
-use crate::contact::search::Number;
 use glam::{DMat3, DVec3};
 
 /// Which gaps count: down to −`deep`, up to `front`, which is no more.

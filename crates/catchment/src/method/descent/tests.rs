@@ -224,14 +224,19 @@ fn a_corner_does_not_pass_through_the_bottom_of_a_v() {
     }
 }
 
-/// Halves of many facets that dock end in the mated pose itself, by a step like any other, and what touches there is kept.
-#[test]
-fn a_funnel_ends_in_the_mated_pose() {
-    let [fixed, moving] = meshes::funnel(1000).map(Source::Triangles);
+/// Lathe bodies, which yaw does not change.
+fn lathed(halves: [meshes::Triangles; 2]) -> Pair {
+    let [fixed, moving] = halves.map(Source::Triangles);
     let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap();
     let mut alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
     alignment.center_of_rotation = 0.5;
-    let pair = Pair::new(&connector, &alignment);
+    Pair::new(&connector, &alignment)
+}
+
+/// Halves of many facets that dock end in the mated pose itself, by a step like any other, and what touches there is kept.
+#[test]
+fn a_funnel_ends_in_the_mated_pose() {
+    let pair = lathed(meshes::funnel(1000));
     assert!(pair.asks_trees() && !pair.is_tight());
     let settings = Settings::default();
     let mut follower = Follower::new(&pair, &settings);
@@ -263,11 +268,7 @@ fn a_funnel_ends_in_the_mated_pose() {
 /// Trees change what is looked at, not what comes of it; also among slivers that meet in a tip, where most of what is near does not count.
 #[test]
 fn trees_change_no_motion() {
-    let [fixed, moving] = meshes::cone(160).map(Source::Triangles);
-    let connector = Connector::from_sources(&fixed, &moving, 0.0, Mount::X).unwrap();
-    let mut alignment = Alignment::new(DofSet::ALL.without(Dof::Yaw), Mount::X);
-    alignment.center_of_rotation = 0.5;
-    let pair = Pair::new(&connector, &alignment);
+    let pair = lathed(meshes::cone(160));
     let judge = pair.without_trees();
     assert!(pair.asks_trees() && !judge.asks_trees());
     let settings = Settings::default();
