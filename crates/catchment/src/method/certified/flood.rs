@@ -18,7 +18,7 @@ use super::placed::PoseBox;
 use super::tree::{Cell, Label, Tree};
 use crate::exec::{Cancelled, Exec};
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 /// A box that can be come to at a height; the lowest is the greatest, then the smaller number.
 #[derive(PartialEq)]
@@ -71,7 +71,10 @@ fn walk(
             exec.check()?;
         }
         match visit(&reached) {
-            Onward::Go => tree.neighbours(&tree.cells[number], |next| push(&mut open, next, number, height)),
+            Onward::Go => {
+                let faces = tree.cells[number].faces.iter();
+                faces.for_each(|face| push(&mut open, face.number(), number, height));
+            }
             Onward::End => break,
         }
     }
@@ -107,7 +110,7 @@ pub(super) struct Seat<'a> {
 impl Seat<'_> {
     /// The boxes that may be connected with a mated pose.
     fn boxes(&self, tree: &Tree) -> Vec<usize> {
-        tree.leaves().filter(|(_, cell)| (self.meets)(&tree.poses(cell))).map(|(number, _)| number).collect()
+        tree.leaves().filter(|(_, cell)| (self.meets)(&cell.poses)).map(|(number, _)| number).collect()
     }
 
     /// Of every box whether it may be part of the seat: connected with a mated pose at the seat's level or below.
@@ -116,7 +119,6 @@ impl Seat<'_> {
     /// [`Cancelled`] when asked to stop.
     pub(super) fn reach(&self, tree: &Tree, exec: &Exec) -> Result<Vec<bool>, Cancelled> {
         let mut in_seat = vec![false; tree.cells.len()];
-        let floor = |cell: &Cell| cell.height.map(|height| height.lo);
         walk(tree, exec, self.boxes(tree).into_iter(), floor, |&Reached { number, height, .. }| {
             if height > self.level + OVER_A_PATH {
                 return Onward::End;
@@ -128,9 +130,9 @@ impl Seat<'_> {
     }
 
     /// Whether some motion may rest in a box without having docked.
-    pub(super) fn lets_rest(&self, tree: &Tree, cell: &Cell) -> bool {
+    pub(super) fn lets_rest(&self, cell: &Cell) -> bool {
         let roof = cell.height.map_or(f64::INFINITY, |height| height.up);
-        let poses = tree.poses(cell);
+        let poses = cell.poses;
         let ends_docked =
             roof <= self.level && (self.holds)(&poses) || self.home.is_some_and(|home| home.holds(&poses));
         !(cell.restless || ends_docked)
@@ -140,7 +142,7 @@ impl Seat<'_> {
     pub(super) fn about(&self, tree: &Tree) -> Vec<usize> {
         let Some(home) = self.home else { return Vec::new() };
         let off = |cell: &Cell| {
-            let poses = tree.poses(cell);
+            let poses = cell.poses;
             let parts = poses.iter().zip(&home.poses).filter(|(_, own)| own.up > 0.0);
             parts.map(|(part, own)| part.lo.max(-part.up).max(0.0) / own.up).fold(0.0, f64::max)
         };
@@ -157,9 +159,9 @@ impl Seat<'_> {
     }
 
     /// Whether a box lies so deep in the neighbourhood of the mated pose that nothing leaves it.
-    fn keeps(&self, tree: &Tree, cell: &Cell) -> bool {
+    fn keeps(&self, cell: &Cell) -> bool {
         let below = |home: &Home| cell.height.is_some_and(|height| height.up < home.level);
-        self.home.is_some_and(|home| below(&home) && home.holds(&tree.poses(cell)))
+        self.home.is_some_and(|home| below(&home) && home.holds(&cell.poses))
     }
 }
 
@@ -168,27 +170,61 @@ fn leaks(tree: &Tree, cell: &Cell) -> bool {
     cell.sudden || cell.walled || tree.is_at_border(cell)
 }
 
-/// What heights say.
+/// The first way out of the seat's part, by floors.
 #[derive(Debug, Clone)]
-pub(super) struct Flood {
+pub(super) struct WayOut {
     /// Below it the seat's part docks, in D.
     pub(super) level: f64,
+    /// The boxes that were come to before, each with the height of its way.
+    inside: Vec<(usize, f64)>,
     /// Boxes that may let rest or out below the lowest certain exit: smaller ones may not.
-    pub(super) blocking: Vec<usize>,
+    blocking: Vec<usize>,
     /// From which box each was come to.
     came_from: Vec<usize>,
 }
 
-impl Flood {
+/// Boxes in the way that are told at once: where the way is out for certain, and at most; of many boxes more, as a part of all.
+const LEAST_BLOCKING: usize = 32;
+const MOST_BLOCKING: usize = 256;
+const PART_BLOCKING: usize = 256;
+
+impl WayOut {
+    /// Looks for it.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when asked to stop.
+    pub(super) fn find(tree: &Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Self, Cancelled> {
+        let (mut level, mut inside, mut blocking) = (None, Vec::new(), Vec::new());
+        let mut came_from = vec![usize::MAX; tree.cells.len()];
+        let more = tree.cells.len() / PART_BLOCKING;
+        walk(tree, exec, seat.boxes(tree).into_iter(), floor, |&Reached { number, height, from }| {
+            came_from[number] = from;
+            let cell = &tree.cells[number];
+            // What is known to dock comes back from wherever it goes; what lies beyond the border nobody knows.
+            let docks = cell.label == Some(Label::Yes) && !tree.is_at_border(cell);
+            if !docks && (seat.lets_rest(cell) || leaks(tree, cell)) {
+                level = level.or(Some(height));
+                blocking.push(number);
+            } else if level.is_none() {
+                inside.push((number, height));
+            }
+            let out = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
+            let enough = if out { LEAST_BLOCKING } else { MOST_BLOCKING }.max(more);
+            if blocking.len() >= enough { Onward::End } else { Onward::Go }
+        })?;
+        Ok(Self { level: level.unwrap_or(f64::INFINITY), inside, blocking, came_from })
+    }
+
     /// What is in the way and may be halved: each blocking box or, where it may not, the last that may on the way to it, whose floor may be too low.
     pub(super) fn in_the_way(&self, may: impl Fn(usize) -> bool) -> Vec<usize> {
         let mut found = Vec::new();
+        let mut seen = BTreeSet::new();
         for blocking in &self.blocking {
             let mut at = *blocking;
             while !may(at) && self.came_from[at] != at {
                 at = self.came_from[at];
             }
-            if may(at) && !found.contains(&at) {
+            if may(at) && seen.insert(at) {
                 found.push(at);
             }
         }
@@ -196,43 +232,26 @@ impl Flood {
     }
 }
 
-/// Most boxes in the way that are told at once, and how many are told where the way is out for certain.
-const LEAST_BLOCKING: usize = 32;
-const MOST_BLOCKING: usize = 256;
+/// The floor of a box, where something touches.
+fn floor(cell: &Cell) -> Option<f64> {
+    cell.height.map(|height| height.lo)
+}
 
 /// Labels what heights decide, and says what is in the way.
 ///
 /// # Errors
 /// [`Cancelled`] when asked to stop.
-pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Flood, Cancelled> {
-    let floor = |cell: &Cell| cell.height.map(|height| height.lo);
-    let near = seat.boxes(tree);
-    let (mut level, mut inside, mut blocking) = (None, Vec::new(), Vec::new());
-    let mut came_from = vec![usize::MAX; tree.cells.len()];
-    walk(tree, exec, near.iter().copied(), floor, |&Reached { number, height, from }| {
-        came_from[number] = from;
-        let cell = &tree.cells[number];
-        // What is known to dock comes back from wherever it goes; what lies beyond the border nobody knows.
-        let docks = cell.label == Some(Label::Yes) && !tree.is_at_border(cell);
-        if !docks && (seat.lets_rest(tree, cell) || leaks(tree, cell)) {
-            level = level.or(Some(height));
-            blocking.push(number);
-        } else if level.is_none() {
-            inside.push((number, height));
-        }
-        let out = tree.is_at_border(cell) || matches!(cell.label, Some(Label::Jams | Label::Leaves));
-        let enough = blocking.len() >= if out { LEAST_BLOCKING } else { MOST_BLOCKING };
-        if enough { Onward::End } else { Onward::Go }
-    })?;
-    let level = level.unwrap_or(f64::INFINITY);
+pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<WayOut, Cancelled> {
+    let way_out = WayOut::find(tree, seat, exec)?;
+    let level = way_out.level;
     // Beyond the pass at the level itself lies what may lead elsewhere, however deep.
-    for (number, _) in inside.into_iter().filter(|(_, way)| *way < level) {
-        let cell = &mut tree.cells[number];
+    for (number, _) in way_out.inside.iter().filter(|(_, way)| *way < level) {
+        let cell = &mut tree.cells[*number];
         if cell.height.is_some_and(|height| height.up < level) {
             cell.label = Some(Label::Yes);
         }
     }
-    let kept: Vec<usize> = tree.leaves().filter(|(_, cell)| seat.keeps(tree, cell)).map(|(k, _)| k).collect();
+    let kept: Vec<usize> = tree.leaves().filter(|(_, cell)| seat.keeps(cell)).map(|(k, _)| k).collect();
     for number in kept {
         tree.cells[number].label = Some(Label::Yes);
     }
@@ -241,7 +260,7 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Flo
         .leaves()
         .filter(|(_, cell)| cell.walled && !tree.upright || tree.is_at_border(cell))
         .map(|(k, _)| k);
-    let sources: Vec<usize> = near.iter().copied().chain(unknown).collect();
+    let sources: Vec<usize> = seat.boxes(tree).into_iter().chain(unknown).collect();
     let mut way = vec![f64::INFINITY; tree.cells.len()];
     walk(tree, exec, sources.into_iter(), floor, |&Reached { number, height, .. }| {
         way[number] = height;
@@ -255,7 +274,7 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Flo
             cell.label = Some(if cell.height.is_none() || cell.sudden { Label::Leaves } else { Label::Jams });
         }
     }
-    Ok(Flood { level, blocking, came_from })
+    Ok(way_out)
 }
 
 /// How high a half that is in the seat must be lifted before it can leave, above the mated height: at least and at most, in D.

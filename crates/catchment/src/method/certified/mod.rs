@@ -21,6 +21,7 @@
 //! than two free errors leave more of it. Lengths in D, angles in radians.
 
 mod arc;
+mod bearing;
 mod body;
 pub(super) mod door;
 mod flood;
@@ -42,7 +43,7 @@ use crate::contact::{Nearby, Pair, SEAT_CORE};
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;
 use crate::pose::Dof;
-use flood::{Flood, Seat, flood, retention};
+use flood::{Seat, WayOut, flood, retention};
 use grown::Growth;
 use home::Home;
 use interval::Interval;
@@ -139,17 +140,20 @@ const FIRST_LEVEL: [u8; 5] = [8, 5, 4, 3, 2];
 const FINEST: f64 = 3e-4;
 /// How often a window is halved.
 const WINDOW_HALVINGS: usize = 24;
-/// The part that is spent at last on what is in the way of the seat's part.
+/// The part that is spent at last on what is in the way of the seat's part, and at most so many: as many again hardly raise it.
 const AT_LAST: usize = 8;
+const MOST_AT_LAST: usize = 4000;
 /// Boxes about the mated pose that are halved at once.
 const AT_HOME: usize = 64;
 /// With more free errors than so many, boxes about the mated pose come before those in the way of its part: there are too many of those.
 const MOST_IN_THE_WAY: usize = 3;
 /// The part of all boxes that is spent first on the seat, at most, for one to five free errors: of many there is little else that so few boxes tell.
 const AT_SEAT: [usize; 5] = [8, 8, 8, 2, 1];
+/// Motions of a box are followed once more in a bundle where there are so many times as many boxes.
+const AGAIN: usize = 2;
 /// Boxes that are halved at once, at least, and as a part of all.
 const AT_ONCE: usize = 1024;
-const PART: usize = 8;
+const PART: usize = 16;
 
 /// Certifies the error box of a pair.
 ///
@@ -182,7 +186,7 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     while tree.cells.len() < first.min(boxes) {
         let flooded = flood(&mut tree, &seat, exec)?;
         let mut chosen = seat.about(&tree);
-        chosen.truncate(AT_HOME);
+        chosen.truncate(AT_HOME.max(tree.cells.len() / PART));
         if tree.axes.len() <= MOST_IN_THE_WAY || chosen.is_empty() {
             chosen.extend(coarse(&tree, &flooded));
         }
@@ -194,33 +198,40 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
         }
         halve(&mut tree, &chosen, pair, &bodies, exec)?;
     }
-    let most = boxes - boxes / AT_LAST;
+    let at_last = (boxes / AT_LAST).min(MOST_AT_LAST);
+    let most = boxes - at_last;
     loop {
         let flooded = flood(&mut tree, &seat, exec)?;
         let in_the_way = coarse(&tree, &flooded);
         spread(&mut tree, &seat, exec)?;
         if alignment.free.rotations() <= 1 {
-            bundle(&mut tree, pair, &bodies, exec)?;
+            bundle(&mut tree, AGAIN, pair, &bodies, exec)?;
             spread(&mut tree, &seat, exec)?;
         }
-        let gap = tree.undecided();
         exec.report(tree.cells.len() as f64 / boxes as f64, "boxes");
-        if gap <= settings.gap || tree.cells.len() >= most {
-            break;
-        }
-        let chosen = chosen(&tree, &seat, in_the_way, most, exec)?;
+        let chosen = if tree.undecided() <= settings.gap || tree.cells.len() >= most {
+            Vec::new()
+        } else {
+            chosen(&tree, &seat, in_the_way, most, exec)?
+        };
         if chosen.is_empty() {
             break;
         }
         halve(&mut tree, &chosen, pair, &bodies, exec)?;
     }
+    // All that is left, now that there are no more labels to come.
+    if alignment.free.rotations() <= 1 && tree.undecided() > settings.gap {
+        bundle(&mut tree, 0, pair, &bodies, exec)?;
+        spread(&mut tree, &seat, exec)?;
+    }
     // How well the seat holds is told best where labels say what comes back and what does not.
-    let last = (tree.cells.len() + boxes / AT_LAST).min(boxes);
+    let last = (tree.cells.len() + at_last).min(boxes);
     loop {
-        let flooded = flood(&mut tree, &seat, exec)?;
-        let mut in_the_way = coarse(&tree, &flooded);
+        let way_out = WayOut::find(&tree, &seat, exec)?;
+        let mut in_the_way = coarse(&tree, &way_out);
         in_the_way.truncate(last.saturating_sub(tree.cells.len()) >> tree.axes.len());
         if in_the_way.is_empty() {
+            let flooded = flood(&mut tree, &seat, exec)?;
             let level = home.map_or(flooded.level, |home| home.level.max(flooded.level));
             let [at_least, at_most] = retention(&tree, &seat, level, exec)?;
             let mut certificate = tree.certificate(window.max(tree.window()));
@@ -245,8 +256,8 @@ fn begin(pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<Tree, Cancelled> {
 }
 
 /// What is in the way of the seat's part and not as small as it gets.
-fn coarse(tree: &Tree, flooded: &Flood) -> Vec<usize> {
-    flooded.in_the_way(|number| tree.width(&tree.cells[number]) > FINEST)
+fn coarse(tree: &Tree, way_out: &WayOut) -> Vec<usize> {
+    way_out.in_the_way(|number| tree.width(&tree.cells[number]) > FINEST)
 }
 
 /// Which boxes to halve: those in the way of the seat's own part, those about the mated pose, the largest of those that are undecided, and the
@@ -310,13 +321,18 @@ fn divide(
     for (number, parts) in numbers.iter().zip(parts) {
         tree.split(*number, parts);
     }
-    Ok(())
+    tree.join(numbers, exec)
 }
 
 /// Labels the boxes all of whose motions lead to labelled ones.
-fn bundle(tree: &mut Tree, pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
-    let open = tree.leaves().filter(|(_, cell)| cell.label.is_none() && !cell.sudden && tree.is_asked(cell));
-    let open: Vec<usize> = open.map(|(number, _)| number).collect();
+fn bundle(tree: &mut Tree, again: usize, pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<(), Cancelled> {
+    // Once more where there are many more labels to come to.
+    let boxes = tree.cells.len();
+    let is_open = |cell: &Cell| {
+        cell.label.is_none() && !cell.sudden && tree.is_asked(cell) && boxes >= again * cell.followed
+    };
+    let open: Vec<usize> =
+        tree.leaves().filter(|(_, cell)| is_open(cell)).map(|(number, _)| number).collect();
     let found: Vec<Option<Label>> = exec.install(|| {
         let tube = Tube { bodies, tree };
         let follow = |nearby: &mut Nearby<'_>, number: &usize| {
@@ -327,6 +343,7 @@ fn bundle(tree: &mut Tree, pair: &Pair, bodies: &Bodies, exec: &Exec) -> Result<
     })?;
     for (number, label) in open.into_iter().zip(found) {
         tree.cells[number].label = label;
+        tree.cells[number].followed = boxes;
     }
     Ok(())
 }

@@ -11,7 +11,7 @@
 //!
 //! Not promised: a bound that is near the depth. It comes near as boxes become small, and there are [`BOXES`] of them for each rest.
 
-use super::flood::{Seat, flood};
+use super::flood::{Seat, WayOut};
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox};
 use super::tree::Tree;
@@ -79,13 +79,11 @@ fn depth(
     let seat = Seat { mated: f64::NEG_INFINITY, level, holds: &holds, home: None, meets: &meets };
     let most = tree.cells.len() + BOXES;
     loop {
-        let flooded = flood(tree, &seat, exec)?;
-        // Labels say what leads to this rest alone.
-        tree.cells.iter_mut().for_each(|cell| cell.label = None);
-        let mut in_the_way = coarse(tree, &flooded);
+        let way_out = WayOut::find(tree, &seat, exec)?;
+        let mut in_the_way = coarse(tree, &way_out);
         in_the_way.truncate(most.saturating_sub(tree.cells.len()) >> tree.axes.len());
         if in_the_way.is_empty() {
-            return Ok(Some(flooded.level).filter(|level| level.is_finite()));
+            return Ok(Some(way_out.level).filter(|level| level.is_finite()));
         }
         halve(tree, &in_the_way, pair, bodies, exec)?;
     }

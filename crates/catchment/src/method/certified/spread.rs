@@ -14,6 +14,9 @@
 use super::flood::Seat;
 use super::tree::{Cell, Label, Tree};
 use crate::exec::{Cancelled, Exec};
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// Boxes that are taken between two looks at whether to stop.
 const BETWEEN: usize = 1024;
@@ -29,7 +32,7 @@ pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<()
     let otherwise = |_, cell: &Cell| {
         is(cell, false)
             || !is(cell, true)
-                && (cell.walled || tree.leaves_root(cell) || falls_off(cell) || seat.lets_rest(tree, cell))
+                && (cell.walled || tree.leaves_root(cell) || falls_off(cell) || seat.lets_rest(cell))
     };
     let may_end = back(tree, otherwise, |cell| !is(cell, true), exec)?;
     let seated = |number: usize, cell: &Cell| {
@@ -52,7 +55,7 @@ pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<()
     Ok(())
 }
 
-/// The leaves from which a chain of faces may lead to sources, through leaves that let through.
+/// The leaves from which a chain of faces may lead to sources, through leaves that let through, without going back along a bearing.
 fn back(
     tree: &Tree,
     is_source: impl Fn(usize, &Cell) -> bool,
@@ -60,27 +63,120 @@ fn back(
     exec: &Exec,
 ) -> Result<Vec<bool>, Cancelled> {
     let mut leads = vec![false; tree.cells.len()];
-    let mut open: Vec<usize> =
+    let sources: Vec<usize> =
         tree.leaves().filter(|(number, cell)| is_source(*number, cell)).map(|(number, _)| number).collect();
-    for number in &open {
+    for number in &sources {
         leads[*number] = true;
     }
-    let mut taken = 0usize;
+    let (mut open, mut taken) = (sources.clone(), 0usize);
     while let Some(number) = open.pop() {
         taken += 1;
         if taken.is_multiple_of(BETWEEN) {
             exec.check()?;
         }
         let to = &tree.cells[number];
-        tree.beside(to, |next, axis, above| {
+        for face in &to.faces {
+            let next = face.number();
             let from = &tree.cells[next];
-            if !leads[next] && through(from) && goes(from, to, axis, !above) {
+            if !leads[next] && through(from) && goes(from, to, face.axis(), !face.above) {
                 leads[next] = true;
                 open.push(next);
             }
-        });
+        }
+    }
+    let way = Way { tree, sources: &sources, leads: &leads };
+    let ruled_out: Vec<Vec<usize>> = exec.install(|| {
+        let ruled_out = |bearing: usize| way.ruled_out(bearing, exec);
+        (0..tree.bearings.len()).into_par_iter().map(ruled_out).collect::<Result<_, Cancelled>>()
+    })?;
+    for number in ruled_out.into_iter().flatten() {
+        leads[number] = false;
     }
     Ok(leads)
+}
+
+/// Chains of faces to sources.
+struct Way<'a> {
+    tree: &'a Tree,
+    sources: &'a [usize],
+    /// The leaves that such chains lead through.
+    leads: &'a [bool],
+}
+
+/// A leaf from which a source may be come to, and from how far along a bearing; the farthest is the greatest, then the smaller number.
+#[derive(PartialEq)]
+struct Far {
+    farthest: f64,
+    number: usize,
+}
+
+impl Eq for Far {}
+
+impl Ord for Far {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.farthest.total_cmp(&other.farthest).then(other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Far {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// What places along a bearing are rounded by, in D.
+const ROUNDING: f64 = 1e-9;
+
+impl Way<'_> {
+    /// The leaves all of whose chains would have to go back along a bearing: farthest along it of what may lead on stays behind all of the leaf.
+    ///
+    /// The farthest of a leaf in which nothing goes back is that of the faces by which it leads on, cut at the farthest of what lies behind them.
+    fn ruled_out(&self, bearing: usize, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
+        let Self { tree, sources, leads } = *self;
+        let rises = |cell: &Cell| cell.rising >> bearing & 1 == 1;
+        let range = |number: usize| tree.bearings.range(bearing, &tree.cells[number].poses);
+        let mut farthest = vec![f64::NEG_INFINITY; tree.cells.len()];
+        for number in sources {
+            farthest[*number] = range(*number)[1];
+        }
+        let far = |number: usize, farthest: f64| Far { farthest, number };
+        let mut open: BinaryHeap<Far> = sources.iter().map(|k| far(*k, farthest[*k])).collect();
+        let mut taken = 0usize;
+        while let Some(Far { number, farthest: then }) = open.pop() {
+            if then < farthest[number] {
+                continue;
+            }
+            taken += 1;
+            if taken.is_multiple_of(BETWEEN) {
+                exec.check()?;
+            }
+            let to = &tree.cells[number];
+            for face in &to.faces {
+                let next = face.number();
+                let from = &tree.cells[next];
+                if !leads[next] || !goes(from, to, face.axis(), !face.above) {
+                    continue;
+                }
+                let shared = tree.shared(to, from, *face);
+                let [first, last] = tree.bearings.range(bearing, &shared);
+                if farthest[number] < first - ROUNDING {
+                    continue;
+                }
+                // Where an axis closes on itself, places on either side are not the same.
+                let reach = if !rises(from) || tree.closes(to, *face) {
+                    range(next)[1]
+                } else {
+                    farthest[number].min(last)
+                };
+                if reach > farthest[next] {
+                    farthest[next] = reach;
+                    open.push(far(next, reach));
+                }
+            }
+        }
+        let all = tree.leaves().filter(|(number, cell)| leads[*number] && rises(cell));
+        Ok(all.map(|(k, _)| k).filter(|k| farthest[*k] < range(*k)[0] - ROUNDING).collect())
+    }
 }
 
 /// The undecided leaves to which a chain of such may lead from the error box, itself among them: what they do not tell apart, smaller ones may.
@@ -102,14 +198,15 @@ pub(super) fn ahead(tree: &Tree, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
             exec.check()?;
         }
         let from = &tree.cells[number];
-        tree.beside(from, |next, axis, above| {
+        for face in &from.faces {
+            let next = face.number();
             let to = &tree.cells[next];
-            if !seen[next] && to.label.is_none() && goes(from, to, axis, above) {
+            if !seen[next] && to.label.is_none() && goes(from, to, face.axis(), face.above) {
                 seen[next] = true;
                 open.push(next);
                 all.push(next);
             }
-        });
+        }
     }
     Ok(all)
 }

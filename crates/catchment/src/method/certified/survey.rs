@@ -14,6 +14,7 @@
 //!
 //! Not promised: that a box is called continuous or restless where it is; smaller ones are.
 
+use super::bearing::{Bearings, Rising};
 use super::body::{Body, Corner, Meeting, Ridge, Side};
 use super::interval::{Interval, Vector, dot, perp, thin};
 use super::placed::{Bodies, Placed, PoseBox, middle};
@@ -135,6 +136,11 @@ impl Survey {
             }
         }
         flows
+    }
+
+    /// The bearings that no motion in its box goes back along.
+    pub(super) fn rising(&self, bearings: &Bearings) -> Rising {
+        if self.height.is_none() || self.walled { 0 } else { bearings.rising(&self.pushes) }
     }
 
     /// The numbers of all that may carry.

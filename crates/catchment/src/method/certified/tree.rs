@@ -11,13 +11,16 @@
 //!
 //! A root that goes once around a rotation closes on itself. Which errors a box is widest along the ρ-metric says: a turn θ is as wide as ρθ.
 
+use super::bearing::{Bearings, Rising};
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox};
 use super::survey::{Flows, Survey};
 use crate::contact::Nearby;
 use crate::design::Alignment;
+use crate::exec::{Cancelled, Exec};
 use crate::pose::Dof;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// How often the root may be halved along an error.
@@ -64,6 +67,8 @@ pub(super) struct Cell {
     pub(super) corner: [u32; 5],
     /// How often the root was halved along each error.
     levels: [u8; 5],
+    /// Its pose errors.
+    pub(super) poses: PoseBox,
     parts: Option<Parts>,
     /// All that may carry in it.
     pub(super) among: Box<[u32]>,
@@ -76,13 +81,40 @@ pub(super) struct Cell {
     /// Whether a motion may come to poses in it at which nothing touches.
     pub(super) ends: bool,
     pub(super) flows: Flows,
+    /// The bearings that no motion in it goes back along.
+    pub(super) rising: Rising,
     pub(super) label: Option<Label>,
+    /// The leaves that a leaf shares faces with.
+    pub(super) faces: Box<[Face]>,
+    /// How many boxes there were when its motions were last followed in a bundle; 0: not yet.
+    pub(super) followed: usize,
 }
 
 impl Cell {
     /// Whether it has parts.
     pub(super) const fn is_split(&self) -> bool {
         self.parts.is_some()
+    }
+}
+
+/// A leaf that shares a face with another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Face {
+    number: u32,
+    axis: u8,
+    /// Whether it lies above along that axis.
+    pub(super) above: bool,
+}
+
+impl Face {
+    /// The leaf on the other side.
+    pub(super) const fn number(self) -> usize {
+        self.number as usize
+    }
+
+    /// The axis that the face lies across.
+    pub(super) const fn axis(self) -> usize {
+        self.axis as usize
     }
 }
 
@@ -95,6 +127,9 @@ pub(super) struct Tree {
     root: PoseBox,
     /// Whether an axis closes on itself.
     closed: [bool; 5],
+    /// Whether nothing touches at either end of it: halves pass each other by.
+    clear: [bool; 5],
+    pub(super) bearings: Bearings,
     /// The error box, and where in the root it is.
     pub(super) asked: PoseBox,
     errors: Span,
@@ -111,15 +146,17 @@ impl Tree {
         let axes: Vec<Dof> = alignment.free.iter().collect();
         let wide = alignment.free.rotations() <= 1;
         let [mut root, mut asked] = [[Interval::ZERO; 5]; 2];
-        let mut closed = [false; 5];
+        let [mut closed, mut clear] = [[false; 5]; 2];
+        let passing = passing(bodies);
         let mut errors = [[0, WHOLE]; 5];
         for dof in &axes {
             let k = dof.index();
             let half = alignment.half_range(*dof);
             asked[k] = Interval::new(-half, half);
-            let beyond = if dof.is_rotation() { PI } else { (2.0 * half).max(passing(bodies)) };
+            let beyond = if dof.is_rotation() { PI } else { (2.0 * half).max(passing) };
             let reach = if wide { half.max(beyond) } else { half };
             root[k] = Interval::new(-reach, reach);
+            clear[k] = !dof.is_rotation() && reach >= passing;
             closed[k] = dof.is_rotation() && (reach - PI).abs() <= 4.0 * f64::EPSILON * PI;
             if reach > half {
                 errors[k] = [WHOLE / 4, WHOLE / 4 * 3];
@@ -130,6 +167,7 @@ impl Tree {
         let whole = Cell {
             corner: [0; 5],
             levels: [0; 5],
+            poses: root,
             parts: None,
             among,
             height: Some(Interval::EVERYTHING),
@@ -138,9 +176,14 @@ impl Tree {
             restless: false,
             ends: true,
             flows: Flows::ALL,
+            rising: 0,
             label: None,
+            faces: Box::default(),
+            followed: 0,
         };
-        Self { axes, root, closed, asked, errors, units, upright: bodies.upright, cells: vec![whole] }
+        let bearings = Bearings::of(&axes, &units);
+        let (upright, cells) = (bodies.upright, vec![whole]);
+        Self { axes, root, closed, clear, bearings, asked, errors, units, upright, cells }
     }
 
     /// Size of a box along an axis, in smallest boxes.
@@ -192,7 +235,7 @@ impl Tree {
 
     /// How wide a box is along each error in the ρ-metric, in D.
     fn widths(&self, cell: &Cell) -> [f64; 5] {
-        let poses = self.poses(cell);
+        let poses = cell.poses;
         Dof::ALL.map(|dof| self.units[dof.index()] * poses[dof.index()].width())
     }
 
@@ -212,10 +255,9 @@ impl Tree {
         cell.levels.iter().all(|level| *level < DEEPEST)
     }
 
-    /// The pose errors of a box.
-    pub(super) fn poses(&self, cell: &Cell) -> PoseBox {
+    /// The pose errors between places.
+    fn between(&self, span: &Span) -> PoseBox {
         let mut poses = [Interval::ZERO; 5];
-        let span = self.span(cell);
         for dof in &self.axes {
             let k = dof.index();
             poses[k] = Interval::new(self.error(k, span[k][0]), self.error(k, span[k][1]));
@@ -276,12 +318,17 @@ impl Tree {
         self.axes.iter().map(part).product()
     }
 
+    /// Whether a motion may leave the root along an axis.
+    const fn is_open(&self, axis: usize) -> bool {
+        !self.closed[axis] && !self.clear[axis]
+    }
+
     /// Whether a motion may leave the root from a box.
     pub(super) fn is_at_border(&self, cell: &Cell) -> bool {
         let span = self.span(cell);
         self.axes.iter().any(|dof| {
             let [a, b] = span[dof.index()];
-            !self.closed[dof.index()] && (a == 0 || b == WHOLE)
+            self.is_open(dof.index()) && (a == 0 || b == WHOLE)
         })
     }
 
@@ -297,25 +344,26 @@ impl Tree {
 
     /// Visits every leaf that shares more than a border with a span, until one says stop; whether none did.
     pub(super) fn visit(&self, span: &Span, mut go_on: impl FnMut(usize, &Cell) -> bool) -> bool {
-        let mut stack = vec![0];
-        while let Some(number) = stack.pop() {
-            let cell = &self.cells[number];
-            let own = self.span(cell);
-            if self.axes.iter().any(|dof| {
-                let ([a, b], [c, d]) = (own[dof.index()], span[dof.index()]);
-                b <= c || d <= a
-            }) {
-                continue;
-            }
-            match cell.parts {
-                Some(parts) => {
-                    stack.extend((parts.first..parts.first + parts.count).map(|part| part as usize));
-                }
-                None if !go_on(number, cell) => return false,
-                None => {}
-            }
+        self.visit_in(0, span, &mut go_on)
+    }
+
+    /// The same, of one box and its parts.
+    fn visit_in(&self, number: usize, span: &Span, go_on: &mut impl FnMut(usize, &Cell) -> bool) -> bool {
+        let cell = &self.cells[number];
+        let is_apart = |dof: &Dof| {
+            let k = dof.index();
+            let [a, b] = [cell.corner[k], cell.corner[k] + Self::size(cell, k)];
+            b <= span[k][0] || span[k][1] <= a
+        };
+        if self.axes.iter().any(is_apart) {
+            return true;
         }
-        true
+        match cell.parts {
+            Some(parts) => {
+                (parts.first..parts.first + parts.count).all(|part| self.visit_in(part as usize, span, go_on))
+            }
+            None => go_on(number, cell),
+        }
     }
 
     /// The label that all leaves have that share more than a border with a span; of two ways not to dock that of the first.
@@ -330,13 +378,39 @@ impl Tree {
         label.filter(|_| all)
     }
 
-    /// Visits every leaf that shares a face with a leaf.
-    pub(super) fn neighbours(&self, cell: &Cell, mut visit: impl FnMut(usize)) {
-        self.beside(cell, |number, _, _| visit(number));
+    /// What shares faces with the parts that leaves were given, and the other way round.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when asked to stop.
+    pub(super) fn join(&mut self, split: &[usize], exec: &Exec) -> Result<(), Cancelled> {
+        let mut touched: Vec<usize> = Vec::new();
+        for number in split {
+            let cell = &mut self.cells[*number];
+            touched.extend(std::mem::take(&mut cell.faces).iter().map(|face| face.number()));
+            if let Some(Parts { first, count }) = cell.parts {
+                touched.extend((first..first + count).map(|part| part as usize));
+            }
+        }
+        touched.retain(|number| !self.cells[*number].is_split());
+        touched.sort_unstable();
+        touched.dedup();
+        let beside = |number: &usize| {
+            let mut faces = Vec::new();
+            self.beside(&self.cells[*number], |number, axis, above| {
+                faces.push(Face { number: number as u32, axis: axis as u8, above });
+            });
+            faces.into_boxed_slice()
+        };
+        let faces: Vec<Box<[Face]>> = exec.install(|| touched.par_iter().map(beside).collect());
+        exec.check()?;
+        for (number, faces) in touched.into_iter().zip(faces) {
+            self.cells[number].faces = faces;
+        }
+        Ok(())
     }
 
-    /// The same, with the axis along which it lies and whether it lies above.
-    pub(super) fn beside(&self, cell: &Cell, mut visit: impl FnMut(usize, usize, bool)) {
+    /// Visits every leaf that shares a face with a leaf, with the axis along which it lies and whether it lies above.
+    fn beside(&self, cell: &Cell, mut visit: impl FnMut(usize, usize, bool)) {
         let own = self.span(cell);
         for dof in &self.axes {
             let k = dof.index();
@@ -355,13 +429,34 @@ impl Tree {
         }
     }
 
+    /// The face that a leaf shares with another, as it has it.
+    pub(super) fn shared(&self, cell: &Cell, other: &Cell, face: Face) -> PoseBox {
+        let (own, its) = (cell.poses, other.poses);
+        let mut shared = own;
+        for dof in &self.axes {
+            let k = dof.index();
+            shared[k] = if k == face.axis() {
+                Interval::thin(if face.above { own[k].up } else { own[k].lo })
+            } else {
+                Interval::new(own[k].lo.max(its[k].lo), own[k].up.min(its[k].up))
+            };
+        }
+        shared
+    }
+
+    /// Whether a leaf has a face where its axis closes on itself.
+    pub(super) fn closes(&self, cell: &Cell, face: Face) -> bool {
+        let [a, b] = self.span(cell)[face.axis()];
+        if face.above { b == WHOLE } else { a == 0 }
+    }
+
     /// Whether a motion may leave the root from a leaf.
     pub(super) fn leaves_root(&self, cell: &Cell) -> bool {
         let span = self.span(cell);
         self.axes.iter().any(|dof| {
             let k = dof.index();
             let ([a, b], [lower, upper]) = (span[k], cell.flows.0[k]);
-            !self.closed[k] && (a == 0 && lower.down || b == WHOLE && upper.up)
+            self.is_open(k) && (a == 0 && lower.down || b == WHOLE && upper.up)
         })
     }
 
@@ -383,7 +478,8 @@ impl Tree {
                 part.levels[*k] += 1;
                 part.corner[*k] += Self::size(&part, *k) * (which >> bit & 1) as u32;
             }
-            let survey = Survey::of(bodies, &self.poses(&part), &whole.among, nearby);
+            part.poses = self.between(&self.span(&part));
+            let survey = Survey::of(bodies, &part.poses, &whole.among, nearby);
             part.among = survey.numbers();
             // What holds for the whole holds for its parts.
             let both = |own: Interval| whole.height.and_then(|height| own.and(height)).unwrap_or(own);
@@ -392,8 +488,11 @@ impl Tree {
             part.walled = survey.walled && whole.walled;
             part.restless = survey.downhill.is_some() || whole.restless;
             part.ends = part.height.is_none() || survey.ends && whole.ends;
-            part.flows = survey.flows(bodies, &self.poses(&part), nearby);
+            part.flows = survey.flows(bodies, &part.poses, nearby);
+            part.rising = whole.rising | survey.rising(&self.bearings);
             part.parts = None;
+            part.faces = Box::default();
+            part.followed = 0;
             part
         };
         (0..1usize << halved.len()).map(part).collect()

@@ -33,7 +33,7 @@ const STEPS: usize = 600;
 const WIDEST: f64 = 0.3;
 /// Length of a step, as a part of the width of the bundle, and at least, in D.
 const STEP: f64 = 0.5;
-const LEAST_STEP: f64 = 1e-3;
+const LEAST_STEP: f64 = 1e-2;
 /// Slopes at first, and at least, for which a slab is made wide enough.
 const GUESS: f64 = 0.25;
 /// Slopes above this call for other coordinates.
@@ -208,7 +208,7 @@ pub(super) struct Tube<'a> {
 impl Tube<'_> {
     /// What becomes of all motions that begin in a box, if that is certain.
     pub(super) fn follow(&self, cell: &Cell, nearby: &mut Nearby<'_>) -> Option<Label> {
-        let poses = self.tree.poses(cell);
+        let poses = cell.poses;
         let first = self.look(&poses, nearby)?;
         let axes = &self.tree.axes;
         let downhill = Frame::new(self.bodies, axes, &poses, &first.touches);

@@ -1,0 +1,79 @@
+//! Bearings: directions, along errors and across them, that motions never go back along.
+//!
+//! ```text
+//!      │ ↗ ╲ ↗ │     from q nothing leads below the line ╲ through q while the motion is in boxes all of whose pushes go beyond it:
+//!      ├──┄──╲─┤     ℓ(q) = d·q does not fall
+//!      │  seat  ╲    so what cannot be ruled out by faces alone, as they say nothing of how far along them a motion went,
+//!      └────────┘    may be ruled out by where it would have to be
+//! ```
+//!
+//! d goes through all neighbours of a pose in a lattice of the free errors, as the ρ-metric measures them; of two errors also halfway between.
+
+use super::interval::Interval;
+use super::placed::PoseBox;
+use crate::pose::Dof;
+
+/// Directions of the errors, in D of the ρ-metric; no more than a set of them has room for.
+#[derive(Debug, Clone)]
+pub(super) struct Bearings(Vec<[f64; 5]>);
+
+/// Which of the bearings nothing in a box goes back along.
+pub(super) type Rising = u64;
+
+impl Bearings {
+    /// For some free errors; `units` is what a unit of each counts, in D.
+    pub(super) fn of(axes: &[Dof], units: &[f64; 5]) -> Self {
+        let steps: &[f64] = if axes.len() <= 2 { &[0.0, 1.0, -1.0, 0.5, -0.5] } else { &[0.0, 1.0, -1.0] };
+        // Pairs of errors alone where there are too many otherwise.
+        let most = if axes.len() <= 3 { axes.len() } else { 2 };
+        let mut all = vec![[0.0; 5]];
+        for dof in axes {
+            let k = dof.index();
+            all = all
+                .iter()
+                .flat_map(|so_far| {
+                    steps.iter().map(move |step| {
+                        let mut bearing = *so_far;
+                        bearing[k] = step * units[k];
+                        bearing
+                    })
+                })
+                .filter(|bearing| bearing.iter().filter(|part| **part != 0.0).count() <= most)
+                .collect();
+        }
+        // Each once: its longest step is whole.
+        all.retain(|bearing| {
+            let longest = (0..5).map(|k| (bearing[k] / units[k]).abs()).fold(0.0, f64::max);
+            (longest - 1.0).abs() < 1e-9
+        });
+        all.truncate(Rising::BITS as usize);
+        Self(all)
+    }
+
+    /// How many.
+    pub(super) const fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Which of them none of the pushes goes back along.
+    pub(super) fn rising(&self, pushes: &[PoseBox]) -> Rising {
+        let rises = |bearing: &[f64; 5]| {
+            pushes.iter().all(|push| {
+                (0..5).map(|k| push[k] * bearing[k]).fold(Interval::ZERO, |sum, part| sum + part).lo >= 0.0
+            })
+        };
+        self.0.iter().enumerate().filter(|(_, bearing)| rises(bearing)).fold(0, |set, (k, _)| set | 1 << k)
+    }
+
+    /// How far along a bearing a box reaches: from and to.
+    pub(super) fn range(&self, bearing: usize, poses: &PoseBox) -> [f64; 2] {
+        let direction = &self.0[bearing];
+        let (mut from, mut to) = (0.0, 0.0);
+        for (part, errors) in direction.iter().zip(poses) {
+            let ends = [part * errors.lo, part * errors.up];
+            from += ends[0].min(ends[1]);
+            to += ends[0].max(ends[1]);
+        }
+        [from, to]
+    }
+}
