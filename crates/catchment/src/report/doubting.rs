@@ -29,7 +29,9 @@ impl<'a> Doubts<'a> {
         let (Some(pose), Some(known)) = (self.poses.get(number), self.known.get(number)) else {
             return false;
         };
-        *known.get_or_init(|| Follower::new(self.problem.pair(), &self.settings).follow_doubting(pose).1)
+        *known.get_or_init(|| {
+            Follower::new(self.problem.pair(), &self.settings).follow_doubting(pose).1.may_stick
+        })
     }
 }
 

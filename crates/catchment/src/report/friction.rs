@@ -53,6 +53,8 @@ pub struct RungReport {
     pub gained: usize,
     /// Poses that dock, and by Coulomb's law might have stuck on the way.
     pub may_stick: usize,
+    /// Poses that jam and wedge there: some force would hold them against a pull straight out as well.
+    pub wedged: usize,
     /// Poses that dock by the static test along the frictionless way.
     pub static_docks: usize,
     /// Poses of which that test says the wrong thing.
@@ -116,6 +118,7 @@ impl RungReport {
             lost: tally.lost,
             gained: tally.gained,
             may_stick: tally.may_stick,
+            wedged: tally.wedged,
             static_docks: tally.static_docks,
             static_wrong: tally.static_wrong,
         }
@@ -162,6 +165,13 @@ impl FrictionReport {
         if undecided > 0 {
             warnings.push(Warning::Undecided { cells: undecided }.into());
         }
+        if let Some(friction) = found.wedges_from() {
+            let text = format!(
+                "from a friction of {friction} on some poses wedge: the halves press against each other, however they are pushed, and rigid ones under \
+                 Coulomb's law stay; halves that give a little, as real ones and those of engines do, may come loose there"
+            );
+            warnings.push(Warning::Note { text }.into());
+        }
         Self::of(body, warnings, timing)
     }
 
@@ -172,7 +182,13 @@ impl FrictionReport {
         let motions = format!("descent, {} random poses at every friction", grouped(self.motions));
         row(&mut text, "method", &motions);
         text.push('\n');
-        line(&mut text, "  friction docks                    lost  gained  may stick   static  wrong");
+        line(
+            &mut text,
+            &format!(
+                "  {:<9}{:<22}{:>6}{:>7}{:>10}{:>7}{:>8}{:>6}",
+                "friction", "docks", "lost", "gained", "may stick", "wedged", "static", "wrong"
+            ),
+        );
         for rung in &self.curve {
             let [lo, hi] = rung.aligned.ci95.map(|share| format!("{:.1}", 100.0 * share));
             let docks = format!("{} ({lo} … {hi})", percent(rung.aligned.share));
@@ -180,10 +196,10 @@ impl FrictionReport {
                 String::new()
             } else {
                 let share = percent(rung.static_docks as f64 / self.motions.max(1) as f64);
-                let RungReport { lost, gained, may_stick, static_wrong, .. } = rung;
-                format!("{lost:>6}{gained:>8}{may_stick:>11}{share:>9}{static_wrong:>7}")
+                let RungReport { lost, gained, may_stick, wedged, static_wrong, .. } = rung;
+                format!("{lost:>6}{gained:>7}{may_stick:>10}{wedged:>7}{share:>8}{static_wrong:>6}")
             };
-            line(&mut text, &format!("  {:<9}{docks:<23}{against}", rung.friction));
+            line(&mut text, &format!("  {:<9}{docks:<22}{against}", rung.friction));
         }
         text.push('\n');
         self.kept_lines(&mut text);
@@ -252,14 +268,15 @@ impl FrictionReport {
 
     /// The curve as records for programs, the names of the columns first.
     pub fn records(&self) -> Vec<Vec<String>> {
-        let head = "friction motions aligned aligned_lo aligned_hi jammed missed undecided lost gained may_stick static_docks static_wrong";
+        let head = "friction motions aligned aligned_lo aligned_hi jammed missed undecided lost gained may_stick wedged static_docks static_wrong";
         let mut records = vec![head.split(' ').map(str::to_owned).collect::<Vec<_>>()];
         records.extend(self.curve.iter().map(|rung| {
             let [lo, hi] = rung.aligned.ci95;
             let mut record = vec![number(rung.friction), self.motions.to_string()];
             record.extend([rung.aligned.share, lo, hi, rung.jammed.share, rung.missed.share].map(number));
             record.push(number(rung.undecided.share));
-            let counts = [rung.lost, rung.gained, rung.may_stick, rung.static_docks, rung.static_wrong];
+            let RungReport { lost, gained, may_stick, wedged, static_docks, static_wrong, .. } = *rung;
+            let counts = [lost, gained, may_stick, wedged, static_docks, static_wrong];
             record.extend(counts.map(|count| count.to_string()));
             record
         }));

@@ -181,7 +181,7 @@ impl JamsReport {
     /// Jams and what touches in each as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = "jam count share share_lo share_hi of_jams of_failures expected x y roll pitch yaw height above_mated order \
-                    slope_lo slope_hi curvature firmness rise_at_most holds_from slips_until symmetry climb_at_most depth_at_least depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
+                    slope_lo slope_hi curvature firmness rise_at_most holds_from slips_until wedges_from symmetry climb_at_most depth_at_least depth_on_grid leads_to fixed_kind fixed_name fixed_part fixed_x fixed_y fixed_z moving_kind \
                     moving_name moving_part moving_x moving_y moving_z";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         for (k, jam) in self.jams.iter().enumerate() {
@@ -203,6 +203,7 @@ impl JamsReport {
             let sticks = examined.and_then(|examined| examined.sticks);
             record.push(or_nothing(sticks.and_then(|sticks| sticks.holds_from)));
             record.push(or_nothing(sticks.and_then(|sticks| sticks.slips_until)));
+            record.push(or_nothing(sticks.and_then(|sticks| sticks.wedges_from)));
             record.push(jam.docked_with_symmetry.map_or_else(String::new, |n| n.to_string()));
             record.push(or_nothing(way.map(|way| way.climb_at_most_d)));
             record.extend([jam.depth_at_least_d, jam.depth_on_grid_d].map(or_nothing));

@@ -58,23 +58,32 @@ pub struct ThresholdsReport {
     pub holds_from: Option<f64>,
     /// Up to this friction there is a way to slip; null: at any.
     pub slips_until: Option<f64>,
+    /// From this friction on it wedges, and may hold against a pull straight out as well; null: at none.
+    pub wedges_from: Option<f64>,
 }
 
 impl From<Sticking> for ThresholdsReport {
     fn from(found: Sticking) -> Self {
-        let Sticking { holds_from, slips_until } = found;
-        Self { holds_from, slips_until }
+        let Sticking { holds_from, slips_until, wedges_from } = found;
+        Self { holds_from, slips_until, wedges_from }
     }
 }
+
+/// Dry halves have no more friction than this, mostly: what wedges beyond it is not told.
+const MOST_COMMON: f64 = 1.0;
 
 impl ThresholdsReport {
     /// In words.
     pub(super) fn words(&self) -> String {
-        match (self.holds_from, self.slips_until) {
+        let held = match (self.holds_from, self.slips_until) {
             (None, _) => "slips, whatever the friction".to_owned(),
             (Some(0.0), _) => "none is needed, contacts alone hold it".to_owned(),
             (Some(from), None) => format!("may stick from {from:.3} on, and may slip at any"),
             (Some(from), Some(until)) => format!("may stick from {from:.3} on, slips until {until:.3}"),
+        };
+        match self.wedges_from.filter(|from| *from <= MOST_COMMON) {
+            Some(from) => format!("{held}; wedges from {from:.3} on, and may then hold against a pull out"),
+            None => held,
         }
     }
 }

@@ -202,7 +202,7 @@ impl RestsReport {
     /// Rests as records for programs, the names of the columns first; D and radians.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = "rest count share share_lo share_hi docked x y roll pitch yaw height above_mated order slope_lo slope_hi free curvature \
-                    firmness holds_from slips_until depth_at_most depth_at_least depth_on_grid leads_to touching";
+                    firmness holds_from slips_until wedges_from depth_at_most depth_at_least depth_on_grid leads_to touching";
         let mut records = vec![head.split_whitespace().map(str::to_owned).collect::<Vec<_>>()];
         let or_nothing = |value: Option<f64>| value.map_or_else(String::new, number);
         for (k, rest) in self.rests.iter().enumerate() {
@@ -220,6 +220,7 @@ impl RestsReport {
             let sticks = rest.examined.and_then(|examined| examined.sticks);
             record.push(or_nothing(sticks.and_then(|sticks| sticks.holds_from)));
             record.push(or_nothing(sticks.and_then(|sticks| sticks.slips_until)));
+            record.push(or_nothing(sticks.and_then(|sticks| sticks.wedges_from)));
             record.push(or_nothing(rest.depth_at_most_d));
             record.extend([rest.depth_at_least_d, rest.depth_on_grid_d].map(or_nothing));
             record.push(rest.leads_to.map_or_else(String::new, |to| (to + 1).to_string()));

@@ -139,6 +139,11 @@ impl Holding {
         self.touching.thresholds()
     }
 
+    /// From which friction on it wedges, though contacts alone hold it: see [`Sticking`].
+    pub fn wedges_from(&mut self) -> Option<f64> {
+        self.touching.wedges_from()
+    }
+
     /// How many times a load may be added to the preload until the half leaves; infinite where no such load moves it, none where the preload alone
     /// does. A load that moves nothing that is free is held.
     pub fn most(&mut self, load: &Load, guide: Guide, friction: f64) -> Option<f64> {

@@ -10,6 +10,10 @@
 //! them Coulomb's law for rigid bodies leaves open what happens: let go at rest it may hold, and once it slides it goes on. Motions
 //! ([`super::Settings::friction`]) slip there; [`super::Follower::follow_doubting`] says whether they came through such a place.
 //!
+//! A half *wedges* where forces within the cones would hold it however it is pushed, straight out too: contacts press against each other, and
+//! how hard they do rigid bodies do not say (Whitney, *J. Dyn. Sys. Meas. Control* 104, 1982). Halves that give a little, as real ones
+//! and those of engines do, may come loose there.
+//!
 //! Not promised: that a half which comes to a place where it slips did not stick before. What happens at each friction, motions say.
 
 use super::coulomb::{Contacts, Coulomb, Tangents, is_still};
@@ -28,6 +32,17 @@ pub struct Sticking {
     pub holds_from: Option<f64>,
     /// Up to this friction there is a way to slip; `None`: at any.
     pub slips_until: Option<f64>,
+    /// From this friction on it wedges: some force would hold it against a pull straight out as well; `None`: at none.
+    pub wedges_from: Option<f64>,
+}
+
+/// What Coulomb's law leaves open of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Doubt {
+    /// It slipped by a place where some force could hold it as well.
+    pub may_stick: bool,
+    /// It jams, and wedges there: some force would hold it against a pull straight out as well.
+    pub wedges: bool,
 }
 
 /// To so much the first threshold is found.
@@ -56,6 +71,13 @@ pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
     touching.see(&motion, &state);
     Some(touching.thresholds())
 }
+
+/// The other way: straight out.
+const OUT: Vector = {
+    let mut out = [0.0; MAX_COORDINATES];
+    out[2] = 1.0;
+    out
+};
 
 /// What touches, as rows.
 #[derive(Debug, Clone, Default)]
@@ -114,21 +136,31 @@ impl Touching {
         }
     }
 
-    fn holds(&mut self, friction: f64) -> bool {
+    fn holds(&mut self, push: &Vector, friction: f64) -> bool {
         let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
-        self.coulomb.may_stick(&mut self.projection, &DOWN, contacts)
+        self.coulomb.may_stick(&mut self.projection, push, contacts)
     }
 
-    /// From which friction on it holds, if from one up to `most` on.
-    fn holds_from(&mut self, most: f64, to: f64) -> Option<f64> {
-        self.holds(most).then(|| {
+    /// From which friction on a push is held, if from one up to `most` on.
+    fn holds_from(&mut self, push: &Vector, most: f64, to: f64) -> Option<f64> {
+        self.holds(push, most).then(|| {
             let [mut slips, mut holds] = [0.0, most];
             while holds - slips > to {
                 let middle = f64::midpoint(slips, holds);
-                if self.holds(middle) { holds = middle } else { slips = middle }
+                if self.holds(push, middle) { holds = middle } else { slips = middle }
             }
             holds
         })
+    }
+
+    /// From which friction on it wedges.
+    pub(super) fn wedges_from(&mut self) -> Option<f64> {
+        self.holds_from(&OUT, MOST, WAY_HOLDS_TO)
+    }
+
+    /// Whether it wedges.
+    fn wedges(&mut self, friction: f64) -> bool {
+        !self.rows.is_empty() && self.holds(&OUT, friction)
     }
 
     /// How it slips at a friction, from a slip at less; `None` where it sticks.
@@ -142,9 +174,9 @@ impl Touching {
 
     pub(super) fn thresholds(&mut self) -> Sticking {
         self.coulomb = Coulomb::patient();
-        let holds_from = self.holds_from(MOST, HOLDS_TO);
+        let holds_from = self.holds_from(&DOWN, MOST, HOLDS_TO);
         let slips_until = holds_from.and_then(|holds| self.slips_until(holds));
-        Sticking { holds_from, slips_until }
+        Sticking { holds_from, slips_until, wedges_from: self.wedges_from() }
     }
 
     /// Where the speed of the slip falls to nothing, from where no force holds on: by secants, as close to it rounds take long.
@@ -175,21 +207,30 @@ impl Touching {
     }
 }
 
-/// Whether a motion comes by a place where it slips and could as well stick.
+/// Whether a motion comes by a place where it slips and could as well stick, and what touches where it was seen last.
 #[derive(Debug, Default)]
 pub(super) struct Doubting {
     touching: Touching,
     /// Whether it may stick where it was seen last: it does not count where that is its end.
     here: bool,
-    pub(super) may_stick: bool,
+    may_stick: bool,
+}
+
+impl Doubting {
+    /// What is open of a motion that ended so.
+    pub(super) fn doubt(mut self, outcome: Outcome, friction: f64) -> Doubt {
+        let wedges = outcome == Outcome::Jammed && self.touching.wedges(friction);
+        Doubt { may_stick: self.may_stick, wedges }
+    }
 }
 
 impl Watch for Doubting {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.may_stick |= self.here;
+        self.touching.see_on_the_way(motion, state);
         if !self.may_stick {
-            self.touching.see_on_the_way(motion, state);
-            self.here = !self.touching.rows.is_empty() && self.touching.holds(motion.settings.friction);
+            self.here =
+                !self.touching.rows.is_empty() && self.touching.holds(&DOWN, motion.settings.friction);
         }
         None
     }
@@ -221,8 +262,8 @@ impl Watch for OnTheWay {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.least = self.least.min(self.here);
         self.touching.see_on_the_way(motion, state);
-        let holds =
-            (!self.touching.rows.is_empty()).then(|| self.touching.holds_from(self.least, WAY_HOLDS_TO));
+        let holds = (!self.touching.rows.is_empty())
+            .then(|| self.touching.holds_from(&DOWN, self.least, WAY_HOLDS_TO));
         self.here = holds.flatten().unwrap_or(self.least);
         None
     }

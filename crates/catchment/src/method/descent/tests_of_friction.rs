@@ -126,6 +126,9 @@ fn a_peg_jams_and_wedges_as_whitney_says() {
             let holds_from = found.holds_from.unwrap();
             // The peg leans by clearance/depth at most, and the cone of its side with it.
             assert!((holds_from / expected - 1.0).abs() < 0.01, "{off} {depth}: {found:?}, {expected}");
+            // Wherever the push goes.
+            let wedges_from = found.wedges_from.unwrap();
+            assert!((wedges_from * WIDTH / depth - 1.0).abs() < 0.01, "{off} {depth}: {found:?}");
         }
     }
 }
@@ -172,8 +175,18 @@ fn between_the_thresholds_a_motion_is_in_doubt() {
     {
         let settings = Settings::with_friction(friction).unwrap();
         let (end, doubt) = Follower::new(&pair, &settings).follow_doubting(&at(0.2, 0.2));
-        assert_eq!((end.outcome, doubt), (outcome, may_stick), "{friction}");
+        assert_eq!((end.outcome, doubt.may_stick, doubt.wedges), (outcome, may_stick, false), "{friction}");
     }
+}
+
+/// Two facets that face each other, by 45° each, hold a half however it is pushed where the cones about their normals hold the line between them: from 1 on.
+/// One alone never does.
+#[test]
+fn facing_facets_wedge_from_their_angle_on() {
+    let valley = of(Family::VFace, 0.5, &[Dof::X]);
+    let found = sticking(&valley, &PoseError::default()).unwrap();
+    assert!((found.wedges_from.unwrap() - 1.0).abs() < 1e-3, "{found:?}");
+    assert_eq!(sticking(&valley, &at(0.2, 0.0)).unwrap().wedges_from, None);
 }
 
 #[test]

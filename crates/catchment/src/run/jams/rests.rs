@@ -155,7 +155,12 @@ impl Follow<'_> {
         let mut holding = Holding::at_rest(pair, &rest.error, rest.height, TOUCHING);
         let immobility = holding.as_ref().and_then(|holding| immobility(pair, holding, &rest.error, seed));
         let sticking = match immobility {
-            Some(_) => Some(Sticking { holds_from: Some(0.0), slips_until: Some(0.0) }),
+            // Contacts alone hold it: only whether it wedges is open.
+            Some(_) => holding.as_mut().map(|holding| Sticking {
+                holds_from: Some(0.0),
+                slips_until: Some(0.0),
+                wedges_from: holding.wedges_from(),
+            }),
             None => holding.as_mut().map(Holding::sticking),
         };
         let way_out = escape::way_out(pair, rest, self.motions, leaving, seed);

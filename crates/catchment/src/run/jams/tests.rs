@@ -239,9 +239,10 @@ fn what_a_facet_holds_by_friction_may_stick_from_its_slope_on() {
     let found = run(&problem, &settings, &Exec::new()).unwrap();
     assert!(!found.jams.is_empty());
     for examined in found.jams.iter().filter_map(|jam| jam.examined) {
-        let Sticking { holds_from, slips_until } = examined.sticking.unwrap();
+        let Sticking { holds_from, slips_until, wedges_from } = examined.sticking.unwrap();
         assert!((holds_from.unwrap() - 0.2).abs() < 1e-6, "{holds_from:?}");
         assert!((slips_until.unwrap() - 0.2).abs() < 1e-3, "{slips_until:?}");
+        assert_eq!(wedges_from, None);
         assert!(examined.immobility.is_none());
     }
 }

@@ -14,6 +14,8 @@
 //! Beside it stands the static test along the frictionless way: from which friction on some force would hold the half somewhere on the way it takes
 //! without friction ([`Follower::follow_holding`]). It needs one motion for all frictions, and is wrong on as many poses as is told.
 //!
+//! Poses that *wedge* where they jam ([`Doubt::wedges`]) are counted, too: from there on rigid halves and those that give a little part.
+//!
 //! Not promised: that a pose which is lost at one friction is lost at all larger ones, nor that frictions between those of the ladder were looked at.
 
 #[cfg(test)]
@@ -23,7 +25,7 @@ use crate::acceptance::{Domain, Outcome};
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
 use crate::method::correction::Z95;
-use crate::method::descent::{self, Follower, FrictionOutOfRange};
+use crate::method::descent::{self, Doubt, Follower, FrictionOutOfRange};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 use crate::run::jams::{Sticks, what_sticks};
@@ -85,6 +87,8 @@ pub struct Tally {
     pub gained: usize,
     /// Poses that dock, and on the way came by a place where Coulomb's law would let them stick as well.
     pub may_stick: usize,
+    /// Poses that jam, and wedge there: some force would hold them against a pull straight out as well.
+    pub wedged: usize,
     /// Poses that the static test says dock: without friction they do, and nowhere on that way some force would hold them.
     pub static_docks: usize,
     /// Poses of which the static test says the wrong thing.
@@ -132,9 +136,9 @@ pub enum FrictionError {
 
 /// What becomes of one pose.
 struct Way {
-    /// Without friction, and at each of the ladder with whether it may have stuck on the way.
+    /// Without friction, and at each of the ladder with what Coulomb's law leaves open.
     without: Outcome,
-    at: Vec<(Outcome, bool)>,
+    at: Vec<(Outcome, Doubt)>,
     /// The least friction at which something on the frictionless way would hold it; infinite where none of the ladder does.
     holds: f64,
     /// Up to which it docks, and where it is first known not to; of those alone that dock without friction and are lost.
@@ -234,8 +238,15 @@ impl Settings {
 impl Friction {
     /// With every place that an answer has, and numbers that mean nothing: what requirements are tried on.
     pub fn form(settings: &Settings) -> Self {
-        let none =
-            Tally { counts: [0; 4], lost: 0, gained: 0, may_stick: 0, static_docks: 0, static_wrong: 0 };
+        let none = Tally {
+            counts: [0; 4],
+            lost: 0,
+            gained: 0,
+            may_stick: 0,
+            wedged: 0,
+            static_docks: 0,
+            static_wrong: 0,
+        };
         let frictions = std::iter::once(0.0).chain(settings.frictions.iter().copied());
         Self {
             rungs: frictions.map(|friction| Rung { friction, tally: none }).collect(),
@@ -244,6 +255,12 @@ impl Friction {
             come_back: 0,
             settings: settings.clone(),
         }
+    }
+
+    /// The least friction of the ladder at which poses wedge: from there on rigid halves under Coulomb's law and halves that give a little, as real ones
+    /// do, part.
+    pub fn wedges_from(&self) -> Option<f64> {
+        self.rungs.iter().find(|rung| rung.tally.wedged > 0).map(|rung| rung.friction)
     }
 
     /// How many random poses were followed.
@@ -262,11 +279,11 @@ impl Way {
     ) -> Self {
         let top = frictions.last().copied().unwrap_or_default();
         let (end, holds) = free.follow_holding(pose, top);
-        let at: Vec<(Outcome, bool)> = followers
+        let at: Vec<(Outcome, Doubt)> = followers
             .iter_mut()
             .map(|follower| {
-                let (end, may_stick) = follower.follow_doubting(pose);
-                (end.outcome, may_stick)
+                let (end, doubt) = follower.follow_doubting(pose);
+                (end.outcome, doubt)
             })
             .collect();
         let docks = end.outcome == Outcome::Aligned;
@@ -288,7 +305,7 @@ impl Way {
 
     /// Whether it is lost at some friction and docks at a larger one.
     fn comes_back(&self) -> bool {
-        let docks = |(outcome, _): &&(Outcome, bool)| *outcome == Outcome::Aligned;
+        let docks = |(outcome, _): &&(Outcome, Doubt)| *outcome == Outcome::Aligned;
         self.without == Outcome::Aligned
             && self.at.iter().skip_while(docks).any(|(outcome, _)| *outcome == Outcome::Aligned)
     }
@@ -296,7 +313,7 @@ impl Way {
 
 fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
     let rung = |(k, friction): (Option<usize>, f64)| {
-        let at = |way: &Way| k.map_or((way.without, false), |k| way.at[k]);
+        let at = |way: &Way| k.map_or((way.without, Doubt::default()), |k| way.at[k]);
         let count = |is: &dyn Fn(&Way) -> bool| ways.iter().filter(|way| is(way)).count();
         let docks = |way: &Way| at(way).0 == Outcome::Aligned;
         let docked = |way: &Way| way.without == Outcome::Aligned;
@@ -305,7 +322,8 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
             counts: Outcome::ALL.map(|outcome| count(&|way| at(way).0 == outcome)),
             lost: count(&|way| docked(way) && !docks(way)),
             gained: count(&|way| !docked(way) && docks(way)),
-            may_stick: count(&|way| docks(way) && at(way).1),
+            may_stick: count(&|way| docks(way) && at(way).1.may_stick),
+            wedged: count(&|way| at(way).1.wedges),
             static_docks: count(&|way| by_statics(way)),
             static_wrong: count(&|way| by_statics(way) != docks(way)),
         };
