@@ -159,12 +159,16 @@ fn a_budget_of_time_ends_at_once_or_never() {
 #[test]
 fn heights_that_outlast_the_budget_are_refused() {
     let pair = pair(Family::Pyramid, 0.5, 0.5, 0.5, None);
-    let grid = Grid::over(&pair.alignment, |_| 40);
+    // More than any machine computes, or holds.
+    let grid = Grid::over(&pair.alignment, |_| 80);
     let settings = Settings { budget_s: Some(1e-3), ..Settings::default() };
-    let exec = Exec::new();
+    let exec = Exec::new().with_memory_budget(1 << 60);
     match run(&pair, &grid, &settings, &exec) {
         Err(ConfluenceError::HeightsTakeLonger { cells, seconds, most, .. }) => {
-            assert!(cells == 40usize.pow(5) && seconds > 1.0 && (2..40).contains(&most), "{seconds} {most}");
+            assert!(
+                cells == 80usize.pow(5) && seconds > 1.0 && (2..80).contains(&most),
+                "{seconds} {most}"
+            );
         }
         other => panic!("{:?}", other.map(|labels| labels.joined)),
     }
@@ -193,7 +197,7 @@ fn refusals() {
     stopped.cancel_flag().store(true, Ordering::Relaxed);
     let error = run(&pair, &grid, &Settings::default(), &stopped).unwrap_err();
     assert_eq!(error, ConfluenceError::Landscape(LandscapeError::Cancelled(Cancelled)));
-    let many = Grid::over(&pair.alignment, |_| 100);
+    let many = Grid::over(&pair.alignment, |_| 80);
     let error = run(&pair, &many, &Settings::default(), &Exec::new()).unwrap_err();
     assert_eq!(error, ConfluenceError::TooManyCells { cells: 10_000_000_000 });
 }

@@ -96,7 +96,7 @@ impl Touching {
         self.see_those(touches, motion, state);
     }
 
-    fn see(&mut self, motion: &Motion, state: &State) {
+    pub(super) fn see(&mut self, motion: &Motion, state: &State) {
         // Plain motion keeps clear of walls, and what tight fits keep are contacts that touch.
         let touches =
             |contact: &Contact| motion.pair.is_tight() || contact.gap <= OVERLAP + 2.0 * margin(contact);
@@ -136,7 +136,8 @@ impl Touching {
         }
     }
 
-    fn holds(&mut self, push: &Vector, friction: f64) -> bool {
+    /// Whether some force holds a push.
+    pub(super) fn holds(&mut self, push: &Vector, friction: f64) -> bool {
         let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
         self.coulomb.may_stick(&mut self.projection, push, contacts)
     }

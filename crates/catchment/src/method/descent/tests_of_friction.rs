@@ -1,5 +1,7 @@
 //! Closed forms of friction. Agreement with independent engines: `tests/trials.rs`, and `tests/mujoco_agrees.py` of the repository.
 
+use super::motion::Motion;
+use super::sticking::Touching;
 use super::tests::{at, pair};
 use super::{Follower, Settings, outcome, run, sticking};
 use crate::acceptance::{Domain, Outcome, Stream};
@@ -133,10 +135,58 @@ fn a_peg_jams_and_wedges_as_whitney_says() {
     }
 }
 
+/// The whole of Whitney's diagram: pushed in by 1, aside by `aside` and turned by `turn` about its tip, in radii, a peg of radius r that stands in two points
+/// jams where turn < −λ − μ (1 + λ) aside, λ = l/(2 r μ), and goes on elsewhere; where it wedges nothing moves it.
+#[test]
+fn a_peg_jams_by_the_lines_of_whitneys_diagram() {
+    let stream = Stream::new(1982);
+    let mut asked = 0;
+    for (k, (depth, friction)) in (0u64..).zip([
+        (0.3, 0.1),
+        (0.3, 0.2),
+        (0.6, 0.1),
+        (0.6, 0.3),
+        (1.0, 0.2),
+        (1.0, 0.6),
+        (0.3, 0.4),
+        (0.6, 0.7),
+    ]) {
+        let (pair, error) = peg(1.0, 5e-4, 0.0, depth);
+        let settings = Settings::with_friction(friction).unwrap();
+        let mut motion = Motion::new(&pair, &settings);
+        let state = motion.lower(&error).unwrap();
+        let mut touching = Touching::default();
+        touching.see(&motion, &state);
+        let lambda = depth / friction;
+        for n in 0..100 {
+            let number = |j: u64| 2.0 * stream.uniform(1000 * k + 2 * n + j) - 1.0;
+            let aside = 0.9 / friction * number(0);
+            let (line, off) = (-lambda - friction * (1.0 + lambda) * aside, 2.0 * lambda * number(1));
+            if off.abs() < 0.03 * lambda {
+                continue;
+            }
+            // About the centre of rotation, which is as far above the tip as the peg is long; turns about y go from z to x.
+            let (sin, cos) = error.pitch.sin_cos();
+            let torque = -PEG * cos * aside - PEG * sin - 0.5 * (line + off);
+            let push = [aside, 0.0, -1.0, 0.0, torque / pair.alignment.rotation_length, 0.0];
+            let wedges = friction > depth;
+            assert_eq!(
+                touching.holds(&push, friction),
+                wedges || off < 0.0,
+                "{depth} {friction}: {aside} {line} {off}"
+            );
+            asked += 1;
+        }
+    }
+    assert!(asked > 700);
+}
+
+/// From the collar of a peg, which rests on the rim, to its tip.
+const PEG: f64 = 2.0;
+
 /// A planar peg and its hole, drawn so that the push goes `off` the axis of both, and the pose error at which it stands in two points.
 fn peg(width: f64, clearance: f64, off: f64, depth: f64) -> (Pair, PoseError) {
-    /// From the collar that rests on the rim to the tip.
-    const LONG: f64 = 2.0;
+    const LONG: f64 = PEG;
     /// What is left to the wall: less than what touches.
     const LEFT: f64 = 1e-10;
     let (half, hole) = (0.5 * width, 0.5 * (width + clearance));
