@@ -53,6 +53,8 @@ pub struct RungReport {
     pub gained: usize,
     /// Poses that dock, and by Coulomb's law might have stuck on the way.
     pub may_stick: usize,
+    /// Of the lost those that jam and would slip there with a tenth less friction: halves that give a little may let go.
+    pub hardly_held: usize,
     /// Poses that jam and wedge there: some force would hold them against a pull straight out as well.
     pub wedged: usize,
     /// Poses that dock by the static test along the frictionless way.
@@ -118,6 +120,7 @@ impl RungReport {
             lost: tally.lost,
             gained: tally.gained,
             may_stick: tally.may_stick,
+            hardly_held: tally.hardly_held,
             wedged: tally.wedged,
             static_docks: tally.static_docks,
             static_wrong: tally.static_wrong,
@@ -165,6 +168,22 @@ impl FrictionReport {
         if undecided > 0 {
             warnings.push(Warning::Undecided { cells: undecided }.into());
         }
+        let hardly = found.rungs.iter().filter(|rung| rung.tally.hardly_held > 0);
+        if let Some(Rung { friction, tally }) = hardly.max_by_key(|rung| rung.tally.hardly_held) {
+            let count = tally.hardly_held;
+            let text = format!(
+                "of what is lost at a friction of {friction} {} by hardly more of it than would let {} slip: rigid halves stick there, and halves that give, as those of \
+                 engines do, may let go: {} more may dock",
+                if count == 1 {
+                    "1 pose is held".to_owned()
+                } else {
+                    format!("{} poses are held", grouped(count))
+                },
+                if count == 1 { "it" } else { "them" },
+                percent(count as f64 / found.motions().max(1) as f64),
+            );
+            warnings.push(Warning::Note { text }.into());
+        }
         if let Some(friction) = found.wedges_from() {
             let text = format!(
                 "from a friction of {friction} on some poses wedge: the halves press against each other, however they are pushed, and rigid ones under \
@@ -185,8 +204,8 @@ impl FrictionReport {
         line(
             &mut text,
             &format!(
-                "  {:<9}{:<22}{:>6}{:>7}{:>10}{:>7}{:>8}{:>6}",
-                "friction", "docks", "lost", "gained", "may stick", "wedged", "static", "wrong"
+                "  {:<9}{:<23}{:>6}{:>7}{:>11}{:>8}{:>8}{:>6}",
+                "friction", "docks", "lost", "gained", "may stick", "hardly", "static", "wrong"
             ),
         );
         for rung in &self.curve {
@@ -196,10 +215,10 @@ impl FrictionReport {
                 String::new()
             } else {
                 let share = percent(rung.static_docks as f64 / self.motions.max(1) as f64);
-                let RungReport { lost, gained, may_stick, wedged, static_wrong, .. } = rung;
-                format!("{lost:>6}{gained:>7}{may_stick:>10}{wedged:>7}{share:>8}{static_wrong:>6}")
+                let RungReport { lost, gained, may_stick, hardly_held, static_wrong, .. } = rung;
+                format!("{lost:>6}{gained:>7}{may_stick:>11}{hardly_held:>8}{share:>8}{static_wrong:>6}")
             };
-            line(&mut text, &format!("  {:<9}{docks:<22}{against}", rung.friction));
+            line(&mut text, &format!("  {:<9}{docks:<23}{against}", rung.friction));
         }
         text.push('\n');
         self.kept_lines(&mut text);
@@ -268,15 +287,17 @@ impl FrictionReport {
 
     /// The curve as records for programs, the names of the columns first.
     pub fn records(&self) -> Vec<Vec<String>> {
-        let head = "friction motions aligned aligned_lo aligned_hi jammed missed undecided lost gained may_stick wedged static_docks static_wrong";
+        let head = "friction motions aligned aligned_lo aligned_hi jammed missed undecided lost gained may_stick hardly_held wedged static_docks static_wrong";
         let mut records = vec![head.split(' ').map(str::to_owned).collect::<Vec<_>>()];
         records.extend(self.curve.iter().map(|rung| {
             let [lo, hi] = rung.aligned.ci95;
             let mut record = vec![number(rung.friction), self.motions.to_string()];
             record.extend([rung.aligned.share, lo, hi, rung.jammed.share, rung.missed.share].map(number));
             record.push(number(rung.undecided.share));
-            let RungReport { lost, gained, may_stick, wedged, static_docks, static_wrong, .. } = *rung;
-            let counts = [lost, gained, may_stick, wedged, static_docks, static_wrong];
+            let RungReport {
+                lost, gained, may_stick, hardly_held, wedged, static_docks, static_wrong, ..
+            } = *rung;
+            let counts = [lost, gained, may_stick, hardly_held, wedged, static_docks, static_wrong];
             record.extend(counts.map(|count| count.to_string()));
             record
         }));

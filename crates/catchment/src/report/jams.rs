@@ -16,6 +16,7 @@ use super::table::heading;
 use super::text::{grouped, line, number, row, wrapped};
 use crate::acceptance::Outcome;
 use crate::design::Design;
+use crate::method::descent::HARDLY;
 use crate::run::jams::Jams;
 use serde::Serialize;
 use std::ops::Deref;
@@ -228,8 +229,6 @@ impl JamsReport {
 
 /// Which jams are held by hardly more friction than they slip at, as a sentence: there rigid halves and those of engines part.
 fn hardly_held(found: &JamsFound) -> Option<String> {
-    /// So many times the friction at which it slips is hardly more: engines let a wedged pyramid go up to 1.05 times there (`docs/friction.md`).
-    const HARDLY: f64 = 1.1;
     let friction = found.settings.friction;
     let is_hardly_held = |jam: &JamReport| {
         let examined = jam.examined.as_ref().filter(|examined| examined.is_held_by_friction(friction));

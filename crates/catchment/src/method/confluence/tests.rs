@@ -165,10 +165,7 @@ fn heights_that_outlast_the_budget_are_refused() {
     let exec = Exec::new().with_memory_budget(1 << 60);
     match run(&pair, &grid, &settings, &exec) {
         Err(ConfluenceError::HeightsTakeLonger { cells, seconds, most, .. }) => {
-            assert!(
-                cells == 80usize.pow(5) && seconds > 1.0 && (2..80).contains(&most),
-                "{seconds} {most}"
-            );
+            assert!(cells == 80usize.pow(5) && seconds > 1.0 && (2..80).contains(&most), "{seconds} {most}");
         }
         other => panic!("{:?}", other.map(|labels| labels.joined)),
     }

@@ -47,7 +47,7 @@ pub use fall::fall;
 pub use holding::{Guide, Holding, Load, MOST_LOAD, TOUCHING};
 pub use immobility::{Immobility, Order, immobility};
 pub use rest::{Rest, settle};
-pub use sticking::{Doubt, Sticking, sticking};
+pub use sticking::{Doubt, HARDLY, Sticking, sticking};
 pub use trajectory::{Touch, Trajectory, Waypoint};
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
@@ -160,8 +160,8 @@ impl<'a> Follower<'a> {
         End { outcome, error }
     }
 
-    /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well, and whether it
-    /// wedges where it jams. See [`sticking()`].
+    /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well; where it
+    /// jams, whether it is hardly held, and whether it wedges. See [`sticking()`].
     pub fn follow_doubting(&mut self, error: &PoseError) -> (End, Doubt) {
         let mut doubting = Doubting::default();
         let (outcome, last) = self.0.follow(error, Until::Known, &mut doubting);

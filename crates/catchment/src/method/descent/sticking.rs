@@ -41,6 +41,8 @@ pub struct Sticking {
 pub struct Doubt {
     /// It slipped by a place where some force could hold it as well.
     pub may_stick: bool,
+    /// It jams, and would slip there with a tenth less friction: halves that give a little, as those of engines do, may let go.
+    pub hardly_held: bool,
     /// It jams, and wedges there: some force would hold it against a pull straight out as well.
     pub wedges: bool,
 }
@@ -53,6 +55,9 @@ const FIRST: f64 = 0.9;
 const SECOND: f64 = 0.95;
 const SHARE: f64 = 0.7;
 const NEAR: f64 = 2e-3;
+
+/// So many times the friction at which it slips is hardly more: engines let a half go up to 1.05 times there (`docs/friction.md`).
+pub const HARDLY: f64 = 1.1;
 
 /// Where the force pushes.
 pub(super) const DOWN: Vector = {
@@ -159,11 +164,6 @@ impl Touching {
         self.holds_from(&OUT, MOST, WAY_HOLDS_TO)
     }
 
-    /// Whether it wedges.
-    fn wedges(&mut self, friction: f64) -> bool {
-        !self.rows.is_empty() && self.holds(&OUT, friction)
-    }
-
     /// How it slips at a friction, from a slip at less; `None` where it sticks.
     fn slip(&mut self, friction: f64, from: Option<Vector>) -> Option<Vector> {
         let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
@@ -220,8 +220,12 @@ pub(super) struct Doubting {
 impl Doubting {
     /// What is open of a motion that ended so.
     pub(super) fn doubt(mut self, outcome: Outcome, friction: f64) -> Doubt {
-        let wedges = outcome == Outcome::Jammed && self.touching.wedges(friction);
-        Doubt { may_stick: self.may_stick, wedges }
+        let jams = outcome == Outcome::Jammed && !self.touching.rows.is_empty();
+        Doubt {
+            may_stick: self.may_stick,
+            hardly_held: jams && self.touching.slip(friction / HARDLY, None).is_some(),
+            wedges: jams && self.touching.holds(&OUT, friction),
+        }
     }
 }
 

@@ -14,7 +14,8 @@
 //! Beside it stands the static test along the frictionless way: from which friction on some force would hold the half somewhere on the way it takes
 //! without friction ([`Follower::follow_holding`]). It needs one motion for all frictions, and is wrong on as many poses as is told.
 //!
-//! Poses that *wedge* where they jam ([`Doubt::wedges`]) are counted, too: from there on rigid halves and those that give a little part.
+//! Where rigid halves under Coulomb's law and those that give a little, as real ones and those of engines do, may part is counted, too: poses that are
+//! *hardly held*, which would slip with a tenth less friction, and those that *wedge* ([`Doubt`]).
 //!
 //! Not promised: that a pose which is lost at one friction is lost at all larger ones, nor that frictions between those of the ladder were looked at.
 
@@ -87,6 +88,8 @@ pub struct Tally {
     pub gained: usize,
     /// Poses that dock, and on the way came by a place where Coulomb's law would let them stick as well.
     pub may_stick: usize,
+    /// Of the lost those that jam, and would slip there with a tenth less friction: halves that give a little may let go.
+    pub hardly_held: usize,
     /// Poses that jam, and wedge there: some force would hold them against a pull straight out as well.
     pub wedged: usize,
     /// Poses that the static test says dock: without friction they do, and nowhere on that way some force would hold them.
@@ -243,6 +246,7 @@ impl Friction {
             lost: 0,
             gained: 0,
             may_stick: 0,
+            hardly_held: 0,
             wedged: 0,
             static_docks: 0,
             static_wrong: 0,
@@ -323,6 +327,7 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
             lost: count(&|way| docked(way) && !docks(way)),
             gained: count(&|way| !docked(way) && docks(way)),
             may_stick: count(&|way| docks(way) && at(way).1.may_stick),
+            hardly_held: count(&|way| docked(way) && at(way).1.hardly_held),
             wedged: count(&|way| at(way).1.wedges),
             static_docks: count(&|way| by_statics(way)),
             static_wrong: count(&|way| by_statics(way) != docks(way)),

@@ -49,7 +49,7 @@ fn tallies_add_up_and_threads_change_nothing() {
         assert_eq!(tally.counts.iter().sum::<usize>(), 120);
         assert_eq!(tally.counts[0] + tally.lost, docked + tally.gained, "{friction}");
         assert!(tally.may_stick <= tally.counts[0] && tally.static_docks <= docked);
-        assert!(tally.wedged <= tally.counts[1]);
+        assert!(tally.wedged <= tally.counts[1] && tally.hardly_held <= tally.lost);
     }
     // Up to less friction more of them dock still.
     assert!(
