@@ -53,7 +53,7 @@ pub struct RungReport {
     pub gained: usize,
     /// Poses that dock, and by Coulomb's law might have stuck on the way.
     pub may_stick: usize,
-    /// Of the lost those that jam and would slip there with a tenth less friction: halves that give a little may let go.
+    /// Of the lost those that dock with a tenth less friction: halves that give a little may dock as well.
     pub hardly_held: usize,
     /// Poses that jam and wedge there: some force would hold them against a pull straight out as well.
     pub wedged: usize,
@@ -172,15 +172,10 @@ impl FrictionReport {
         if let Some(Rung { friction, tally }) = hardly.max_by_key(|rung| rung.tally.hardly_held) {
             let count = tally.hardly_held;
             let text = format!(
-                "of what is lost at a friction of {friction} {} by hardly more of it than would let {} slip: rigid halves stick there, and halves that give, as those of \
-                 engines do, may let go: {} more may dock",
-                if count == 1 {
-                    "1 pose is held".to_owned()
-                } else {
-                    format!("{} poses are held", grouped(count))
-                },
-                if count == 1 { "it" } else { "them" },
-                percent(count as f64 / found.motions().max(1) as f64),
+                "{} lost at a friction of {friction} and {} with a tenth less of it: rigid halves stick there, and halves that give, as real ones and those of \
+                 engines do, may let go",
+                if count == 1 { "1 pose is".to_owned() } else { format!("{} poses are", grouped(count)) },
+                if count == 1 { "docks" } else { "dock" },
             );
             warnings.push(Warning::Note { text }.into());
         }

@@ -160,8 +160,8 @@ impl<'a> Follower<'a> {
         End { outcome, error }
     }
 
-    /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well; where it
-    /// jams, whether it is hardly held, and whether it wedges. See [`sticking()`].
+    /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well, and whether it
+    /// wedges where it jams. See [`sticking()`].
     pub fn follow_doubting(&mut self, error: &PoseError) -> (End, Doubt) {
         let mut doubting = Doubting::default();
         let (outcome, last) = self.0.follow(error, Until::Known, &mut doubting);

@@ -41,8 +41,6 @@ pub struct Sticking {
 pub struct Doubt {
     /// It slipped by a place where some force could hold it as well.
     pub may_stick: bool,
-    /// It jams, and would slip there with a tenth less friction: halves that give a little, as those of engines do, may let go.
-    pub hardly_held: bool,
     /// It jams, and wedges there: some force would hold it against a pull straight out as well.
     pub wedges: bool,
 }
@@ -221,11 +219,7 @@ impl Doubting {
     /// What is open of a motion that ended so.
     pub(super) fn doubt(mut self, outcome: Outcome, friction: f64) -> Doubt {
         let jams = outcome == Outcome::Jammed && !self.touching.rows.is_empty();
-        Doubt {
-            may_stick: self.may_stick,
-            hardly_held: jams && self.touching.slip(friction / HARDLY, None).is_some(),
-            wedges: jams && self.touching.holds(&OUT, friction),
-        }
+        Doubt { may_stick: self.may_stick, wedges: jams && self.touching.holds(&OUT, friction) }
     }
 }
 

@@ -15,7 +15,7 @@
 //! without friction ([`Follower::follow_holding`]). It needs one motion for all frictions, and is wrong on as many poses as is told.
 //!
 //! Where rigid halves under Coulomb's law and those that give a little, as real ones and those of engines do, may part is counted, too: poses that are
-//! *hardly held*, which would slip with a tenth less friction, and those that *wedge* ([`Doubt`]).
+//! *hardly held*, which dock with a tenth less friction, and those that *wedge* where they jam ([`Doubt::wedges`]).
 //!
 //! Not promised: that a pose which is lost at one friction is lost at all larger ones, nor that frictions between those of the ladder were looked at.
 
@@ -26,7 +26,7 @@ use crate::acceptance::{Domain, Outcome};
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
 use crate::method::correction::Z95;
-use crate::method::descent::{self, Doubt, Follower, FrictionOutOfRange};
+use crate::method::descent::{self, Doubt, Follower, FrictionOutOfRange, HARDLY};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 use crate::run::jams::{Sticks, what_sticks};
@@ -88,7 +88,7 @@ pub struct Tally {
     pub gained: usize,
     /// Poses that dock, and on the way came by a place where Coulomb's law would let them stick as well.
     pub may_stick: usize,
-    /// Of the lost those that jam, and would slip there with a tenth less friction: halves that give a little may let go.
+    /// Of the lost those that dock with a tenth less friction: halves that give a little may dock as well.
     pub hardly_held: usize,
     /// Poses that jam, and wedge there: some force would hold them against a pull straight out as well.
     pub wedged: usize,
@@ -307,6 +307,11 @@ impl Way {
         Self { without: end.outcome, at, holds: if holds < top { holds } else { f64::INFINITY }, critical }
     }
 
+    /// Whether it docks without friction and, as far as bisection tells, up to this one at least.
+    fn docks_with(&self, friction: f64) -> bool {
+        self.critical.is_some_and(|[docks, _]| docks >= friction)
+    }
+
     /// Whether it is lost at some friction and docks at a larger one.
     fn comes_back(&self) -> bool {
         let docks = |(outcome, _): &&(Outcome, Doubt)| *outcome == Outcome::Aligned;
@@ -327,7 +332,7 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
             lost: count(&|way| docked(way) && !docks(way)),
             gained: count(&|way| !docked(way) && docks(way)),
             may_stick: count(&|way| docks(way) && at(way).1.may_stick),
-            hardly_held: count(&|way| docked(way) && at(way).1.hardly_held),
+            hardly_held: count(&|way| !docks(way) && way.docks_with(friction / HARDLY)),
             wedged: count(&|way| at(way).1.wedges),
             static_docks: count(&|way| by_statics(way)),
             static_wrong: count(&|way| by_statics(way) != docks(way)),
