@@ -194,7 +194,7 @@ fn refusals() {
     stopped.cancel_flag().store(true, Ordering::Relaxed);
     let error = run(&pair, &grid, &Settings::default(), &stopped).unwrap_err();
     assert_eq!(error, ConfluenceError::Landscape(LandscapeError::Cancelled(Cancelled)));
-    let many = Grid::over(&pair.alignment, |_| 80);
+    let many = Grid::over(&pair.alignment, |_| 100);
     let error = run(&pair, &many, &Settings::default(), &Exec::new()).unwrap_err();
     assert_eq!(error, ConfluenceError::TooManyCells { cells: 10_000_000_000 });
 }
