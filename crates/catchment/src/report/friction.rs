@@ -181,8 +181,8 @@ impl FrictionReport {
         }
         if let Some(friction) = found.wedges_from() {
             let text = format!(
-                "from a friction of {friction} on some poses wedge: the halves press against each other, however they are pushed, and rigid ones under \
-                 Coulomb's law stay; halves that give a little, as real ones and those of engines do, may come loose there"
+                "from a friction of {friction} on some poses wedge: the halves press against each other, and rigid ones may stay even against a pull straight \
+                 out; halves that give a little, as real ones and those of engines do, may come loose there"
             );
             warnings.push(Warning::Note { text }.into());
         }

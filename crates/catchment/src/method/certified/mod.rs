@@ -9,7 +9,7 @@
 //!
 //! Every number is an interval, rounded outwards, that holds for every pose of a box (`interval`, `placed`, `touch`, `arc`, `survey`). Four
 //! arguments make labels of them: energy (`flood`: the part of the poses below a height that a motion is in cannot be left), faces (`spread`: boxes
-//! that nothing leaves but into their like) and the neighbourhood of the seat (`home`, and what it grows to: `grown`), in any dimension, and direction (`tube`: a bundle that holds
+//! that nothing leaves but into their like, without going back along a `bearing`) and the neighbourhood of the seat (`home`, and what it grows to: `grown`), in any dimension, and direction (`tube`: a bundle that holds
 //! all motions of a box until it lies in labelled boxes), where at most one rotation is free. Capture basins by intervals: Lhommeau, Jaulin,
 //! Hardouin 2007; the neighbourhood of the seat in which nothing else rests: after Delanoue 2015; how high a caged body must be lifted:
 //! energy-bounded caging.

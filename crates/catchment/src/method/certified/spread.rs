@@ -9,6 +9,9 @@
 //! The height falls all along a motion, so one that stays among boxes in which nothing rests comes to rest in the seat that is one of them. What a
 //! chain of faces leads to is more than what motions come to; but neither argument follows a single motion, and both hold for any number of errors.
 //!
+//! Faces alone say nothing of how far a motion went along them. So of each box it is known along which bearings ([`super::bearing`]) nothing in it goes back,
+//! and a chain that would have to is none.
+//!
 //! Two boxes that share less than a face need no word: where a motion goes through a corner, what pushes it there is on a face of a box between.
 
 use super::flood::Seat;

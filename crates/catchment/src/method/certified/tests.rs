@@ -208,6 +208,24 @@ fn a_border_in_three_errors_is_told() {
     assert!(contradicts_nothing(&pair, &found, motions) > motions * 8 / 10);
 }
 
+/// Beyond that nothing touches, wherever the half turns about: so nobody comes back from there.
+#[test]
+fn halves_pass_each_other_by_where_it_is_said() {
+    for cor in [-1.5, -0.5, 0.0, 0.5, 1.5] {
+        for family in [Family::Pyramid, Family::XFace3d, Family::SFace] {
+            let pair = pair_of(family, &[], cor);
+            let passing = tree::passing(&Bodies::of(&pair));
+            let mut number = numbers(31);
+            for _ in 0..300 {
+                let (_, mut error) = random_box(&pair, 1.0, &mut number);
+                error.x = passing * if number() < 0.5 { 1.0 } else { -1.0 };
+                let pose = CorPose::from_error(&error, cor, pair.alignment.free);
+                assert_eq!(brute::height(&pair, &pose), None, "{family:?}, COR {cor}: {error:?}");
+            }
+        }
+    }
+}
+
 /// No exact motion goes back along a bearing while it is in a box that says so.
 #[test]
 fn motions_never_go_back_along_a_bearing() {

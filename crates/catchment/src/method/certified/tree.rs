@@ -11,16 +11,17 @@
 //!
 //! A root that goes once around a rotation closes on itself. Which errors a box is widest along the ρ-metric says: a turn θ is as wide as ρθ.
 
+mod faces;
+
 use super::bearing::{Bearings, Rising};
 use super::interval::Interval;
 use super::placed::{Bodies, PoseBox};
 use super::survey::{Flows, Survey};
 use crate::contact::Nearby;
 use crate::design::Alignment;
-use crate::exec::{Cancelled, Exec};
 use crate::pose::Dof;
+pub(super) use faces::Face;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// How often the root may be halved along an error.
@@ -94,27 +95,6 @@ impl Cell {
     /// Whether it has parts.
     pub(super) const fn is_split(&self) -> bool {
         self.parts.is_some()
-    }
-}
-
-/// A leaf that shares a face with another.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Face {
-    number: u32,
-    axis: u8,
-    /// Whether it lies above along that axis.
-    pub(super) above: bool,
-}
-
-impl Face {
-    /// The leaf on the other side.
-    pub(super) const fn number(self) -> usize {
-        self.number as usize
-    }
-
-    /// The axis that the face lies across.
-    pub(super) const fn axis(self) -> usize {
-        self.axis as usize
     }
 }
 
@@ -378,78 +358,6 @@ impl Tree {
         label.filter(|_| all)
     }
 
-    /// What shares faces with the parts that leaves were given, and the other way round.
-    ///
-    /// # Errors
-    /// [`Cancelled`] when asked to stop.
-    pub(super) fn join(&mut self, split: &[usize], exec: &Exec) -> Result<(), Cancelled> {
-        let mut touched: Vec<usize> = Vec::new();
-        for number in split {
-            let cell = &mut self.cells[*number];
-            touched.extend(std::mem::take(&mut cell.faces).iter().map(|face| face.number()));
-            if let Some(Parts { first, count }) = cell.parts {
-                touched.extend((first..first + count).map(|part| part as usize));
-            }
-        }
-        touched.retain(|number| !self.cells[*number].is_split());
-        touched.sort_unstable();
-        touched.dedup();
-        let beside = |number: &usize| {
-            let mut faces = Vec::new();
-            self.beside(&self.cells[*number], |number, axis, above| {
-                faces.push(Face { number: number as u32, axis: axis as u8, above });
-            });
-            faces.into_boxed_slice()
-        };
-        let faces: Vec<Box<[Face]>> = exec.install(|| touched.par_iter().map(beside).collect());
-        exec.check()?;
-        for (number, faces) in touched.into_iter().zip(faces) {
-            self.cells[number].faces = faces;
-        }
-        Ok(())
-    }
-
-    /// Visits every leaf that shares a face with a leaf, with the axis along which it lies and whether it lies above.
-    fn beside(&self, cell: &Cell, mut visit: impl FnMut(usize, usize, bool)) {
-        let own = self.span(cell);
-        for dof in &self.axes {
-            let k = dof.index();
-            let [a, b] = own[k];
-            let below = if a > 0 { Some(a - 1) } else { self.closed[k].then_some(WHOLE - 1) };
-            let above = if b < WHOLE { Some(b) } else { self.closed[k].then_some(0) };
-            for (place, is_above) in [(below, false), (above, true)] {
-                let Some(place) = place else { continue };
-                let mut face = own;
-                face[k] = [place, place + 1];
-                self.visit(&face, |number, _| {
-                    visit(number, k, is_above);
-                    true
-                });
-            }
-        }
-    }
-
-    /// The face that a leaf shares with another, as it has it.
-    pub(super) fn shared(&self, cell: &Cell, other: &Cell, face: Face) -> PoseBox {
-        let (own, its) = (cell.poses, other.poses);
-        let mut shared = own;
-        for dof in &self.axes {
-            let k = dof.index();
-            shared[k] = if k == face.axis() {
-                Interval::thin(if face.above { own[k].up } else { own[k].lo })
-            } else {
-                Interval::new(own[k].lo.max(its[k].lo), own[k].up.min(its[k].up))
-            };
-        }
-        shared
-    }
-
-    /// Whether a leaf has a face where its axis closes on itself.
-    pub(super) fn closes(&self, cell: &Cell, face: Face) -> bool {
-        let [a, b] = self.span(cell)[face.axis()];
-        if face.above { b == WHOLE } else { a == 0 }
-    }
-
     /// Whether a motion may leave the root from a leaf.
     pub(super) fn leaves_root(&self, cell: &Cell) -> bool {
         let span = self.span(cell);
@@ -506,9 +414,9 @@ impl Tree {
     }
 }
 
-/// How far aside halves are that pass each other by for certain, at any rotation, in D.
-fn passing(bodies: &Bodies) -> f64 {
-    let reach =
-        |vertices: &[DVec3], of: fn(DVec3) -> f64| vertices.iter().map(|v| of(*v)).fold(0.0, f64::max);
-    reach(&bodies.fixed.vertices, |v| v.truncate().length()) + reach(&bodies.moving.vertices, DVec3::length)
+/// How far aside the face centres are, at least, of halves that pass each other by for certain, at any rotation, in D.
+pub(super) fn passing(bodies: &Bodies) -> f64 {
+    let face = DVec3::Z * bodies.cor;
+    let fixed = bodies.fixed.vertices.iter().map(|v| v.truncate().length()).fold(0.0, f64::max);
+    fixed + bodies.moving.vertices.iter().map(|v| v.distance(face)).fold(0.0, f64::max)
 }

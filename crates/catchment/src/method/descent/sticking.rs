@@ -10,9 +10,9 @@
 //! them Coulomb's law for rigid bodies leaves open what happens: let go at rest it may hold, and once it slides it goes on. Motions
 //! ([`super::Settings::friction`]) slip there; [`super::Follower::follow_doubting`] says whether they came through such a place.
 //!
-//! A half *wedges* where forces within the cones would hold it however it is pushed, straight out too: contacts press against each other, and
-//! how hard they do rigid bodies do not say (Whitney, *J. Dyn. Sys. Meas. Control* 104, 1982). Halves that give a little, as real ones
-//! and those of engines do, may come loose there.
+//! A half *wedges* where forces within the cones would hold it against a pull straight out as well: contacts press against each other, and how
+//! hard they do rigid bodies do not say (Whitney, *J. Dyn. Sys. Meas. Control* 104, 1982). Halves that give a little, as real ones and those of
+//! engines do, may come loose there.
 //!
 //! Not promised: that a half which comes to a place where it slips did not stick before. What happens at each friction, motions say.
 
