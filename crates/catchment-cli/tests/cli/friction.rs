@@ -23,6 +23,13 @@ fn a_facet_holds_everything_from_its_slope_on() {
     );
     assert!(told.contains("what sticks where the first are lost (20 poses)"), "{told}");
     assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    // A little above the slope all that is lost is hardly held, and that is said.
+    assert!(!told.contains("a tenth less"), "{told}");
+    let told = run(home.path(), &["friction", "v.toml", "--motions", "200", "--frictions", "0.21"]);
+    assert!(
+        told.split_whitespace().collect::<Vec<_>>().join(" ").contains("dock with a tenth less of it"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -168,14 +168,17 @@ impl FrictionReport {
         if undecided > 0 {
             warnings.push(Warning::Undecided { cells: undecided }.into());
         }
-        let hardly = found.rungs.iter().filter(|rung| rung.tally.hardly_held > 0);
+        // Right beside the border any friction tells: worth a word is what is more than chance among the poses.
+        let hardly = found.rungs.iter().filter(|rung| {
+            let [lo, hi] = RungReport::of(rung).aligned.ci95;
+            rung.tally.hardly_held as f64 > 0.5 * (hi - lo) * found.motions() as f64
+        });
         if let Some(Rung { friction, tally }) = hardly.max_by_key(|rung| rung.tally.hardly_held) {
             let count = tally.hardly_held;
             let text = format!(
-                "{} lost at a friction of {friction} and {} with a tenth less of it: rigid halves stick there, and halves that give, as real ones and those of \
-                 engines do, may let go",
-                if count == 1 { "1 pose is".to_owned() } else { format!("{} poses are", grouped(count)) },
-                if count == 1 { "docks" } else { "dock" },
+                "{} poses are lost at a friction of {friction} and dock with a tenth less of it: rigid halves stick there, and halves that give, as real ones \
+                 and those of engines do, may let go",
+                grouped(count),
             );
             warnings.push(Warning::Note { text }.into());
         }
