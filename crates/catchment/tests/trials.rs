@@ -188,6 +188,48 @@ fn drop_tests_agree_with_descent() {
     }
 }
 
+/// Poses whose motion is hard to follow: the half hooks under the underside of the other one, or a corner slides down a groove of the lip.
+#[cfg(feature = "drop")]
+#[test]
+fn hooked_and_grooved_motions_end_as_in_the_engine() {
+    use catchment::method::drop;
+    use catchment::problem::{Draft, Problem};
+    let hooked = [
+        (0.817_864, 22.779_77),
+        (0.543_887, 19.809_80),
+        (0.969_283, 7.444_75),
+        (0.673_686, 16.821_94),
+        (0.863_748, 1.126_27),
+        (0.625_980, 25.613_38),
+        (0.753_163, 17.530_24),
+        (0.909_508, 33.671_78),
+    ];
+    let hooked = hooked.map(|(x, pitch): (f64, f64)| [x, 0.0, 0.0, pitch.to_radians(), 0.0]);
+    let grooved = [
+        [-0.468_784, -0.517_465, 0.831_471, 1.357_515, -1.540_394],
+        [0.269_530, 0.570_028, -0.710_271, -1.474_936, -0.763_855],
+        [-0.608_461, -0.904_089, -0.497_139, 0.010_955, -0.854_775],
+        [0.478_061, 0.589_089, 1.354_250, 0.332_078, 0.819_121],
+        [-0.370_338, -0.494_176, 0.156_527, -1.323_365, 1.164_811],
+        [0.453_081, 0.946_172, 0.646_107, -0.393_672, -0.777_539],
+        [-0.321_661, -0.499_271, 0.922_397, -1.285_309, -0.356_993],
+    ];
+    let s_face =
+        "[connector]\nfamily = \"s-face\"\n[alignment]\ncenter_of_rotation = -1.0\nrotation_length = 1.0\n";
+    let locking = "[connector]\nfamily = \"x-face-3d-locking\"\naspect_ratio = 0.5773502691896258\nlip_height = 0.1\n\
+         draft_angle = \"0 deg\"\n[alignment]\ncenter_of_rotation = 0.5\nrotation_length = 0.5\n";
+    for (text, poses) in [(s_face, hooked.as_slice()), (locking, grooved.as_slice())] {
+        let source = catchment::design::SourceText::new("f.toml", text);
+        let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
+        let poses = || Domain::Poses(poses.iter().map(|pose| PoseError::from_array(*pose)).collect());
+        let (descents, _) =
+            descent::run(problem.pair(), poses(), &Settings::default(), &Exec::new()).unwrap();
+        let (drops, _) =
+            drop::run(problem.pair(), poses(), &drop::Settings::default(), &Exec::new()).unwrap();
+        assert_eq!(descents.outcomes, drops.outcomes, "{text}");
+    }
+}
+
 /// A square peg of 0.4 D with a chamfered tip over a square hole with chamfered borders and a play of 0.02 D all around.
 #[cfg(feature = "drop")]
 fn peg() -> String {

@@ -20,8 +20,10 @@ use crate::pose::{CorPose, PoseError};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
-/// Facets that lean further back belong to the undersides of the halves.
+/// Facets that lean further back belong to the undersides of the halves, which only motions that hook under them look for ([`Nearby::look_under`]).
 const OVERHANG: f64 = 0.5;
+/// The same with undersides: all normals, and their rounding.
+const ANY: f64 = 2.0;
 
 /// What is announced to a motion of halves of many facets, in D.
 pub(super) const MET: f64 = 1e-4;
@@ -39,6 +41,8 @@ pub struct Nearby<'a> {
     reach: f64,
     /// Largest distance of a moving vertex from the COR.
     radius: f64,
+    /// How far down normals of contacts may point: minus their z-component.
+    overhang: f64,
     collected: Option<Collected>,
 }
 
@@ -57,12 +61,20 @@ impl<'a> Nearby<'a> {
         let vertices = pair.moving_shapes.iter().flat_map(|s| &s.vertices);
         let radius = vertices.map(|v| v.length()).fold(0.0, f64::max);
         let (turned, candidates) = (Turned::new(pair), Candidates::default());
-        Self { turned, candidates, slack, reach, radius, collected: None }
+        Self { turned, candidates, slack, reach, radius, overhang: OVERHANG, collected: None }
     }
 
     /// Forgets where it was: what follows does not depend on what was before.
     pub fn leave(&mut self) {
-        self.collected = None;
+        (self.overhang, self.collected) = (OVERHANG, None);
+    }
+
+    /// Looks for contacts with undersides as well, until [`Nearby::leave`]; says whether it did not before. What is told at a pose is told anew by
+    /// the next [`Nearby::turn`].
+    pub(crate) fn look_under(&mut self) -> bool {
+        let is_new = self.overhang < ANY;
+        (self.overhang, self.collected) = (ANY, self.collected.filter(|_| !is_new));
+        is_new
     }
 
     /// Moves on to a rotation, for questions about the COR at `lateral` alone: keeps what is within `reach` of
@@ -70,7 +82,7 @@ impl<'a> Nearby<'a> {
     /// motion that turns by up to `slack` may meet.
     pub fn turn(&mut self, rotation: &DMat3, lateral: DVec2, slack: f64, reach: f64) {
         let slack = slack.max(ROUNDING);
-        let counts = Counts { slack, lowest: -OVERHANG };
+        let counts = Counts { slack, lowest: -self.overhang };
         if let Some(trees) = &self.turned.pair.trees {
             return self.turned.turn_trees(rotation, trees, counts);
         }
@@ -84,7 +96,7 @@ impl<'a> Nearby<'a> {
             let (slack, reach) = (slack.max(self.slack), reach.max(self.reach));
             // Both features may overshoot their borders by a seam.
             let window = Window { lateral, reach: (1.0 + SKIN) * reach + 2.0 * SEAM };
-            let sieve = Sieve { slack, lowest: -OVERHANG, skin: SKIN * slack, window: Some(window) };
+            let sieve = Sieve { slack, lowest: -self.overhang, skin: SKIN * slack, window: Some(window) };
             self.candidates.collect(self.turned.pair, rotation, &sieve);
             self.collected = Some(Collected { rotation: *rotation, lateral, slack, reach });
         }

@@ -363,23 +363,30 @@ impl<'a> Motion<'a> {
                 }
                 let rise = z - next.cor.z;
                 let climbs = z > state.cor.z + ROUNDING;
+                let rises = rise > allowed || climbs;
                 halve = if blocked {
-                    // A wall that no contact announced is one more contact, if it was not met before.
-                    let looks = !self.pair.asks_trees() || pace.step <= longest * LOOKING_SHARE;
-                    if looks && cuts < MAX_CUTS && self.meet(&landed, pace.step, &u) {
+                    // A wall that no contact announced is one more contact, if it was not met before; or what carries the body there is.
+                    let looks =
+                        cuts < MAX_CUTS && (!self.pair.asks_trees() || pace.step <= longest * LOOKING_SHARE);
+                    if looks
+                        && (self.meet(state, &landed, pace.step, &u) || rises && self.cut(&landed, rise, &u))
+                    {
                         cuts += 1;
                         fresh = false;
                         (u, length) = self.displacement(pace);
                         continue;
                     }
                     if pace.step <= longest * SMALLEST_SHARE {
-                        // The motion cannot be followed further.
-                        return Advance::Ended(Outcome::Undecided, *state);
+                        // What no contact tells of hooks under the other half, or the motion cannot be followed further.
+                        if !self.nearby.look_under() {
+                            return Advance::Ended(Outcome::Undecided, *state);
+                        }
+                        pace.step = longest;
                     }
                     true
                 } else if pace.step > longest && (rise.abs() > allowed || climbs) {
                     true
-                } else if rise > allowed || climbs {
+                } else if rises {
                     // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
                     if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
                         cuts += 1;

@@ -168,20 +168,23 @@ impl Motion<'_> {
         added
     }
 
-    /// Adds what the body has run into at `landed` by the displacement `u`.
-    pub(super) fn meet(&mut self, landed: &State, step: f64, u: &Vector) -> bool {
+    /// Adds what the body has run into at `landed` by the displacement `u` from `state`, as seen halfway: see [`Motion::look_ahead`].
+    pub(super) fn meet(&mut self, state: &State, landed: &State, step: f64, u: &Vector) -> bool {
         let (_, near) = self.horizon(step);
         let mut met = std::mem::take(&mut self.carrying);
         self.nearby.contacts(landed.cor, near, &mut met);
-        let axes = self.axes(landed);
+        let half = u.map(|x| 0.5 * x);
+        let middle = self.moved(state, &half);
+        let axes = self.axes(&middle);
         let mut added = false;
-        for (contact, _) in met.iter().filter(|(c, _)| c.gap < -OVERLAP) {
-            let row = self.row(contact, landed, &axes);
+        for (contact, meeting) in met.iter().filter(|(c, _)| c.gap < -OVERLAP) {
             let there = contact.gap - margin(contact);
-            let here = there - dot(&row, u);
+            let contact = self.pair.contact(contact, meeting, &middle.rotation, middle.cor);
+            let row = self.row(&contact, &middle, &axes);
+            let here = contact.gap - margin(&contact) - dot(&row, &half);
             // A contact that was as deep before is another way through the same wall.
             if here > 0.25 * there {
-                let tangents = self.tangents(contact, landed, &axes);
+                let tangents = self.tangents(&contact, &middle, &axes);
                 added |= self.rows.learn(row, tangents, here);
             }
         }

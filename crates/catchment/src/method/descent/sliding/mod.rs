@@ -124,7 +124,7 @@ impl Motion<'_> {
             match self.until_event(&state, &start, step) {
                 Reached::At(next, length) => {
                     pace.step = 2.0 * step;
-                    self.sliding.crawls = if length < CRAWL { self.sliding.crawls + 1 } else { 0 };
+                    self.crawl(length);
                     return Advance::Moved(next, length * lateral(&start));
                 }
                 Reached::Blocked(Some(blocker)) => self.contacts.push(blocker),
@@ -137,6 +137,11 @@ impl Motion<'_> {
         self.turn(&state.rotation, state.cor.truncate(), plain.step);
         self.gather(&state, plain.step);
         self.advance(&state, &mut plain)
+    }
+
+    /// Counts how many steps in a row crawl, the last of this length.
+    const fn crawl(&mut self, length: f64) {
+        self.sliding.crawls = if length < CRAWL { self.sliding.crawls + 1 } else { 0 };
     }
 
     /// Forgets the contacts that are no longer on their features at `state`, to which a correction has brought the body; says whether
@@ -168,7 +173,7 @@ impl Motion<'_> {
     /// Lowers the body to what is next below it.
     fn drop_down(&mut self, state: &State) -> Advance {
         // Faces may land flush: what nearly supports counts too.
-        self.sliding.forget();
+        self.sliding.looked = None;
         self.turn(&state.rotation, state.cor.truncate(), self.settings.step);
         let Some(z) = self.nearby.height_below(state.cor.truncate(), state.cor.z).0 else {
             return Advance::Ended(Outcome::Missed, *state);
@@ -178,6 +183,7 @@ impl Motion<'_> {
             return Advance::Ended(Outcome::Undecided, *state);
         }
         let landed = State { cor: state.cor.truncate().extend(z), ..*state };
+        self.crawl(state.cor.z - z);
         if !self.overlaps(&landed) {
             return Advance::Moved(landed, 0.0);
         }
