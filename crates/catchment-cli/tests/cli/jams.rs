@@ -123,11 +123,11 @@ fn what_friction_holds_and_what_is_docked_a_quarter_turn_off_is_said() {
         Some([sticks["holds_from"].as_f64()?, sticks["slips_until"].as_f64()?])
     };
     let found: Vec<[f64; 2]> = jams.iter().filter_map(thresholds).collect();
-    assert!(
-        found.len() >= 3
-            && found.iter().all(|[holds, slips]| 0.0 < *holds && holds <= slips && *holds <= 0.5),
-        "{found:?}"
-    );
+    // Turned by a quarter it lies flush, and contacts alone hold it.
+    assert_eq!(thresholds(turned), Some([0.0; 2]));
+    let on_the_way = found.iter().filter(|[holds, _]| *holds > 0.0);
+    assert!(on_the_way.clone().count() >= 3, "{found:?}");
+    assert!(on_the_way.clone().all(|[holds, slips]| holds <= slips && *holds <= 0.5), "{found:?}");
 }
 
 /// What `run` says of jams is what `jams` says of as many poses.

@@ -101,6 +101,8 @@ pub struct Pair {
     spins: OnceLock<[f64; 2]>,
     /// Where a half that is a little off comes to rest instead, below the seat.
     fall: OnceLock<Option<Fall>>,
+    /// Whether its seat has no rim somewhere.
+    leaks: OnceLock<bool>,
 }
 
 impl Pair {
@@ -134,6 +136,7 @@ impl Pair {
             homing,
             spins: OnceLock::new(),
             fall: OnceLock::new(),
+            leaks: OnceLock::new(),
         };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
@@ -150,6 +153,7 @@ impl Pair {
             pair.homing = OnceLock::new();
             pair.spins = OnceLock::new();
             pair.fall = OnceLock::new();
+            pair.leaks = OnceLock::new();
         }
         pair
     }
@@ -188,6 +192,11 @@ impl Pair {
     /// Where a half that is a little off comes to rest below the seat, if it does: as `find` says, which is asked once.
     pub(crate) fn fall(&self, find: impl FnOnce() -> Option<Fall>) -> Option<Fall> {
         *self.fall.get_or_init(find)
+    }
+
+    /// Whether the seat has no rim somewhere, as `find` says, which is asked once.
+    pub(crate) fn leaks(&self, find: impl FnOnce() -> bool) -> bool {
+        *self.leaks.get_or_init(find)
     }
 
     /// h₀, the z of the COR at first contact without any error, in D; −∞ where the halves pass each other by.

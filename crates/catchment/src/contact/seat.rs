@@ -9,12 +9,13 @@
 //! ```
 //!
 //! h₀ is the height of first contact without any error. S is entered from above. A half at rest below h₀ − depth has left the seat through its
-//! floor: the mated pose is no minimum then, and that rest is another one. Whether a pose is connected with the mated one is tried along four paths in
+//! floor: the mated pose is no minimum then, and that rest is another one. Where the rim of a hollow is lower than the level of its seat, S *leaks*: it reaches over the
+//! rim to where it falls below the floor, and what is in it need not stay ([`Seat::leaks`]). Whether a pose is connected with the mated one is tried along four paths in
 //! the pose error: straight, and its yaw, its rotation or its translation first; along each h must stay at or below h₀ + depth. Poses nearer
 //! than [`CORE`] count as connected. How far the seat reaches by yaw alone, which what is round does all the way, is found once per pair.
 //!
 //! Not promised: walls between two places of rest that are thinner than [`PATH_STEP`] are stepped over, and a seat that bends more than
-//! its four paths do is not recognised to its end: what rests there counts as jammed. Lengths in D, angles in radians.
+//! its four paths do is not recognised to its end: what rests there counts as jammed. Leaks are looked for along each free error, and all of them together. Lengths in D, angles in radians.
 
 use super::mated::CONTACT_TOLERANCE;
 use super::{Nearby, Pair};
@@ -82,6 +83,52 @@ impl<'a> Seat<'a> {
     /// The error against the nearest mated pose, which differs from the error itself where the pair is symmetric.
     pub fn off(&self, error: &PoseError) -> PoseError {
         PoseError { yaw: error.yaw - self.pair.alignment.nearest_yaw(error.yaw), ..*error }
+    }
+
+    /// Whether the seat reaches over a rim to where a half would lie below its floor, or touch nothing: so a half that is deep enough may yet leave.
+    pub fn leaks(&mut self) -> bool {
+        let pair = self.pair;
+        pair.leaks(|| self.ways_out().any(|way| self.leaks_along(way)))
+    }
+
+    /// Along each free error, either way, and all of them together: by so much per look.
+    fn ways_out(&self) -> impl Iterator<Item = PoseError> + use<> {
+        let alignment = &self.pair.alignment;
+        let free: Vec<Dof> =
+            alignment.free.iter().filter(|dof| !alignment.dont_care.contains(*dof)).collect();
+        let rho = alignment.rotation_length;
+        let step = move |dof: Dof| if dof.is_rotation() { PATH_STEP / rho } else { PATH_STEP };
+        let way = move |free: &[Dof], sign: f64| {
+            let mut error = [0.0; Dof::ALL.len()];
+            for dof in free {
+                error[dof.index()] = sign * step(*dof) / (free.len() as f64).sqrt();
+            }
+            PoseError::from_array(error)
+        };
+        let mut groups: Vec<Vec<Dof>> = free.iter().map(|dof| vec![*dof]).collect();
+        if free.len() > 1 {
+            groups.push(free);
+        }
+        groups.into_iter().flat_map(move |group| [1.0, -1.0].map(|sign| way(&group, sign)))
+    }
+
+    /// Whether the seat leaks this way, as far as errors are looked at.
+    fn leaks_along(&mut self, way: PoseError) -> bool {
+        let (level, floor) = (self.level() + ROUNDING, self.floor());
+        let way = way.to_array();
+        let alignment = &self.pair.alignment;
+        let ends = |dof: Dof| alignment.half_range(dof) / way[dof.index()].abs();
+        let looks = alignment.free.iter().map(ends).fold(MOST_LOOKS, f64::min) as usize;
+        for k in 1..=looks {
+            let error = PoseError::from_array(way.map(|part| k as f64 * part));
+            if self.nearby.is_above(&error, level) {
+                return false;
+            }
+            if self.nearby.height(&error).is_none_or(|height| height < floor) {
+                return true;
+            }
+        }
+        false
     }
 
     fn is_connected(&mut self, error: &PoseError) -> bool {

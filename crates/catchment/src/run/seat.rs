@@ -132,7 +132,14 @@ impl Seating {
                 told.error(error)
             ),
         });
-        far.chain(deeper).collect()
+        let leaks = Seat::new(problem.pair()).leaks().then(|| Warning::Note {
+            text: format!(
+                "the seat leaks: its rim is lower than docked.depth, {} above the mated pose, so every motion is followed until it rests; \
+                 give a smaller depth if only what is in the hollow is docked",
+                told.length(docked.depth)
+            ),
+        });
+        far.chain(deeper).chain(leaks).collect()
     }
 }
 
@@ -216,14 +223,22 @@ impl Problem {
                 return doubt.told(told);
             }
             let End { outcome, error } = self.settled();
-            let rests = match outcome {
-                Outcome::Missed => "it runs off".to_owned(),
-                _ => format!("it settles at {} ({})", told.error(&error), outcome.name()),
-            };
-            format!(
-                "{}. Let go without any error {rests}: draw the halves so that this is the mated pose, or say settle = true of halves of your own",
-                doubt.told(told)
-            )
+            let doubt = doubt.told(told);
+            let moved = error.to_array().into_iter().any(|part| part.abs() > CONTACT_TOLERANCE);
+            match outcome {
+                Outcome::Missed => format!(
+                    "{doubt}. Let go without any error it runs off: draw the halves so that they hold each other where they are mated"
+                ),
+                _ if !moved => format!(
+                    "{doubt}. Let go without any error it balances, and any push lets it fall: draw the halves so that they are mated where they rest"
+                ),
+                _ => format!(
+                    "{doubt}. Let go without any error it settles at {} ({}): draw the halves so that this is the mated pose, or say settle = true of \
+                     halves of your own",
+                    told.error(&error),
+                    outcome.name()
+                ),
+            }
         };
         self.doubts().iter().map(sentence).collect()
     }

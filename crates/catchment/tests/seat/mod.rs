@@ -182,6 +182,42 @@ fn a_seat_that_leaves_an_error_free_is_refused_with_advice() {
     assert!(Peg::new(6, 0.3, 0.01, 0.05).problem(&[Dof::X, Dof::Y, Dof::Yaw], 0.2, |_| ()).is_ok());
 }
 
+/// A dimple on a ridge, 0.0015 D deep where seats reach 0.002 D above the mated pose: what is deep enough may lie beyond its rim, and slides off.
+#[test]
+fn what_slides_over_a_low_rim_is_missed() {
+    const RIM: f64 = 0.05;
+    let text = "[connector]\nwidth = 1.0\n[[connector.fixed.parts]]\nprofile = [[-0.5, -0.2], [0.5, -0.2], [0.5, 0.0], [0.05, 0.3], [0, 0.2985], [-0.05, 0.3], \
+                [-0.5, 0.0]]\nheight = 0.4\naxis = \"-y\"\nat = [0, 0.2, 0]\n[[connector.moving.parts]]\nprofile = [[-0.1, 0.0], [0.1, 0.0], [0.0, 0.3]]\n\
+                height = 0.4\naxis = \"-y\"\nat = [0, 0.2, 0]\n[alignment]\nfree = [\"x\"]\ncenter_of_rotation = 0.5\n";
+    let source = catchment::design::SourceText::new("f.toml", text);
+    let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
+    let poses: Vec<PoseError> = (-24..=24).map(|k| at(0.0121 * f64::from(k), 0.0)).collect();
+    let expected: Vec<Outcome> = poses
+        .iter()
+        .map(|pose| if pose.x.abs() < RIM { Outcome::Aligned } else { Outcome::Missed })
+        .collect();
+    let pair = problem.pair();
+    for friction in [0.0, 0.01] {
+        let settings = descent::Settings::with_friction(friction).unwrap();
+        let mut follower = Follower::new(pair, &settings);
+        for (pose, expected) in poses.iter().zip(&expected) {
+            assert_eq!(follower.follow(pose).outcome, *expected, "{pose:?}, friction {friction}");
+            assert_eq!(follower.rest(pose).outcome, *expected, "{pose:?}, friction {friction}");
+            assert_eq!(descent::trace(pair, pose, &settings).outcome, *expected, "{pose:?}");
+        }
+    }
+    let near = |pose: &&PoseError| (pose.x.abs() - RIM).abs() > 0.005;
+    let away: Vec<PoseError> = poses.iter().filter(near).copied().collect();
+    let (dropped, _) =
+        drop::run(pair, Domain::Poses(away.clone()), &drop::Settings::default(), &Exec::new()).unwrap();
+    for (pose, outcome) in away.iter().zip(&dropped.outcomes) {
+        assert_eq!(*outcome == Outcome::Aligned, pose.x.abs() < RIM, "{pose:?} ends {outcome:?}");
+    }
+    let refused = Run { method: "certified".parse().unwrap(), ..Run::default() };
+    let refused = refused.on(&problem, &Exec::new()).unwrap_err().to_string();
+    assert!(refused.contains("docked.depth"), "{refused}");
+}
+
 #[test]
 fn drops_agree_with_motions() {
     let mut same = [0, 0];

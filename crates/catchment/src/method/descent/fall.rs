@@ -55,10 +55,11 @@ pub fn fall(pair: &Pair) -> Option<Fall> {
     })
 }
 
-/// Whether every rest in the seat is docked, so that a motion may be called before it has come to rest: the design limits nothing, and the mated pose
-/// holds.
+/// Whether what is in the seat is docked, so that a motion may be called before it has come to rest: the design limits nothing, the mated pose
+/// holds, and the seat does not leak.
 pub(in crate::method) fn all_count(pair: &Pair) -> bool {
-    !Seat::new(pair).is_limited() && fall(pair).is_none()
+    let mut seat = Seat::new(pair);
+    !seat.is_limited() && fall(pair).is_none() && !seat.leaks()
 }
 
 /// The length of a small error in the ρ-metric.

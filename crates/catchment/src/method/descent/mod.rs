@@ -7,7 +7,7 @@
 //! in the metric `|v|² + ρ²|ω|²` (v at the COR), several simultaneous contacts as a matter of course, until
 //! docked ([`crate::contact::Seat`]), at rest elsewhere, or off. No grid is involved, and no sampling of surfaces. Where walls of
 //! the halves face each other closely (a peg in its hole) motion goes from one change of contacts to the next (`sliding`),
-//! elsewhere by plain steps (`motion`).
+//! elsewhere by plain steps (`step`).
 //!
 //! With friction ([`Settings::friction`]) the forces of the contacts lie in Coulomb's cones instead of along their normals (`coulomb`), and motion
 //! ends where they hold it; from which friction on they may, [`sticking()`] says.
@@ -29,6 +29,7 @@ mod projection;
 mod rest;
 mod rows;
 mod sliding;
+mod step;
 mod sticking;
 #[cfg(test)]
 mod tests;

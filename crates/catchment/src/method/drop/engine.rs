@@ -56,6 +56,8 @@ const WINDOW: usize = 64;
 const WINDOWS: u32 = 2;
 /// Steps in a row for which an aligned half stays aligned.
 const SETTLED: u32 = 10;
+/// Springs give way by so much, in D, as they do in the seat.
+const SUNK: f64 = 2e-3;
 
 /// How contacts are solved. They are springs that take away a part of an overlap per step: this one, in steps per cycle and
 /// critically damped, leaves 10⁻³ D where the half pushes by 0.005 D per step, and does not ring.
@@ -126,7 +128,7 @@ impl<'a> Engine<'a> {
             seen(step, &fall);
             let apart = self.apart(cor, &rotation);
             // The way into the seat is looked for once: what is deep enough stays where it is connected.
-            seated = cor.z <= seat.level()
+            seated = (seat.floor() - SUNK..=seat.level()).contains(&cor.z)
                 && (seated || seat.holds(&self.end(Outcome::Aligned, cor, &rotation).error, cor.z));
             settled = if seated { settled + 1 } else { 0 };
             if settled >= SETTLED && all_count {

@@ -7,7 +7,7 @@ use crate::acceptance::{Outcome, Stream};
 use crate::connector::Side;
 use crate::contact::{Contact, Features};
 use crate::exec::{Cancelled, Exec};
-use crate::method::descent::{self, Follower, Holding, Rest, Sticking, TOUCHING, immobility};
+use crate::method::descent::{self, Follower, Holding, Rest, Sticking, immobility};
 use crate::pose::{CorPose, PoseError, angle_between, face_from_cor, step_length};
 use crate::problem::Problem;
 use glam::DVec3;
@@ -49,6 +49,8 @@ pub(in crate::run) struct Rested {
     pub(in crate::run) error: PoseError,
     pub(in crate::run) pose: CorPose,
     pub(in crate::run) height: f64,
+    /// Gaps up to this touch, in D.
+    pub(in crate::run) touching: f64,
     /// What touches, by pairs of features in their order.
     pub(in crate::run) met: Vec<Met>,
     /// The classes of these pairs, sorted.
@@ -123,7 +125,8 @@ impl Follow<'_> {
         let mut signature: Vec<[u32; 2]> =
             met.iter().map(|met| classes(self.features, met.features)).collect();
         signature.sort_unstable();
-        Some(Rested { outcome: rest.outcome, error: rest.error, pose, height, met, signature })
+        let Rest { outcome, error, touching, .. } = *rest;
+        Some(Rested { outcome, error, pose, height, touching, met, signature })
     }
 
     /// How firmly a rest holds, which way leads out, and whether it comes back when it is pushed.
@@ -152,7 +155,7 @@ impl Follow<'_> {
             Which::Jams => Leaving::Jam,
             Which::All => Leaving::Rest { is_level: held.firmness == Firmness::Level },
         };
-        let mut holding = Holding::at_rest(pair, &rest.error, rest.height, TOUCHING);
+        let mut holding = Holding::at_rest(pair, &rest.error, rest.height, rest.touching);
         let immobility = holding.as_ref().and_then(|holding| immobility(pair, holding, &rest.error, seed));
         let sticking = match immobility {
             // Contacts alone hold it: only whether it wedges is open.

@@ -62,6 +62,27 @@ fn a_rigid_body_comes_to_the_same_rests() {
     }
 }
 
+/// Rests in all five errors, wherever motion came from: first order, by the slope of the mated pose.
+#[test]
+fn a_flush_seat_is_held_alike_wherever_it_was_entered() {
+    for (family, slope) in
+        [("pyramid\"\naspect_ratio = 0.5", 0.4549), ("x-face-3d\"\naspect_ratio = 0.57735", 0.2931)]
+    {
+        let problem = problem(&format!(
+            "[connector]\nfamily = \"{family}\n[alignment]\ncenter_of_rotation = 0.5\nrotation_length = 0.5\n"
+        ));
+        for seed in 1..=3 {
+            let settings = Settings { motions: Some(120), seed, ..Settings::default() };
+            let found = run(&problem, &settings, &Exec::new()).unwrap();
+            let held = found.rests[0].found.examined.unwrap();
+            let immobility = held.immobility.unwrap();
+            assert_eq!(immobility.order, descent::Order::First, "{family} {held:?}");
+            assert!((immobility.slope[0] - slope).abs() < 2e-4, "{family} {immobility:?}");
+            assert_eq!(held.sticking.unwrap().holds_from, Some(0.0));
+        }
+    }
+}
+
 /// A ball of radius 0.2 in a funnel of slope 1 and rim radius 0.5.
 fn ball_in_cone() -> String {
     const SIDES: usize = 12;

@@ -182,18 +182,21 @@ pub enum HoldError {
 pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Hold, HoldError> {
     let motion = settings.check()?;
     let pair = problem.pair();
-    let (pose, outcome, height) = match &settings.pose {
+    let (pose, outcome, rest) = match &settings.pose {
         None => (PoseError::default(), Outcome::Aligned, None),
         Some(pose) => {
             let end = Follower::new(pair, &motion).come_to_rest(pose);
-            (end.error, end.outcome, end.height)
+            (end.error, end.outcome, end.height.map(|height| (height, end.touching)))
         }
     };
     if matches!(outcome, Outcome::Missed | Outcome::Undecided) {
         return Err(HoldError::NoRest { outcome });
     }
-    let holding = match height {
-        Some(height) => Holding::at_rest(pair, &pose, height, settings.play),
+    // What touches is known better than by a distance, unless play is to be taken for used.
+    let near =
+        |touching: f64| if settings.play > TOUCHING { settings.play } else { settings.play.min(touching) };
+    let holding = match rest {
+        Some((height, touching)) => Holding::at_rest(pair, &pose, height, near(touching)),
         None => Holding::at(pair, &pose, settings.play),
     };
     let Some(mut holding) = holding else {

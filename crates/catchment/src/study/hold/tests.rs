@@ -99,6 +99,22 @@ fn a_half_is_held_where_it_comes_to_rest() {
     for (a, b) in home.sideways.iter().zip(&mated.sideways) {
         assert!((guided(&a.withstood) - guided(&b.withstood)).abs() < 1e-3, "{a:?} {b:?}");
     }
+    // In all five errors motion ends short of the last corners.
+    for (connector, pose) in [
+        ("family = \"x-face-3d\"\naspect_ratio = 0.5773502691896258", [0.1, 0.05, 0.0, 0.0, 0.0]),
+        ("family = \"pyramid\"\naspect_ratio = 0.5", [0.05, 0.1, 0.1, 0.1, 0.2]),
+    ] {
+        let problem = self::problem(connector, "");
+        for friction in [0.0, 0.2] {
+            let settings = Settings { friction, directions: 8, ..Settings::default() };
+            let mated = found(&problem, &settings);
+            let home = found(&problem, &Settings { pose: Some(PoseError::from_array(pose)), ..settings });
+            for (a, b) in home.sideways.iter().zip(&mated.sideways) {
+                let (a, b) = (guided(&a.withstood), guided(&b.withstood));
+                assert!((a - b).abs() < 1e-6, "{connector}, friction {friction}: {a} {b}");
+            }
+        }
+    }
     let off = PoseError { x: 3.0, ..PoseError::default() };
     let refused = run(&problem, &Settings { pose: Some(off), ..Settings::default() }, &Exec::new());
     assert_eq!(refused.unwrap_err(), HoldError::NoRest { outcome: Outcome::Missed });

@@ -26,8 +26,9 @@ mod correction;
 mod event;
 
 use super::coulomb::{Contacts, Tangents};
-use super::motion::{Advance, Motion, Pace, State};
+use super::motion::{Motion, State};
 use super::projection::Vector;
+use super::step::{Advance, Pace};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, FLUSH, Meeting};
 use event::Reached;

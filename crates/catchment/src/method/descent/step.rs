@@ -1,0 +1,234 @@
+//! One plain step.
+//!
+//! Everything that touches or may be met is found exactly at the current position ([`super::rows`]); the closest allowed
+//! displacement to the push of the force is taken ([`super::projection`]); the height is then set to that of
+//! first contact, so that errors of the linearisation never build up. A step that the height contradicts
+//! is halved, unless what contradicts it is one more contact.
+
+use super::motion::{Motion, State};
+use super::projection::{MAX_COORDINATES, Vector, dot};
+use crate::acceptance::Outcome;
+
+/// How a motion goes on.
+pub(super) enum Advance {
+    /// To here, by this length in the ρ-metric.
+    Moved(State, f64),
+    /// No further than here.
+    Ended(Outcome, State),
+}
+
+/// How boldly a motion steps; kept from step to step.
+pub(super) struct Pace {
+    /// Length of the next step in the ρ-metric, in D.
+    pub(super) step: f64,
+    /// How hard the force pushes, in steps.
+    reach: f64,
+    /// How far it reached: the length of the last displacement before it was cut to a step, in steps.
+    share: f64,
+}
+
+/// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
+const MAX_REACH: f64 = 1e7;
+/// The same with friction, whose forces are found less exactly: rest is a slope below 10⁻⁷ beyond what friction holds.
+const MAX_REACH_OF_FRICTION: f64 = 1e4;
+/// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
+const REST: f64 = 1e-3;
+/// Steps are halved down to this share of the chosen one.
+const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
+/// Steps that fall off an edge are halved down to this share: where exactly it falls matters little.
+const COARSE_SHARE: f64 = 1.0 / 64.0;
+/// Where a step of this share climbs although the slope falls gently, the bottom of a smooth hollow is within it.
+const REST_SHARE: f64 = 1.0 / 256.0;
+/// A gentle slope: what a curvature of 1/(0.01 D) makes of the smallest such step.
+const GENTLE: f64 = 0.01;
+/// How many contacts one step may discover before it is halved: the facets around a corner.
+const MAX_CUTS: usize = 6;
+/// A fall of this many allowed surprises is a fall off an edge.
+const FALL: f64 = 1.0;
+
+/// A motion that turns by less than `STRAIGHT` (sine) from the start of a step to its middle is followed by longer
+/// steps, up to `LONG` times; one that turns by more than `BENT` is not.
+const STRAIGHT: f64 = 0.01;
+const BENT: f64 = 0.04;
+const LONG: f64 = 2.0;
+
+/// Steps of halves of many facets are halved down to this share of the longest one before what they run into is looked for: to look takes longer.
+const LOOKING_SHARE: f64 = 1.0 / 16.0;
+
+/// Rounding of a height, in D.
+const ROUNDING: f64 = 1e-12;
+
+impl Pace {
+    /// For a first step of this length.
+    pub(super) const fn new(step: f64) -> Self {
+        Self { step, reach: 1.0, share: 1.0 }
+    }
+}
+
+impl Motion<'_> {
+    /// One step from `state`, whose contacts have been gathered: halved until the height agrees with it.
+    pub(super) fn advance(&mut self, state: &State, pace: &mut Pace) -> Advance {
+        let longest = self.settings.step;
+        let (mut u, mut length) = self.displacement(pace);
+        let mut fresh = true;
+        let mut cuts = 0;
+        let mut bend = 0.0;
+        loop {
+            if length <= REST * pace.step && pace.reach >= self.most_reach() {
+                return Advance::Ended(Outcome::Jammed, *state);
+            }
+            if self.is_too_gentle(&u, length) {
+                return Advance::Ended(Outcome::Jammed, *state);
+            }
+            let mut halve = false;
+            if fresh {
+                let before = u;
+                self.look_ahead(state, &u);
+                (u, length) = self.displacement(pace);
+                bend = deflection(&before, &u);
+                halve = pace.step > longest && bend > BENT;
+                if self.settings.friction > 0.0 && length <= REST * pace.step {
+                    // What slips here sticks within the step: where, shorter ones say.
+                    if pace.step <= longest * SMALLEST_SHARE {
+                        return Advance::Ended(Outcome::Jammed, *state);
+                    }
+                    halve = true;
+                }
+            }
+            if !halve {
+                let next = self.moved(state, &u);
+                let allowed = self.settings.surprise * pace.step.min(longest);
+                if let Some(home) = self
+                    .home_of(&next)
+                    .filter(|home| (home.cor.z - next.cor.z).abs() <= allowed && home.cor.z <= state.cor.z)
+                {
+                    self.turn(&home.rotation, home.cor.truncate(), pace.step);
+                    return Advance::Moved(home, length);
+                }
+                self.turn(&next.rotation, next.cor.truncate(), pace.step);
+                let ceiling = state.cor.z.max(next.cor.z) + longest;
+                let expected = next.cor.z - allowed;
+                let (below, covered) = self.nearby.height_about(next.cor.truncate(), ceiling, expected);
+                let z = below.unwrap_or(next.cor.z);
+                let landed = State { cor: next.cor.truncate().extend(z), ..next };
+                let blocked = covered && self.nearby.is_pierced(landed.cor);
+                if below.is_none() && !blocked {
+                    return Advance::Ended(Outcome::Missed, next);
+                }
+                let rise = z - next.cor.z;
+                let climbs = z > state.cor.z + ROUNDING;
+                let rises = rise > allowed || climbs;
+                halve = if blocked {
+                    // A wall that no contact announced is one more contact, if it was not met before; or what carries the body there is.
+                    let looks =
+                        cuts < MAX_CUTS && (!self.pair.asks_trees() || pace.step <= longest * LOOKING_SHARE);
+                    if looks
+                        && (self.meet(state, &landed, pace.step, &u) || rises && self.cut(&landed, rise, &u))
+                    {
+                        cuts += 1;
+                        fresh = false;
+                        (u, length) = self.displacement(pace);
+                        continue;
+                    }
+                    if pace.step <= longest * SMALLEST_SHARE {
+                        // What no contact tells of hooks under the other half, or the motion cannot be followed further.
+                        if !self.nearby.look_under() {
+                            return Advance::Ended(Outcome::Undecided, *state);
+                        }
+                        pace.step = longest;
+                    }
+                    true
+                } else if pace.step > longest && (rise.abs() > allowed || climbs) {
+                    true
+                } else if rises {
+                    // Something unannounced carries the body. Seen from here it is one more contact, if it lies below.
+                    if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
+                        cuts += 1;
+                        fresh = false;
+                        (u, length) = self.displacement(pace);
+                        continue;
+                    }
+                    if climbs && pace.step <= longest * REST_SHARE && -u[2] <= GENTLE * length {
+                        // The bottom of a smooth hollow, within a step.
+                        return Advance::Ended(Outcome::Jammed, *state);
+                    }
+                    pace.step > longest * SMALLEST_SHARE
+                } else {
+                    // Falling off an edge: come closer to it before letting go.
+                    rise < -FALL * allowed && pace.step > longest * COARSE_SHARE
+                };
+                if !halve {
+                    let most = if bend > STRAIGHT { pace.step.max(longest) } else { longest * LONG };
+                    pace.step = (pace.step * 2.0).min(most);
+                    return Advance::Moved(landed, length);
+                }
+            }
+            pace.step *= 0.5;
+            self.turn(&state.rotation, state.cor.truncate(), pace.step);
+            self.gather(state, pace.step);
+            (u, length) = self.displacement(pace);
+            fresh = true;
+            cuts = 0;
+        }
+    }
+
+    /// The displacement of one step and its length in the ρ-metric, at most `step`.
+    ///
+    /// The reach of the pace is adapted: raised on gentle slopes.
+    fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
+        let Pace { step, reach, share } = pace;
+        let step = *step;
+        let most = self.most_reach();
+        let Self { projection, coulomb, rows, settings, .. } = self;
+        let contacts = rows.contacts(settings.friction);
+        let mut solve = |reach: f64| {
+            let mut push = [0.0; MAX_COORDINATES];
+            push[2] = -reach * step;
+            let u = coulomb
+                .displacement(projection, &push, contacts, |k| rows.gaps[k], step * reach)
+                // Squeezed between two walls there is no clearance to regain.
+                .or_else(|| {
+                    let gap = |k: usize| rows.gaps[k].max(0.0);
+                    coulomb.displacement(projection, &push, contacts, gap, step * reach)
+                })
+                .unwrap_or_default();
+            let length = u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>();
+            (u, length.sqrt())
+        };
+        // As far as the last push would have had to reach for a whole step.
+        *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, most);
+        let mut found = solve(*reach);
+        while found.1 < 0.5 * step && *reach < most {
+            *reach = (*reach * (step / found.1).clamp(2.0, 16.0)).min(most);
+            found = solve(*reach);
+        }
+        while found.1 > 2.0 * step && *reach > 1.0 {
+            *reach = (*reach * (step / found.1).clamp(1.0 / 16.0, 0.5)).max(1.0);
+            found = solve(*reach);
+        }
+        *share = found.1 / step;
+        let (mut u, mut length) = found;
+        // Nothing moved and 0 displacement are both allowed, hence everything in between.
+        let longest = length.max(u[2].abs());
+        if longest > step {
+            let share = step / longest;
+            u = u.map(|x| x * share);
+            length *= share;
+        }
+        (u, length)
+    }
+
+    /// How far the push reaches at most, in steps.
+    fn most_reach(&self) -> f64 {
+        if self.settings.friction > 0.0 { MAX_REACH_OF_FRICTION } else { MAX_REACH }
+    }
+}
+
+/// Sine of the angle between the lateral parts of two displacements, or 1 where it is obtuse or one of them is none.
+fn deflection(a: &Vector, b: &Vector) -> f64 {
+    let lateral = |v: &Vector| Vector::map(*v, |x| x);
+    let (mut a, mut b) = (lateral(a), lateral(b));
+    (a[2], b[2]) = (0.0, 0.0);
+    let (aa, bb, ab) = (dot(&a, &a), dot(&b, &b), dot(&a, &b));
+    if ab <= 0.0 { 1.0 } else { (1.0 - ab * ab / (aa * bb)).max(0.0).sqrt() }
+}
