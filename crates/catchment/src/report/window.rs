@@ -224,11 +224,20 @@ impl WindowReport {
             if worst.outcome == Outcome::Jammed {
                 row(&mut text, "", &format!("it rests at {}", told.place(&worst.end)));
             }
-            for touch in worst.touches.iter().take(MOST_TOUCHES) {
-                row(&mut text, "", &format!("touching at {}", told.point(touch.point_d)));
+            // Corners, edges and facets that meet at one point say it several times.
+            let mut places: Vec<String> = Vec::new();
+            for place in worst.touches.iter().map(|touch| told.point(touch.point_d)) {
+                if !places.contains(&place) {
+                    places.push(place);
+                }
             }
-            if worst.touches.len() > MOST_TOUCHES {
-                row(&mut text, "", &format!("and at {} places more", worst.touches.len() - MOST_TOUCHES));
+            for place in places.iter().take(MOST_TOUCHES) {
+                row(&mut text, "", &format!("touching at {place}"));
+            }
+            match places.len().saturating_sub(MOST_TOUCHES) {
+                0 => {}
+                1 => row(&mut text, "", "and at 1 place more"),
+                more => row(&mut text, "", &format!("and at {more} places more")),
             }
         } else {
             row(&mut text, "worst pose", "none was found: the window ends at the error box");

@@ -11,7 +11,7 @@
 //! Half-widths are s·pᵢ, with the proportions pᵢ of the error box or of one's own; some may be given (x, y ±2 mm: how much yaw?), and
 //! then only the others grow. No grid is involved: every answer is that of exact motions. Beside the window stands, per error, how far it
 //! may go alone (all others 0) and with all others anywhere within their half-widths: where that is hardly more than the window, it is the
-//! tight one.
+//! tight one. Beyond the window random poses are drawn there as well, a twentieth as many as in it.
 //!
 //! The certificate is that of the rule of three: if none of N independent poses fails, at most ln(1/α)/N of the window does, but for a chance of α. The
 //! first window has α₁ = 0.0498, which is 3/N; the k-th, drawn because those before it failed, 0.0002/(k(k − 1)): all of them together 0.05, however many there
@@ -229,7 +229,8 @@ const fn unit(axis: Dof) -> &'static str {
 }
 
 fn place(error: &PoseError) -> String {
-    let named = Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, value)| *value != 0.0);
+    // What is told with four decimals is nothing below half of the last.
+    let named = Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, value)| value.abs() >= 5e-5);
     let said: Vec<String> =
         named.map(|(dof, value)| format!("{} = {value:.4} {}", dof.name(), unit(dof))).collect();
     said.join(", ")
@@ -238,6 +239,11 @@ fn place(error: &PoseError) -> String {
 /// Allowed chance that the certificate of the first window is wrong, and of all later ones together: 5 %.
 const FIRST_CHANCE: f64 = 0.0498;
 const LATER_CHANCE: f64 = 0.0002;
+
+/// Of the random poses of the certificate so many are drawn again beyond the window, per error that goes on while the others stay in it: one in so many, and no fewer
+/// than these if it has as many.
+const BESIDE_SHARE: usize = 20;
+const BESIDE_LEAST: usize = 2000;
 
 /// Finds the window of a problem and certifies it.
 ///
@@ -294,13 +300,15 @@ pub(super) fn by(
     let certificate = Certificate { motions, failing_at_most: at_most, redrawn };
     let half_widths = search.space().half_widths(scale);
     let mut followed = search.followed();
+    let hints: Vec<[f64; 5]> = search.worst_way().into_iter().collect();
+    let beyond = (motions / BESIDE_SHARE).max(motions.min(BESIDE_LEAST));
     let mut axes = Vec::new();
     for axis in problem.alignment().free.iter() {
         let half_width = half_widths[axis.index()];
         let mut reach = |others: [f64; 5], from: f64| {
             let space = Space::along(problem, axis, others);
             let mut search = Search::new(problem, space, settings.seed, motions_by);
-            let reach = search.reach(from, exec)?;
+            let reach = search.reach(from, &hints, beyond, exec)?;
             followed += search.followed();
             Ok::<_, Cancelled>(reach)
         };

@@ -249,6 +249,11 @@ impl<'a> Search<'a> {
         self.window(MARGIN) > self.least.max(NONE * self.space.border)
     }
 
+    /// In which direction it lies.
+    pub(super) fn worst_way(&self) -> Option<[f64; 5]> {
+        self.nearest.map(|failing| failing.along)
+    }
+
     /// The nearest pose that fails.
     pub(super) fn worst(&self) -> Option<PoseError> {
         self.nearest.map(|failing| self.space.pose(&failing.along, failing.scale))
@@ -264,7 +269,7 @@ impl<'a> Search<'a> {
                 return Ok(None);
             }
             let scale = self.window(MARGIN);
-            if self.followed > self.most || !self.certify(scale, motions, redrawn, exec)? {
+            if self.followed > self.most || !self.certify([0.0, scale], motions, redrawn, exec)? {
                 return Ok(Some(Shrunk { scale, redrawn }));
             }
         }
@@ -277,16 +282,42 @@ impl<'a> Search<'a> {
         self.try_batches(&all, 0.0, LOOKS, exec)
     }
 
-    /// How far the only error that grows may go, which it is known to do up to `from`.
-    pub(super) fn reach(&mut self, from: f64, exec: &Exec) -> Result<Reach, Cancelled> {
+    /// How far the only error that grows may go, which it is known to do up to `from`: beyond it so many random poses dock, if others occur. It is looked
+    /// along what `hints` say of these, too.
+    pub(super) fn reach(
+        &mut self,
+        from: f64,
+        hints: &[[f64; 5]],
+        motions: usize,
+        exec: &Exec,
+    ) -> Result<Reach, Cancelled> {
         let all = self.space.all();
-        let looks = if all.len() == 2 { LOOKS_ALONE } else { LOOKS_BESIDE };
-        self.try_batches(&all, from, looks, exec)?;
-        if all.len() > 2 && self.scale() > from {
-            self.moves(exec)?;
+        if all.len() == 2 {
+            self.try_batches(&all, from, LOOKS_ALONE, exec)?;
+        } else {
+            let both = hints.iter().flat_map(|u| [1.0, -1.0].map(|sign| self.facing(u, sign)));
+            let hinted: Vec<Direction> = both.filter_map(|u| self.space.onto_surface(u)).collect();
+            self.try_batches(&hinted, from, LOOKS_BESIDE, exec)?;
+            self.try_batches(&all, from, LOOKS_BESIDE, exec)?;
+            for round in 0..WINDOWS {
+                let to = self.window(SHARP);
+                if to <= from {
+                    break;
+                }
+                self.moves(exec)?;
+                let to = self.window(SHARP).max(from);
+                if !self.certify([from, to], motions, round, exec)? {
+                    break;
+                }
+            }
         }
         let to = self.window(SHARP).max(from);
         Ok(Reach { to, is_border: self.nearest.is_none() })
+    }
+
+    /// A direction with 1 or −1 for what grows.
+    fn facing(&self, along: &Direction, sign: f64) -> Direction {
+        std::array::from_fn(|k| if self.space.grows(k) { sign } else { along[k] })
     }
 
     /// Moves about the nearest pose that fails, and elsewhere, until many in a row find none nearer.
@@ -421,9 +452,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Follows random poses all over the window of this scale, a stream of their own for every round; where one fails, the nearest failing pose is
-    /// sought from it on, and true is returned.
-    fn certify(&mut self, scale: f64, motions: usize, round: usize, exec: &Exec) -> Result<bool, Cancelled> {
+    /// Follows random poses all over the window of this scale, of what grows beyond another one, a stream of their own for every round; where one fails,
+    /// the nearest failing pose is sought from it on, and true is returned.
+    fn certify(
+        &mut self,
+        [from, scale]: [f64; 2],
+        motions: usize,
+        round: usize,
+        exec: &Exec,
+    ) -> Result<bool, Cancelled> {
         const BRANCH: u64 = 0xce27;
         let random = self.random.branch(BRANCH).branch(round as u64);
         let mut done = 0;
@@ -433,8 +470,11 @@ impl<'a> Search<'a> {
             let widths = space.half_widths(scale);
             let fails = |follower: &mut Follower<'_>, k: usize| -> Result<Option<Direction>, Cancelled> {
                 exec.check()?;
-                let u: Direction =
-                    std::array::from_fn(|j| 2.0 * random.uniform(5 * k as u64 + j as u64) - 1.0);
+                let beyond = from / scale;
+                let u: Direction = std::array::from_fn(|j| {
+                    let part = 2.0 * random.uniform(5 * k as u64 + j as u64) - 1.0;
+                    if space.grows(j) { part + beyond * (part.signum() - part) } else { part }
+                });
                 let error = space.within(&u, &widths);
                 Ok((follower.follow(&error).outcome != Outcome::Aligned).then_some(u))
             };
@@ -451,7 +491,7 @@ impl<'a> Search<'a> {
                     let there = scale * self.space.largest(&u);
                     if let Some(along) = self.space.onto_surface(u) {
                         self.keep(Some(Failing { scale: there, along }));
-                        self.try_all(&[along], [0.0, there], 1, exec)?;
+                        self.try_all(&[along], [from, there], 1, exec)?;
                     }
                 }
                 return Ok(true);

@@ -58,6 +58,19 @@ fn no_pose_of_it_fails_and_a_larger_one_does() {
         }
         let worst = found.worst.unwrap();
         assert_ne!(problem.follow(&worst.error).outcome, Outcome::Aligned);
+        for (one, side) in found.axes.iter().enumerate() {
+            let fails = |k: u64| {
+                let mut error = [0.0; 5];
+                for (j, other) in found.axes.iter().enumerate() {
+                    let most = if j == one { side.beside.to } else { other.half_width };
+                    error[other.axis.index()] = most * (2.0 * stream.uniform(5 * k + j as u64) - 1.0);
+                }
+                problem.follow(&PoseError::from_array(error)).outcome != Outcome::Aligned
+            };
+            let failed = (0..1000).filter(|k| fails(*k)).count();
+            // Of 2000 that were tried beyond the window none was left that fails.
+            assert!(failed <= 3, "{failed} of 1000 with {} up to {}", side.axis.name(), side.beside.to);
+        }
     }
 }
 
