@@ -8,9 +8,10 @@ use crate::exec::Exec;
 use crate::landscape::Grid;
 use crate::method::descent;
 use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, NotApplicable, grid_of};
-use crate::method::registry::Entry;
+use crate::method::registry::{Entry, Method};
 use crate::problem::Problem;
 use serde_json::{Value, json};
+use std::time::Duration;
 
 pub(super) const INFO: Info = Info {
     name: "certified",
@@ -39,6 +40,9 @@ impl Decide for Settings {
         if !(0.0..=1.0).contains(&self.gap) {
             return Err(DecideError::method(CertifiedError::Gap { gap: self.gap }));
         }
+        if let Some(seconds) = self.budget_s.filter(|seconds| !(*seconds > 0.0 && seconds.is_finite())) {
+            return Err(DecideError::method(CertifiedError::Budget { seconds }));
+        }
         if self.boxes < LEAST_BOXES {
             return Err(DecideError::method(CertifiedError::Boxes { boxes: self.boxes }));
         }
@@ -52,6 +56,11 @@ impl Decide for Settings {
             return refused("no error is free");
         }
         Ok(())
+    }
+
+    fn within(&self, budget: Duration) -> Option<Method> {
+        let budget_s = self.budget_s.map_or(budget.as_secs_f64(), |own| own.min(budget.as_secs_f64()));
+        Some(Method::new(Self { budget_s: Some(budget_s), ..*self }))
     }
 
     /// Powers of two: the boxes are halves of halves.
@@ -76,6 +85,12 @@ impl Decide for Settings {
         let refused = |reason: &str| NotApplicable { method: INFO.name, reason: reason.to_owned() };
         if Seat::new(pair).is_limited() {
             return Err(refused("it limits what may rest in the seat, which boxes cannot tell").into());
+        }
+        if Seat::new(pair).leaks() {
+            return Err(refused(
+                "the rim of its seat is lower than docked.depth, so that what is seated need not stay: give a smaller depth",
+            )
+            .into());
         }
         if !descent::all_count(pair) {
             return Err(

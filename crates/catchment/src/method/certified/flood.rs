@@ -271,7 +271,8 @@ pub(super) fn flood(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<Way
     };
     for (cell, way) in tree.cells.iter_mut().zip(way) {
         if cell.label.is_none() && !cell.is_split() && lone(cell, way) {
-            cell.label = Some(if cell.height.is_none() || cell.sudden { Label::Leaves } else { Label::Jams });
+            // Whether it comes to rest, or leaves, is not told by heights: see `spread`.
+            cell.label = Some(Label::Leaves);
         }
     }
     Ok(way_out)

@@ -40,7 +40,7 @@ mod tube;
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::contact::{Nearby, Pair, SEAT_CORE};
-use crate::exec::{Cancelled, Exec};
+use crate::exec::{Cancelled, Exec, Stopwatch};
 use crate::landscape::Grid;
 use crate::pose::Dof;
 use flood::{Seat, WayOut, flood, retention};
@@ -64,11 +64,14 @@ pub struct Settings {
     pub gap: f64,
     /// Boxes that are looked at at most; then what is undecided stays so.
     pub boxes: usize,
+    /// The same of time, in seconds: how many boxes that are depends on the machine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub budget_s: Option<f64>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { gap: 0.02, boxes: 20_000 }
+        Self { gap: 0.02, boxes: 20_000, budget_s: None }
     }
 }
 
@@ -86,6 +89,12 @@ pub enum CertifiedError {
     Boxes {
         /// What was given.
         boxes: usize,
+    },
+    /// No time.
+    #[error("a budget of {seconds} s is none: give a number of seconds above 0")]
+    Budget {
+        /// What was given.
+        seconds: f64,
     },
     /// So many features that all their meetings cannot be listed.
     #[error(
@@ -165,6 +174,8 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
         return Err(CertifiedError::Large { meetings: bodies.meetings.len() });
     }
     let alignment = &pair.alignment;
+    let watch = Stopwatch::start();
+    let is_over = || settings.budget_s.is_some_and(|budget| watch.seconds() > budget);
     let mut tree = begin(pair, &bodies, exec)?;
     let sits = SeatBoxes { pair, rho: alignment.rotation_length };
     let (holds, meets) = (|poses: &PoseBox| sits.holds(poses), |poses: &PoseBox| sits.meets(poses));
@@ -183,7 +194,7 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     let seat = Seat { mated, level: mated + alignment.docked.depth, holds: &holds, home, meets: &meets };
     // The seat comes first: most of what docks leads there.
     let first = tree.cells.len() + boxes / AT_SEAT[tree.axes.len().clamp(1, 5) - 1];
-    while tree.cells.len() < first.min(boxes) {
+    while tree.cells.len() < first.min(boxes) && !is_over() {
         let flooded = flood(&mut tree, &seat, exec)?;
         let mut chosen = seat.about(&tree);
         chosen.truncate(AT_HOME.max(tree.cells.len() / PART));
@@ -209,7 +220,7 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
             spread(&mut tree, &seat, exec)?;
         }
         exec.report(tree.cells.len() as f64 / boxes as f64, "boxes");
-        let chosen = if tree.undecided() <= settings.gap || tree.cells.len() >= most {
+        let chosen = if tree.undecided() <= settings.gap || tree.cells.len() >= most || is_over() {
             Vec::new()
         } else {
             chosen(&tree, &seat, in_the_way, most, exec)?
@@ -229,7 +240,8 @@ pub(crate) fn certify(pair: &Pair, settings: &Settings, exec: &Exec) -> Result<C
     loop {
         let way_out = WayOut::find(&tree, &seat, exec)?;
         let mut in_the_way = coarse(&tree, &way_out);
-        in_the_way.truncate(last.saturating_sub(tree.cells.len()) >> tree.axes.len());
+        let room = if is_over() { 0 } else { last.saturating_sub(tree.cells.len()) };
+        in_the_way.truncate(room >> tree.axes.len());
         if in_the_way.is_empty() {
             let flooded = flood(&mut tree, &seat, exec)?;
             let level = home.map_or(flooded.level, |home| home.level.max(flooded.level));
@@ -394,7 +406,7 @@ impl Certified {
             "{undecided} of {} cells hold poses that are not certain; docking is certain in the others that count as aligned",
             outcomes.len()
         );
-        let warnings = if undecided > 0 { vec![Warning::Note { text: note }] } else { Vec::new() };
+        let warnings = if undecided > 0 { vec![Warning::Open { text: note }] } else { Vec::new() };
         Ok(Acceptance { method: door::INFO.name, domain: Domain::Grid(grid.clone()), outcomes, warnings })
     }
 

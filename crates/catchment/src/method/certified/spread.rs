@@ -15,7 +15,7 @@
 //! Two boxes that share less than a face need no word: where a motion goes through a corner, what pushes it there is on a face of a box between.
 
 use super::flood::Seat;
-use super::tree::{Cell, Label, Tree};
+use super::tree::{Cell, Face, Label, Tree};
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -43,13 +43,14 @@ pub(super) fn spread(tree: &mut Tree, seat: &Seat<'_>, exec: &Exec) -> Result<()
     };
     // Where nothing touches, a motion has ended.
     let may_dock = back(tree, seated, |cell| !is(cell, false) && cell.height.is_some(), exec)?;
-    let may_fall = back(tree, |_, cell| falls_off(cell), |_| true, exec)?;
+    let may_fall = back(tree, |_, cell| falls_off(cell) || tree.leaves_root(cell), |_| true, exec)?;
     for (number, cell) in tree.cells.iter_mut().enumerate() {
-        if cell.is_split() || cell.label.is_some() {
+        if cell.is_split() || is(cell, true) {
             continue;
         }
+        // That something does not dock may be known from heights alone; what becomes of it, faces tell.
         let otherwise = if may_fall[number] { Label::Leaves } else { Label::Jams };
-        cell.label = match (may_end[number], may_dock[number]) {
+        cell.label = match (may_end[number], may_dock[number] && !is(cell, false)) {
             (false, _) => Some(Label::Yes),
             (true, false) => Some(otherwise),
             (true, true) => None,
@@ -65,28 +66,11 @@ fn back(
     through: impl Fn(&Cell) -> bool,
     exec: &Exec,
 ) -> Result<Vec<bool>, Cancelled> {
-    let mut leads = vec![false; tree.cells.len()];
     let sources: Vec<usize> =
         tree.leaves().filter(|(number, cell)| is_source(*number, cell)).map(|(number, _)| number).collect();
-    for number in &sources {
-        leads[*number] = true;
-    }
-    let (mut open, mut taken) = (sources.clone(), 0usize);
-    while let Some(number) = open.pop() {
-        taken += 1;
-        if taken.is_multiple_of(BETWEEN) {
-            exec.check()?;
-        }
-        let to = &tree.cells[number];
-        for face in &to.faces {
-            let next = face.number();
-            let from = &tree.cells[next];
-            if !leads[next] && through(from) && goes(from, to, face.axis(), !face.above) {
-                leads[next] = true;
-                open.push(next);
-            }
-        }
-    }
+    let leads_on =
+        |to: &Cell, from: &Cell, face: Face| through(from) && goes(from, to, face.axis(), !face.above);
+    let mut leads = chained(tree, &sources, leads_on, exec)?;
     let way = Way { tree, sources: &sources, leads: &leads };
     let ruled_out: Vec<Vec<usize>> = exec.install(|| {
         let ruled_out = |bearing: usize| way.ruled_out(bearing, exec);
@@ -187,31 +171,41 @@ impl Way<'_> {
 /// # Errors
 /// [`Cancelled`] when asked to stop.
 pub(super) fn ahead(tree: &Tree, exec: &Exec) -> Result<Vec<usize>, Cancelled> {
-    let mut seen = vec![false; tree.cells.len()];
     let asked = tree.leaves().filter(|(_, cell)| cell.label.is_none() && tree.is_asked(cell));
-    let mut open: Vec<usize> = asked.map(|(number, _)| number).collect();
-    for number in &open {
-        seen[*number] = true;
+    let sources: Vec<usize> = asked.map(|(number, _)| number).collect();
+    let leads_on =
+        |from: &Cell, to: &Cell, face: Face| to.label.is_none() && goes(from, to, face.axis(), face.above);
+    let seen = chained(tree, &sources, leads_on, exec)?;
+    Ok((0..seen.len()).filter(|number| seen[*number]).collect())
+}
+
+/// Of every box whether it is one of `sources` or a chain of faces leads to it from them; `leads_on` says whether a face does, from a box to the next one.
+fn chained(
+    tree: &Tree,
+    sources: &[usize],
+    leads_on: impl Fn(&Cell, &Cell, Face) -> bool,
+    exec: &Exec,
+) -> Result<Vec<bool>, Cancelled> {
+    let mut chained = vec![false; tree.cells.len()];
+    for number in sources {
+        chained[*number] = true;
     }
-    let mut all = open.clone();
-    let mut taken = 0usize;
+    let (mut open, mut taken) = (sources.to_vec(), 0usize);
     while let Some(number) = open.pop() {
         taken += 1;
         if taken.is_multiple_of(BETWEEN) {
             exec.check()?;
         }
-        let from = &tree.cells[number];
-        for face in &from.faces {
+        let here = &tree.cells[number];
+        for face in &here.faces {
             let next = face.number();
-            let to = &tree.cells[next];
-            if !seen[next] && to.label.is_none() && goes(from, to, face.axis(), face.above) {
-                seen[next] = true;
+            if !chained[next] && leads_on(here, &tree.cells[next], *face) {
+                chained[next] = true;
                 open.push(next);
-                all.push(next);
             }
         }
     }
-    Ok(all)
+    Ok(chained)
 }
 
 /// Whether a motion may go from a leaf to its neighbour, up an axis or down it.

@@ -106,8 +106,12 @@ fn bounds_hold_exact_heights_and_slopes() {
 impl Certified {
     /// Whether all motions of the box that holds a pose dock, or none; nothing where that is open.
     fn label_at(&self, error: &PoseError) -> Option<bool> {
+        self.whole_label_at(error).map(|label| label == Label::Yes)
+    }
+
+    fn whole_label_at(&self, error: &PoseError) -> Option<Label> {
         let poses = error.to_array().map(Interval::thin);
-        self.tree.common_label(&self.tree.places(&poses)?).map(|label| label == Label::Yes)
+        self.tree.common_label(&self.tree.places(&poses)?)
     }
 }
 
@@ -127,10 +131,11 @@ fn contradicts_nothing(pair: &Pair, found: &Certified, poses: usize) -> usize {
     let mut labelled = 0;
     for _ in 0..poses {
         let (_, error) = random_box(pair, 1.0, &mut number);
-        if let Some(docks) = found.label_at(&error) {
+        if let Some(label) = found.whole_label_at(&error) {
             labelled += 1;
             let end = follower.follow(&error);
-            assert_eq!(end.outcome == Outcome::Aligned, docks, "{error:?} ends {end:?}");
+            assert_eq!(end.outcome == Outcome::Aligned, label == Label::Yes, "{error:?} ends {end:?}");
+            assert!(label != Label::Jams || end.outcome == Outcome::Jammed, "{error:?} ends {end:?}");
         }
     }
     labelled
@@ -152,6 +157,26 @@ fn no_motion_contradicts_a_planar_certificate() {
         // From above nothing may have been found: a way out needs boxes all along it.
         assert!(retention_at_least > 0.0, "{family:?} {retention_at_least}");
         assert!(retention_at_most.is_none_or(|most| most >= retention_at_least));
+    }
+}
+
+/// What a budget leaves undecided is undecided, and nothing of what it says is wrong.
+#[test]
+fn a_budget_ends_it() {
+    let pair = pair_of(Family::VFace, &[], 0.0);
+    let settings = Settings { boxes: usize::MAX, gap: 0.0, budget_s: Some(0.3) };
+    let found = certify(&pair, &settings, &Exec::new()).unwrap();
+    assert!(found.certificate.undecided > 0.0, "{:?}", found.certificate);
+    contradicts_nothing(&pair, &found, 300);
+}
+
+/// What slides off beside its seat, out of the error box, is no jam.
+#[test]
+fn nothing_jams_where_all_slides_off() {
+    for (family, free) in [(Family::VFace, &[Dof::X][..]), (Family::Pyramid, &[Dof::X, Dof::Y])] {
+        let pair = pair_of(family, free, 0.0);
+        let found = certified(&pair, 4000);
+        assert!(contradicts_nothing(&pair, &found, 300) > 200);
     }
 }
 
@@ -411,7 +436,7 @@ fn it_ends_soon_when_asked_to() {
         flag.store(true, Ordering::Relaxed);
         Instant::now()
     });
-    let settings = Settings { gap: 0.0, boxes: 10_000_000 };
+    let settings = Settings { gap: 0.0, boxes: 10_000_000, ..Settings::default() };
     let found = certify(&pair, &settings, &exec);
     assert!(matches!(found, Err(CertifiedError::Cancelled(_))));
     assert!(asked.join().unwrap().elapsed() < Duration::from_secs(1));
