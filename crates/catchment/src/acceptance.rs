@@ -193,6 +193,11 @@ pub enum Warning {
     DissertationConventions,
     /// The mated pose is not inside the accepted set.
     MatedPoseNotAccepted,
+    /// Cells are undecided, for this reason.
+    Open {
+        /// The reason, in a sentence.
+        text: String,
+    },
     /// Anything else a reader must know, in a sentence.
     Note {
         /// The sentence.
@@ -277,7 +282,7 @@ impl fmt::Display for Warning {
                     "the mated pose itself is not accepted: the grid is too coarse, or the pair does not hold there"
                 )
             }
-            Self::Note { text } => f.write_str(text),
+            Self::Open { text } | Self::Note { text } => f.write_str(text),
         }
     }
 }

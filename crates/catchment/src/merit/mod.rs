@@ -180,7 +180,8 @@ pub fn doubts(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Warning>, Canc
         }
     }
     let undecided = acceptance.counts()[Outcome::Undecided as usize - 1];
-    if undecided > 0 {
+    let is_said = |warning: &Warning| matches!(warning, Warning::Undecided { .. } | Warning::Open { .. });
+    if undecided > 0 && !acceptance.warnings.iter().any(is_said) {
         warnings.push(Warning::Undecided { cells: undecided });
     }
     Ok(warnings)

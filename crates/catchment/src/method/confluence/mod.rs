@@ -237,7 +237,7 @@ impl Labels {
                 "the budget was spent before {left} of {of} cells in contact were reached, mirror images counted once: they are undecided, and lie \
                  higher than those that were decided"
             );
-            warnings.push(Warning::Note { text });
+            warnings.push(Warning::Open { text });
         }
         Acceptance { method: door::NAME, domain: Domain::Grid(self.grid.clone()), outcomes, warnings }
     }

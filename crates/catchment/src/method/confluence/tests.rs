@@ -130,7 +130,7 @@ fn a_budget_of_motions_decides_what_lies_lowest() {
     let warnings = part.acceptance(&Exec::new()).warnings;
     // Of what was not tried nobody says that it could not be followed.
     assert!(
-        matches!(&warnings[..], [Warning::Note { text }] if text.contains("the budget was spent")),
+        matches!(&warnings[..], [Warning::Open { text }] if text.contains("the budget was spent")),
         "{warnings:?}"
     );
     assert!(whole.acceptance(&Exec::new()).warnings.is_empty());
