@@ -9,8 +9,12 @@ use catchment::study::refinement::RefinementError;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Cells that are drawn.
+/// Cells that are drawn at least, and so many more at a time until enough of them jam.
 pub const DRAWN: usize = 200_000;
+/// Jams of which a share of two percent is told from one: then no more are drawn.
+const ENOUGH_JAMS: usize = 1000;
+/// Times that cells are drawn at most.
+const MOST_ROUNDS: usize = 8;
 
 /// The labels of one design beside exact motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,7 +37,7 @@ pub struct Labels {
     pub seconds: f64,
 }
 
-/// Labels the grid of a design, and draws `drawn` of its cells.
+/// Labels the grid of a design, and draws `drawn` of its cells, again until enough of them jam.
 pub(super) fn labels(
     case: &Case,
     resolution: usize,
@@ -45,30 +49,46 @@ pub(super) fn labels(
     let grid = Grid::over(problem.alignment(), |_| resolution);
     let started = Instant::now();
     let decided = Method::default().decide(&problem, &Domain::Grid(grid.clone()), exec).map_err(failed)?;
-    let seconds = started.elapsed().as_secs_f64();
-    let random = Domain::random(problem.alignment(), drawn, SEEDS[0]);
-    let cells: Vec<usize> = (0..drawn)
-        .filter_map(|k| {
-            let error = random.pose(k).to_array();
-            let numbers = grid.axes.iter().map(|axis| axis.cell_of(error[axis.dof.index()]));
-            numbers.collect::<Option<Vec<usize>>>().map(|numbers| grid.index(&numbers))
-        })
-        .collect();
-    let centres = Domain::Poses(cells.iter().map(|cell| grid.pose(*cell)).collect());
-    let (exact, _) = descent::run(problem.pair(), centres, &descent::Settings::default(), exec)
-        .map_err(|error| failed(error.into()))?;
-    let count = |test: &dyn Fn(Outcome, Outcome) -> bool| {
-        let labels = cells.iter().map(|cell| decided.acceptance.outcomes[*cell]);
-        labels.zip(&exact.outcomes).filter(|(label, own)| test(*label, **own)).count()
-    };
-    Ok(Labels {
+    let mut labels = Labels {
         name: case.name(),
         resolution,
-        drawn: cells.len(),
-        accepted_wrong: count(&|label, own| (label == Outcome::Aligned) != (own == Outcome::Aligned)),
-        wrong: count(&|label, own| label != own),
-        jams: count(&|_, own| own == Outcome::Jammed),
-        jams_lost: count(&|label, own| own == Outcome::Jammed && label != own),
-        seconds,
-    })
+        drawn: 0,
+        accepted_wrong: 0,
+        wrong: 0,
+        jams: 0,
+        jams_lost: 0,
+        seconds: started.elapsed().as_secs_f64(),
+    };
+    let random = Domain::random(problem.alignment(), MOST_ROUNDS * drawn, SEEDS[0]);
+    for round in 0..MOST_ROUNDS {
+        let cells: Vec<usize> = (round * drawn..(round + 1) * drawn)
+            .filter_map(|k| {
+                let error = random.pose(k).to_array();
+                let numbers = grid.axes.iter().map(|axis| axis.cell_of(error[axis.dof.index()]));
+                numbers.collect::<Option<Vec<usize>>>().map(|numbers| grid.index(&numbers))
+            })
+            .collect();
+        let centres = Domain::Poses(cells.iter().map(|cell| grid.pose(*cell)).collect());
+        let (exact, _) = descent::run(problem.pair(), centres, &descent::Settings::default(), exec)
+            .map_err(|error| failed(error.into()))?;
+        for (cell, own) in cells.iter().zip(&exact.outcomes) {
+            labels.count(decided.acceptance.outcomes[*cell], *own);
+        }
+        if labels.jams >= ENOUGH_JAMS {
+            break;
+        }
+    }
+    Ok(labels)
+}
+
+impl Labels {
+    /// Counts a cell with this label, whose centre has an outcome of its own.
+    fn count(&mut self, label: Outcome, own: Outcome) {
+        let is_jam = own == Outcome::Jammed;
+        self.drawn += 1;
+        self.wrong += usize::from(label != own);
+        self.accepted_wrong += usize::from((label == Outcome::Aligned) != (own == Outcome::Aligned));
+        self.jams += usize::from(is_jam);
+        self.jams_lost += usize::from(is_jam && label != own);
+    }
 }

@@ -134,7 +134,7 @@ impl Way {
 /// Descent follows every cell of a grid only up to so many: beyond them it would take an hour.
 const FOLLOWED: usize = 400_000;
 
-/// Computes the table of some designs, [`CASES`], and the labels of others, [`LABELLED`], `drawn` cells of each: all of them take
+/// Computes the table of some designs, [`CASES`], and the labels of others, [`LABELLED`], `drawn` cells of each at least: all of them take
 /// a quarter of an hour.
 ///
 /// # Errors
