@@ -73,6 +73,15 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let error = parse_pose(&args.pose, design)
         .map_err(|findings| Failure::of_option("--pose", &args.pose, findings))?;
     if args.method == By::Kinematic {
+        if let Some(change) = args.drop.changes().first() {
+            return Err(Failure::with_help(
+                format!(
+                    "{} means nothing to the levers of the kinematic method: they know no friction and no drop",
+                    change.option
+                ),
+                Some("leave it out, or follow the pose exactly (--method descent)".to_owned()),
+            ));
+        }
         let start = Start::of(&problem, &error)?;
         let report = LeverReport::new(design, &start);
         let told = if args.json { report.to_json()? } else { report.table() };

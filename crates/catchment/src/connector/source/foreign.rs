@@ -11,7 +11,7 @@ const STEP: &str =
     "a STEP file, which holds curved faces and no triangles: let its name end in .step or .stp";
 
 /// How files of other kinds begin, and what they are.
-const KINDS: [(&[u8], &str); 12] = [
+const KINDS: [(&[u8], &str); 14] = [
     (
         b"version https://git-lfs",
         "a Git LFS pointer, not the file it stands for: fetch that with `git lfs pull`, or download it from the repository's page",
@@ -30,13 +30,27 @@ const KINDS: [(&[u8], &str); 12] = [
     (b"<!doctype html", "a web page: what was downloaded is not the file itself"),
     (b"<html", "a web page: what was downloaded is not the file itself"),
     (b"%PDF", "a PDF: drawings have no solid"),
+    (b"\x89PNG", "a picture (PNG): it has no solid"),
+    (b"\xff\xd8\xff", "a picture (JPEG): it has no solid"),
 ];
+
+/// The part of a 3MF that holds its solids, by which its archive is told from others.
+const MODEL: &[u8] = b"3D/3dmodel.model";
+
+/// Whether a name stands in some bytes.
+fn holds(bytes: &[u8], name: &[u8]) -> bool {
+    bytes.windows(name.len()).any(|window| window == name)
+}
 
 /// Refuses what begins like no mesh; of the formats that end so one may be an archive.
 pub(super) fn refuse(bytes: &[u8], endings: &[&str]) -> Result<(), Vec<MeshProblem>> {
     let bytes = bytes.trim_ascii_start();
     let may_be =
         |what: &str| what == ZIP && endings.contains(&"3mf") || what == STEP && endings.contains(&"step");
+    if bytes.starts_with(b"PK\x03\x04") && !endings.contains(&"3mf") && holds(bytes, MODEL) {
+        let what = "a 3MF: let its name end in .3mf";
+        return Err(vec![MeshProblem::Foreign { what }]);
+    }
     match KINDS.iter().find(|(start, what)| bytes.starts_with(start) && !may_be(what)) {
         Some((_, what)) => Err(vec![MeshProblem::Foreign { what }]),
         None => Ok(()),

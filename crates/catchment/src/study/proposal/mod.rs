@@ -259,9 +259,10 @@ pub fn propose(
         };
         return Err(ProposalError::NoSeat { tried: candidates.iter().map(slack).chain(refused).collect() });
     };
-    let doubts = doubts(&candidates, settings);
+    let mut doubts = doubts(&candidates, settings);
     let text = file::text(parts, settings, best, *seat, unit);
     let problem = Draft::read(SourceText::new(place, text.clone()))?.build_on(exec)?.checked()?;
+    doubts.extend(problem.design().unit.and_then(|unit| size_doubt(problem.design().width, unit)));
     Ok(Proposal { text, problem, candidates, doubts })
 }
 
@@ -360,6 +361,23 @@ fn settles(off: &PoseError, width: f64, unit: &str) -> Held {
         .collect();
     let told = if parts.is_empty() { "hardly".to_owned() } else { parts.join(" and ") };
     Held::Settles { turn, shift, told }
+}
+
+/// Docks narrower and wider than this are rather in another unit, in metres.
+const LIKELY: [f64; 2] = [5e-4, 5.0];
+
+/// That a dock has a size which it would rather have in another unit.
+fn size_doubt(width: f64, unit: LengthUnit) -> Option<String> {
+    let is_likely = |unit: &LengthUnit| (LIKELY[0]..=LIKELY[1]).contains(&(width * unit.metres()));
+    let rather = [LengthUnit::Mm, LengthUnit::M, LengthUnit::In].into_iter().find(is_likely)?;
+    (!is_likely(&unit)).then(|| {
+        let [millimetres, would_be] =
+            [unit, rather].map(|unit| file::number(width * unit.metres() * 1e3, 1e-3));
+        format!(
+            "the dock is {millimetres} mm wide: are the files in {}? Then it is {would_be} mm wide",
+            rather.symbol()
+        )
+    })
 }
 
 /// What a person should look at.
