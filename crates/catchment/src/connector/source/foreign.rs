@@ -37,6 +37,15 @@ const KINDS: [(&[u8], &str); 14] = [
 /// The part of a 3MF that holds its solids, by which its archive is told from others.
 const MODEL: &[u8] = b"3D/3dmodel.model";
 
+/// Header and count of a binary STL, in bytes: the count of any file that can be read has a byte that no text has.
+const HEADER: usize = 84;
+
+/// Whether some bytes begin like text.
+fn is_text(bytes: &[u8]) -> bool {
+    bytes.len() >= HEADER
+        && bytes[..HEADER].iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace())
+}
+
 /// Whether a name stands in some bytes.
 fn holds(bytes: &[u8], name: &[u8]) -> bool {
     bytes.windows(name.len()).any(|window| window == name)
@@ -53,6 +62,35 @@ pub(super) fn refuse(bytes: &[u8], endings: &[&str]) -> Result<(), Vec<MeshProbl
     }
     match KINDS.iter().find(|(start, what)| bytes.starts_with(start) && !may_be(what)) {
         Some((_, what)) => Err(vec![MeshProblem::Foreign { what }]),
+        None if endings.contains(&"stl") && is_text(bytes) && !bytes[..5].eq_ignore_ascii_case(b"solid") => {
+            let what = "text, and no STL: those begin with solid, or are binary";
+            Err(vec![MeshProblem::Foreign { what }])
+        }
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_called_stl_is_named_as_what_it_is() {
+        let refused = |bytes: &[u8]| refuse(bytes, &["stl"]).unwrap_err()[0].to_string();
+        let archive = [b"PK\x03\x04".as_slice(), &[0; 40], MODEL].concat();
+        assert!(refused(&archive).contains("a 3MF: let its name end in .3mf"));
+        assert!(refused(b"PK\x03\x04 others").contains("ZIP"));
+        assert!(refused(b"\x89PNG\r\n\x1a\n").contains("picture"));
+        let design = "schema = 1\nname = \"a design that someone has called part.stl, as happens to files\"\nwidth = 1.0\n";
+        assert!(refused(design.as_bytes()).contains("text, and no STL"));
+        // What may be an STL, and a 3MF where one is read.
+        let binary = [[b'a'; 80].as_slice(), &12u32.to_le_bytes(), &[0; 600]].concat();
+        for fine in [
+            binary.as_slice(),
+            b"solid part\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n",
+        ] {
+            assert_eq!(refuse(fine, &["stl"]), Ok(()));
+        }
+        assert_eq!(refuse(&archive, &["3mf"]), Ok(()));
     }
 }

@@ -38,6 +38,27 @@ const AT_REST: f64 = 1e-5;
 /// Play is put in its middle up to this much, in D.
 const MOST_PLAY: f64 = 0.05;
 
+/// Why parts do not dock as they were laid.
+#[derive(Debug, Clone)]
+pub(super) struct Refusal {
+    /// How far they are from where they would, in the unit of the halves; infinite where no distance says it.
+    pub(super) by: f64,
+    pub(super) why: String,
+}
+
+impl From<&str> for Refusal {
+    fn from(why: &str) -> Self {
+        Self { by: f64::INFINITY, why: why.to_owned() }
+    }
+}
+
+impl Refusal {
+    /// With how they were laid.
+    pub(super) fn of(self, lie: Lie) -> Self {
+        Self { why: format!("{lie}: {}", self.why), ..self }
+    }
+}
+
 /// A candidate that was judged. Lengths in the unit of the halves.
 #[derive(Debug, Clone)]
 pub(super) struct Judged {
@@ -104,7 +125,7 @@ pub(super) fn judge(
     offset: DVec2,
     others: &[DVec2],
     told: Told,
-) -> Result<Judged, String> {
+) -> Result<Judged, Refusal> {
     const APART: &str = "they pass each other by";
     let turns = lie.turns();
     let [fixed, moving] = [0, 1].map(|k| halves[k].mapped(|p| turns[k] * p));
@@ -133,17 +154,18 @@ pub(super) fn judge(
         lift = height(&pair, offset).ok_or(APART)?;
     } else {
         if lift > MOST_APART * wide {
-            return Err(format!("blocked: {} above where they are drawn", told.length(lift)));
+            let why = format!("blocked: {} above where they are drawn", told.length(lift));
+            return Err(Refusal { by: lift, why });
         }
         if lift < -MOST_APART * wide {
-            return Err(format!("drawn {} apart", told.length(-lift)));
+            return Err(Refusal { by: -lift, why: format!("drawn {} apart", told.length(-lift)) });
         }
     }
     let placed = at(offset);
     let [low, high] = width::touching(&fixed, &placed, lift).ok_or(APART)?;
     let width = (high - low).max_element();
     if width <= 0.0 {
-        return Err(APART.to_owned());
+        return Err(APART.into());
     }
     let widest = halves.map(|half| {
         let (low, high) = plan_box(half, &DMat3::IDENTITY);

@@ -33,7 +33,7 @@ use crate::pose::{DofSet, PoseError};
 use crate::problem::{Draft, Problem, ProblemError};
 use glam::{DMat3, DVec2};
 use halves::{around, design_unit, middle_extent};
-use judge::{Judged, judge};
+use judge::{Judged, Refusal, judge};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -220,13 +220,13 @@ pub fn propose(
         }
         known => known == frames,
     };
-    let (mut judged, mut refused) = (Vec::new(), Vec::new());
+    let (mut judged, mut refused, mut nowhere) = (Vec::new(), Vec::new(), None);
     let meet = settings.frames != Frames::Any || settings.approach.is_some() || are_near(pair);
     if may_be(Frames::Assembled) && meet {
         let ways = ways(settings.approach);
         let found = exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
             let lie = Lie::Assembled { approach: ways[k] };
-            judge(pair, lie, DVec2::ZERO, &[], told).map_err(|reason| format!("{lie}: {reason}"))
+            judge(pair, lie, DVec2::ZERO, &[], told).map_err(|refusal| refusal.of(lie))
         });
         sort(found, &mut judged, &mut refused);
         rank(&mut judged, settings.free, told, exec)?;
@@ -237,14 +237,11 @@ pub fn propose(
         let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
         let found = exec.each(places.len(), usize::MAX, "seats", |k, _| {
             let search::Place { lie, offset, .. } = places[k];
-            judge(pair, lie, offset, &round_numbers(pair, lie), told)
-                .map_err(|reason| format!("{lie}: {reason}"))
+            judge(pair, lie, offset, &round_numbers(pair, lie), told).map_err(|refusal| refusal.of(lie))
         });
         if places.is_empty() {
-            refused.insert(
-                0,
-                "facing each other: nowhere along the axes does one sink into the other".to_owned(),
-            );
+            nowhere =
+                Some("facing each other: nowhere along the axes does one sink into the other".to_owned());
         }
         sort(found, &mut judged, &mut refused);
         rank(&mut judged, settings.free, told, exec)?;
@@ -257,7 +254,11 @@ pub fn propose(
             let why = if let Held::Refused(why) = &one.seat { why } else { flat };
             format!("{}{}: {why}", one.lie, one.place_among(&candidates, told.unit))
         };
-        return Err(ProposalError::NoSeat { tried: candidates.iter().map(slack).chain(refused).collect() });
+        // What is nearest to docking first.
+        refused.sort_by(|a, b| a.by.total_cmp(&b.by));
+        let refused = refused.into_iter().map(|refusal| refusal.why);
+        let tried = candidates.iter().map(slack).chain(nowhere).chain(refused).collect();
+        return Err(ProposalError::NoSeat { tried });
     };
     let mut doubts = doubts(&candidates, settings);
     let text = file::text(parts, settings, best, *seat, unit);
@@ -301,11 +302,11 @@ fn ways(known: Option<Way>) -> Vec<Way> {
     known.map_or_else(|| Way::ALL.to_vec(), |way| vec![way])
 }
 
-fn sort(found: Vec<Result<Judged, String>>, judged: &mut Vec<Judged>, refused: &mut Vec<String>) {
+fn sort(found: Vec<Result<Judged, Refusal>>, judged: &mut Vec<Judged>, refused: &mut Vec<Refusal>) {
     for one in found {
         match one {
             Ok(one) => judged.push(one),
-            Err(reason) => refused.push(reason),
+            Err(refusal) => refused.push(refusal),
         }
     }
 }
