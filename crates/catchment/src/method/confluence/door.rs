@@ -53,14 +53,16 @@ impl Decide for Settings {
         Some(Method::new(Self { budget_s: Some(budget_s), ..self.clone() }))
     }
 
-    /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once; fewer where motions take long.
+    /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once; fewer where motions take long, but in all about as many as
+    /// random poses are followed beside them.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1000, 200, 30, 24, 20];
-        let share = affordable(pair);
+        let (share, poses) = (affordable(pair), descent::default_samples(pair) as f64);
         let mut axes = 0.0;
         SIMPLE.map(|cells| {
             axes += 1.0;
-            let cells = cells as f64 * share.powf(1.0 / axes);
+            let simple = cells as f64;
+            let cells = (simple * share.powf(1.0 / axes)).max(poses.powf(1.0 / axes).min(simple));
             (cells as usize / 2 * 2).max(4)
         })
     }

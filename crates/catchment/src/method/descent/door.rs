@@ -26,14 +26,16 @@ impl Decide for Settings {
         json!(self)
     }
 
-    /// Odd, so that a cell is centred on the mated pose; fewer where halves have many facets.
+    /// Odd, so that a cell is centred on the mated pose; fewer where halves have many facets, but in all about as many as random poses are followed beside
+    /// them.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1001, 101, 25, 11, 7];
-        let share = affordable(pair);
+        let (share, poses) = (affordable(pair), default_samples(pair) as f64);
         let mut axes = 0.0;
         SIMPLE.map(|cells| {
             axes += 1.0;
-            let cells = cells as f64 * share.powf(1.0 / axes);
+            let simple = cells as f64;
+            let cells = (simple * share.powf(1.0 / axes)).max(poses.powf(1.0 / axes).min(simple));
             ((cells as usize).saturating_sub(1) / 2 * 2 + 1).max(3)
         })
     }
