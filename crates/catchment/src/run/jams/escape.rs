@@ -26,8 +26,10 @@ const FINER: usize = 10;
 const LOOKS: usize = 4;
 /// How far ways are followed, in D: from one side of a connector to the other.
 const FARTHEST: f64 = 1.5;
-/// Random ways and moves about the best, of simple halves, per free error.
+/// Random ways and moves about the best, of simple halves, per free error: of few errors more, so that the lowest way hardly hangs on chance.
 const WAYS: f64 = 24.0;
+const WAYS_OF_FEW: f64 = 96.0;
+const FEW: usize = 3;
 const LEAST_WAYS: f64 = 4.0;
 /// Rests farther apart than this are two, in the metric of the motion, in D: rests as near are gathered into one.
 const ELSEWHERE: f64 = 0.1;
@@ -91,7 +93,8 @@ pub(in crate::run) fn way_out(
 ) -> Option<WayOut> {
     let space = Space::of(pair);
     let stream = Stream::new(seed).branch(FARTHEST.to_bits());
-    let ways = (WAYS * affordable(pair).sqrt()).max(LEAST_WAYS) as u64 * space.count() as u64;
+    let simple = if space.count() <= FEW { WAYS_OF_FEW } else { WAYS };
+    let ways = (simple * affordable(pair).sqrt()).max(LEAST_WAYS) as u64 * space.count() as u64;
     let mut search = Search {
         rest,
         nearby: pair.about(2.0 * STEP),
