@@ -61,7 +61,8 @@ impl Accuracy {
              its 95 % interval. An error smaller than that interval is not shown to be one.\n\
              - **confluence**, **descent**, **flood**: the measure of the accepted cells. For the first two the error is that of resolution alone: every\n  \
              cell's centre is right, or nearly every one (second table). That of flooding does not go away with resolution, because water flows along the directions\n  \
-             of the grid. Descent is left out beyond 400 000 cells.\n\
+             of the grid. Descent is left out beyond 400 000 cells. Where centres of cells lie on the border of the set (the pyramid over x, y and yaw, whose border is at\n  \
+             x = ±½, at 30 cells per axis), a whole row of them counts or does not.\n\
              - **transport**: the mean arrival fraction over the grid.\n\
              - **corrected**: confluence's grid corrected by as many exact descents as `run` uses, with half its own 95 % interval.\n\n",
         );
