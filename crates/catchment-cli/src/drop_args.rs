@@ -40,7 +40,7 @@ pub(crate) struct DropArgs {
     #[arg(long, value_name = "RATE", help_heading = DROP)]
     angular_damping: Option<f64>,
     /// Coefficient of friction between the halves, in exact motions and in drop tests [default: 0]
-    #[arg(long, value_name = "MU")]
+    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
     friction: Option<f64>,
     /// Exact motions end where the height falls by no more than this per length (rho-metric), a rule of thumb for friction [default: 0]
     #[arg(long, value_name = "SLOPE")]

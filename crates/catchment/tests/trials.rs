@@ -268,7 +268,9 @@ fn drop_tests_agree_with_friction() {
     for (name, text, friction, half) in [
         ("pyramid", &pyramid, 0.1, all),
         ("pyramid", &pyramid, 0.2, all),
+        ("saddle", &saddle, 0.1, all),
         ("saddle", &saddle, 0.2, all),
+        ("saddle", &saddle, 0.3, all),
         ("peg", &peg(), 0.1, [0.2, 0.2, 0.2, 0.2, 0.0]),
     ] {
         let source = catchment::design::SourceText::new("f.toml", text.as_str());

@@ -94,6 +94,12 @@ const ASKED: &str = "What is asked";
 pub(crate) fn run(args: &ChanceArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
+    if args.drop.changes().iter().any(|change| change.option == "--slope-threshold") {
+        return Err(Failure::with_help(
+            "--slope-threshold ends exact motions, and chance is of drop tests".to_owned(),
+            Some("they have friction itself: --friction, or --draw 'friction=0.2 ± 0.05'".to_owned()),
+        ));
+    }
     let problem = args.design.problem()?;
     let settings = args.settings(problem.design())?;
     let asked = args.question(&problem)?;

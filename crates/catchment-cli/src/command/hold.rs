@@ -34,7 +34,7 @@ pub(crate) struct HoldArgs {
     #[command(flatten)]
     design: DesignArgs,
     /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     /// What presses the half on, in newtons: forces are told in N instead of shares of it
     #[arg(long, value_name = "NEWTONS", value_parser = newtons, allow_hyphen_values = true)]

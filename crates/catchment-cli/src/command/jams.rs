@@ -49,7 +49,7 @@ pub(crate) struct JamsArgs {
     #[arg(long)]
     certified: bool,
     /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     #[command(flatten)]
     errors: SpreadArgs,

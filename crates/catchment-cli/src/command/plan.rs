@@ -62,7 +62,7 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
     /// Coefficient of friction between the halves [default: 0, or that of the result]
-    #[arg(long, value_name = "MU")]
+    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
     friction: Option<f64>,
     /// Seed of the order, of random lines and of the search for the border
     #[arg(long, value_name = "SEED", default_value_t = 1)]

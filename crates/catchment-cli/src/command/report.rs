@@ -54,7 +54,7 @@ pub(super) struct MadeArgs {
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
     /// Coefficient of friction between the halves, of a design
-    #[arg(long, value_name = "MU")]
+    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
     friction: Option<f64>,
     /// What is not computed beside the result
     #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]

@@ -54,7 +54,7 @@ pub(crate) struct SuccessArgs {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     #[command(flatten)]
     asked: AskedArgs,

@@ -51,7 +51,7 @@ pub(crate) struct ValidateArgs {
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
     /// Coefficient of friction of the prediction
-    #[arg(long, value_name = "MU", default_value_t = 0.0)]
+    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     /// Look for the friction that explains the trials
     #[arg(long)]

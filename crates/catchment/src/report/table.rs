@@ -104,11 +104,11 @@ fn by_products(text: &mut String, report: &Report) {
         let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
         row(text, "joined", &format!("{joined} of {cells} cells in contact joined others;"));
         let most = percent(found.wrong_ci95[1]);
-        row(
-            text,
-            "",
-            &format!("of {tried} tried {} end otherwise (at most {most} of them)", grouped(found.wrong)),
-        );
+        let told = match found.tried {
+            0 => "none of them was followed to ask whether it ends alike".to_owned(),
+            _ => format!("of {tried} tried {} end otherwise (at most {most} of them)", grouped(found.wrong)),
+        };
+        row(text, "", &told);
     }
     if let Some(found) = &report.partition {
         text.push('\n');
