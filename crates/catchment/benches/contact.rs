@@ -76,9 +76,9 @@ fn lathed(rates: &mut Rates, name: &str, halves: impl Fn() -> [meshes::Triangles
         &mut || assert_eq!(heights(), known),
         None,
     );
-    let settings = descent::Settings::with_friction(friction).expect("a coefficient of friction");
+    let settings = descent::Settings::default();
     rates.measure(
-        name,
+        &format!("random poses of {name}"),
         "descents",
         MOTIONS,
         &mut || {
@@ -142,9 +142,9 @@ fn descents(rates: &mut Rates, name: &str, pair: &Pair, friction: f64) {
         Domain::Poses(poses) => poses,
         Domain::Grid(_) => Vec::new(),
     };
-    let settings = descent::Settings::default();
+    let settings = descent::Settings::with_friction(friction).expect("a coefficient of friction");
     rates.measure(
-        &format!("random poses of {name}"),
+        name,
         "descents",
         POSES,
         &mut || {
