@@ -15,7 +15,8 @@
 //! Not promised: that no pose in it fails, only that none did that was followed; they are about three times the random poses of the Sum. Nor that no larger
 //! cube lies elsewhere. Its middle is that of the cells' largest, or zero where that one is larger.
 
-use super::search::{Search, Space};
+use super::search::Search;
+use super::space::Space;
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::landscape::Grid;

@@ -22,6 +22,7 @@
 
 mod cube;
 mod search;
+mod space;
 #[cfg(test)]
 mod tests;
 
@@ -34,8 +35,9 @@ use crate::method::Decide;
 use crate::method::descent::{self, FrictionOutOfRange, Touch};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
-use search::{Search, Shrunk, Space, WINDOWS};
+use search::{Search, Shrunk, WINDOWS};
 use serde::{Deserialize, Serialize};
+use space::Space;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -229,11 +231,15 @@ const fn unit(axis: Dof) -> &'static str {
 }
 
 fn place(error: &PoseError) -> String {
-    // What is told with four decimals is nothing below half of the last.
-    let named = Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, value)| value.abs() >= 5e-5);
-    let said: Vec<String> =
-        named.map(|(dof, value)| format!("{} = {value:.4} {}", dof.name(), unit(dof))).collect();
-    said.join(", ")
+    // What four decimals show as nothing is told by its size, if nothing else is.
+    const SHOWN: f64 = 5e-5;
+    let parts = || Dof::ALL.into_iter().zip(error.to_array()).filter(|(_, value)| *value != 0.0);
+    let large = parts().any(|(_, value)| value.abs() >= SHOWN);
+    let told = parts().filter(|(_, value)| !large || value.abs() >= SHOWN).map(|(dof, value)| {
+        let value = if large { format!("{value:.4}") } else { format!("{value:.1e}") };
+        format!("{} = {value} {}", dof.name(), unit(dof))
+    });
+    told.collect::<Vec<_>>().join(", ")
 }
 
 /// Allowed chance that the certificate of the first window is wrong, and of all later ones together: 5 %.

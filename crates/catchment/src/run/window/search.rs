@@ -5,12 +5,13 @@
 //!
 //! All motions of a batch are followed at the scale that was known before it, whatever the threads.
 
-use super::{Reach, Settings, WindowError};
+use super::Reach;
+use super::space::{Direction, Space};
 use crate::acceptance::{Outcome, Stream};
 use crate::exec::{Cancelled, Exec};
 use crate::method::affordable;
 use crate::method::descent::{self, Follower};
-use crate::pose::{Dof, PoseError};
+use crate::pose::PoseError;
 use crate::problem::Problem;
 use rayon::prelude::*;
 
@@ -38,135 +39,6 @@ const NONE: f64 = 1e-4;
 const CERTIFIED_AT_ONCE: usize = 4096;
 /// Beyond so many batches of moves what is found is good enough; the certificate has the last word.
 const MOST_BATCHES: u64 = 200;
-
-type Direction = [f64; 5];
-
-/// The boxes among which the window is sought.
-#[derive(Debug, Clone)]
-pub(super) struct Space {
-    /// Half-widths of errors that are given.
-    fixed: [f64; 5],
-    /// Half-widths of the others at scale 1.
-    growing: [f64; 5],
-    /// The scale at which the first of them meets the error box.
-    border: f64,
-    /// The middle of the boxes.
-    center: [f64; 5],
-}
-
-impl Space {
-    pub(super) fn of(problem: &Problem, settings: &Settings) -> Result<Self, WindowError> {
-        let alignment = problem.alignment();
-        let proportions = settings.proportions.map(PoseError::to_array);
-        let (mut fixed, mut growing) = ([0.0; 5], [0.0; 5]);
-        for axis in Dof::ALL {
-            let (k, most) = (axis.index(), alignment.half_range(axis));
-            let said = settings.fixed[k].or(proportions.map(|p| p[k]));
-            if let Some(value) = said.filter(|value| !(value.is_finite() && *value >= 0.0)) {
-                return Err(WindowError::NoSize { axis, value });
-            }
-            if !alignment.free.contains(axis) {
-                match said {
-                    Some(value) if value != 0.0 => return Err(WindowError::Locked { axis }),
-                    _ => continue,
-                }
-            }
-            match settings.fixed[k] {
-                Some(half_width) if half_width > most * (1.0 + 1e-12) => {
-                    return Err(WindowError::BeyondBox { axis, half_width, most });
-                }
-                Some(half_width) => fixed[k] = half_width,
-                None => growing[k] = proportions.map_or(most, |p| p[k]),
-            }
-        }
-        let grows = |axis: &Dof| growing[axis.index()] > 0.0;
-        let ends = |axis: Dof| alignment.half_range(axis) / growing[axis.index()];
-        let border = Dof::ALL.into_iter().filter(grows).map(ends).fold(f64::INFINITY, f64::min);
-        let center = [0.0; 5];
-        if border.is_finite() {
-            Ok(Self { fixed, growing, border, center })
-        } else {
-            Err(WindowError::Nothing)
-        }
-    }
-
-    /// All free errors grow about a place, in the proportions of the error box: at scale 1 as large as that.
-    pub(super) fn about(problem: &Problem, center: [f64; 5]) -> Self {
-        let alignment = problem.alignment();
-        let (mut growing, mut border) = ([0.0; 5], 1.0f64);
-        for axis in alignment.free.iter() {
-            let most = alignment.half_range(axis);
-            growing[axis.index()] = most;
-            border = border.min(1.0 - center[axis.index()].abs() / most);
-        }
-        Self { fixed: [0.0; 5], growing, border, center }
-    }
-
-    /// One error grows, the others are within these half-widths.
-    pub(super) fn along(problem: &Problem, axis: Dof, others: [f64; 5]) -> Self {
-        let mut growing = [0.0; 5];
-        growing[axis.index()] = 1.0;
-        let mut fixed = others;
-        fixed[axis.index()] = 0.0;
-        Self { fixed, growing, border: problem.alignment().half_range(axis), center: [0.0; 5] }
-    }
-
-    pub(super) const fn border(&self) -> f64 {
-        self.border
-    }
-
-    pub(super) fn half_widths(&self, scale: f64) -> [f64; 5] {
-        std::array::from_fn(|k| self.fixed[k] + scale * self.growing[k])
-    }
-
-    fn pose(&self, u: &Direction, scale: f64) -> PoseError {
-        self.within(u, &self.half_widths(scale))
-    }
-
-    /// The pose at shares of these half-widths.
-    fn within(&self, shares: &Direction, widths: &[f64; 5]) -> PoseError {
-        PoseError::from_array(std::array::from_fn(|k| self.center[k] + shares[k] * widths[k]))
-    }
-
-    fn grows(&self, k: usize) -> bool {
-        self.growing[k] > 0.0
-    }
-
-    fn occurs(&self, k: usize) -> bool {
-        self.growing[k] > 0.0 || self.fixed[k] > 0.0
-    }
-
-    /// The largest growing part.
-    fn largest(&self, u: &Direction) -> f64 {
-        (0..5).filter(|k| self.grows(*k)).map(|k| u[k].abs()).fold(0.0, f64::max)
-    }
-
-    /// The direction whose largest growing part is 1 or −1; none where nothing grows.
-    fn onto_surface(&self, mut u: Direction) -> Option<Direction> {
-        let largest = self.largest(&u);
-        for (k, part) in u.iter_mut().enumerate() {
-            let scaled = if self.grows(k) { *part / largest } else { part.clamp(-1.0, 1.0) };
-            *part = if self.occurs(k) { scaled } else { 0.0 };
-        }
-        (largest > 0.0).then_some(u)
-    }
-
-    /// All of {−1, 0, 1}ⁿ that grow.
-    fn all(&self) -> Vec<Direction> {
-        let mut all = vec![[0.0; 5]];
-        for k in (0..5).filter(|k| self.occurs(*k)) {
-            let parts = |u: Direction| {
-                [-1.0, 0.0, 1.0].map(|part| {
-                    let mut u = u;
-                    u[k] = part;
-                    u
-                })
-            };
-            all = all.into_iter().flat_map(parts).collect();
-        }
-        all.into_iter().filter_map(|u| self.onto_surface(u)).collect()
-    }
-}
 
 /// A direction, and the least scale at which its pose was seen to fail.
 #[derive(Debug, Clone, Copy)]
@@ -236,17 +108,17 @@ impl<'a> Search<'a> {
 
     /// The scale up to which nothing was seen to fail.
     fn scale(&self) -> f64 {
-        self.nearest.map_or(self.space.border, |failing| failing.scale)
+        self.nearest.map_or(self.space.border(), |failing| failing.scale)
     }
 
     /// The same, by a margin less where something did.
     fn window(&self, margin: f64) -> f64 {
-        self.nearest.map_or(self.space.border, |failing| failing.scale * (1.0 - margin))
+        self.nearest.map_or(self.space.border(), |failing| failing.scale * (1.0 - margin))
     }
 
     /// Whether anything is left of the window.
     pub(super) fn has_room(&self) -> bool {
-        self.window(MARGIN) > self.least.max(NONE * self.space.border)
+        self.window(MARGIN) > self.least.max(NONE * self.space.border())
     }
 
     /// In which direction it lies.
@@ -389,10 +261,10 @@ impl<'a> Search<'a> {
         looks: usize,
         exec: &Exec,
     ) -> Result<(), Cancelled> {
-        let whole = self.space.border - from;
+        let whole = self.space.border() - from;
         for (number, batch) in all.chunks(BATCH).enumerate() {
             exec.report((number * BATCH) as f64 / all.len() as f64, "directions");
-            let to = if self.nearest.is_some() { INSIDE * self.scale() } else { self.space.border };
+            let to = if self.nearest.is_some() { INSIDE * self.scale() } else { self.space.border() };
             if to > from && self.has_room() {
                 let share = (looks as f64 * (to - from) / whole).ceil() as usize;
                 self.try_all(batch, [from, to], share.max(1), exec)?;
@@ -425,7 +297,7 @@ impl<'a> Search<'a> {
                     while failing - safe > SHARP * failing {
                         exec.check()?;
                         let middle = 0.5 * (safe + failing);
-                        if middle <= 1e-6 * space.border {
+                        if middle <= 1e-6 * space.border() {
                             break;
                         }
                         if fails(middle) { failing = middle } else { safe = middle }

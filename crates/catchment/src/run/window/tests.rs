@@ -134,3 +134,10 @@ fn all_certificates_together_are_wrong_in_five_of_a_hundred_at_most() {
     assert!((0.0499..=0.05).contains(&all), "{all}");
     assert!((1.0 / chance(0)).ln() <= 3.0);
 }
+
+#[test]
+fn a_place_is_never_told_as_nothing() {
+    let pose = |x: f64, yaw: f64| PoseError { x, yaw, ..PoseError::default() };
+    assert_eq!(place(&pose(0.25, -1e-7)), "x = 0.2500 D");
+    assert_eq!(place(&pose(-2e-6, 0.0)), "x = -2.0e-6 D");
+}
