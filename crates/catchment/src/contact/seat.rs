@@ -121,11 +121,10 @@ impl<'a> Seat<'a> {
         let looks = alignment.free.iter().map(ends).fold(MOST_LOOKS, f64::min) as usize;
         for k in 1..=looks {
             let error = PoseError::from_array(way.map(|part| k as f64 * part));
-            if self.nearby.is_above(&error, level) {
-                return false;
-            }
-            if self.nearby.height(&error).is_none_or(|height| height < floor) {
-                return true;
+            match self.nearby.height(&error) {
+                Some(height) if height > level => return false,
+                Some(height) if height >= floor => {}
+                _ => return true,
             }
         }
         false

@@ -24,6 +24,17 @@ pub fn affordable(pair: &Pair) -> f64 {
     if pair.asks_trees() { listed.max(by_trees(facets)) } else { listed }
 }
 
+/// Cells per axis that can be afforded of so many of simple halves with as many free errors, each a descent; in all no fewer than `poses`, where those are as many.
+pub(super) fn affordable_cells(pair: &Pair, simple: [usize; 5], poses: usize) -> [usize; 5] {
+    let (share, poses) = (affordable(pair), poses as f64);
+    let mut axes = 0.0;
+    simple.map(|cells| {
+        axes += 1.0;
+        let cells = cells as f64;
+        (cells * share.powf(1.0 / axes)).max(poses.powf(1.0 / axes).min(cells)) as usize
+    })
+}
+
 /// The same of halves that are searched by trees, by the number of their facets.
 fn by_trees(facets: f64) -> f64 {
     /// Seconds of a descent of so many facets, and with which power of their number they grow.

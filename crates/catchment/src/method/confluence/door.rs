@@ -5,7 +5,7 @@ use crate::acceptance::Domain;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::{Grid, LandscapeError};
-use crate::method::cost::{DESCENT_SECONDS, affordable};
+use crate::method::cost::{DESCENT_SECONDS, affordable, affordable_cells};
 use crate::method::descent;
 use crate::method::door::{ByProducts, Cost, Decide, DecideError, Decided, Info, grid_of};
 use crate::method::registry::{Entry, Method};
@@ -57,14 +57,8 @@ impl Decide for Settings {
     /// random poses are followed beside them.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1000, 200, 30, 24, 20];
-        let (share, poses) = (affordable(pair), descent::default_samples(pair) as f64);
-        let mut axes = 0.0;
-        SIMPLE.map(|cells| {
-            axes += 1.0;
-            let simple = cells as f64;
-            let cells = (simple * share.powf(1.0 / axes)).max(poses.powf(1.0 / axes).min(simple));
-            (cells as usize / 2 * 2).max(4)
-        })
+        let cells = affordable_cells(pair, SIMPLE, descent::default_samples(pair));
+        cells.map(|cells| (cells / 2 * 2).max(4))
     }
 
     fn default_samples(&self, pair: &Pair) -> usize {

@@ -5,7 +5,7 @@ use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
-use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable};
+use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable, affordable_cells};
 use crate::method::door::{Cost, Decide, DecideError, Decided, Finished, Follow, Info};
 use crate::method::registry::Entry;
 use crate::problem::Problem;
@@ -30,14 +30,8 @@ impl Decide for Settings {
     /// them.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
         const SIMPLE: [usize; 5] = [1001, 101, 25, 11, 7];
-        let (share, poses) = (affordable(pair), default_samples(pair) as f64);
-        let mut axes = 0.0;
-        SIMPLE.map(|cells| {
-            axes += 1.0;
-            let simple = cells as f64;
-            let cells = (simple * share.powf(1.0 / axes)).max(poses.powf(1.0 / axes).min(simple));
-            ((cells as usize).saturating_sub(1) / 2 * 2 + 1).max(3)
-        })
+        let cells = affordable_cells(pair, SIMPLE, default_samples(pair));
+        cells.map(|cells| (cells.saturating_sub(1) / 2 * 2 + 1).max(3))
     }
 
     fn default_samples(&self, pair: &Pair) -> usize {

@@ -52,7 +52,7 @@ pub enum Guide {
 pub use super::rest::TOUCHING;
 
 /// A foot counts as on its feature up to this far beyond the border, in D: so that the facets on both sides of a valley are found together.
-const BORDER: f64 = 1e-8;
+pub(super) const BORDER: f64 = 1e-8;
 
 /// Loads beyond so many preloads are not told apart from any: a slope of 89.9999°.
 pub const MOST_LOAD: f64 = 1e6;

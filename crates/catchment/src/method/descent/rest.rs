@@ -1,6 +1,7 @@
 //! Where a motion ends, with what carries the half there: for people who ask why it jams.
 
 use super::coulomb::Contacts;
+use super::holding::BORDER;
 use super::motion::{Motion, State, Until, Watch};
 use super::projection::{Vector, dot};
 use super::sticking::DOWN;
@@ -22,9 +23,7 @@ const FARTHEST: f64 = 1e-3;
 /// Passes of Newton's method at most, and the last displacement, in D.
 const PASSES: usize = 24;
 const EXACT: f64 = 1e-11;
-/// Feet may lie so far beyond the borders of their features at last, in D, and at first as far as motions end short of.
-const BORDER: f64 = 1e-8;
-/// So many times as far as the half moved last they may lie.
+/// Feet may lie so many times as far beyond the borders of their features as the half moved last, down to [`BORDER`].
 const BESIDE: f64 = 4.0;
 
 /// The end of a motion.
