@@ -2,6 +2,7 @@
 
     python tests/mujoco_agrees.py target/debug/catchment designs/pyramid.toml
     python tests/mujoco_agrees.py target/debug/catchment designs/pyramid.toml --friction 0.2 --poses 200 --aspect-ratio 1
+    python tests/mujoco_agrees.py target/debug/catchment designs/chamfered-peg.toml --friction 0.1 --poses 200 --half 0.2,0.2,0.2,0.2,0.05
 
 MuJoCo runs the world that `catchment export` wrote; catchment answers by exact quasi-static motion. Both describe the same
 heavily damped drop, so they must agree on at least 95 of 100 poses, 97 with friction. Exits with a message if they do not.
@@ -76,6 +77,14 @@ def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: flo
     return False
 
 
+def half_widths(text: str) -> list[float]:
+    """Half the box of the poses: D, D, rad, rad, rad."""
+    half = [float(part) for part in text.split(",")]
+    if len(half) != 5:
+        raise argparse.ArgumentTypeError("five numbers: x, y, roll, pitch, yaw")
+    return half
+
+
 def main() -> None:
     say = argparse.ArgumentParser()
     say.add_argument("program")
@@ -83,9 +92,11 @@ def main() -> None:
     say.add_argument("--friction", type=float, default=0.0)
     say.add_argument("--poses", type=int, default=100)
     say.add_argument("--aspect-ratio")
+    say.add_argument("--half", type=half_widths, default=[0.5, 0.5, np.pi / 4, np.pi / 4, np.pi / 4])
     args = say.parse_args()
     friction = ["--friction", str(args.friction)]
-    drawn = ["--aspect-ratio", args.aspect_ratio] if args.aspect_ratio else []
+    # A body in MuJoCo is free in all of them.
+    drawn = ["--free", "x,y,roll,pitch,yaw", *(["--aspect-ratio", args.aspect_ratio] if args.aspect_ratio else [])]
     with tempfile.TemporaryDirectory() as folder:
         trial, poses = Path(folder) / "trial", Path(folder) / "poses.csv"
         said = subprocess.run(
@@ -93,8 +104,7 @@ def main() -> None:
             check=True, capture_output=True, text=True,
         )
         alignment = json.loads(said.stdout)["design"]["alignment"]
-        half = np.array([0.5, 0.5, np.pi / 4, np.pi / 4, np.pi / 4])
-        errors = (np.random.default_rng(1).uniform(-1, 1, (args.poses, 5)) * half).tolist()
+        errors = (np.random.default_rng(1).uniform(-1, 1, (args.poses, 5)) * args.half).tolist()
         with poses.open("w", newline="") as file:
             csv.writer(file).writerows([["x", "y", "roll", "pitch", "yaw"], *errors])
         said = subprocess.run(

@@ -1,10 +1,12 @@
 //! The command line as types.
 
 use crate::command::Command;
+use crate::failure::Failure;
 use catchment::design::{Complaint, Quantity, parse_dofs};
 use catchment::exec::Exec;
 use catchment::pose::DofSet;
 use catchment::problem::{Draft, Problem, ProblemError};
+use catchment::report::page::Parts;
 use clap::{Args, Parser};
 use std::path::PathBuf;
 
@@ -139,6 +141,24 @@ impl DesignArgs {
     /// The problem to decide.
     pub(crate) fn problem(&self) -> Result<Problem, ProblemError> {
         self.draft()?.build()
+    }
+
+    /// What the design says, or the one that was decided before; and the friction of that.
+    pub(crate) fn decided(&self, exec: &Exec) -> Result<(Problem, f64), Failure> {
+        let path = &self.path;
+        if !path.is_dir() {
+            return Ok((self.problem()?, 0.0));
+        }
+        if let Some((option, _)) = self.changed().next() {
+            let message = format!("{option}: {} is a result, which has been decided", path.display());
+            return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
+        }
+        let Parts { report, problem, notes, .. } = Parts::stored(path, exec)?;
+        let friction = report.friction();
+        problem.map(|problem| (problem, friction)).ok_or_else(|| {
+            let help = "give the design instead".to_owned();
+            Failure::with_help(format!("{}: {}", path.display(), notes.join("; ")), Some(help))
+        })
     }
 }
 

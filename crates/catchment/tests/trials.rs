@@ -230,27 +230,6 @@ fn hooked_and_grooved_motions_end_as_in_the_engine() {
     }
 }
 
-/// A square peg of 0.4 D with a chamfered tip over a square hole with chamfered borders and a play of 0.02 D all around.
-#[cfg(feature = "drop")]
-fn peg() -> String {
-    let turned = |[x, y, z]: [f64; 3], quarters: usize| {
-        let turns = [[x, y, z], [-y, x, z], [-x, -y, z], [y, -x, z]];
-        turns[quarters]
-    };
-    let (hole, border, depth) = (0.22, 0.32, -0.5);
-    let side = |[inner, z]: [f64; 2]| [[inner, -inner, z], [inner, inner, z]];
-    let block = [[hole, depth], [0.5, depth], [hole, -0.1], [border, 0.0], [0.5, 0.0]].map(side).concat();
-    let fixed: Vec<Vec<[f64; 3]>> =
-        (0..4).map(|quarters| block.iter().map(|p| turned(*p, quarters)).collect()).collect();
-    let square = |[half, z]: [f64; 2]| (0..4).map(move |quarters| turned([half, half, z], quarters));
-    let body = |levels: &[[f64; 2]]| levels.iter().flat_map(|level| square(*level)).collect::<Vec<_>>();
-    let moving = [body(&[[0.5, -0.2], [0.5, 0.0]]), body(&[[0.2, 0.0], [0.2, 0.35], [0.15, 0.4]])];
-    format!(
-        "[connector]\nwidth = 1.0\nface_height = 0.0\n[connector.fixed]\npieces = {fixed:?}\n[connector.moving]\npieces = {moving:?}\n\
-         [alignment]\nfree = [\"x\", \"y\", \"roll\", \"pitch\"]\ncenter_of_rotation = 0.3\nrotation_length = 0.5\n"
-    )
-}
-
 /// The same with friction: Coulomb's cones step by step, and the engine's own.
 #[cfg(feature = "drop")]
 #[test]
@@ -258,11 +237,12 @@ fn drop_tests_agree_with_friction() {
     use catchment::method::drop;
     use catchment::problem::{Draft, Problem};
     use std::f64::consts::FRAC_PI_4;
-    const POSES: u32 = 100;
+    const POSES: u32 = 200;
     let family = |name: &str, aspect_ratio: f64| {
         format!("[connector]\nfamily = \"{name}\"\naspect_ratio = {aspect_ratio}\n")
     };
     let (pyramid, saddle) = (family("pyramid", 1.0), family("x-face-3d", 0.577_350_269_189_625_8));
+    let peg = include_str!("../../../designs/chamfered-peg.toml").to_owned();
     let all = [0.5, 0.5, FRAC_PI_4, FRAC_PI_4, FRAC_PI_4];
     // Above 0.25 the pyramid wedges, and soft contacts let go where rigid ones do not.
     for (name, text, friction, half) in [
@@ -271,7 +251,7 @@ fn drop_tests_agree_with_friction() {
         ("saddle", &saddle, 0.1, all),
         ("saddle", &saddle, 0.2, all),
         ("saddle", &saddle, 0.3, all),
-        ("peg", &peg(), 0.1, [0.2, 0.2, 0.2, 0.2, 0.0]),
+        ("peg", &peg, 0.1, [0.2, 0.2, 0.2, 0.2, 0.0]),
     ] {
         let source = catchment::design::SourceText::new("f.toml", text.as_str());
         let problem: Problem = Draft::read(source).and_then(Draft::build).unwrap();
@@ -288,6 +268,6 @@ fn drop_tests_agree_with_friction() {
         let (drops, _) = drop::run(problem.pair(), poses(), &by_drop, &Exec::new()).unwrap();
         let same = descents.accepted().zip(drops.accepted()).filter(|(a, b)| a == b).count();
         println!("{name}, friction {friction}: {same} of {POSES}");
-        assert!(same >= 97, "{name}, friction {friction}: {same} of {POSES}");
+        assert!(100 * same >= 97 * POSES as usize, "{name}, friction {friction}: {same} of {POSES}");
     }
 }

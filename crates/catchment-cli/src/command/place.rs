@@ -4,7 +4,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file};
-use catchment::design::{LengthUnit, parse_dofs};
+use catchment::design::{Complaint, LengthUnit, Quantity, Scale, Unit, parse_dofs};
 use catchment::pose::DofSet;
 use catchment::report::figure;
 use catchment::study::proposal::{Beside, Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
@@ -41,6 +41,9 @@ pub(crate) struct PlaceArgs {
     /// The same of the moving half
     #[arg(long, value_name = "PART")]
     with_moving: Vec<String>,
+    /// Describe files of many triangles with fewer: how far their surfaces may move, such as '0.01 mm'; for 200 000 triangles and more
+    #[arg(long, value_name = "LENGTH", conflicts_with_all = ["with_fixed", "with_moving"])]
+    simplify: Option<String>,
     /// In which frames the parts are drawn
     #[arg(long, value_enum, default_value_t = Drawn::Auto, help_heading = "Instead of what is found")]
     drawn: Drawn,
@@ -188,6 +191,7 @@ fn settings(args: &PlaceArgs) -> Result<Settings, Failure> {
         unit: args.unit,
         free: args.free,
         name: args.name.clone(),
+        simplify: args.simplify.as_deref().map(|text| simplify(text, args.unit)).transpose()?,
         with: [Vec::new(), Vec::new()],
     })
 }
@@ -236,10 +240,11 @@ fn told(found: &Proposal) -> Vec<String> {
 fn refused(error: ProposalError) -> Failure {
     let help = match &error {
         ProposalError::NoUnit { guess, .. } => format!("--unit {}?", guess.symbol()),
-        ProposalError::NoSeat { .. } => {
-            "say which way they lie: --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; lock what the seat does not hold: \
+        ProposalError::NoSeat { remedy, .. } => {
+            let remedy = remedy.iter().map(|remedy| format!("{remedy}; or "));
+            remedy.collect::<String>()
+                + "say which way they lie: --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; lock what the seat does not hold: \
              --free x,y; parts at an angle to their axes: write the design file by hand (docs/parts.md)"
-                .to_owned()
         }
         ProposalError::Problem(_) | ProposalError::Cancelled(_) => return error_of(error),
     };
@@ -286,6 +291,25 @@ fn unit(text: &str) -> Result<LengthUnit, String> {
         .into_iter()
         .find(|unit| unit.symbol() == text)
         .ok_or_else(|| format!("a unit is one of {}", LengthUnit::ALL.map(LengthUnit::symbol).join(", ")))
+}
+
+/// How far a surface may move, in the unit of the design.
+fn simplify(text: &str, unit: Option<LengthUnit>) -> Result<f64, Failure> {
+    let scale = Scale { width: 1.0, unit: Some(unit.unwrap_or(LengthUnit::Mm)) };
+    let told = |complaint: Complaint| {
+        Failure::with_help(format!("--simplify {text:?}: {complaint}"), complaint.help())
+    };
+    let quantity: Quantity = text.parse().map_err(told)?;
+    let help = || Some("say how far the surface may move, such as '0.01 mm'".to_owned());
+    if quantity.unit == Unit::D {
+        return Err(Failure::with_help(format!("--simplify {text:?}: D is not known yet"), help()));
+    }
+    let most = quantity.drawn_length_d(&scale).map_err(told)?;
+    if most > 0.0 {
+        Ok(most)
+    } else {
+        Err(Failure::with_help(format!("--simplify {text:?} is no distance"), help()))
+    }
 }
 
 fn dofs(text: &str) -> Result<DofSet, String> {

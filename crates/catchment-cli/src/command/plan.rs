@@ -8,13 +8,11 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FigureArgs, FileArgs};
 use catchment::design::Findings;
-use catchment::exec::Exec;
 use catchment::method::descent;
 use catchment::pose::{Dof, PoseError};
 use catchment::poses::{parse_angles, parse_counts, parse_length, parse_sizes};
 use catchment::problem::Problem;
 use catchment::report::figure;
-use catchment::report::page::Parts;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{PlanReport, csv};
 use catchment::study::plan::{Pattern, Plan, PlanError, Settings, panels, run as make};
@@ -137,7 +135,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let drawing = args.figure.kind(&args.file)?;
     let running = args.exec.start()?;
     running.may_be_left();
-    let (problem, decided_with) = args.problem(&running.exec)?;
+    let (problem, decided_with) = args.design.decided(&running.exec)?;
     let settings = args.settings(&problem, decided_with)?;
     let at = args.offsets_at.into();
     let form = PlanReport::new(problem.design(), &Plan::form(&settings), at, Vec::new(), None);
@@ -176,24 +174,6 @@ pub(super) fn accuracy(text: &str, problem: &Problem) -> Result<PoseError, Failu
 }
 
 impl PlanArgs {
-    /// What the design says, or the one that was decided before; and the friction of that.
-    fn problem(&self, exec: &Exec) -> Result<(Problem, f64), Failure> {
-        let path = &self.design.path;
-        if !path.is_dir() {
-            return Ok((self.design.problem()?, 0.0));
-        }
-        if let Some((option, _)) = self.design.changed().next() {
-            let message = format!("{option}: {} is a result, which has been decided", path.display());
-            return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
-        }
-        let Parts { report, problem, notes, .. } = Parts::stored(path, exec)?;
-        let friction = report.friction();
-        problem.map(|problem| (problem, friction)).ok_or_else(|| {
-            let help = "give the design instead".to_owned();
-            Failure::with_help(format!("{}: {}", path.display(), notes.join("; ")), Some(help))
-        })
-    }
-
     fn settings(&self, problem: &Problem, decided_with: f64) -> Result<Settings, Failure> {
         let pattern = self.pattern.of(problem)?;
         Ok(Settings {

@@ -32,9 +32,13 @@ use std::time::Instant;
     catchment validate plan.csv design.toml --accuracy 'x=1 mm' --figure trials.png\n                                                  what was seen over what was predicted\n  \
     catchment validate plan.csv design.toml --accuracy 'x=1 mm' --estimate-friction\n                                                  which friction explains the failures\n  \
     catchment validate plan.csv design.toml --accuracy 'x=1 mm' --require 'consistent>=1' --require 'agreement.ci95.0>=0.9'\n  \
-    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --json | jq '.disagreements[0]'\n\n\
+    catchment validate plan.csv design.toml --accuracy 'x=1 mm' --json | jq '.disagreements[0]'\n  \
+    catchment validate plan.csv out --accuracy 'x=1 mm'           a result of `run -o`, with its friction\n\n\
     Columns: every error that the design leaves free, as x_mm or yaw_deg, and outcome; trial and line as the plan has them, each trial once. Others are \
-    left alone. Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
+    left alone. Lengths are in D and angles in radians unless they have a unit; in JSON always.",
+    mut_arg("path", |path| path.value_name("DESIGN_OR_RESULT")
+        .help("The design file, or a folder written by `run -o`")
+        .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct ValidateArgs {
     /// The table of trials (CSV); - reads stdin
     #[arg(value_name = "PLAN", value_hint = clap::ValueHint::FilePath)]
@@ -50,9 +54,9 @@ pub(crate) struct ValidateArgs {
     /// The point of the moving half where the table gives x and y
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
-    /// Coefficient of friction of the prediction
-    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
-    friction: f64,
+    /// Coefficient of friction of the prediction [default: 0, or that of the result]
+    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
+    friction: Option<f64>,
     /// Look for the friction that explains the trials
     #[arg(long)]
     estimate_friction: bool,
@@ -73,11 +77,13 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let kind = args.file.kind(&["csv", "json", "png", "svg"])?;
     let drawing = args.figure.kind(&args.file)?;
-    let problem = args.design.problem()?;
+    let running = args.exec.start()?;
+    running.may_be_left();
+    let (problem, decided_with) = args.design.decided(&running.exec)?;
     let settings = Settings {
         accuracy: accuracy(&args.accuracy, &problem)?,
         limit: args.limit,
-        friction: args.friction,
+        friction: args.friction.unwrap_or(decided_with),
         estimate_friction: args.estimate_friction,
         seed: args.seed,
     };
@@ -88,8 +94,6 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let form =
         ValidationReport::new(problem.design(), &Validation::form(&problem, &settings), at, Vec::new(), None);
     args.asked.check(&form)?;
-    let running = args.exec.start()?;
-    running.may_be_left();
     let found = judge(&problem, &table.rows, &settings, &running.exec)?;
     let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
         let poses: Vec<PoseError> = found.trials.iter().map(|trial| trial.tried.error).collect();

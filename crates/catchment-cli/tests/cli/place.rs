@@ -233,3 +233,103 @@ fn what_belongs_to_a_half_is_not_written_over() {
     let told = run(home.path(), &[&PARTS[..], &["--with-moving", "parts/none.stl"]].concat());
     assert!(told.contains("there is no file parts/none.stl") && told.contains("help: "), "{told}");
 }
+
+/// A box from where to where along x and y, z.
+fn rectangle([x0, x1]: [f64; 2], [y0, y1]: [f64; 2]) -> [[f64; 2]; 4] {
+    [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+}
+
+/// A plate of 30 mm with these rectangles on it, 6 mm high.
+fn on_a_plate(raised: &[[[f64; 2]; 4]]) -> String {
+    let plate = rectangle([-15.0, 15.0], [-15.0, 15.0]);
+    let mut prisms: Vec<Prism<'_>> = vec![(&plate, [-5.0, 0.0], flat)];
+    prisms.extend(raised.iter().map(|outline| (&outline[..], [0.0, 6.0], flat as fn([f64; 2], f64) -> _)));
+    obj(&prisms)
+}
+
+/// An L and its recess, one of them exported mirrored: no turn brings them together.
+#[test]
+fn a_mirrored_part_is_told_as_one() {
+    let l = [rectangle([-8.0, -2.0], [-10.0, 10.0]), rectangle([-2.0, 8.0], [-10.0, -4.0])];
+    // Faces up in its own file, so that it is turned over about x to dock.
+    let recess = [
+        rectangle([-15.0, -9.0], [-15.0, 15.0]),
+        rectangle([9.0, 15.0], [-15.0, 15.0]),
+        rectangle([-9.0, 9.0], [11.0, 15.0]),
+        rectangle([-9.0, 9.0], [-15.0, -11.0]),
+        rectangle([-1.0, 9.0], [-11.0, 3.0]),
+    ];
+    let home = two_parts(&on_a_plate(&l), &on_a_plate(&recess));
+    let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
+    let told = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat());
+    assert!(told.starts_with("exit 0") && !told.contains("mirror"), "{told}");
+    let mirrored = recess.map(|outline| outline.map(|[x, y]| [-x, y])).map(|[a, b, c, d]| [d, c, b, a]);
+    fs::write(home.path().join("moving.obj"), on_a_plate(&mirrored)).unwrap();
+    let told = run(home.path(), &[&parts[..], &["-o", "m.toml"]].concat()).replace("\n        ", " ");
+    assert!(
+        told.starts_with("exit 2") && told.contains("a mirror image of the moving part would dock"),
+        "{told}"
+    );
+    assert!(!home.path().join("m.toml").exists());
+}
+
+/// A web across a socket keeps its plug out: where it is, on which part, and what it costs.
+#[test]
+fn a_web_in_the_way_is_pointed_at() {
+    let walls = [
+        rectangle([-15.0, -11.0], [-15.0, 15.0]),
+        rectangle([11.0, 15.0], [-15.0, 15.0]),
+        rectangle([-11.0, 11.0], [11.0, 15.0]),
+        rectangle([-11.0, 11.0], [-15.0, -11.0]),
+    ];
+    let web = rectangle([-11.0, 11.0], [-1.0, 1.0]);
+    let plug = [rectangle([-10.0, 10.0], [-10.0, 10.0])];
+    let home = two_parts(&on_a_plate(&[&walls[..], &[web]].concat()), &on_a_plate(&plug));
+    let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
+    let told = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat()).replace("\n        ", " ");
+    for words in
+        ["something narrow of the fixed part is in the way", "6) mm of the fixed", "about 6 mm deeper"]
+    {
+        assert!(told.starts_with("exit 2") && told.contains(words), "{words}\n{told}");
+    }
+    // A design that somebody wrote says the same, on the moving half as well.
+    for (fixed, moving, whose) in [("fixed", "moving", "fixed"), ("moving", "fixed", "moving")] {
+        let half = |name: &str| format!("{{ mesh = \"{name}.obj\", unit = \"mm\" }}");
+        let text = format!(
+            "[connector]\nwidth = 22\nunit = \"mm\"\nfixed = {}\nmoving = {}\n[alignment]\nfree = [\"x\", \"y\", \"yaw\"]\n",
+            half(fixed),
+            half(moving)
+        );
+        fs::write(home.path().join("d.toml"), text).unwrap();
+        let told = run(home.path(), &["check", "d.toml"]).replace("\n        ", " ");
+        let words = format!("something narrow of the {whose} part is in the way");
+        assert!(
+            told.starts_with("exit 2") && told.contains(&words) && told.contains("deeper, into a seat"),
+            "{told}"
+        );
+    }
+    // Without the web it docks.
+    fs::write(home.path().join("fixed.obj"), on_a_plate(&walls)).unwrap();
+    let told = run(home.path(), &[&parts[..], &["-o", "e.toml"]].concat());
+    assert!(told.starts_with("exit 0") && !told.contains("in the way"), "{told}");
+}
+
+/// Files of more triangles than a half may have are placed with fewer, which the design says.
+#[test]
+fn files_are_placed_with_fewer_triangles() {
+    let home = home();
+    let told = run(home.path(), &[&PARTS[..], &["-o", "d.toml", "--simplify", "0.02 mm"]].concat());
+    assert!(told.starts_with("exit 0"), "{told}");
+    let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    assert_eq!(text.matches("\nsimplify = \"0.02 mm\"").count(), 2, "{text}");
+    assert!(run(home.path(), &["check", "d.toml"]).starts_with("exit 0"));
+    for (wrong, words) in
+        [("0.1 D", "D is not known yet"), ("0", "no distance"), ("3 deg", "3 deg"), ("x", "x")]
+    {
+        let told = run(home.path(), &[&PARTS[..], &["-o", "e.toml", "--simplify", wrong]].concat());
+        assert!(told.starts_with("exit 2") && told.contains("--simplify") && told.contains(words), "{told}");
+    }
+    let told =
+        run(home.path(), &[&PARTS[..], &["--simplify=0.1 mm", "--with-fixed", "parts/plug.stl"]].concat());
+    assert!(told.starts_with("exit 2") && told.contains("--with-fixed"), "{told}");
+}

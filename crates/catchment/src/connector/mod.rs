@@ -60,6 +60,20 @@ impl Half {
         Self { surfaces: self.surfaces.iter().map(|s| s.mapped(map)).collect() }
     }
 
+    /// Lowest and highest corner of the box around it.
+    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
+        let boxes = self.surfaces.iter().map(Surface::bounds);
+        boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
+    }
+
+    /// The middle one of its three extents.
+    pub(crate) fn middle_extent(&self) -> f64 {
+        let (low, high) = self.bounds();
+        let mut sides = (high - low).to_array();
+        sides.sort_by(f64::total_cmp);
+        sides[1]
+    }
+
     /// The mirror image by `map`, a reflection.
     #[must_use]
     pub(crate) fn reflected(&self, map: impl Fn(DVec3) -> DVec3 + Copy) -> Self {
@@ -189,10 +203,7 @@ impl Connector {
         };
         let halves = [half(&own.fixed, Side::Fixed), half(&own.moving, Side::Moving)];
         let wide = |built: &source::Built| {
-            let bounds = built.half.surfaces.iter().map(Surface::bounds);
-            let (low, high) = bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| {
-                (low.min(a), high.max(b))
-            });
+            let (low, high) = built.half.bounds();
             (high - low).truncate().max_element()
         };
         let widest = halves.iter().flatten().map(wide).fold(0.0, f64::max);

@@ -31,6 +31,7 @@ mod overlap;
 mod plan;
 mod play;
 mod raster;
+pub(crate) mod relief;
 mod search;
 mod seat;
 pub(crate) mod settle;
@@ -53,7 +54,6 @@ pub use nearby::Nearby;
 pub(crate) use nearby::chord;
 pub(crate) use play::play_on;
 pub use play::{Play, play};
-pub(crate) use raster::fill_convex;
 pub(crate) use seat::CORE as SEAT_CORE;
 pub use seat::Seat;
 

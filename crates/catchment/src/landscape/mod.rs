@@ -26,5 +26,5 @@ pub use fold::{Fold, Image};
 pub use grid::{Grid, GridAxis};
 pub use heights::{Landscape, LandscapeError};
 pub use part::{LandscapePart, MergeError, ReliefPart};
-pub use relief::{Gradient, Patch, Patches, Relief};
+pub use relief::{Falls, Gradient, Patch, Patches, Relief};
 pub use resolution::{Resolution, ResolutionError};

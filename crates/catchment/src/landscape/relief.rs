@@ -140,36 +140,115 @@ fn reliefs<L>(
 where
     L: Fn(&Gradient) -> Gradient,
 {
+    let keep = |slab: &[u16], patches: Vec<Patch>, carriers: &mut [u16]| {
+        carriers.copy_from_slice(slab);
+        patches.into_boxed_slice()
+    };
+    let (heights, carriers, patches) =
+        slabs(pair, grid, &fold, representatives.clone(), Relief::BYTES_PER_CELL, exec, linear, keep)?;
+    Ok(ReliefPart { grid: grid.clone(), fold, representatives, heights, carriers, patches })
+}
+
+/// Heights over the kept cells of an error grid, and to which side of every cell its gradient points: a byte in the place of patches.
+#[derive(Debug, Clone)]
+pub struct Falls {
+    /// The whole grid.
+    pub grid: Grid,
+    /// Which cells are kept.
+    pub fold: Fold,
+    /// z of the COR at first contact at every kept cell, in D; −∞ where the halves pass each other by.
+    pub heights: Vec<f32>,
+    /// Per kept cell: bit k where entry k of its gradient is negative; [`Falls::NOTHING`] without contact.
+    pub below: Vec<u8>,
+}
+
+impl Falls {
+    /// The halves pass each other by.
+    pub const NOTHING: u8 = u8::MAX;
+
+    /// Bytes per kept cell.
+    pub const BYTES_PER_CELL: u64 = (size_of::<f32>() + size_of::<u8>()) as u64;
+
+    /// As [`Relief::compute`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn compute<L>(
+        pair: &Pair,
+        grid: &Grid,
+        exec: &Exec,
+        linear: impl Fn(&pose::PoseError) -> L + Sync,
+    ) -> Result<Self, LandscapeError>
+    where
+        L: Fn(&Gradient) -> Gradient,
+    {
+        let fold = folded(pair, grid)?;
+        let width = grid.axis(pose::Dof::X).map_or(1, |axis| axis.cells);
+        let keep = |slab: &[u16], patches: Vec<Patch>, below: &mut [u8]| {
+            for (cell, (carrier, below)) in slab.iter().zip(below).enumerate() {
+                *below = match carrier {
+                    &Relief::NOTHING => Self::NOTHING,
+                    carrier => {
+                        let gradient = patches[usize::from(*carrier)].at(cell % width, cell / width);
+                        let bit = |(k, entry): (usize, &f32)| u8::from(*entry < 0.0) << k;
+                        gradient.iter().enumerate().map(bit).sum()
+                    }
+                };
+            }
+        };
+        let all = 0..fold.representatives();
+        let (heights, below, _) = slabs(pair, grid, &fold, all, Self::BYTES_PER_CELL, exec, linear, keep)?;
+        Ok(Self { grid: grid.clone(), fold, heights, below })
+    }
+}
+
+/// Heights, and what `keep` makes of the carriers and patches of every rotation: a value per cell, and one for all of them.
+#[expect(clippy::too_many_arguments, reason = "two callers, side by side")]
+#[expect(clippy::type_complexity, reason = "what two callers take apart at once")]
+fn slabs<L, C: Clone + Default + Send, P: Send>(
+    pair: &Pair,
+    grid: &Grid,
+    fold: &Fold,
+    representatives: Range<usize>,
+    bytes_per_cell: u64,
+    exec: &Exec,
+    linear: impl Fn(&pose::PoseError) -> L + Sync,
+    keep: impl Fn(&[u16], Vec<Patch>, &mut [C]) -> P + Sync,
+) -> Result<(Vec<f32>, Vec<C>, Vec<P>), LandscapeError>
+where
+    L: Fn(&Gradient) -> Gradient,
+{
     let slab = fold.slab();
     let kept = representatives.len() * slab;
-    exec.ensure_fits("heights and their gradients", kept as u64 * Relief::BYTES_PER_CELL, |budget| {
+    exec.ensure_fits("heights and their gradients", kept as u64 * bytes_per_cell, |budget| {
         let share = kept as f64 / grid.len() as f64;
         let budget = (budget as f64 / share) as u64;
-        let largest = Resolution::largest_that_fits(budget, Relief::BYTES_PER_CELL, grid.axes.len());
+        let largest = Resolution::largest_that_fits(budget, bytes_per_cell, grid.axes.len());
         vec![Advice::AtMostResolution(largest)]
     })?;
     let mut heights = vec![0f32; kept];
-    let mut carriers = vec![0u16; kept];
+    let mut values = vec![C::default(); kept];
     let done = AtomicUsize::new(0);
-    let patches = exec.install(|| {
+    let all = exec.install(|| {
         heights
             .par_chunks_exact_mut(slab)
-            .zip(carriers.par_chunks_exact_mut(slab))
+            .zip(values.par_chunks_exact_mut(slab))
             .enumerate()
             .map_init(
-                || Slab::new(pair, slab),
-                |buffer, (k, (heights, carriers))| {
+                || (Slab::new(pair, slab), vec![0u16; slab]),
+                |(buffer, carriers), (k, (heights, values))| {
                     exec.check()?;
                     let error = grid.pose(fold.rotation(representatives.start + k) * slab);
                     let patches = buffer.fill(grid, &error, linear(&error), heights, carriers)?;
+                    let made = keep(carriers, patches, values);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     exec.report(done as f64 / representatives.len() as f64, "heights");
-                    Ok(patches)
+                    Ok(made)
                 },
             )
-            .collect::<Result<Patches, LandscapeError>>()
+            .collect::<Result<Vec<P>, LandscapeError>>()
     })?;
-    Ok(ReliefPart { grid: grid.clone(), fold, representatives, heights, carriers, patches })
+    Ok((heights, values, all))
 }
 
 /// What one thread needs to fill slabs.
@@ -195,7 +274,7 @@ impl<'a> Slab<'a> {
         linear: L,
         heights: &mut [f32],
         carriers: &mut [u16],
-    ) -> Result<Box<[Patch]>, LandscapeError> {
+    ) -> Result<Vec<Patch>, LandscapeError> {
         let rotation = error.rotation();
         let lattices @ [x, y] = lateral_lattices(self.pair, grid, &rotation);
         self.envelope.turn(&rotation);
@@ -228,7 +307,7 @@ impl<'a> Slab<'a> {
                 self.numbers[slot]
             };
         }
-        Ok(patches.into_boxed_slice())
+        Ok(patches)
     }
 }
 
@@ -288,6 +367,33 @@ mod tests {
                 assert!(near, "{family:?} {cell}: {found:?} is none of {contacts:?}");
             }
             assert!(carried > 10, "{family:?}: {carried}");
+        }
+    }
+
+    /// A byte per cell says which entries of the gradient are negative.
+    #[test]
+    fn falls_are_the_signs_of_the_gradients() {
+        for family in [Family::Pyramid, Family::XFace3d, Family::VFace, Family::SFace, Family::Cone] {
+            let pair = pair(family);
+            let cells = if pair.alignment.free.len() == 2 { 12 } else { 4 };
+            let grid = Grid::over(&pair.alignment, |_| cells);
+            let linear = |_: &pose::PoseError| |g: &Gradient| *g;
+            let relief = Relief::compute(&pair, &grid, &Exec::new(), linear).unwrap();
+            let falls = Falls::compute(&pair, &grid, &Exec::new(), linear).unwrap();
+            assert_eq!(relief.heights, falls.heights);
+            let (slab, nx) = (relief.fold.slab(), grid.axis(Dof::X).map_or(1, |a| a.cells));
+            for (kept, below) in falls.below.iter().enumerate() {
+                let carrier = relief.carriers[kept];
+                if carrier == Relief::NOTHING {
+                    assert_eq!(*below, Falls::NOTHING);
+                    continue;
+                }
+                let gradient =
+                    relief.patches[kept / slab][usize::from(carrier)].at(kept % slab % nx, kept % slab / nx);
+                for (k, entry) in gradient.iter().enumerate() {
+                    assert_eq!(below >> k & 1 == 1, *entry < 0.0, "{family:?} {kept} {gradient:?}");
+                }
+            }
         }
     }
 

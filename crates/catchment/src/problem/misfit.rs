@@ -7,10 +7,13 @@
 //!   ───┘   └─     └───
 //! ```
 //!
+//! Where something narrow alone holds one half off the other, a web or a pin, that is said instead.
+//!
 //! Not promised: that the place is the only one in the way, or that halves which fit mirrored were meant to.
 
 use crate::connector::{Connector, Half, Side};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem, sinking};
+use crate::contact::relief::{self, Relief};
 use crate::contact::told::{Told, number};
 use crate::contact::{Pair, face};
 use crate::design::{ConnectorSpec, Design};
@@ -37,7 +40,7 @@ pub(super) fn advice(
             touching(connector, pair, design, Some(-gap))
         }
         MatedProblem::NotMinimum { .. } | MatedProblem::Free { .. } => {
-            touching(connector, pair, design, None)
+            narrow(connector, design).or_else(|| touching(connector, pair, design, None))
         }
         MatedProblem::Apart => Some(beside(connector, design)),
         _ => None,
@@ -48,6 +51,20 @@ pub(super) fn advice(
         ""
     };
     Some(format!("{told}{mirrored}"))
+}
+
+/// Whether something narrow of one part keeps the other from a seat.
+fn narrow(connector: &Connector, design: &Design) -> Option<String> {
+    let halves = [&connector.fixed, &connector.moving];
+    let cell = relief::NARROW * halves.map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
+    let top = Relief::centered(halves[0], &DMat3::IDENTITY, 1.0, cell);
+    let bottom = Relief::centered(halves[1], &DMat3::IDENTITY, -1.0, cell);
+    let moved = ((bottom.first - top.first) / cell).round().as_ivec2().to_array();
+    let found = relief::in_the_way(&top, &bottom, moved, cell)?;
+    // The relief of the moving half is of the half where its face centre is the origin.
+    let at = [Side::Fixed, Side::Moving]
+        .map(|side| place(design, connector.origin.drawn(side, found.at[side as usize])));
+    Some(relief::in_words(&found, &at, Told::of(design)))
 }
 
 /// Where the halves first touch without any error, and how far above where they are drawn.
@@ -76,9 +93,7 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
 fn beside(connector: &Connector, design: &Design) -> String {
     let Told { scale, unit } = Told::of(design);
     let reach = |half: &Half| {
-        let boxes = half.surfaces.iter().map(crate::connector::Surface::bounds);
-        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (low, high) = boxes.fold(none, |(low, high), (a, b)| (low.min(a), high.max(b)));
+        let (low, high) = half.bounds();
         let [a, b, c, d] = [low.x, high.x, low.y, high.y].map(|x| number(scale * x));
         format!("x {a} … {b}, y {c} … {d} {unit}")
     };
@@ -99,9 +114,7 @@ fn fits_mirrored(connector: &Connector, pair: &Pair, problem: &MatedProblem) -> 
         MatedProblem::NotMinimum { .. } => [DEEPER, f64::INFINITY],
         _ => return false,
     };
-    let boxes = connector.moving.surfaces.iter().map(crate::connector::Surface::bounds);
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = boxes.fold(none, |(low, high), (a, b)| (low.min(a), high.max(b)));
+    let (low, high) = connector.moving.bounds();
     let middle = low.midpoint(high);
     [DVec3::X, DVec3::Y].into_iter().any(|across| {
         let image = connector.moving.reflected(|p| p - 2.0 * across * (p - middle).dot(across));

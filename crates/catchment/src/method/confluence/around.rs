@@ -76,14 +76,14 @@ impl<'a> Around<'a> {
         base
     }
 
-    /// The centres towards which a velocity, in the order of the axes, leads from the centre of a cell: the cell itself, and those beside it
-    /// on that side.
-    pub(super) fn ahead(&self, centre: &PoseError, velocity: &[f32; 5]) -> Base {
+    /// The centres towards which a motion leads from the centre of a cell: the cell itself, and those beside it on its side, which is below along the
+    /// axes whose bits are set.
+    pub(super) fn ahead(&self, centre: &PoseError, below: u8) -> Base {
         let error = centre.to_array();
         let mut base = [0; 5];
-        for ((base, axis), velocity) in base.iter_mut().zip(&self.axes).zip(velocity) {
+        for (k, (base, axis)) in base.iter_mut().zip(&self.axes).enumerate() {
             let number = ((error[axis.error] - axis.lo) * axis.per_cell) as i32;
-            *base = number - i32::from(*velocity < 0.0);
+            *base = number - i32::from(below >> k & 1);
         }
         base
     }
@@ -184,7 +184,7 @@ mod tests {
         assert_eq!(some, [Some(Aligned), Some(Aligned), None, None]);
         // From a corner inwards, and outwards along x.
         let corner = grid.pose(0);
-        assert_eq!(around.ahead(&corner, &[1.0; 5]), [0; 5]);
-        assert_eq!(around.ahead(&corner, &[-1.0, 1.0, 1.0, 1.0, 1.0]), [-1, 0, 0, 0, 0]);
+        assert_eq!(around.ahead(&corner, 0), [0; 5]);
+        assert_eq!(around.ahead(&corner, 1), [-1, 0, 0, 0, 0]);
     }
 }

@@ -22,7 +22,7 @@
 //! 3-D X-Face it is one or two in ten thousand. Outcomes hold at the centres of cells; nothing is said about what lies between two of
 //! them.
 //!
-//! Memory: 11 bytes per kept cell (height, carrier, order, label; [`Relief`] keeps a half or a quarter of a
+//! Memory: 10 bytes per kept cell (height, sides, order, label; [`Falls`] keeps a half or a quarter of a
 //! symmetric grid) and one per cell of the whole grid. Sources: cell mapping, Hsu 1980; interpolated, Tongue 1987: here the map is
 //! the motion itself. Lengths in D, angles in radians.
 
@@ -39,7 +39,7 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
-use crate::landscape::{Fold, Gradient, Grid, Landscape, LandscapeError, Relief, Resolution};
+use crate::landscape::{Falls, Fold, Gradient, Grid, Landscape, LandscapeError, Resolution};
 use crate::pose::PoseError;
 use label::Label;
 use rayon::prelude::*;
@@ -149,13 +149,13 @@ pub fn run(pair: &Pair, grid: &Grid, settings: &Settings, exec: &Exec) -> Result
     }
     let started = Stopwatch::start();
     let part = |from, to| exec.part([from, to], STAGE);
-    let relief = Relief::compute(pair, grid, &part(0.0, HEIGHTS_SHARE), |error: &PoseError| {
+    let falls = Falls::compute(pair, grid, &part(0.0, HEIGHTS_SHARE), |error: &PoseError| {
         let metric = Metric::new(pair, grid, error);
         move |gradient: &Gradient| metric.velocity(gradient)
     })?;
-    let river = River { pair, relief: &relief, settings, started };
+    let river = River { pair, falls: &falls, settings, started };
     let (kept, joined) = river.run(&part(HEIGHTS_SHARE, 1.0))?;
-    let Relief { grid, fold, .. } = relief;
+    let Falls { grid, fold, .. } = falls;
     Ok(Labels { grid, fold, kept, joined })
 }
 
@@ -194,7 +194,7 @@ fn ensure_in_time(pair: &Pair, grid: &Grid, budget_s: f64, exec: &Exec) -> Resul
 pub fn bytes(pair: &Pair, grid: &Grid) -> u64 {
     let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
     let kept = Fold::new(grid, pair.mirrors()).map_or(cells, |fold| fold.kept_cells() as u64);
-    let per_kept = Relief::BYTES_PER_CELL + (size_of::<u32>() + size_of::<Label>()) as u64;
+    let per_kept = Falls::BYTES_PER_CELL + (size_of::<u32>() + size_of::<Label>()) as u64;
     kept.saturating_mul(per_kept).saturating_add(cells)
 }
 

@@ -12,18 +12,17 @@ use super::{Joined, STAGE, Settings};
 use crate::acceptance::{Outcome, Stream};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec, Stopwatch};
-use crate::landscape::Relief;
+use crate::landscape::Falls;
 use crate::method::affordable;
 use crate::method::correction::wilson95;
 use crate::method::descent::Follower;
-use crate::pose::Dof;
 use rayon::prelude::*;
 
 /// What labels the kept cells.
 pub(super) struct River<'a> {
     pub(super) pair: &'a Pair,
-    /// Its patches hold velocities, in cells.
-    pub(super) relief: &'a Relief,
+    /// Its gradients are velocities.
+    pub(super) falls: &'a Falls,
     pub(super) settings: &'a Settings,
     /// When it began: what a budget of time counts from.
     pub(super) started: Stopwatch,
@@ -46,15 +45,15 @@ const SEED: u64 = 0xc0f1;
 impl River<'_> {
     /// Labels all kept cells.
     pub(super) fn run(&self, exec: &Exec) -> Result<(Vec<Label>, Joined), Cancelled> {
-        let Relief { grid, fold, heights, carriers, .. } = self.relief;
-        let touches = |cell: &u32| carriers[*cell as usize] != Relief::NOTHING;
-        let mut order: Vec<u32> = (0..carriers.len() as u32).filter(touches).collect();
+        let Falls { grid, fold, heights, below } = self.falls;
+        let touches = |cell: &u32| below[*cell as usize] != Falls::NOTHING;
+        let mut order: Vec<u32> = (0..below.len() as u32).filter(touches).collect();
         exec.install(|| {
             order.par_sort_unstable_by(|a, b| {
                 heights[*a as usize].total_cmp(&heights[*b as usize]).then(a.cmp(b))
             });
         });
-        let mut labels = vec![Label::own(Outcome::Missed); carriers.len()];
+        let mut labels = vec![Label::own(Outcome::Missed); below.len()];
         for cell in &order {
             labels[*cell as usize] = Label::UNKNOWN;
         }
@@ -113,14 +112,14 @@ impl River<'_> {
 
     /// Number of a kept cell in the whole grid.
     fn whole(&self, cell: u32) -> usize {
-        let fold = &self.relief.fold;
+        let fold = &self.falls.fold;
         let (representative, lateral) = (cell as usize / fold.slab(), cell as usize % fold.slab());
         fold.rotation(representative) * fold.slab() + lateral
     }
 
     /// A cell by its own motion, to the end.
     fn follow(&self, cell: u32, follower: &mut Follower<'_>) -> Label {
-        Label::own(follower.follow(&self.relief.grid.pose(self.whole(cell))).outcome)
+        Label::own(follower.follow(&self.falls.grid.pose(self.whole(cell))).outcome)
     }
 
     /// A cell by those ahead of it, else by its own motion until it joins others; and whether it was followed.
@@ -131,10 +130,10 @@ impl River<'_> {
         around: &Around<'_>,
         labels: &[Label],
     ) -> (Label, bool) {
-        let centre = self.relief.grid.pose(self.whole(cell));
+        let centre = self.falls.grid.pose(self.whole(cell));
         // Friction bends the way, and may end it.
         if !self.settings.descent.may_hold() {
-            let ahead = around.ahead(&centre, &self.velocity(cell));
+            let ahead = around.ahead(&centre, self.falls.below[cell as usize]);
             if let Some(label) = around.agreed(&ahead, labels, 1) {
                 return (label, false);
             }
@@ -151,15 +150,6 @@ impl River<'_> {
             joined.map(Label::outcome)
         });
         (joined.unwrap_or(Label::own(outcome)), true)
-    }
-
-    /// The exact velocity at the centre of a cell, in cells; only its signs are asked for.
-    fn velocity(&self, cell: u32) -> [f32; 5] {
-        let Relief { grid, fold, patches, carriers, .. } = self.relief;
-        let (representative, lateral) = (cell as usize / fold.slab(), cell as usize % fold.slab());
-        let width = grid.axis(Dof::X).map_or(1, |axis| axis.cells);
-        let patch = &patches[representative][usize::from(carriers[cell as usize])];
-        patch.at(lateral % width, lateral / width)
     }
 
     /// Follows the neighbours of thin jams to their end, where they joined others, until nothing more jams; returns how many. Thin is what has
@@ -201,7 +191,7 @@ impl River<'_> {
 
     /// The kept cells on both sides of one, along every axis.
     fn sides(&self, cell: u32) -> impl Iterator<Item = [Option<u32>; 2]> {
-        let Relief { grid, fold, .. } = self.relief;
+        let Falls { grid, fold, .. } = self.falls;
         let whole = self.whole(cell);
         let mut stride = 1;
         grid.axes.iter().map(move |axis| {
@@ -215,7 +205,7 @@ impl River<'_> {
 
     /// The kept cells that touch one, were it by a corner, and itself.
     fn near(&self, cell: u32) -> Vec<u32> {
-        let Relief { grid, fold, .. } = self.relief;
+        let Falls { grid, fold, .. } = self.falls;
         let mut near = vec![self.whole(cell)];
         let mut stride = 1;
         for axis in &grid.axes {
@@ -232,7 +222,7 @@ impl River<'_> {
 
     /// Follows some of the cells that joined others to their end: drawn at random, or all where they are few.
     fn judge(&self, labels: &[Label], told: &mut Joined, exec: &Exec) -> Result<(), Cancelled> {
-        let Relief { grid, fold, .. } = self.relief;
+        let Falls { grid, fold, .. } = self.falls;
         let draws = (TRIED * affordable(self.pair)).max(LEAST_TRIED) as u64;
         let stream = Stream::new(SEED);
         let draw = |k| fold.kept_cell((stream.uniform(k) * grid.len() as f64) as usize) as u32;

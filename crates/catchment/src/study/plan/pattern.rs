@@ -78,6 +78,14 @@ pub(super) struct Made {
     pub(super) open: usize,
 }
 
+/// A line of a bracket: where along it the first pose fails, and how far from there, on either side, a point can be told to be on its
+/// side; as shares of the way through the error box.
+struct Border {
+    along: [f64; 5],
+    at: f64,
+    sides: [f64; 2],
+}
+
 /// How a pattern is laid out.
 pub(super) struct Maker<'a> {
     pub(super) problem: &'a Problem,
@@ -273,40 +281,44 @@ impl Maker<'_> {
             return Err(PlanError::NotDocked);
         }
         let mut made = Made::default();
-        let mut borders = Vec::new();
-        for along in self.directions(wanted) {
+        // Lines on which a pair fits between zero and the error box first.
+        let (mut borders, mut narrow) = (Vec::new(), Vec::new());
+        for (number, along) in self.directions(wanted).into_iter().enumerate() {
             exec.check()?;
             if borders.len() == wanted {
                 break;
             }
-            match self.border(&mut judge, &along) {
-                Some(border) => borders.push((along, border)),
-                None => made.open += 1,
-            }
+            let Some(at) = self.border(&mut judge, &along) else {
+                made.open += 1;
+                continue;
+            };
+            let sides = [-1.0, 1.0]
+                .map(|sign| sign * self.told_apart(&mut judge, &along, at, sign, resolution, number));
+            let border = Border { along, at, sides };
+            let fits = sides.iter().all(|side| is_within(at + side));
+            if fits { &mut borders } else { &mut narrow }.push(border);
         }
+        let missing = wanted - borders.len();
+        borders.extend(narrow.into_iter().take(missing));
         if borders.is_empty() {
             return Err(PlanError::NoBorder);
         }
         // There may be fewer lines than were wanted: their trials go to more pairs, and what is left to controls.
         let pairs = (trials - controls) / (2 * borders.len());
-        let controls = trials - 2 * pairs * borders.len();
-        for (number, (along, border)) in borders.iter().enumerate() {
-            exec.check()?;
-            for sign in [-1.0, 1.0] {
-                let apart = self.told_apart(&mut judge, along, *border, sign, resolution, number);
+        for (number, Border { along, at, sides }) in borders.iter().enumerate() {
+            for side in sides {
                 // The widest first: each pair halves what the one before left open.
-                for pair in (0..pairs).rev() {
-                    let t = border + sign * apart * f64::from(1u32 << pair.min(16));
-                    if t > 0.0 && t <= 1.0 {
-                        made.poses.push(Placed { error: self.scaled(along, t), line: number + 1 });
-                    }
-                }
+                let at = (0..pairs).rev().map(|pair| at + side * f64::from(1u32 << pair.min(16)));
+                let place = |t: f64| Placed { error: self.scaled(along, t), line: number + 1 };
+                made.poses.extend(at.filter(|t| is_within(*t)).map(place));
             }
         }
-        for number in 0..controls {
-            let (along, border) = borders[(number / 2) % borders.len()];
-            let t = if number % 2 == 0 { 0.5 * border } else { f64::midpoint(border, 1.0) };
-            made.poses.push(Placed { error: self.scaled(&along, t), line: (number / 2) % borders.len() + 1 });
+        for number in 0..trials - made.poses.len() {
+            let (line, round) = ((number / 2) % borders.len(), number / (2 * borders.len()));
+            let Border { along, at, .. } = &borders[line];
+            let share = between(round);
+            let t = if number % 2 == 0 { share * at } else { at + share * (1.0 - at) };
+            made.poses.push(Placed { error: self.scaled(along, t), line: line + 1 });
         }
         made.followed = judge.followed();
         made.poses.sort_by_key(|placed| placed.line);
@@ -337,7 +349,7 @@ impl Maker<'_> {
         let random = Stream::new(self.seed).branch(2).branch(number as u64);
         for _ in 0..MOVES {
             let t = border + sign * apart;
-            if !(t > 0.0 && t <= 1.0) {
+            if !is_within(t) {
                 break;
             }
             let error = self.scaled(along, t);
@@ -408,6 +420,21 @@ impl Maker<'_> {
         let largest = |along: &[f64; 5]| along.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
         all.iter().map(|along| along.map(|part| part / largest(along))).collect()
     }
+}
+
+/// Whether a point so far along a line is beyond zero and not beyond the error box.
+fn is_within(t: f64) -> bool {
+    t > 0.0 && t <= 1.0
+}
+
+/// Where controls stand between two ends, half way first: 1/2, 1/4, 3/4, 1/8, 5/8, …, no two alike.
+fn between(round: usize) -> f64 {
+    let (mut rest, mut digit, mut share) = (round + 1, 0.5, 0.0);
+    while rest > 0 {
+        share += digit * (rest % 2) as f64;
+        (rest, digit) = (rest / 2, digit / 2.0);
+    }
+    share
 }
 
 /// Lines numbered 1, 2, 3, … in the order in which they are met.

@@ -273,3 +273,27 @@ fn what_cannot_be_planned_is_refused() {
     let few = Pattern::Bracket { trials: 3, lines: None, resolution: [None; 5] };
     assert!(matches!(pattern(few), PlanError::TooFew { fewest: 4, .. }));
 }
+
+/// As many trials as were asked for, however near the border is to zero or to the error box; no pose twice.
+#[test]
+fn a_bracket_has_the_trials_that_were_asked_for() {
+    let about = |size: f64| PoseError::from_array([size; 5]);
+    for (design, accuracy, trials) in [
+        ("pyramid.toml", about(0.02), 40),
+        ("x-face-3d.toml", about(0.05), 60),
+        ("v-face.toml", PoseError { x: 0.08, pitch: 0.1, ..PoseError::default() }, 33),
+    ] {
+        let problem = problem(design);
+        let pattern = Pattern::Bracket { trials, lines: None, resolution: [None; 5] };
+        let plan = planned(&problem, &Settings::new(pattern, accuracy));
+        assert_eq!(plan.trials.len(), trials, "{design}");
+        let mut poses: Vec<_> =
+            plan.points.iter().map(|point| point.error.to_array().map(f64::to_bits)).collect();
+        poses.sort_unstable();
+        poses.dedup();
+        assert_eq!(poses.len(), trials, "{design}");
+        // Most of them decide: a line on whose both sides a pair fits goes before one on which it does not.
+        let decide = plan.points.iter().filter(|point| point.foretold.margin() >= 1.9).count();
+        assert!(10 * decide >= 9 * trials, "{design}: {decide} of {trials}");
+    }
+}

@@ -67,13 +67,18 @@ fn element(beside: &Beside, unit: LengthUnit) -> String {
 }
 
 /// What draws a half: its file, or a list of parts that begins with it.
-fn drawn(part: &PartFile, with: &[Beside], unit: LengthUnit) -> Vec<String> {
+fn drawn(part: &PartFile, with: &[Beside], settings: &Settings) -> Vec<String> {
+    let unit = design_unit(settings);
     let is_step = FileSpec::new(&part.path, 1.0).is_step();
     let meshed = is_step.then(|| MESHED.to_owned());
     if with.is_empty() {
         let (mesh, stated) = named(part, unit);
         let stated = stated.map(|unit| unit + " # of the file, which does not say it");
-        return [Some(mesh), meshed, stated].into_iter().flatten().collect();
+        let fewer = settings.simplify.map(|most| {
+            let most = quoted(&format!("{most} {}", unit.symbol()));
+            format!("# Described with fewer triangles: its surface may move so far.\nsimplify = {most}")
+        });
+        return [Some(mesh), meshed, stated, fewer].into_iter().flatten().collect();
     }
     let open = "# The file, and what belongs to it, in its coordinates.\nparts = [".to_owned();
     let file = element(&Beside::File(part.clone()), unit);
@@ -86,7 +91,7 @@ pub(super) fn halves(parts: &[PartFile; 2], settings: &Settings) -> String {
     let unit = design_unit(settings);
     let mut text = format!("[connector]\nunit = \"{}\"\n", unit.symbol());
     for ((name, part), with) in ["fixed", "moving"].into_iter().zip(parts).zip(&settings.with) {
-        let _ = writeln!(text, "\n[connector.{name}]\n{}", drawn(part, with, unit).join("\n"));
+        let _ = writeln!(text, "\n[connector.{name}]\n{}", drawn(part, with, settings).join("\n"));
     }
     text
 }
@@ -141,7 +146,7 @@ pub(super) fn text(
     let to_axis = [-judged.center, judged.offset - judged.center];
     for (k, name) in ["fixed", "moving"].into_iter().enumerate() {
         line(&format!("\n[connector.{name}]"));
-        for words in drawn(&parts[k], &settings.with[k], unit) {
+        for words in drawn(&parts[k], &settings.with[k], settings) {
             line(&words);
         }
         if let Lie::Facing { fixed, moving, turned } = judged.lie {

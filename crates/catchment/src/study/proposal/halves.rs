@@ -1,7 +1,7 @@
 //! The halves of a proposal: a file each, and what belongs to it, in the unit of the design.
 
 use super::{Beside, PartFile, ProposalError, Settings, file};
-use crate::connector::{Half, Side, Surface, of_half};
+use crate::connector::{Half, Side, of_half};
 use crate::design::{ConnectorSpec, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText};
 use crate::exec::Exec;
 use crate::problem::{Draft, findings};
@@ -40,7 +40,8 @@ pub(super) fn read(
 }
 
 fn no_unit(part: &PartFile, half: &Half) -> ProposalError {
-    let size = extent(half);
+    let (low, high) = half.bounds();
+    let size = high - low;
     ProposalError::NoUnit { path: part.path.clone(), size: size.to_array(), guess: guess(size) }
 }
 
@@ -63,6 +64,7 @@ fn mesh(part: &PartFile, settings: &Settings) -> HalfSpec {
     if says_its_unit(&part.path) {
         (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / design_unit(settings).metres());
     }
+    spec.treatment.simplify = settings.simplify;
     HalfSpec::Mesh(spec)
 }
 
@@ -84,21 +86,4 @@ fn guess(size: DVec3) -> LengthUnit {
         most if most < 5e3 => LengthUnit::Mm,
         _ => LengthUnit::Um,
     }
-}
-
-fn extent(half: &Half) -> DVec3 {
-    let (low, high) = around(half);
-    high - low
-}
-
-pub(super) fn around(half: &Half) -> (DVec3, DVec3) {
-    let boxes = half.surfaces.iter().map(Surface::bounds);
-    boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
-}
-
-/// The middle one of a half's three extents.
-pub(super) fn middle_extent(half: &Half) -> f64 {
-    let mut sides = extent(half).to_array();
-    sides.sort_by(f64::total_cmp);
-    sides[1]
 }

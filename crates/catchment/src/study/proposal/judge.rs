@@ -9,10 +9,10 @@
 //! all round, which does not matter; where walls stop them, but later than a seat's
 //! play may be without being said ([`Docked::MOST_PLAY`]), the play is what counts as docked.
 
-use super::relief::{broadest, plan_box};
 use super::way::Lie;
 use crate::connector::{Connector, Half};
 use crate::contact::mated::{MatedProblem, problems_on, round_half};
+use crate::contact::relief::{broadest, plan_box};
 use crate::contact::told::Told;
 use crate::contact::{Pair, face, play, play_on, settle, width};
 use crate::design::{Alignment, Drawn, HalfSpec, OwnSpec};

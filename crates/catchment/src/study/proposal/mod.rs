@@ -19,20 +19,20 @@
 mod file;
 mod halves;
 mod judge;
-mod relief;
 mod search;
 mod way;
 
 pub use way::{Lie, Way};
 
 use crate::connector::Half;
+use crate::contact::relief;
 use crate::contact::told::{Told, number};
 use crate::design::{LengthUnit, SourceText};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{DofSet, PoseError};
 use crate::problem::{Draft, Problem, ProblemError};
-use glam::{DMat3, DVec2};
-use halves::{around, design_unit, middle_extent};
+use glam::{DMat3, DVec2, DVec3};
+use halves::design_unit;
 use judge::{Judged, Refusal, judge};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -64,6 +64,8 @@ pub struct Settings {
     pub free: Option<DofSet>,
     /// The name of the design.
     pub name: Option<String>,
+    /// How far the surface of a file may move so that it is described with fewer triangles, in the unit of the design.
+    pub simplify: Option<f64>,
     /// What belongs to the fixed and to the moving half beside its file.
     pub with: [Vec<Beside>; 2],
 }
@@ -170,6 +172,8 @@ pub enum ProposalError {
     NoSeat {
         /// What was tried, the best first, and why not.
         tried: Vec<String>,
+        /// What would let them: a mirror image, or something narrow left out.
+        remedy: Option<String>,
     },
     /// The computation was asked to stop.
     #[error(transparent)]
@@ -189,6 +193,8 @@ fn told(size: [f64; 3]) -> String {
 
 /// A score below this is no seat: flat faces that slide.
 const LEAST: f64 = 0.02;
+/// A score below this is a weak one: what a mirror image would have is looked at.
+const WEAK: f64 = 0.1;
 /// A second best with this share of the score is nearly as good.
 const NEARLY: f64 = 0.8;
 /// A half that settles by more than this turn, or by this shift in D, is told of: 2 degrees, as much of an arm of half D.
@@ -208,7 +214,7 @@ pub fn propose(
 ) -> Result<Proposal, ProposalError> {
     let halves = halves::read(parts, settings, place, exec)?;
     exec.check()?;
-    let unit = halves.each_ref().map(middle_extent).into_iter().fold(f64::INFINITY, f64::min);
+    let unit = halves.each_ref().map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
     let pair = [&fixed, &moving];
     let told = Told { scale: unit, unit: design_unit(settings).symbol() };
@@ -258,13 +264,79 @@ pub fn propose(
         refused.sort_by(|a, b| a.by.total_cmp(&b.by));
         let refused = refused.into_iter().map(|refusal| refusal.why);
         let tried = candidates.iter().map(slack).chain(nowhere).chain(refused).collect();
-        return Err(ProposalError::NoSeat { tried });
+        let remedy = match mirrored(pair, settings, told, exec)? {
+            Some((_, told)) => Some(told),
+            None => obstacle(pair, settings, told, exec)?,
+        };
+        return Err(ProposalError::NoSeat { tried, remedy });
     };
     let mut doubts = doubts(&candidates, settings);
+    if best.score() < WEAK
+        && let Some((score, told)) = mirrored(pair, settings, told, exec)?
+        && score * NEARLY > best.score()
+    {
+        doubts.push(told);
+    }
     let text = file::text(parts, settings, best, *seat, unit);
     let problem = Draft::read(SourceText::new(place, text.clone()))?.build_on(exec)?.checked()?;
     doubts.extend(problem.design().unit.and_then(|unit| size_doubt(problem.design().width, unit)));
     Ok(Proposal { text, problem, candidates, doubts })
+}
+
+/// Parts in frames of their own as they seat best, if they do.
+fn seated(
+    pair: [&Half; 2],
+    settings: &Settings,
+    told: Told,
+    exec: &Exec,
+) -> Result<Option<Judged>, Cancelled> {
+    let facing = settings.facing.map(ways);
+    let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
+    let found = exec.each(places.len(), usize::MAX, "seats", |k, _| {
+        let search::Place { lie, offset, .. } = places[k];
+        judge(pair, lie, offset, &round_numbers(pair, lie), told)
+    });
+    let mut judged = found.into_iter().filter_map(Result::ok).collect();
+    rank(&mut judged, settings.free, told, exec)?;
+    Ok(judged.into_iter().next().filter(is_seat))
+}
+
+/// Whether the mirror image of the moving part docks, with which score, and that in words.
+fn mirrored(
+    [fixed, moving]: [&Half; 2],
+    settings: &Settings,
+    told: Told,
+    exec: &Exec,
+) -> Result<Option<(f64, String)>, Cancelled> {
+    let image = moving.reflected(|p| p * DVec3::new(-1.0, 1.0, 1.0));
+    let found = seated([fixed, &image], settings, told, exec)?;
+    Ok(found.filter(|found| found.score() >= WEAK).map(|found| {
+        let score = found.score();
+        let words = format!(
+            "a mirror image of the moving part would dock ({}; {score:.2}): was one of the two exported mirrored?",
+            found.lie
+        );
+        (score, words)
+    }))
+}
+
+/// Whether the parts would dock without something narrow that is in the way, in words.
+fn obstacle(
+    pair: [&Half; 2],
+    settings: &Settings,
+    told: Told,
+    exec: &Exec,
+) -> Result<Option<String>, Cancelled> {
+    let facing = settings.facing.map(ways);
+    let found = search::obstacle(pair, [&facing[0], &facing[1]], exec)?;
+    Ok(found.map(|(lie, found)| {
+        let turns = lie.turns();
+        let at = [0, 1].map(|k| {
+            let [x, y, z] = (told.scale * (turns[k].transpose() * found.at[k])).to_array().map(number);
+            format!("({x}, {y}, {z}) {}", told.unit)
+        });
+        format!("{} ({lie})", relief::in_words(&found, &at, told))
+    }))
 }
 
 fn is_seat(judged: &Judged) -> bool {
@@ -313,7 +385,7 @@ fn sort(found: Vec<Result<Judged, Refusal>>, judged: &mut Vec<Judged>, refused: 
 
 /// Whether the boxes of the parts overlap or nearly touch.
 fn are_near([fixed, moving]: [&Half; 2]) -> bool {
-    let ((a, b), (c, d)) = (around(fixed), around(moving));
+    let ((a, b), (c, d)) = (fixed.bounds(), moving.bounds());
     (c - b).max(a - d).max_element() < NEAR
 }
 

@@ -8,14 +8,14 @@
 //! A hollow counts by how much the half has to climb to leave it, and by how much of the parts lies over each other. Found in the unit
 //! of the smaller part's middle extent. Not promised: seats that are finer than a twentieth of that, turns that are no quarter turns.
 
-use super::relief::{self, Relief, Reliefs};
 use super::way::{Lie, Way};
-use crate::connector::Half;
+use crate::connector::{Half, Side};
+use crate::contact::relief::{self, InTheWay, MOST_RISE, Relief, Reliefs};
 use crate::exec::{Cancelled, Exec};
-use glam::DVec2;
+use glam::{DMat3, DVec2};
 
 /// Side of a first cell, and the work that all offsets may take: points of the moving part times offsets.
-const CELL: f64 = 0.05;
+const CELL: f64 = relief::NARROW;
 const MOST_WORK: f64 = 4e8;
 /// How much wider cells get where the work is more.
 const WIDER: f64 = 1.2;
@@ -28,10 +28,6 @@ const FINER: i32 = 4;
 /// Places that are looked at more closely, and those of them of one lie.
 const PLACES: usize = 10;
 const OF_ONE: usize = 2;
-/// How far off a rise is looked at, in cells.
-const REACHES: [i32; 2] = [3, 7];
-/// Rises beyond this count as this.
-const MOST_RISE: f32 = 0.5;
 /// Heights this near are equal.
 const LEVEL: f32 = 2e-3;
 
@@ -45,31 +41,69 @@ pub(super) struct Place {
 }
 
 /// The places worth judging, the most likely first; of turns of the moving half that look alike the first.
-pub(super) fn places(
-    [fixed, moving]: [&Half; 2],
+pub(super) fn places(halves: [&Half; 2], facing: [&[Way]; 2], exec: &Exec) -> Result<Vec<Place>, Cancelled> {
+    let cell = cell(halves, facing);
+    let found = scan(halves, facing, None, cell, exec)?;
+    let finer = exec.each(found.len(), usize::MAX, "places", |k, _| refined(halves, found[k], cell));
+    exec.check()?;
+    Ok(finer)
+}
+
+/// Something narrow of one half without which the halves would sink into each other, and how they lie then.
+pub(super) fn obstacle(
+    halves: [&Half; 2],
     facing: [&[Way]; 2],
     exec: &Exec,
+) -> Result<Option<(Lie, InTheWay)>, Cancelled> {
+    let cell = cell(halves, facing);
+    for side in [Side::Fixed, Side::Moving] {
+        for Place { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
+            let [top, bottom] = reliefs(halves, lie, cell);
+            let moved = ((offset - top.first + bottom.first) / cell).round().as_ivec2().to_array();
+            if let Some(found) = relief::in_the_way(&top, &bottom, moved, cell) {
+                return Ok(Some((lie, found)));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Both halves as they face each other.
+fn reliefs([fixed, moving]: [&Half; 2], lie: Lie, cell: f64) -> [Relief; 2] {
+    let turns = lie.turns();
+    [Relief::centered(fixed, &turns[0], 1.0, cell), Relief::centered(moving, &turns[1], -1.0, cell)]
+}
+
+/// The most likely places on the first lattice, with what is narrow of one half left out.
+fn scan(
+    [fixed, moving]: [&Half; 2],
+    facing: [&[Way]; 2],
+    without_narrow: Option<Side>,
+    cell: f64,
+    exec: &Exec,
 ) -> Result<Vec<Place>, Cancelled> {
-    let cell = cell([fixed, moving], facing);
     let broad = relief::broadest(fixed).min(relief::broadest(moving));
+    let seen = |half: &Half, side: Side, turn: &DMat3| {
+        let relief = Relief::centered(half, turn, if side == Side::Fixed { 1.0 } else { -1.0 }, cell);
+        if without_narrow == Some(side) { relief.without_narrow() } else { relief }
+    };
     let lies: Vec<[Way; 2]> =
         facing[0].iter().flat_map(|f| facing[1].iter().map(move |m| [*f, *m])).collect();
     let found = exec.each(lies.len(), usize::MAX, "facings", |number, exec| {
         let [f, m] = lies[number];
-        let top =
-            Relief::centered(fixed, &Lie::Facing { fixed: f, moving: m, turned: 0 }.turns()[0], 1.0, cell);
-        let (mut found, mut seen): (Vec<Place>, Vec<Relief>) = (Vec::new(), Vec::new());
+        let top = seen(fixed, Side::Fixed, &Lie::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
+        let (mut found, mut met): (Vec<Place>, Vec<Relief>) = (Vec::new(), Vec::new());
         for turned in 0..4 {
             if exec.is_cancelled() {
                 break;
             }
             let lie = Lie::Facing { fixed: f, moving: m, turned };
-            let bottom = Relief::centered(moving, &lie.turns()[1], -1.0, cell);
-            if !seen.iter().any(|relief| relief.is_like(&bottom)) {
+            let bottom = seen(moving, Side::Moving, &lie.turns()[1]);
+            if !met.iter().any(|relief| relief.is_like(&bottom)) {
                 found.extend(relief::with(&top, &bottom, |both| {
                     hollows(lie, [&top, &bottom], both, cell, broad)
                 }));
-                seen.push(bottom);
+                met.push(bottom);
             }
         }
         found
@@ -78,9 +112,7 @@ pub(super) fn places(
     let mut found: Vec<Place> = found.into_iter().flatten().collect();
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
     found.truncate(PLACES);
-    let finer = exec.each(found.len(), usize::MAX, "places", |k, _| refined([fixed, moving], found[k], cell));
-    exec.check()?;
-    Ok(finer)
+    Ok(found)
 }
 
 /// The cell with which all offsets are not too much work.
@@ -121,15 +153,8 @@ fn hollows(lie: Lie, [top, bottom]: [&Relief; 2], both: &Reliefs<'_>, cell: f64,
     let mut found: Vec<(f32, [i32; 2])> = Vec::new();
     for (i, j) in (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| (i, j))) {
         let Some((height, count)) = at(i, j) else { continue };
-        let (mut sum, mut worst, mut ways) = (0.0f32, f32::INFINITY, 0.0f32);
-        for reach in REACHES {
-            for (dx, dy) in [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)] {
-                // Beside each other nothing holds them.
-                let rise = at(i + reach * dx, j + reach * dy).map_or(-MOST_RISE, |(other, _)| other - height);
-                (sum, worst, ways) = (sum + rise.clamp(-MOST_RISE, MOST_RISE), worst.min(rise), ways + 1.0);
-            }
-        }
-        let score = sum / ways * (count as f32 * share).min(1.0);
+        let (climb, worst) = relief::climb([i, j], height, |[i, j]| Some(at(i, j)?.0));
+        let score = climb * (count as f32 * share).min(1.0);
         if score > 0.0 && worst > -0.1 * MOST_RISE {
             found.push((score, [i, j]));
         }

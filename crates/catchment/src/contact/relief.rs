@@ -8,9 +8,14 @@
 //! Sampled at points, so that a peg that fits its hole meets the rim where it stands between them. Therefore one of the two is worn by a
 //! point all around, first the fixed one, then the moving one, and the higher of both heights counts: a pin that wears away altogether still stops
 //! where its partner is worn. It finds places to look at, exact heights then judge them.
+//!
+//! [`Relief::without_narrow`] leaves out what is narrower than three points, a web or a pin. Where a half would sink into a seat without it,
+//! [`in_the_way`] says where that is.
 
-use crate::connector::{Half, Surface};
-use crate::contact::{Lattice, fill_convex};
+use super::Lattice;
+use super::raster::fill_convex;
+use super::told::Told;
+use crate::connector::{Half, Side};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 /// A facet counts where its normal's z is beyond this.
@@ -19,18 +24,18 @@ const LOOKS: f64 = 1e-6;
 const SHARED: f64 = 0.3;
 
 /// Heights over a lattice; −∞ where there is nothing.
-pub(super) struct Relief {
-    pub(super) first: DVec2,
-    pub(super) counts: [usize; 2],
-    pub(super) z: Vec<f32>,
+pub(crate) struct Relief {
+    pub(crate) first: DVec2,
+    pub(crate) counts: [usize; 2],
+    pub(crate) z: Vec<f32>,
     /// Points with a height.
-    pub(super) filled: usize,
+    pub(crate) filled: usize,
 }
 
 impl Relief {
     /// Of a half that a turn brings upright, seen from above (`up` 1) or below (−1, heights negated), over the points
     /// `first + cell·(i, j)`.
-    pub(super) fn of(
+    pub(crate) fn of(
         half: &Half,
         turn: &DMat3,
         up: f64,
@@ -69,7 +74,7 @@ impl Relief {
     }
 
     /// Over a lattice whose points lie evenly about the middle of the box around the half.
-    pub(super) fn centered(half: &Half, turn: &DMat3, up: f64, cell: f64) -> Self {
+    pub(crate) fn centered(half: &Half, turn: &DMat3, up: f64, cell: f64) -> Self {
         let (low, high) = plan_box(half, turn);
         // An odd number, so that middles of parts fall on points.
         let counts = [0, 1].map(|k| ((high[k] - low[k]) / cell).ceil() as usize / 2 * 2 + 1);
@@ -104,8 +109,26 @@ impl Relief {
         Self { first: self.first, counts: self.counts, z, filled: 0 }
     }
 
+    /// Every point as high as the highest of those around it.
+    fn grown(&self) -> Self {
+        let [wide, deep] = self.counts.map(signed);
+        let highest = |i: i32, j: i32| {
+            let around = (-1..=1).flat_map(|dj| (-1..=1).map(move |di| [i + di, j + dj]));
+            around.map(|at| self.at(at)).fold(f32::NEG_INFINITY, f32::max)
+        };
+        let z = (0..deep).flat_map(|j| (0..wide).map(move |i| (i, j))).map(|(i, j)| highest(i, j)).collect();
+        Self { first: self.first, counts: self.counts, z, filled: 0 }
+    }
+
+    /// Without what is narrower than three points: worn, then grown again.
+    pub(crate) fn without_narrow(&self) -> Self {
+        let mut opened = self.worn().grown();
+        opened.filled = opened.z.iter().filter(|z| **z > f32::NEG_INFINITY).count();
+        opened
+    }
+
     /// Whether two say the same.
-    pub(super) fn is_like(&self, other: &Self) -> bool {
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
         const SAME: f32 = 1e-4;
         self.counts == other.counts
             && self.z.iter().zip(&other.z).all(|(a, b)| a == b || (a - b).abs() < SAME)
@@ -113,29 +136,89 @@ impl Relief {
 }
 
 /// A number of points, to reckon with; lattices have few.
-pub(super) fn signed(count: usize) -> i32 {
+pub(crate) fn signed(count: usize) -> i32 {
     i32::try_from(count).unwrap_or(i32::MAX)
 }
 
 /// The box in plan view around a turned half.
-pub(super) fn plan_box(half: &Half, turn: &DMat3) -> (DVec2, DVec2) {
+pub(crate) fn plan_box(half: &Half, turn: &DMat3) -> (DVec2, DVec2) {
     let points = half.surfaces.iter().flat_map(|surface| &surface.vertices).map(|p| (*turn * *p).truncate());
     points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
 /// The area of the largest side of the box around a half: docking faces are broad.
-pub(super) fn broadest(half: &Half) -> f64 {
-    let (low, high) = half
-        .surfaces
-        .iter()
-        .map(Surface::bounds)
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
+pub(crate) fn broadest(half: &Half) -> f64 {
+    let (low, high) = half.bounds();
     let size = high - low;
     (size * size.zxy()).max_element()
 }
 
+/// Something narrow of one half, which alone keeps the other from sinking into a seat.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct InTheWay {
+    /// Whose it is.
+    pub(crate) side: Side,
+    /// Where it is touched, in the frame of the fixed half as it was turned, and the same place of the moving half in its own.
+    pub(crate) at: [DVec3; 2],
+    /// How much deeper the half would sink without it.
+    pub(crate) deeper: f64,
+}
+
+/// Side of a cell for [`in_the_way`], as a share of the smaller half's middle extent: what is narrower than three of them is narrow.
+pub(crate) const NARROW: f64 = 0.05;
+/// How far off a rise is looked at, in cells.
+pub(crate) const REACHES: [i32; 2] = [3, 7];
+/// Rises beyond this count as this.
+pub(crate) const MOST_RISE: f32 = 0.5;
+/// It would sink deeper by at least this many cells, and climb by so much of what counts when it is off.
+const DEEPER: f32 = 1.0;
+const CLIMBS: f32 = 0.02;
+
+/// Looks whether something narrow keeps the moving half, moved by whole cells, from a seat.
+pub(crate) fn in_the_way(top: &Relief, bottom: &Relief, moved: [i32; 2], cell: f64) -> Option<InTheWay> {
+    let (height, _) = with(top, bottom, |both| both.height(moved))?;
+    [Side::Fixed, Side::Moving].into_iter().find_map(|side| {
+        let opened = match side {
+            Side::Fixed => [Some(top.without_narrow()), None],
+            Side::Moving => [None, Some(bottom.without_narrow())],
+        };
+        let [f, m] = [opened[0].as_ref().unwrap_or(top), opened[1].as_ref().unwrap_or(bottom)];
+        let (without, (climb, worst)) = with(f, m, |both| Some((both.height(moved)?.0, both.climb(moved)?)))?;
+        let deeper = height - without;
+        if deeper < DEEPER * cell as f32 || climb < CLIMBS || worst < -0.1 * MOST_RISE {
+            return None;
+        }
+        // Of what is left out, where the halves as they are come nearest.
+        let narrow = |[i, j]: [i32; 2]| {
+            let at = [i + moved[0], j + moved[1]];
+            let (a, b) = (top.at(at), bottom.at([i, j]));
+            let is_gone = a + b > f.at(at) + m.at([i, j]) + 0.5 * deeper;
+            (is_gone && a + b > f32::NEG_INFINITY).then_some((a + b, [i, j], a, b))
+        };
+        let [wide, deep] = bottom.counts.map(signed);
+        let found = (0..deep).flat_map(|j| (0..wide).map(move |i| [i, j])).filter_map(narrow);
+        let (_, [i, j], a, b) = found.max_by(|one, other| one.0.total_cmp(&other.0))?;
+        let place = |relief: &Relief, [i, j]: [i32; 2], z: f32| {
+            (relief.first + cell * DVec2::new(f64::from(i), f64::from(j))).extend(f64::from(z))
+        };
+        let at = [place(top, [i + moved[0], j + moved[1]], a), place(bottom, [i, j], -b)];
+        Some(InTheWay { side, at, deeper: f64::from(deeper) })
+    })
+}
+
+/// The same in words, with both places as they are told.
+pub(crate) fn in_words(found: &InTheWay, at: &[String; 2], told: Told) -> String {
+    let InTheWay { side, deeper, .. } = found;
+    let (whose, [fixed, moving]) = (if *side == Side::Fixed { "fixed" } else { "moving" }, at);
+    format!(
+        "something narrow of the {whose} part is in the way, touched at {fixed} of the fixed and {moving} of the moving part as drawn: without it \
+         they would sink about {} deeper, into a seat",
+        told.length(*deeper)
+    )
+}
+
 /// Two reliefs of one cell.
-pub(super) struct Reliefs<'a> {
+pub(crate) struct Reliefs<'a> {
     fixed: [&'a Relief; 2],
     /// As it is, beside the worn fixed one; worn.
     moving: [Vec<([i32; 2], f32)>; 2],
@@ -143,7 +226,7 @@ pub(super) struct Reliefs<'a> {
 }
 
 /// Calls `with` with the reliefs of two halves, and of both as they are worn.
-pub(super) fn with<T>(fixed: &Relief, moving: &Relief, with: impl FnOnce(&Reliefs<'_>) -> T) -> T {
+pub(crate) fn with<T>(fixed: &Relief, moving: &Relief, with: impl FnOnce(&Reliefs<'_>) -> T) -> T {
     let fewest = (SHARED * fixed.filled.min(moving.filled) as f64).ceil().max(1.0) as usize;
     let worn = fixed.worn();
     with(&Reliefs { fixed: [&worn, fixed], moving: [moving.points(), moving.worn().points()], fewest })
@@ -152,7 +235,7 @@ pub(super) fn with<T>(fixed: &Relief, moving: &Relief, with: impl FnOnce(&Relief
 impl Reliefs<'_> {
     /// The height of first contact with the moving lattice moved by whole cells, and how many points both have; `None` where they
     /// share too few.
-    pub(super) fn height(&self, [dx, dy]: [i32; 2]) -> Option<(f32, usize)> {
+    pub(crate) fn height(&self, [dx, dy]: [i32; 2]) -> Option<(f32, usize)> {
         let (mut highest, mut most) = (f32::NEG_INFINITY, 0);
         for (fixed, points) in self.fixed.iter().zip(&self.moving) {
             let mut count = 0;
@@ -167,4 +250,23 @@ impl Reliefs<'_> {
         }
         (most >= self.fewest).then_some((highest, most))
     }
+
+    /// How much the height rises around an offset, on average, and at least; beside each other nothing holds the halves.
+    pub(crate) fn climb(&self, at: [i32; 2]) -> Option<(f32, f32)> {
+        let (height, _) = self.height(at)?;
+        Some(climb(at, height, |other| Some(self.height(other)?.0)))
+    }
+}
+
+/// How much heights rise around one of them, eight ways, near and farther off: on average, and at least.
+pub(crate) fn climb([i, j]: [i32; 2], height: f32, at: impl Fn([i32; 2]) -> Option<f32>) -> (f32, f32) {
+    let (mut sum, mut worst, mut ways) = (0.0f32, f32::INFINITY, 0.0f32);
+    for reach in REACHES {
+        for (dx, dy) in [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)] {
+            // Beside each other nothing holds them.
+            let rise = at([i + reach * dx, j + reach * dy]).map_or(-MOST_RISE, |other| other - height);
+            (sum, worst, ways) = (sum + rise.clamp(-MOST_RISE, MOST_RISE), worst.min(rise), ways + 1.0);
+        }
+    }
+    (sum / ways, worst)
 }
