@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::output::{check_apart, check_place, image, to_stderr, to_stdout, write_file};
 use catchment::design::{Complaint, LengthUnit, Quantity, Scale, Unit, parse_dofs};
 use catchment::pose::DofSet;
+use catchment::problem::ProblemError;
 use catchment::report::figure;
 use catchment::study::proposal::{Beside, Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
 use clap::{Args, ValueEnum};
@@ -253,10 +254,21 @@ fn refused(error: ProposalError) -> Failure {
 
 fn error_of(error: ProposalError) -> Failure {
     match error {
+        // There is no design yet in which the key could be written.
+        ProposalError::Problem(ProblemError::Findings(mut findings)) => {
+            for finding in &mut findings.list {
+                finding.message =
+                    finding.message.replace(IN_THE_DESIGN, "give --simplify \"0.01 mm\", which");
+            }
+            ProblemError::from(findings).into()
+        }
         ProposalError::Problem(problem) => problem.into(),
         other => other.into(),
     }
 }
+
+/// What a design would say of a file with too many triangles.
+const IN_THE_DESIGN: &str = "write simplify = \"0.01 mm\" beside the file, which";
 
 /// A part, as a design at `place` names it.
 fn part(path: &Path, place: &Path) -> Result<PartFile, Failure> {

@@ -329,6 +329,15 @@ fn files_are_placed_with_fewer_triangles() {
         let told = run(home.path(), &[&PARTS[..], &["-o", "e.toml", "--simplify", wrong]].concat());
         assert!(told.starts_with("exit 2") && told.contains("--simplify") && told.contains(words), "{told}");
     }
+    // Too many: the option is named, and not a key of a design that nobody wrote.
+    let mut many = vec![0; 84 + 50 * 200_001];
+    many[80..84].copy_from_slice(&200_001u32.to_le_bytes());
+    fs::write(home.path().join("many.stl"), many).unwrap();
+    let told = run(home.path(), &["place", "many.stl", "parts/plug.stl", "--unit=mm"]);
+    assert!(
+        told.starts_with("exit 2") && told.contains("--simplify") && !told.contains("beside the file"),
+        "{told}"
+    );
     let told =
         run(home.path(), &[&PARTS[..], &["--simplify=0.1 mm", "--with-fixed", "parts/plug.stl"]].concat());
     assert!(told.starts_with("exit 2") && told.contains("--with-fixed"), "{told}");

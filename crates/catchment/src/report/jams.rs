@@ -139,7 +139,7 @@ impl JamsReport {
             }
             said(text, "  out", &self.out(examined));
         }
-        let asked = self.settings.certified && jam.examined.is_some();
+        let asked = [self.settings.certified && jam.examined.is_some(), self.settings.resolution.is_some()];
         told.depth_lines(text, asked, jam.depth_at_least_d, jam.depth_on_grid_d);
         told.contact_lines(text, &jam.contacts);
     }

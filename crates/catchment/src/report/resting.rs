@@ -168,11 +168,11 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// Depths beside that of the way that was found; at least where that was `asked`.
+    /// Depths beside that of the way that was found: at least, and on a grid, where these were asked for.
     pub(super) fn depth_lines(
         self,
         text: &mut String,
-        asked: bool,
+        asked: [bool; 2],
         at_least: Option<f64>,
         on_grid: Option<f64>,
     ) {
@@ -180,11 +180,17 @@ impl<'a> Told<'a> {
             let depth = if depth < NOTHING { 0.0 } else { depth };
             let depth = super::text::rounded_down(depth * self.scale());
             said(text, "", &format!("by {depth} {} at least, certainly", self.unit()));
-        } else if asked {
+        } else if asked[0] {
             said(text, "", "how far at least is not certain");
         }
         if let Some(depth) = on_grid {
             said(text, "", &format!("by {}, the merge tree of the grid says", self.fine(depth)));
+        } else if asked[1] {
+            said(
+                text,
+                "",
+                "by the grid no depth is told: it rests outside the error box, or in the basin of what lies beside",
+            );
         }
     }
 

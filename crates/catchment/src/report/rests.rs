@@ -178,7 +178,7 @@ impl RestsReport {
             friction_line(text, examined, 0.0);
             said(text, "  depth", &self.out(rest));
         }
-        let asked = self.settings.certified && rest.examined.is_some();
+        let asked = [self.settings.certified && rest.examined.is_some(), self.settings.resolution.is_some()];
         told.depth_lines(text, asked, rest.depth_at_least_d, rest.depth_on_grid_d);
         told.contact_lines(text, &rest.contacts);
     }

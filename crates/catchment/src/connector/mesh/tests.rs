@@ -173,6 +173,12 @@ fn a_simplified_surface_keeps_to_its_tolerance() {
             ready.surface.volume()
         );
     }
+    // Who lets the surface move farther gets no more triangles.
+    let left = |tolerance: f64| {
+        treated(&dome, Treatment { simplify: Some(tolerance), ..Treatment::DEFAULT }).unwrap().triangles
+    };
+    let left: Vec<usize> = (0..24).map(|k| left(2e-4 * 1.25f64.powi(k))).collect();
+    assert!(left.is_sorted_by(|a, b| a >= b) && left[0] > 4 * left[23], "{left:?}");
     let none = treated(&block([0.0; 3], [1.0; 3]), Treatment { simplify: Some(1e-3), ..Treatment::DEFAULT })
         .unwrap();
     assert!(none.repairs.simplified == Some([12, 12]) && none.repairs.deviation < 1e-15);

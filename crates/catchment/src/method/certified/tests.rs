@@ -10,6 +10,7 @@ use crate::landscape::{Landscape, Resolution};
 use crate::method::{descent, flood};
 use crate::pose::{CorPose, DofSet, PoseError};
 use crate::problem::Draft;
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -160,6 +161,33 @@ fn no_motion_contradicts_a_planar_certificate() {
     }
 }
 
+/// The other designs whose shares the guide tells: other slopes, another centre, spatial halves over two errors and three, a dock of the gallery.
+#[test]
+fn no_motion_contradicts_the_other_certificates() {
+    let planar = |aspect_ratio: f64, cor: f64| {
+        let mut alignment = Alignment::default_for(Some(Family::XFace));
+        alignment.center_of_rotation = cor;
+        let spec = FamilySpec::new(Family::XFace).with_aspect_ratio(aspect_ratio);
+        Pair::new(&Connector::of_family(&spec, alignment.mount).unwrap(), &alignment)
+    };
+    let [x, y, yaw] = [Dof::X, Dof::Y, Dof::Yaw];
+    let charger = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/gallery/pyramid-charger.toml");
+    let charger = Draft::open(&charger).and_then(Draft::build).unwrap();
+    for (pair, boxes, least) in [
+        (&planar(2.0, 0.5), 20_000, 0.4),
+        (&planar(0.25, 0.5), 20_000, 0.4),
+        (&planar(1.0, 0.0), 20_000, 0.4),
+        (&pair_of(Family::XFace3d, &[x, y], 0.0), 10_000, 0.8),
+        (&narrow(Family::XFace3d, 0.0, &[(x, 0.5), (y, 0.5), (yaw, 0.52)]), 30_000, 0.2),
+        (charger.pair(), 40_000, 0.3),
+    ] {
+        let found = certified(pair, boxes);
+        let motions = motions();
+        let told = contradicts_nothing(pair, &found, motions);
+        assert!(told as f64 > least * motions as f64, "{told} of {motions}: {:?}", found.certificate);
+    }
+}
+
 /// What a budget leaves undecided is undecided, and nothing of what it says is wrong.
 #[test]
 fn a_budget_ends_it() {
@@ -294,7 +322,7 @@ fn motions_never_go_back_along_a_bearing() {
 #[test]
 fn no_trial_of_an_engine_contradicts() {
     for (file, labelled) in [("x-face-3d-cor0-xy.json", 150), ("pyramid-ar1-cor0-xyyaw.json", 10)] {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../reference/mujoco").join(file);
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../reference/mujoco").join(file);
         let set: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
         let family = Family::ALL.into_iter().find(|family| set["family"] == family.name()).unwrap();
         let mut alignment = Alignment::default_for(Some(family));
@@ -372,6 +400,11 @@ fn five_errors_leave_an_inner_set() {
         }
     }
     let found = certified(&pair, 14_000).certificate;
+    for _ in 0..motions() {
+        let within = pair.alignment.half_ranges.map(|range| found.window * range * (2.0 * number() - 1.0));
+        let end = follower.follow(&PoseError::from_array(within));
+        assert_eq!(end.outcome, Outcome::Aligned, "{within:?}");
+    }
     assert!(found.yes > 0.0 && found.measures[0] > 1e-16 && found.no == 0.0, "{found:?}");
     assert!(found.retention_at_least > 1e-3, "{found:?}");
 }
@@ -401,11 +434,14 @@ fn a_ball_is_held_by_the_rim_of_its_pit() {
     );
     let problem = Draft::read(SourceText::new("ball.toml", text)).and_then(Draft::build).unwrap();
     let Certificate { retention_at_least: least, retention_at_most: most, .. } =
-        certified(problem.pair(), 3000).certificate;
+        certified(problem.pair(), 12_000).certificate;
     let closed = depth + radius - f64::sqrt(2.0) * radius;
     // Facets that stand for the ball lie within it, by no more than their chord error where it touches.
-    assert!(0.0 < least && least <= closed + 2.0 * chord, "{least} {closed}");
-    assert!(most.is_some_and(|most| most >= closed - 2.0 * chord), "{most:?} {closed}");
+    let most = most.unwrap();
+    assert!(
+        0.95 * closed <= least && least <= most && (most - closed).abs() <= 2.0 * chord,
+        "{least} {closed} {most}"
+    );
 }
 
 #[test]

@@ -114,11 +114,12 @@ fn subtitle(design: &Design, found: &Slices) -> String {
 
 /// The numbers of a slice, over its map.
 fn caption(svg: &mut Svg, slice: &Slice, rect: Rect) {
-    let sum =
-        format!("Sum {} {} ({})", significant(slice.sum.sum), slice.sum.unit(), percent(slice.sum.fraction));
-    let y = rect.y - 6.0;
-    svg.text([rect.x + 1.0, y], TICK, Anchor::Start, INK, &sum);
+    let sum = format!("Sum {} {}", significant(slice.sum.sum), slice.sum.unit());
+    let share = format!("{sum} ({})", percent(slice.sum.fraction));
     let onaa = format!("ONAA {:.4}", slice.onaa.edge);
+    let has_room = width_of(&share, TICK) + width_of(&onaa, TICK) + LABEL < rect.w;
+    let y = rect.y - 6.0;
+    svg.text([rect.x + 1.0, y], TICK, Anchor::Start, INK, if has_room { &share } else { &sum });
     svg.text([rect.x + rect.w - 1.0, y], TICK, Anchor::End, INK, &onaa);
 }
 

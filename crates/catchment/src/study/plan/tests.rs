@@ -280,7 +280,7 @@ fn a_bracket_has_the_trials_that_were_asked_for() {
     let about = |size: f64| PoseError::from_array([size; 5]);
     for (design, accuracy, trials) in [
         ("pyramid.toml", about(0.02), 40),
-        ("x-face-3d.toml", about(0.05), 60),
+        ("x-face-3d.toml", about(0.02), 30),
         ("v-face.toml", PoseError { x: 0.08, pitch: 0.1, ..PoseError::default() }, 33),
     ] {
         let problem = problem(design);
