@@ -226,7 +226,8 @@ impl fmt::Display for Warning {
                 axes.join(", ")
             ),
             Self::Undecided { cells } => {
-                write!(f, "{cells} poses undecided: their motion could not be followed to its end")
+                let (poses, their) = if *cells == 1 { ("pose", "its") } else { ("poses", "their") };
+                write!(f, "{cells} {poses} undecided: {their} motion could not be followed to its end")
             }
             Self::UndecidedSample { motions, of } => write!(
                 f,

@@ -271,9 +271,20 @@ fn a_certificate_tells_three_parts_of_the_error_box_and_how_well_the_seat_holds(
     let part = |name: &str| report["certificate"][name].as_f64().unwrap();
     assert!((part("yes") + part("no") + part("undecided") - 1.0).abs() < 1e-9, "{report}");
     assert!(part("no") > 0.1 && part("retention_at_least") <= part("retention_at_most"), "{report}");
-    // Cells are told only where all of their poses are certain.
-    assert!(report["acceptance"]["fraction"].as_f64().unwrap() <= part("yes") + 1e-9);
+    // Cells are told only where all of their poses are certain; the Sum is at least what docks, at most that and what is undecided.
+    let (found, measures) = (&report["acceptance"], &report["certificate"]["measures"]);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!(number(&found["sum_grid"]) <= number(&found["sum"]) + 1e-9, "{found}");
+    assert_eq!(found["sum"], measures[0]);
+    let most = number(&measures[0]) + number(&measures[2]);
+    assert!((number(&found["sum_bracket"][1]) - most).abs() < 1e-12, "{found}");
+    let followed =
+        super::json(home.path(), &["run", "v.toml", "--samples", "4000", "--resolution", "64", "--json"]);
+    let [lo, hi] = [0, 1].map(|k| number(&followed["acceptance"]["sum_ci95"][k]));
+    assert!(number(&found["sum"]) < hi && lo < most, "{found} {lo} {hi}");
     let said = run(home.path(), &how);
+    assert!(said.contains("for certain: ") && !said.contains("one cell of doubt"), "{said}");
+    assert!(!said.contains("too coarse") && !said.contains("without an interval"), "{said}");
     assert!(["all dock", "none docks", "retention"].iter().all(|word| said.contains(word)), "{said}");
     let asked = [&how[..], &["--require", "certificate.undecided<=0"]].concat();
     assert!(run(home.path(), &asked).contains("not met: certificate.undecided <= 0"));

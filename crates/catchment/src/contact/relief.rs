@@ -100,31 +100,25 @@ impl Relief {
 
     /// Every point as low as the lowest of those around it.
     fn worn(&self) -> Self {
-        let [wide, deep] = self.counts.map(signed);
-        let lowest = |i: i32, j: i32| {
-            let around = (-1..=1).flat_map(|dj| (-1..=1).map(move |di| [i + di, j + dj]));
-            around.map(|at| self.at(at)).fold(f32::INFINITY, f32::min)
-        };
-        let z = (0..deep).flat_map(|j| (0..wide).map(move |i| (i, j))).map(|(i, j)| lowest(i, j)).collect();
-        Self { first: self.first, counts: self.counts, z, filled: 0 }
+        self.around(f32::min)
     }
 
-    /// Every point as high as the highest of those around it.
-    fn grown(&self) -> Self {
+    /// Every point as `pick` chooses from those around it.
+    fn around(&self, pick: impl Fn(f32, f32) -> f32) -> Self {
         let [wide, deep] = self.counts.map(signed);
-        let highest = |i: i32, j: i32| {
+        let picked = |i: i32, j: i32| {
             let around = (-1..=1).flat_map(|dj| (-1..=1).map(move |di| [i + di, j + dj]));
-            around.map(|at| self.at(at)).fold(f32::NEG_INFINITY, f32::max)
+            around.fold(self.at([i, j]), |picked, at| pick(picked, self.at(at)))
         };
-        let z = (0..deep).flat_map(|j| (0..wide).map(move |i| (i, j))).map(|(i, j)| highest(i, j)).collect();
-        Self { first: self.first, counts: self.counts, z, filled: 0 }
+        let z: Vec<f32> =
+            (0..deep).flat_map(|j| (0..wide).map(move |i| (i, j))).map(|(i, j)| picked(i, j)).collect();
+        let filled = z.iter().filter(|z| **z > f32::NEG_INFINITY).count();
+        Self { first: self.first, counts: self.counts, z, filled }
     }
 
     /// Without what is narrower than three points: worn, then grown again.
     pub(crate) fn without_narrow(&self) -> Self {
-        let mut opened = self.worn().grown();
-        opened.filled = opened.z.iter().filter(|z| **z > f32::NEG_INFINITY).count();
-        opened
+        self.worn().around(f32::max)
     }
 
     /// Whether two say the same.

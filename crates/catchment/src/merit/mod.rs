@@ -174,7 +174,9 @@ pub fn doubts(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<Warning>, Canc
             warnings.push(Warning::TouchesBorder { axes });
         }
         let tolerable = tolerance::around_zero(grid);
-        let holds = |cell: &usize| acceptance.outcomes[*cell] == Outcome::Aligned;
+        // What is undecided may hold.
+        let may = [Outcome::Aligned, Outcome::Undecided];
+        let holds = |cell: &usize| may.contains(&acceptance.outcomes[*cell]);
         if !tolerable.is_empty() && !tolerable.iter().any(holds) {
             warnings.push(Warning::MatedPoseNotAccepted);
         }

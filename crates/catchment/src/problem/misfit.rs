@@ -22,6 +22,9 @@ use glam::{DMat3, DVec2, DVec3};
 /// A mirror image has to lie deeper than the halves as drawn by so much to be worth a word, in D.
 const DEEPER: f64 = 0.01;
 
+/// Cells across either half, at most, of the lattice on which something narrow is looked for.
+const MOST_CELLS: f64 = 400.0;
+
 /// What helps beside what the problem says itself.
 pub(super) fn advice(
     connector: &Connector,
@@ -57,6 +60,9 @@ pub(super) fn advice(
 fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     let halves = [&connector.fixed, &connector.moving];
     let cell = relief::NARROW * halves.map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
+    // Beside a plate a pin is narrow by itself.
+    let wide = halves.map(Half::bounds).map(|(low, high)| (high - low).truncate().max_element());
+    let cell = wide.into_iter().map(|wide| wide / MOST_CELLS).fold(cell, f64::max);
     let top = Relief::centered(halves[0], &DMat3::IDENTITY, 1.0, cell);
     let bottom = Relief::centered(halves[1], &DMat3::IDENTITY, -1.0, cell);
     let moved = ((bottom.first - top.first) / cell).round().as_ivec2().to_array();

@@ -35,7 +35,10 @@ impl Answer {
         if let Some(partition) = &self.by_products.partition {
             report.partition = Some(PartitionReport::new(partition));
         }
-        report.certificate = self.by_products.certificate;
+        report = match self.by_products.certificate {
+            Some(found) => report.with_certificate(found),
+            None => report,
+        };
         report.joined = self.by_products.joined;
         if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));

@@ -107,7 +107,8 @@ impl Unit {
 /// The accepted set in numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AcceptanceReport {
-    /// The measure of the accepted set, in `unit`: the unbiased estimate where there is a `sample`, else `sum_grid`.
+    /// The measure of the accepted set, in `unit`: the unbiased estimate where there is a `sample`, what certainly docks where there is a `certificate`, else
+    /// `sum_grid`.
     pub sum: f64,
     /// Unit of `sum`, like `D²·rad³`.
     pub unit: String,
@@ -116,6 +117,7 @@ pub struct AcceptanceReport {
     pub sum_ci95: Option<[f64; 2]>,
     /// The measure of the accepted cells; of listed poses, their share of the error box.
     pub sum_grid: f64,
+    /// Where there is a `certificate`, what certainly docks, and that with what is undecided. Else
     /// `sum_grid` without the accepted cells that touch a rejected one, and with the rejected cells that touch an
     /// accepted one: the doubt of resolution, no confidence interval. Null for listed poses.
     pub sum_bracket: Option<[f64; 2]>,
@@ -307,6 +309,19 @@ impl Report {
             seat: None,
         };
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
+    }
+
+    /// Adds what is certain: the Sum is at least what docks, and at most that and what is undecided.
+    #[must_use]
+    pub(super) fn with_certificate(mut self, found: Certificate) -> Self {
+        let [docks, _, open] = found.measures;
+        let acceptance = &mut self.body.acceptance;
+        acceptance.sum_bracket = Some([docks, docks + open]);
+        if acceptance.sample.is_none() {
+            (acceptance.sum, acceptance.fraction) = (docks, found.yes);
+        }
+        self.body.certificate = Some(found);
+        self
     }
 
     /// Adds the success probability for a distribution of errors.

@@ -185,7 +185,8 @@ fn acceptance(text: &mut String, report: &Report) {
         } else {
             String::new()
         };
-        row(text, "", &format!("{cells}one cell of doubt: {} … {}", significant(lo), significant(hi)));
+        let what = if report.certificate.is_some() { "for certain" } else { "one cell of doubt" };
+        row(text, "", &format!("{cells}{what}: {} … {}", significant(lo), significant(hi)));
     }
     if let Some(sample) = &a.sample {
         let [lo, hi] = sample.differing_ci95.map(percent);
@@ -244,6 +245,8 @@ fn tolerances(text: &mut String, report: &Report) {
         .collect();
     if report.tolerances.iter().all(|t| t.followed) {
         line(text, "  each alone, by poses followed exactly along its axis");
+    } else if report.certificate.is_some() {
+        line(text, "  each at least, as far as whole cells dock for certain");
     } else {
         wrapped(text, "  each ± half a cell: ", &half.join(", "));
     }

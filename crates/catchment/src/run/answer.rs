@@ -87,10 +87,12 @@ impl Answer {
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = self.merits.warnings.clone();
         let descended = self.run.method.follows().is_some() && self.run.method.name() == "descent";
+        // What is certain says itself how much it leaves open.
+        let is_certain = self.by_products.certificate.is_some();
         match &self.corrected {
             Some(corrected) => {
                 let ([lo, hi], sum_grid) = (corrected.found.ci95, self.merits.sum.sum);
-                if !(lo..=hi).contains(&sum_grid) {
+                if !is_certain && !(lo..=hi).contains(&sum_grid) {
                     warnings.push(Warning::OutsideSample { sum_grid, ci95: [lo, hi] });
                 }
                 let motions = corrected.found.strata.iter().map(|stratum| stratum.undecided).sum();
@@ -98,7 +100,7 @@ impl Answer {
                     warnings.push(Warning::UndecidedSample { motions, of: corrected.found.descents });
                 }
             }
-            None if !descended && self.grid().is_some() => warnings.push(Warning::NoInterval),
+            None if !(descended || is_certain) && self.grid().is_some() => warnings.push(Warning::NoInterval),
             None => {}
         }
         if let Some(Err(error)) = &self.window {

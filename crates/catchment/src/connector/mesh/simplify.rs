@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   mesh ──2ᵏ──▶ ──2ᵏ⁺¹──▶ ──2ᵏ⁺²──▶ … ──▶ 2ⁿ ≤ what was asked     each from the one before: the whole is looked at once or twice
-//!                                 └── the last that lies near enough to the mesh, both ways
+//!                                 └── the last that lies near enough to the mesh, both ways ──2ᵏ⁺²·√2──▶ if that does, too
 //! ```
 //!
 //! `manifold-rust` collapses edges whose removal moves the surface by less than a tolerance. What comes out is not believed: its distance from the surface
@@ -35,29 +35,18 @@ pub(super) struct Simplified {
 
 /// Simplifies a mesh with which nothing is wrong; the surface moves by no more than `most`, in its coordinates.
 pub(super) fn simplified(mesh: &Indexed, most: f64, scale: f64) -> Result<Simplified, Vec<MeshProblem>> {
-    let refused = vec![MeshProblem::NotSimplified { most: most * scale }];
-    let given = MeshGL64 {
-        num_prop: 3,
-        vert_properties: mesh.vertices.iter().flat_map(DVec3::to_array).collect(),
-        tri_verts: mesh.triangles.iter().flatten().map(|k| u64::from(*k)).collect(),
-        ..MeshGL64::default()
-    };
-    let whole = Manifold::from_mesh_gl64(&given);
-    drop(given);
-    if whole.status() != Error::NoError {
-        return Err(refused);
-    }
+    let refused = || vec![MeshProblem::NotSimplified { most: most * scale }];
+    let mut fewer = manifold(mesh).ok_or_else(refused)?;
     let last = most.log2().floor() as i32;
     let (low, high) = mesh.bounds();
     let first = ((FIRST * (high - low).max_element()).log2().floor() as i32).min(last + 1 - LEAST);
-    let (mut fewer, mut chain) = (whole, Vec::new());
+    let mut chain = Vec::new();
     for tolerance in (first..=last).map(|k| f64::from(k).exp2()) {
         fewer = fewer.simplify(tolerance);
-        if fewer.status() != Error::NoError || fewer.is_empty() {
-            break;
-        }
-        chain.push(Indexed::made(&fewer.get_mesh_gl64(-1), mesh.tolerance));
+        let Some(result) = indexed(&fewer, mesh.tolerance) else { break };
+        chain.push((tolerance, result));
     }
+    drop(fewer);
     let near_enough = |result: &Indexed| {
         let deviation = one_sided(mesh, result, most);
         let deviation =
@@ -65,10 +54,33 @@ pub(super) fn simplified(mesh: &Indexed, most: f64, scale: f64) -> Result<Simpli
         let is_sound = || check::problems(result, &Sides::of(&result.triangles)).is_empty();
         (deviation <= most && is_sound()).then_some(deviation)
     };
-    while let Some(mesh) = chain.pop() {
-        if let Some(deviation) = near_enough(&mesh) {
-            return Ok(Simplified { mesh, deviation });
-        }
+    while let Some((tolerance, result)) = chain.pop() {
+        let Some(deviation) = near_enough(&result) else { continue };
+        // Twice as much was too much; half of that may do.
+        let tolerance = tolerance * std::f64::consts::SQRT_2;
+        let farther = manifold(&result).filter(|_| tolerance <= most).map(|whole| whole.simplify(tolerance));
+        let farther = farther.and_then(|fewer| indexed(&fewer, mesh.tolerance));
+        let farther =
+            farther.and_then(|mesh| near_enough(&mesh).map(|deviation| Simplified { mesh, deviation }));
+        return Ok(farther.unwrap_or(Simplified { mesh: result, deviation }));
     }
-    Err(refused)
+    Err(refused())
+}
+
+/// The library's form of a mesh, if it takes it for a solid.
+fn manifold(mesh: &Indexed) -> Option<Manifold> {
+    let given = MeshGL64 {
+        num_prop: 3,
+        vert_properties: mesh.vertices.iter().flat_map(DVec3::to_array).collect(),
+        tri_verts: mesh.triangles.iter().flatten().map(|k| u64::from(*k)).collect(),
+        ..MeshGL64::default()
+    };
+    let whole = Manifold::from_mesh_gl64(&given);
+    (whole.status() == Error::NoError).then_some(whole)
+}
+
+/// Ours of the library's, if there is anything left.
+fn indexed(found: &Manifold, tolerance: f64) -> Option<Indexed> {
+    let is_solid = found.status() == Error::NoError && !found.is_empty();
+    is_solid.then(|| Indexed::made(&found.get_mesh_gl64(-1), tolerance))
 }

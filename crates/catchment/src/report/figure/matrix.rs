@@ -178,7 +178,7 @@ mod tests {
         let count = |words: &str| picture.svg().matches(words).count();
         // Ten maps and the halves; one label per row and column, so roll stands at both.
         assert_eq!((count("<image"), count("ONAA 0."), count("roll [deg]"), count("x [mm]")), (11, 10, 2, 1));
-        assert!(count("0.2 … 0.39") == 1 && count("D·rad (") == 6);
+        assert!(count("0.2 … 0.39") == 1 && count("D·rad") == 6);
     }
 
     #[test]

@@ -10,9 +10,13 @@ pub(super) fn lines(text: &mut String, found: &Certificate, report: &Report) {
     let unit = &report.acceptance.unit;
     let [yes, no, open] = found.measures;
     let boxes = format!("{} boxes", grouped(found.boxes));
-    row(text, "all dock", &format!("{} of the error box, {yes:.4} {unit}   ({boxes})", percent(found.yes)));
-    row(text, "none docks", &format!("{}, {no:.4} {unit}", percent(found.no)));
-    row(text, "undecided", &format!("{}, {open:.4} {unit}", percent(found.undecided)));
+    row(
+        text,
+        "all dock",
+        &format!("{} of the error box, {} {unit}   ({boxes})", percent(found.yes), significant(yes)),
+    );
+    row(text, "none docks", &format!("{}, {} {unit}", percent(found.no), significant(no)));
+    row(text, "undecided", &format!("{}, {} {unit}", percent(found.undecided), significant(open)));
     if found.window > 0.0 {
         let alignment = &report.design.alignment;
         let side = |dof: Dof| {

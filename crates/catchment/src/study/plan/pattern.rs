@@ -103,8 +103,10 @@ const LOOKS: usize = 48;
 const HALVINGS: usize = 20;
 /// Points of a bracket are at least so many accuracies from the border: a little more than the two from which a trial decides.
 const TOLD_APART: f64 = 2.02;
+/// Of more than two errors the nearest border may lie in directions that were not looked in: so much farther.
+const LEEWAY: f64 = 1.25;
 /// How often a point that is nearer than that is moved out.
-const MOVES: usize = 4;
+const MOVES: usize = 6;
 /// One trial in so many is a control, far inside or far outside.
 const CONTROLS: usize = 8;
 /// Directions that are looked at for each line that is wanted.
@@ -343,9 +345,11 @@ impl Maker<'_> {
             (0..5).map(rate).sum::<f64>().sqrt()
         };
         let inverse = |rate: f64| if rate > 0.0 { rate.recip() } else { 0.0 };
-        let mut apart = (TOLD_APART * inverse(speed(self.accuracy.to_array())))
+        let is_wide = self.problem.alignment().free.len() > 2;
+        let wanted = TOLD_APART * if is_wide { LEEWAY } else { 1.0 };
+        let mut apart = (wanted * inverse(speed(self.accuracy.to_array())))
             .max(inverse(speed(resolution.map(Option::unwrap_or_default))));
-        let search = Search::new(self.problem, &self.accuracy, 2.0 * TOLD_APART);
+        let search = Search::new(self.problem, &self.accuracy, 2.0 * wanted);
         let random = Stream::new(self.seed).branch(2).branch(number as u64);
         for _ in 0..MOVES {
             let t = border + sign * apart;
@@ -355,8 +359,8 @@ impl Maker<'_> {
             let error = self.scaled(along, t);
             let docks = judge.docks(&error);
             match search.nearest(judge, &error, docks, None, random) {
-                Some(found) if found.sigmas < LIMIT => {
-                    apart *= (TOLD_APART / found.sigmas).clamp(1.05, 2.0);
+                Some(found) if found.sigmas < wanted * LIMIT / TOLD_APART => {
+                    apart *= (wanted / found.sigmas).clamp(1.05, 2.0);
                 }
                 _ => break,
             }
