@@ -263,6 +263,12 @@ fn a_mirrored_part_is_told_as_one() {
     let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
     let told = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat());
     assert!(told.starts_with("exit 0") && !told.contains("mirror"), "{told}");
+    // Where it is corrected by a few millimetres, errors are not looked at up to 30.
+    let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    assert!(
+        text.contains("A few times as far as each alone is corrected.") && text.contains("\nx = 0.125 # D"),
+        "{text}"
+    );
     let mirrored = recess.map(|outline| outline.map(|[x, y]| [-x, y])).map(|[a, b, c, d]| [d, c, b, a]);
     fs::write(home.path().join("moving.obj"), on_a_plate(&mirrored)).unwrap();
     let told = run(home.path(), &[&parts[..], &["-o", "m.toml"]].concat()).replace("\n        ", " ");

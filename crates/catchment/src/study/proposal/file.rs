@@ -96,13 +96,14 @@ pub(super) fn halves(parts: &[PartFile; 2], settings: &Settings) -> String {
     text
 }
 
-/// The design; lengths of `judged` times `scale` are in its unit.
+/// The design; lengths of `judged` times `scale` are in its unit, and errors are looked at up to these shares of 1 D and 90 degrees.
 pub(super) fn text(
     parts: &[PartFile; 2],
     settings: &Settings,
     judged: &Judged,
     seat: Seat,
     scale: f64,
+    ranges: &[f64; 5],
 ) -> String {
     let unit = design_unit(settings);
     let width = judged.width * scale;
@@ -169,10 +170,24 @@ pub(super) fn text(
         }
     }
     alignment(&mut line, seat, settings, unit);
+    line("\n# Up to where errors are looked at, to both sides.");
+    if seat.free.iter().any(|dof| ranges[dof.index()] < 1.0) {
+        line("# A few times as far as each alone is corrected.");
+    }
+    line("[errors]");
+    for dof in seat.free.iter() {
+        let share = ranges[dof.index()];
+        let range = if dof.is_rotation() {
+            format!("\"{} deg\"", number(90.0 * share, 1e-6))
+        } else {
+            format!("{} # D", decimal(number(share, 1e-9)))
+        };
+        line(&format!("{} = {range}", dof.name()));
+    }
     text
 }
 
-/// `[alignment]` and `[errors]`.
+/// `[alignment]` and `[docked]`.
 fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &Settings, unit: LengthUnit) {
     line("\n[alignment]");
     let left: DofSet = Dof::ALL
@@ -218,12 +233,6 @@ fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &Settings, unit:
         } else {
             format!("{} = {} # D", dof.name(), decimal(number(play, 1e-6)))
         });
-    }
-    line("\n# Up to where errors are looked at, to both sides.");
-    line("[errors]");
-    for dof in seat.free.iter() {
-        let range = if dof.is_rotation() { "\"90 deg\"" } else { "1.0 # D" };
-        line(&format!("{} = {range}", dof.name()));
     }
 }
 

@@ -24,12 +24,13 @@ mod way;
 
 pub use way::{Lie, Way};
 
+use crate::acceptance::Outcome;
 use crate::connector::Half;
 use crate::contact::relief;
 use crate::contact::told::{Told, number};
 use crate::design::{LengthUnit, SourceText};
 use crate::exec::{Cancelled, Exec};
-use crate::pose::{DofSet, PoseError};
+use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::{Draft, Problem, ProblemError};
 use glam::{DMat3, DVec2, DVec3};
 use halves::design_unit;
@@ -277,10 +278,47 @@ pub fn propose(
     {
         doubts.push(told);
     }
-    let text = file::text(parts, settings, best, *seat, unit);
-    let problem = Draft::read(SourceText::new(place, text.clone()))?.build_on(exec)?.checked()?;
+    let text = |ranges: &[f64; 5]| file::text(parts, settings, best, *seat, unit, ranges);
+    let problem = |text: &str| -> Result<Problem, ProblemError> {
+        Draft::read(SourceText::new(place, text))?.build_on(exec)?.checked()
+    };
+    let whole = text(&[1.0; 5]);
+    let wide = problem(&whole)?;
+    let ranges = ranges(&wide, exec)?;
+    let (text, problem) = if ranges == [1.0; 5] {
+        (whole, wide)
+    } else {
+        let text = text(&ranges);
+        let problem = problem(&text)?;
+        (text, problem)
+    };
     doubts.extend(problem.design().unit.and_then(|unit| size_doubt(problem.design().width, unit)));
     Ok(Proposal { text, problem, candidates, doubts })
+}
+
+/// Up to where errors are worth looking at, as shares of what they are looked at in first: four times as far as each alone is corrected.
+fn ranges(problem: &Problem, exec: &Exec) -> Result<[f64; 5], Cancelled> {
+    const LOOKS: i32 = 5;
+    let alignment = problem.alignment();
+    let sides: Vec<(Dof, f64)> = alignment.free.iter().flat_map(|dof| [(dof, -1.0), (dof, 1.0)]).collect();
+    let found = exec.each(sides.len(), usize::MAX, "errors", |k, exec| {
+        let (dof, sign) = sides[k];
+        let docks = |share: &f64| {
+            let mut error = [0.0; 5];
+            error[dof.index()] = 0.25 * sign * share * alignment.half_range(dof);
+            exec.is_cancelled() || problem.follow(&PoseError::from_array(error)).outcome == Outcome::Aligned
+        };
+        let mut shares = (0..LOOKS).map(|k| f64::from(-k).exp2());
+        let least = f64::from(1 - LOOKS).exp2();
+        shares.find(docks).unwrap_or(least)
+    });
+    exec.check()?;
+    let mut ranges = [1.0; 5];
+    for dof in alignment.free.iter() {
+        let of = sides.iter().zip(&found).filter(|((side, _), _)| *side == dof).map(|(_, share)| *share);
+        ranges[dof.index()] = of.fold(0.0, f64::max);
+    }
+    Ok(ranges)
 }
 
 /// Parts in frames of their own as they seat best, if they do.
