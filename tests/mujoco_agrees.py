@@ -43,7 +43,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> np.ndarray:
     return z @ y @ x
 
 
-def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: float, above: float, symmetry: int) -> bool:
+def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: float, above: float, symmetry: int, play: list[float]) -> bool:
     """Whether a pose error ends aligned."""
     turned = rotation(*pose[2:])
     quaternion = np.zeros(4)
@@ -65,7 +65,7 @@ def drop(model: mujoco.MjModel, data: mujoco.MjData, pose: list[float], cor: flo
             np.arccos(np.clip((np.trace(data.site_xmat[site].reshape(3, 3) @ rotation(0, 0, -2 * np.pi * k / symmetry)) - 1) / 2, -1, 1))
             for k in range(symmetry)
         ]
-        if apart <= ALIGNED and min(angles) <= ALIGNED:
+        if apart <= ALIGNED + play[0] and min(angles) <= ALIGNED + play[1]:
             return True
         if data.ncon and touched is None:
             touched = apart
@@ -116,7 +116,9 @@ def main() -> None:
     model.opt.impratio = FRICTION_AS_STIFF
     data = mujoco.MjData(model)
     cor, symmetry = alignment["center_of_rotation"], alignment["symmetry"]
-    found = [drop(model, data, pose, cor, 1.5, symmetry) for pose in errors]
+    limits = [limit or 0.0 for limit in alignment["docked"]["limits"]]
+    play = [float(np.hypot(*limits[:2])), float(np.linalg.norm(limits[2:]))]
+    found = [drop(model, data, pose, cor, 1.5, symmetry, play) for pose in errors]
     same = sum(a == b for a, b in zip(found, expected, strict=True))
     at = f" at a friction of {args.friction}" if args.friction else ""
     print(f"{same} of {args.poses} poses end alike{at}, {sum(found)} of them aligned in MuJoCo, {sum(expected)} by descent")
