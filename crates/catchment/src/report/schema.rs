@@ -311,19 +311,6 @@ impl Report {
         Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
     }
 
-    /// Adds what is certain: the Sum is at least what docks, and at most that and what is undecided.
-    #[must_use]
-    pub(super) fn with_certificate(mut self, found: Certificate) -> Self {
-        let [docks, _, open] = found.measures;
-        let acceptance = &mut self.body.acceptance;
-        acceptance.sum_bracket = Some([docks, docks + open]);
-        if acceptance.sample.is_none() {
-            (acceptance.sum, acceptance.fraction) = (docks, found.yes);
-        }
-        self.body.certificate = Some(found);
-        self
-    }
-
     /// Adds the success probability for a distribution of errors.
     ///
     /// # Errors

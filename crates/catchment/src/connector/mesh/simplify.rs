@@ -37,9 +37,12 @@ pub(super) struct Simplified {
 pub(super) fn simplified(mesh: &Indexed, most: f64, scale: f64) -> Result<Simplified, Vec<MeshProblem>> {
     let refused = || vec![MeshProblem::NotSimplified { most: most * scale }];
     let mut fewer = manifold(mesh).ok_or_else(refused)?;
-    let last = most.log2().floor() as i32;
     let (low, high) = mesh.bounds();
-    let first = ((FIRST * (high - low).max_element()).log2().floor() as i32).min(last + 1 - LEAST);
+    let size = (high - low).max_element();
+    let power = |length: f64| length.log2().floor() as i32;
+    // Nothing is left of what may move by its own size.
+    let last = power(most.min(size));
+    let first = power(FIRST * size).min(last + 1 - LEAST);
     let mut chain = Vec::new();
     for tolerance in (first..=last).map(|k| f64::from(k).exp2()) {
         fewer = fewer.simplify(tolerance);

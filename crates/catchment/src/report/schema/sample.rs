@@ -4,6 +4,7 @@
 //! [`crate::method::correction`], with its interval. The measure of the cells stays beside it.
 
 use super::Report;
+use crate::method::certified::Certificate;
 use crate::method::correction::Stratum;
 use crate::run::Corrected;
 use serde::{Deserialize, Serialize};
@@ -39,6 +40,19 @@ const fn open() -> [f64; 2] {
 }
 
 impl Report {
+    /// Adds what is certain: the Sum is at least what docks, and at most that and what is undecided.
+    #[must_use]
+    pub(in crate::report) fn with_certificate(mut self, found: Certificate) -> Self {
+        let [docks, _, open] = found.measures;
+        let acceptance = &mut self.body.acceptance;
+        acceptance.sum_bracket = Some([docks, docks + open]);
+        if acceptance.sample.is_none() {
+            (acceptance.sum, acceptance.fraction) = (docks, found.yes);
+        }
+        self.body.certificate = Some(found);
+        self
+    }
+
     /// Replaces the Sum by the corrected one.
     #[must_use]
     pub fn with_sample(mut self, corrected: &Corrected) -> Self {

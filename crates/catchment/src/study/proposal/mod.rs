@@ -19,6 +19,7 @@
 mod file;
 mod halves;
 mod judge;
+mod remedy;
 mod search;
 mod way;
 
@@ -32,7 +33,7 @@ use crate::design::{LengthUnit, SourceText};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::{Draft, Problem, ProblemError};
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2};
 use halves::design_unit;
 use judge::{Judged, Refusal, judge};
 use std::fmt;
@@ -194,8 +195,6 @@ fn told(size: [f64; 3]) -> String {
 
 /// A score below this is no seat: flat faces that slide.
 const LEAST: f64 = 0.02;
-/// A score below this is a weak one: what a mirror image would have is looked at.
-const WEAK: f64 = 0.1;
 /// A second best with this share of the score is nearly as good.
 const NEARLY: f64 = 0.8;
 /// A half that settles by more than this turn, or by this shift in D, is told of: 2 degrees, as much of an arm of half D.
@@ -240,13 +239,8 @@ pub fn propose(
     }
     let docked = judged.first().is_some_and(is_seat);
     if may_be(Frames::Facing) && !docked {
-        let facing = settings.facing.map(ways);
-        let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
-        let found = exec.each(places.len(), usize::MAX, "seats", |k, _| {
-            let search::Place { lie, offset, .. } = places[k];
-            judge(pair, lie, offset, &round_numbers(pair, lie), told).map_err(|refusal| refusal.of(lie))
-        });
-        if places.is_empty() {
+        let found = facing(pair, settings, told, exec)?;
+        if found.is_empty() {
             nowhere =
                 Some("facing each other: nowhere along the axes does one sink into the other".to_owned());
         }
@@ -265,15 +259,14 @@ pub fn propose(
         refused.sort_by(|a, b| a.by.total_cmp(&b.by));
         let refused = refused.into_iter().map(|refusal| refusal.why);
         let tried = candidates.iter().map(slack).chain(nowhere).chain(refused).collect();
-        let remedy = match mirrored(pair, settings, told, exec)? {
-            Some((_, told)) => Some(told),
-            None => obstacle(pair, settings, told, exec)?,
-        };
+        let faces = may_be(Frames::Facing);
+        let remedy = if faces { remedy::of(pair, settings, told, exec)? } else { None };
         return Err(ProposalError::NoSeat { tried, remedy });
     };
     let mut doubts = doubts(&candidates, settings);
-    if best.score() < WEAK
-        && let Some((score, told)) = mirrored(pair, settings, told, exec)?
+    if best.score() < remedy::WEAK
+        && may_be(Frames::Facing)
+        && let Some((score, told)) = remedy::mirrored(pair, settings, told, exec)?
         && score * NEARLY > best.score()
     {
         doubts.push(told);
@@ -321,59 +314,18 @@ fn ranges(problem: &Problem, exec: &Exec) -> Result<[f64; 5], Cancelled> {
     Ok(ranges)
 }
 
-/// Parts in frames of their own as they seat best, if they do.
-fn seated(
+/// Parts in frames of their own, judged wherever one may sink into the other.
+fn facing(
     pair: [&Half; 2],
     settings: &Settings,
     told: Told,
     exec: &Exec,
-) -> Result<Option<Judged>, Cancelled> {
+) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
     let facing = settings.facing.map(ways);
     let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
-    let found = exec.each(places.len(), usize::MAX, "seats", |k, _| {
+    Ok(exec.each(places.len(), usize::MAX, "seats", |k, _| {
         let search::Place { lie, offset, .. } = places[k];
-        judge(pair, lie, offset, &round_numbers(pair, lie), told)
-    });
-    let mut judged = found.into_iter().filter_map(Result::ok).collect();
-    rank(&mut judged, settings.free, told, exec)?;
-    Ok(judged.into_iter().next().filter(is_seat))
-}
-
-/// Whether the mirror image of the moving part docks, with which score, and that in words.
-fn mirrored(
-    [fixed, moving]: [&Half; 2],
-    settings: &Settings,
-    told: Told,
-    exec: &Exec,
-) -> Result<Option<(f64, String)>, Cancelled> {
-    let image = moving.reflected(|p| p * DVec3::new(-1.0, 1.0, 1.0));
-    let found = seated([fixed, &image], settings, told, exec)?;
-    Ok(found.filter(|found| found.score() >= WEAK).map(|found| {
-        let score = found.score();
-        let words = format!(
-            "a mirror image of the moving part would dock ({}; {score:.2}): was one of the two exported mirrored?",
-            found.lie
-        );
-        (score, words)
-    }))
-}
-
-/// Whether the parts would dock without something narrow that is in the way, in words.
-fn obstacle(
-    pair: [&Half; 2],
-    settings: &Settings,
-    told: Told,
-    exec: &Exec,
-) -> Result<Option<String>, Cancelled> {
-    let facing = settings.facing.map(ways);
-    let found = search::obstacle(pair, [&facing[0], &facing[1]], exec)?;
-    Ok(found.map(|(lie, found)| {
-        let turns = lie.turns();
-        let at = [0, 1].map(|k| {
-            let [x, y, z] = (told.scale * (turns[k].transpose() * found.at[k])).to_array().map(number);
-            format!("({x}, {y}, {z}) {}", told.unit)
-        });
-        format!("{} ({lie})", relief::in_words(&found, &at, told))
+        judge(pair, lie, offset, &round_numbers(pair, lie), told).map_err(|refusal| refusal.of(lie))
     }))
 }
 
