@@ -11,7 +11,7 @@
 //! Whoever writes holds a lock on it, which ends with the process. So the next start knows what nobody works on any
 //! more, on every machine that sees the same disk. Where the system knows no such locks, left-overs stay.
 
-use super::disk::permit;
+use super::disk::{Permit, permit};
 use super::manifest::Manifest;
 use super::{WriteError, parent};
 use crate::design::hex;
@@ -38,49 +38,60 @@ pub(super) struct Temporary {
     _lock: Option<File>,
 }
 
+/// What was made under a name that was free.
+enum Made<T> {
+    /// It can be locked by this.
+    Locked(File, T),
+    /// Here nothing can be locked.
+    Unlocked(T),
+    /// Somebody swept it away before it could be opened.
+    Swept,
+}
+
 impl Temporary {
     /// An empty folder.
     pub(super) fn folder(place: &Path) -> Result<Self, WriteError> {
-        Self::make(place, |path| {
-            let permit = permit();
+        Self::make(place, |permit, path| {
             permit.create_dir(path)?;
-            permit.unfinished(path, true);
-            // Some systems cannot open folders.
-            Ok((File::open(path).ok(), ()))
+            match File::open(path) {
+                Ok(folder) => Ok(Made::Locked(folder, ())),
+                Err(error) if error.kind() == ErrorKind::NotFound => Ok(Made::Swept),
+                Err(error) if cfg!(unix) => Err(error),
+                // Some systems cannot open folders.
+                Err(_) => Ok(Made::Unlocked(())),
+            }
         })
         .map(|(made, ())| made)
     }
 
     /// An empty file.
     pub(super) fn file(place: &Path) -> Result<(Self, File), WriteError> {
-        Self::make(place, |path| {
-            let permit = permit();
+        Self::make(place, |permit, path| {
             let file = permit.create(path)?;
-            permit.unfinished(path, true);
-            Ok((file.try_clone().ok(), file))
+            Ok(match file.try_clone() {
+                Ok(lock) => Made::Locked(lock, file),
+                Err(_) => Made::Unlocked(file),
+            })
         })
     }
 
     fn make<T>(
         place: &Path,
-        create: impl Fn(&Path) -> io::Result<(Option<File>, T)>,
+        create: impl Fn(&Permit, &Path) -> io::Result<Made<T>>,
     ) -> Result<(Self, T), WriteError> {
         for number in 0..WRITERS {
             let path = hidden(place, number, NEW)?;
-            match create(&path) {
-                Ok((lock, made)) => {
-                    // Somebody who sweeps may have found it before it was locked.
-                    let kept = lock.as_ref().is_none_or(|lock| !is_held(lock) && is_at(lock, &path));
-                    let mut temporary = Self { path, finished: false, _lock: lock };
-                    if kept {
-                        return Ok((temporary, made));
-                    }
-                    // It is theirs to remove, and the name may be another's by then.
-                    temporary.keep();
-                }
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            let permit = permit();
+            let (lock, made) = match create(&permit, &path) {
+                Ok(Made::Locked(lock, made)) if !is_held(&lock) && is_at(&lock, &path) => (Some(lock), made),
+                Ok(Made::Unlocked(made)) => (None, made),
+                // Theirs to remove who found it before it was locked; the name may be another's by now.
+                Ok(Made::Locked(..) | Made::Swept) => continue,
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
                 Err(error) => return Err(WriteError::at(place, error)),
-            }
+            };
+            permit.unfinished(&path, true);
+            return Ok((Self { path, finished: false, _lock: lock }, made));
         }
         Err(WriteError::at(place, ErrorKind::ResourceBusy.into()))
     }

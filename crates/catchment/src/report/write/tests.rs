@@ -338,3 +338,35 @@ fn many_write_to_one_place() {
     assert!(saved(path).is_some_and(|version| version % 10 == 7));
     assert_eq!(names(home.path()), ["out"]);
 }
+
+/// Whoever sweeps may remove a folder before who made it has locked it.
+#[test]
+fn what_is_unfinished_has_one_owner() {
+    let home = home();
+    let path = &home.path().join("out");
+    let stop = &std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(move || {
+                while !stop.load(std::sync::atomic::Ordering::Relaxed) {
+                    sweep(path).unwrap();
+                }
+            });
+        }
+        let makers: Vec<_> = (0..3)
+            .map(|_| {
+                scope.spawn(move || {
+                    for _ in 0..3000 {
+                        let made = Temporary::folder(path).unwrap();
+                        fs::create_dir(made.path.join("inner")).unwrap();
+                    }
+                })
+            })
+            .collect();
+        // Those who sweep end whatever becomes of the others, and so do these.
+        let made: Vec<_> = makers.into_iter().map(std::thread::ScopedJoinHandle::join).collect();
+        stop.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(made.iter().all(Result::is_ok));
+    });
+    assert!(names(home.path()).is_empty());
+}
