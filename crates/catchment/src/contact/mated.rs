@@ -196,6 +196,15 @@ pub struct Fall {
     pub sinks: f64,
 }
 
+/// What becomes of halves that are let go a little off the mated pose.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct About {
+    /// The first that falls out of the seat.
+    pub(crate) fall: Option<Fall>,
+    /// Whether all come to the mated pose itself.
+    pub(crate) comes_home: bool,
+}
+
 impl Fall {
     /// What is wrong, as a sentence.
     pub(crate) fn told(&self, told: Told) -> String {

@@ -61,7 +61,7 @@ use crate::connector::{Connector, Half};
 use crate::design::Alignment;
 use crate::pose::{CorPose, DofSet};
 use glam::{DMat3, DVec2, DVec3};
-use mated::Fall;
+use mated::About;
 use search::Trees;
 use shape::Shape;
 use std::sync::OnceLock;
@@ -99,8 +99,8 @@ pub struct Pair {
     homing: OnceLock<bool>,
     /// How far the seat reaches by yaw alone, either way, in radians.
     spins: OnceLock<[f64; 2]>,
-    /// Where a half that is a little off comes to rest instead, below the seat.
-    fall: OnceLock<Option<Fall>>,
+    /// What becomes of a half that is a little off.
+    about_mated: OnceLock<About>,
     /// Whether its seat has no rim somewhere.
     leaks: OnceLock<bool>,
 }
@@ -135,7 +135,7 @@ impl Pair {
             mated_height,
             homing,
             spins: OnceLock::new(),
-            fall: OnceLock::new(),
+            about_mated: OnceLock::new(),
             leaks: OnceLock::new(),
         };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
@@ -152,7 +152,7 @@ impl Pair {
         if free != self.alignment.free {
             pair.homing = OnceLock::new();
             pair.spins = OnceLock::new();
-            pair.fall = OnceLock::new();
+            pair.about_mated = OnceLock::new();
             pair.leaks = OnceLock::new();
         }
         pair
@@ -189,9 +189,9 @@ impl Pair {
         *self.spins.get_or_init(find)
     }
 
-    /// Where a half that is a little off comes to rest below the seat, if it does: as `find` says, which is asked once.
-    pub(crate) fn fall(&self, find: impl FnOnce() -> Option<Fall>) -> Option<Fall> {
-        *self.fall.get_or_init(find)
+    /// What becomes of a half that is let go a little off the mated pose, as `find` says, which is asked once.
+    pub(crate) fn about_mated(&self, find: impl FnOnce() -> About) -> About {
+        *self.about_mated.get_or_init(find)
     }
 
     /// Whether the seat has no rim somewhere, as `find` says, which is asked once.

@@ -18,10 +18,11 @@ use super::bounds::{Four, Placed, rounding};
 use super::candidates::{Candidate, Counts, corner_facet, edge_edge, facet_corner};
 use super::element::Element;
 use super::shape::Shape;
-use super::tree::{Child, Kind, Leaf, MARGIN, SLACKS, Tree};
+use super::tree::{Child, Kind, Leaf, MARGIN, Node, SLACKS, Tree};
 use super::turned::VERTICAL;
 use super::{Pair, brute::SEAM};
 use glam::{DMat3, DVec2, DVec3};
+use wide::f32x4;
 
 /// How far beyond the bounds of its facets a height of contact may come, in D: rounding of planes as steep as bound heights, and the
 /// seam on them (2e-12 on a slope of 20). Steeper elements round worse, and are held to it.
@@ -144,27 +145,48 @@ impl<'a> Turned<'a> {
         test: impl FnOnce(&Four, &Four) -> (u32, [f32; 4], [f32; 4]),
         mut look: impl FnMut(&Side<'_>, &Side<'_>, [f32; 2]),
     ) {
-        let (node, other, own);
-        let divides_fixed = Self::divides_fixed(fixed, moving);
-        let (f, m): (&Four, &Four);
-        let repeated;
-        if divides_fixed {
-            (node, other) = (self.trees.fixed.node(fixed.child), moving.child);
-            repeated = moving.four.repeated(moving.lane);
-            (f, m) = (&node.parts, &repeated);
+        // Apart from each other, so that of what is repeated four times only what is looked at is.
+        if Self::divides_fixed(fixed, moving) {
+            let node = self.trees.fixed.node(fixed.child);
+            let four = &node.parts;
+            let found = self.test(four, &moving.four.repeated(moving.lane), test);
+            self.look(node, moving.child, found, |child, lane, heights| {
+                look(&Side { child, four, lane }, moving, heights);
+            });
         } else {
-            (node, other) = (self.trees.moving.node(moving.child), fixed.child);
-            repeated = fixed.four.repeated(fixed.lane);
-            own = self.placed.four(&node.parts);
-            (f, m) = (&repeated, &own);
+            let node = self.trees.moving.node(moving.child);
+            let four = &self.placed.four(&node.parts);
+            let found = self.test(&fixed.four.repeated(fixed.lane), four, test);
+            self.look(node, fixed.child, found, |child, lane, heights| {
+                look(fixed, &Side { child, four, lane }, heights);
+            });
         }
-        let (mut alive, least, most) = test(f, m);
-        if alive == 0 {
-            return;
+    }
+
+    /// Which of four pairs of parts may count and may touch as they face, and between which heights.
+    #[inline(always)]
+    fn test(
+        &self,
+        fixed: &Four,
+        moving: &Four,
+        test: impl FnOnce(&Four, &Four) -> (u32, [f32; 4], [f32; 4]),
+    ) -> (u32, [f32; 4], [f32; 4]) {
+        let (mut alive, least, most) = test(fixed, moving);
+        if let Some(slack) = self.cones.filter(|_| alive != 0) {
+            alive &= fixed.may_touch(moving, slack, self.overhang).to_bitmask();
         }
-        if let Some(slack) = self.cones {
-            alive &= f.may_touch(m, slack, self.overhang).to_bitmask();
-        }
+        (alive, least, most)
+    }
+
+    /// Shows the parts of a node that are alive beside another part, the one that may be highest first.
+    #[inline(always)]
+    fn look(
+        &self,
+        node: &Node,
+        other: Child,
+        (mut alive, least, most): (u32, [f32; 4], [f32; 4]),
+        mut look: impl FnMut(Child, usize, [f32; 2]),
+    ) {
         while alive != 0 {
             let mut lane = alive.trailing_zeros() as usize;
             for k in lane + 1..4 {
@@ -175,12 +197,7 @@ impl<'a> Turned<'a> {
             alive &= !(1 << lane);
             let child = node.child(lane);
             if (self.pairs)(child, other) {
-                let heights = [least[lane], most[lane]];
-                if divides_fixed {
-                    look(&Side { child, four: f, lane }, moving, heights);
-                } else {
-                    look(fixed, &Side { child, four: m, lane }, heights);
-                }
+                look(child, lane, [least[lane], most[lane]]);
             }
         }
     }
@@ -297,9 +314,13 @@ impl Lowered<'_> {
         }
         let turned = self.turned;
         let rounding = turned.rounding;
+        // Without a ceiling, what is lower than the best so far does not count.
+        let best = self.found.height().unwrap_or(f64::NEG_INFINITY).max(self.floor);
+        let low = if self.asked.ceiling == f64::INFINITY { best as f32 } else { f32::NEG_INFINITY };
         let test = |f: &Four, m: &Four| {
             let (most, beside) = f.most(m, MARGIN as f32, rounding);
-            (beside.to_bitmask(), f.least(m).to_array(), most.to_array())
+            let counts = beside & most.simd_ge(f32x4::splat(low - 2.0 * rounding));
+            (counts.to_bitmask(), f.least(m).to_array(), most.to_array())
         };
         turned.divide(fixed, moving, test, |fixed, moving, heights| {
             if self.may_count(heights.map(f64::from), f64::from(rounding)) {

@@ -6,15 +6,17 @@
 //!      ╲_╱ ↙   ↘ ╲_╱     one comes to rest below the seat, or runs off  →  the mated pose does not hold
 //! ```
 //!
+//! The same motions tell whether all that is a little off comes home, as it does where halves touch all over in a seat that tapers.
+//!
 //! Asked once per pair, of ten motions or so; of tight fits and of halves of many facets of five. Whoever calls motions before they have come to rest asks it
 //! first: a half that comes down into such a seat does not stay in it.
 //!
 //! Not promised: a fall that needs a larger error, or one in a direction that none of these leads into.
 
 use super::Settings;
-use super::motion::{Motion, Until};
+use super::motion::{Motion, Until, distance};
 use crate::acceptance::Outcome;
-use crate::contact::mated::{CONTACT_TOLERANCE, Fall};
+use crate::contact::mated::{About, CONTACT_TOLERANCE, Fall};
 use crate::contact::{Pair, Seat};
 use crate::pose::{Dof, PoseError};
 use std::f64::consts::PI;
@@ -22,26 +24,37 @@ use std::f64::consts::PI;
 /// How far off halves are let go: D, and radians.
 const OFF: [f64; 2] = [0.01, PI / 180.0];
 /// What comes this near the mated pose, in the ρ-metric, stays: along the ways on which it would fall it is never nearer than a third of where it began.
-const HOME: f64 = 1e-3;
+pub(super) const HOME: f64 = 2e-3;
 /// Of so few free errors all combinations of signs are tried.
 const FEW: usize = 2;
 
 /// Where a half that is a little off comes to rest below the seat of a pair, or runs off to; `None`: nowhere, its mated pose holds. With the default
 /// settings, whoever asks: the answer is kept with the pair.
 pub fn fall(pair: &Pair) -> Option<Fall> {
-    pair.fall(|| {
+    about(pair).fall
+}
+
+/// Whether what is let go a little off the mated pose, each way that is tried, comes to within [`HOME`] of it.
+pub(super) fn comes_home(pair: &Pair) -> bool {
+    about(pair).comes_home
+}
+
+fn about(pair: &Pair) -> About {
+    pair.about_mated(|| {
         let settings = Settings::default();
         let mut motion = Motion::new(pair, &settings).trusting();
         let mut seat = Seat::new(pair);
         let mut nearby = pair.about(OFF[0]);
+        let mut comes_home = true;
         let mut falls = |from: PoseError| {
             // What comes home is followed no further: the last of the way takes the longest.
             let mut is_home = false;
             let mut home = |at: &PoseError| {
-                is_home = from != PoseError::default() && length(pair, at) <= HOME;
+                is_home = from != PoseError::default() && distance(pair, at) <= HOME;
                 is_home.then_some(Outcome::Aligned)
             };
             let (outcome, rest) = motion.follow(&from, Until::AtRest, &mut home);
+            comes_home &= is_home || from == PoseError::default();
             if is_home || outcome == Outcome::Undecided {
                 return None;
             }
@@ -51,7 +64,8 @@ pub fn fall(pair: &Pair) -> Option<Fall> {
             let is_seated = height >= seat.floor() && seat.holds(&rest, height);
             (sinks > CONTACT_TOLERANCE && !is_seated).then_some(Fall { from, rest, sinks })
         };
-        starts(pair).into_iter().find_map(&mut falls)
+        let fall = starts(pair).into_iter().find_map(&mut falls);
+        About { fall, comes_home: fall.is_none() && comes_home }
     })
 }
 
@@ -60,12 +74,6 @@ pub fn fall(pair: &Pair) -> Option<Fall> {
 pub(in crate::method) fn all_count(pair: &Pair) -> bool {
     let mut seat = Seat::new(pair);
     !seat.is_limited() && fall(pair).is_none() && !seat.leaks()
-}
-
-/// The length of a small error in the ρ-metric.
-fn length(pair: &Pair, error: &PoseError) -> f64 {
-    let PoseError { x, y, roll, pitch, yaw } = *error;
-    x.hypot(y).hypot(pair.alignment.rotation_length * roll.hypot(pitch).hypot(yaw))
 }
 
 /// The errors that halves are let go with.

@@ -1,7 +1,7 @@
 //! One motion, from first contact to its end: by plain steps ([`super::step`]), of pairs with tight fits by [`super::sliding`].
 
 use super::coulomb::Coulomb;
-use super::fall::fall;
+use super::fall::{HOME, comes_home, fall};
 use super::homing;
 use super::projection::{Projection, Vector};
 use super::rest::TOUCHING;
@@ -82,6 +82,15 @@ impl<F: FnMut(&PoseError) -> Option<Outcome>> Watch for F {
 const LEVEL: f64 = 1e-6;
 const LEVEL_STEPS: usize = 128;
 
+/// What is [`HOME`] or less from the mated pose, in a seat that is known to lead there, and above it by at least this share of it, is followed no further.
+const TAPER: f64 = 0.1;
+
+/// How far from the mated pose a small error is, in the ρ-metric.
+pub(super) fn distance(pair: &Pair, error: &PoseError) -> f64 {
+    let PoseError { x, y, roll, pitch, yaw } = *error;
+    x.hypot(y).hypot(pair.alignment.rotation_length * roll.hypot(pitch).hypot(yaw))
+}
+
 /// A mover of poses for one pair: owns the buffers.
 pub(super) struct Motion<'a> {
     pub(super) pair: &'a Pair,
@@ -158,9 +167,18 @@ impl<'a> Motion<'a> {
         let (mut seated, mut asked, mut docked) = (false, false, false);
         let all_count =
             !self.seat.is_limited() && (self.trusting || fall(self.pair).is_none() && !self.seat.leaks());
+        let comes_home = all_count && !self.trusting && self.ends_at_home() && comes_home(self.pair);
         for count in 0..self.settings.max_steps {
             if self.pair.is_tight() {
                 state = self.feel(&state);
+            } else if self.pair.asks_trees() {
+                let far = distance(self.pair, &self.error_of(&state));
+                if comes_home && far <= HOME && state.cor.z - self.pair.mated_height() >= TAPER * far {
+                    travelled += far;
+                    state = self.home();
+                }
+                // Beyond the mated pose it climbs again, and to look there takes long.
+                pace.step = pace.step.min(distance(self.pair, &self.error_of(&state)).max(TOUCHING));
             }
             // What is deep enough moves on in its own part of what is: once tells whether that is the seat. Where all motion near the
             // mated pose leads to it, coming near tells as much, and what slides off has not to ask.
@@ -268,29 +286,35 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// The mated pose, where halves of many facets have come as near to it, in the ρ-metric, as what touches. All their facets nearly touch there, and to tell
-    /// which of them carry takes as long as all the way before.
-    pub(super) fn home_of(&self, state: &State) -> Option<State> {
-        if !self.pair.asks_trees() {
-            return None;
-        }
-        let PoseError { x, y, roll, pitch, yaw } = self.error_of(state);
-        let turn = roll.hypot(pitch).hypot(yaw) * self.pair.alignment.rotation_length;
-        (x.hypot(y).hypot(turn) <= TOUCHING).then(|| State {
+    /// The mated pose.
+    fn home(&self) -> State {
+        State {
             cor: DVec3::new(0.0, 0.0, self.pair.mated_height()),
             rotation: DMat3::IDENTITY,
             spin: DQuat::IDENTITY,
             angles: [0.0; 3],
-        })
+        }
+    }
+
+    /// Whether halves of many facets are taken to their mated pose when they are near it. All facets nearly touch there, and to tell which of them carry takes as
+    /// long as all the way before.
+    fn ends_at_home(&self) -> bool {
+        self.pair.asks_trees() && !self.pair.is_tight() && !self.settings.may_hold()
+    }
+
+    /// The mated pose, where halves of many facets have come as near to it, in the ρ-metric, as what touches.
+    pub(super) fn home_of(&self, state: &State) -> Option<State> {
+        let is_near = || distance(self.pair, &self.error_of(state)) <= TOUCHING;
+        (self.pair.asks_trees() && is_near()).then(|| self.home())
     }
 
     /// Whether halves of many facets rest in the mated pose, where no push leads on.
     pub(super) fn is_home(&self, state: &State) -> bool {
-        let home = DVec3::new(0.0, 0.0, self.pair.mated_height());
+        let home = self.home();
         self.pair.asks_trees()
             && !self.pair.is_tight()
-            && state.cor == home
-            && state.rotation == DMat3::IDENTITY
+            && state.cor == home.cor
+            && state.rotation == home.rotation
     }
 
     /// Whether the half has come into the seat.
