@@ -201,8 +201,8 @@ pub struct Fall {
 pub(crate) struct About {
     /// The first that falls out of the seat.
     pub(crate) fall: Option<Fall>,
-    /// Whether all come to the mated pose itself.
-    pub(crate) comes_home: bool,
+    /// How near the mated pose all come to it, in the ρ-metric; 0 where that is not known.
+    pub(crate) home: f64,
 }
 
 impl Fall {

@@ -25,8 +25,9 @@ const OVERHANG: f64 = 0.5;
 /// The same with undersides: all normals, and their rounding.
 const ANY: f64 = 2.0;
 
-/// What is announced to a motion of halves of many facets, in D.
+/// What is announced to a motion of halves of many facets, in D, and as a share of what its step may meet.
 pub(super) const MET: f64 = 1e-4;
+const SHARE_MET: f64 = 0.01;
 
 /// Skin and shift in units of the widest slack and reach: longer lists against more collecting. Flat around its optimum.
 const SKIN: f64 = 1.0;
@@ -145,9 +146,10 @@ impl<'a> Nearby<'a> {
     }
 
     /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`. Of halves of many facets, where a
-    /// step's reach holds thousands, what is nearer than 10⁻⁴ D counts alone: the rest is met on the way.
+    /// step's reach holds thousands, what is nearer than 10⁻⁴ D, or a hundredth of it, counts alone: the rest is met on the way.
     pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
-        let reach = if self.turned.pair.trees.is_some() { reach.min(MET) } else { reach };
+        let reach =
+            if self.turned.pair.trees.is_some() { reach.min((SHARE_MET * reach).max(MET)) } else { reach };
         out.clear();
         self.turned.contacts(position, Gaps::within(reach), SEAM, |contact| out.push(contact));
     }

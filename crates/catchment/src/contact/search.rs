@@ -164,7 +164,7 @@ impl<'a> Turned<'a> {
     }
 
     /// Which of four pairs of parts may count and may touch as they face, and between which heights.
-    #[inline(always)]
+    #[inline]
     fn test(
         &self,
         fixed: &Four,
@@ -179,7 +179,7 @@ impl<'a> Turned<'a> {
     }
 
     /// Shows the parts of a node that are alive beside another part, the one that may be highest first.
-    #[inline(always)]
+    #[inline]
     fn look(
         &self,
         node: &Node,

@@ -6,7 +6,8 @@
 //!      ╲_╱ ↙   ↘ ╲_╱     one comes to rest below the seat, or runs off  →  the mated pose does not hold
 //! ```
 //!
-//! The same motions tell whether all that is a little off comes home, as it does where halves touch all over in a seat that tapers.
+//! Of halves of many facets the same motions, followed to their ends, tell whether all that is a little off comes to the mated pose itself, as it does in a
+//! seat that tapers.
 //!
 //! Asked once per pair, of ten motions or so; of tight fits and of halves of many facets of five. Whoever calls motions before they have come to rest asks it
 //! first: a half that comes down into such a seat does not stay in it.
@@ -15,6 +16,7 @@
 
 use super::Settings;
 use super::motion::{Motion, Until, distance};
+use super::rest::TOUCHING;
 use crate::acceptance::Outcome;
 use crate::contact::mated::{About, CONTACT_TOLERANCE, Fall};
 use crate::contact::{Pair, Seat};
@@ -24,7 +26,10 @@ use std::f64::consts::PI;
 /// How far off halves are let go: D, and radians.
 const OFF: [f64; 2] = [0.01, PI / 180.0];
 /// What comes this near the mated pose, in the ρ-metric, stays: along the ways on which it would fall it is never nearer than a third of where it began.
-pub(super) const HOME: f64 = 2e-3;
+const HOME: f64 = 1e-3;
+/// Halves of many facets that come as near as this, and as this share of where those began that came home, are taken there.
+const TAKEN: f64 = 2e-3;
+const SHARE: f64 = 0.2;
 /// Of so few free errors all combinations of signs are tried.
 const FEW: usize = 2;
 
@@ -34,9 +39,10 @@ pub fn fall(pair: &Pair) -> Option<Fall> {
     about(pair).fall
 }
 
-/// Whether what is let go a little off the mated pose, each way that is tried, comes to within [`HOME`] of it.
-pub(super) fn comes_home(pair: &Pair) -> bool {
-    about(pair).comes_home
+/// How near the mated pose, in the ρ-metric, all of halves of many facets comes to it: what is let go a little off, each way that is tried, does so from farther
+/// away. 0 where one does not.
+pub(super) fn home(pair: &Pair) -> f64 {
+    about(pair).home
 }
 
 fn about(pair: &Pair) -> About {
@@ -45,16 +51,22 @@ fn about(pair: &Pair) -> About {
         let mut motion = Motion::new(pair, &settings).trusting();
         let mut seat = Seat::new(pair);
         let mut nearby = pair.about(OFF[0]);
-        let mut comes_home = true;
+        // Where all facets nearly touch, how all that is near comes home saves motions the longest part of their way.
+        let to_the_end = pair.asks_trees() && !pair.is_tight();
+        let mut within = if to_the_end { TAKEN } else { 0.0 };
         let mut falls = |from: PoseError| {
             // What comes home is followed no further: the last of the way takes the longest.
             let mut is_home = false;
             let mut home = |at: &PoseError| {
-                is_home = from != PoseError::default() && distance(pair, at) <= HOME;
+                is_home = !to_the_end && from != PoseError::default() && distance(pair, at) <= HOME;
                 is_home.then_some(Outcome::Aligned)
             };
             let (outcome, rest) = motion.follow(&from, Until::AtRest, &mut home);
-            comes_home &= is_home || from == PoseError::default();
+            if distance(pair, &rest) > TOUCHING {
+                within = 0.0;
+            } else if from != PoseError::default() {
+                within = within.min(SHARE * distance(pair, &from));
+            }
             if is_home || outcome == Outcome::Undecided {
                 return None;
             }
@@ -65,7 +77,7 @@ fn about(pair: &Pair) -> About {
             (sinks > CONTACT_TOLERANCE && !is_seated).then_some(Fall { from, rest, sinks })
         };
         let fall = starts(pair).into_iter().find_map(&mut falls);
-        About { fall, comes_home: fall.is_none() && comes_home }
+        About { fall, home: if fall.is_none() { within } else { 0.0 } }
     })
 }
 

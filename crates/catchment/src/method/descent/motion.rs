@@ -1,7 +1,7 @@
 //! One motion, from first contact to its end: by plain steps ([`super::step`]), of pairs with tight fits by [`super::sliding`].
 
 use super::coulomb::Coulomb;
-use super::fall::{HOME, comes_home, fall};
+use super::fall::{fall, home};
 use super::homing;
 use super::projection::{Projection, Vector};
 use super::rest::TOUCHING;
@@ -82,7 +82,7 @@ impl<F: FnMut(&PoseError) -> Option<Outcome>> Watch for F {
 const LEVEL: f64 = 1e-6;
 const LEVEL_STEPS: usize = 128;
 
-/// What is [`HOME`] or less from the mated pose, in a seat that is known to lead there, and above it by at least this share of it, is followed no further.
+/// What is near the mated pose, in a seat that is known to lead there ([`home`]), and above it by at least this share of how far it is, is followed no further.
 const TAPER: f64 = 0.1;
 
 /// How far from the mated pose a small error is, in the ρ-metric.
@@ -167,13 +167,13 @@ impl<'a> Motion<'a> {
         let (mut seated, mut asked, mut docked) = (false, false, false);
         let all_count =
             !self.seat.is_limited() && (self.trusting || fall(self.pair).is_none() && !self.seat.leaks());
-        let comes_home = all_count && !self.trusting && self.ends_at_home() && comes_home(self.pair);
+        let near = if all_count && !self.trusting && self.ends_at_home() { home(self.pair) } else { 0.0 };
         for count in 0..self.settings.max_steps {
             if self.pair.is_tight() {
                 state = self.feel(&state);
             } else if self.pair.asks_trees() {
                 let far = distance(self.pair, &self.error_of(&state));
-                if comes_home && far <= HOME && state.cor.z - self.pair.mated_height() >= TAPER * far {
+                if far <= near && state.cor.z - self.pair.mated_height() >= TAPER * far {
                     travelled += far;
                     state = self.home();
                 }
