@@ -177,8 +177,14 @@ impl<'a> Motion<'a> {
                     travelled += far;
                     state = self.home();
                 }
-                // Beyond the mated pose it climbs again, and to look there takes long.
-                pace.step = pace.step.min(distance(self.pair, &self.error_of(&state)).max(TOUCHING));
+                if self.is_home(&state) {
+                    // What touches there does not hang on the way there.
+                    pace.step = self.settings.step;
+                    self.turn(&state.rotation, state.cor.truncate(), pace.step);
+                } else {
+                    // Beyond the mated pose it climbs again, and to look there takes long.
+                    pace.step = pace.step.min(far.max(TOUCHING));
+                }
             }
             // What is deep enough moves on in its own part of what is: once tells whether that is the seat. Where all motion near the
             // mated pose leads to it, coming near tells as much, and what slides off has not to ask.
