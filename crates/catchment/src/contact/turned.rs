@@ -204,8 +204,11 @@ impl<'a> Turned<'a> {
         }
         // Where halves touch all over, motions end time and again, and to look takes longest there.
         let mated = |near: &Near| near.rotation == DMat3::IDENTITY && near.position.truncate() == DVec2::ZERO;
-        let oldest = if near.len() < KEPT { None } else { near.iter().position(|near| !mated(near)) };
-        let mut elements = oldest.map_or_else(Vec::new, |k| near.remove(k).elements);
+        let mut elements = if near.len() < KEPT {
+            Vec::new()
+        } else {
+            near.remove(near.iter().position(|near| !mated(near)).unwrap_or(0)).elements
+        };
         // What a motion tries is where it may go on.
         let least = MET + 2.0 * SEAM;
         let gaps = Gaps { deep: gaps.deep.max(least), front: gaps.front.max(least) };

@@ -1,5 +1,6 @@
 //! Closed forms and invariants of single motions. Agreement with an independent engine: `tests/trials.rs`.
 
+use super::fall::home;
 use super::rest::TOUCHING;
 use super::{Follower, Settings, outcome, run, trace};
 use crate::acceptance::{Domain, Outcome, Warning};
@@ -263,6 +264,25 @@ fn a_funnel_ends_in_the_mated_pose() {
         }
     }
     assert!(docked > 6, "{docked}");
+}
+
+/// Where a flat bottom leaves play, what comes near the mated pose rests where it is, and is not taken there; where halves taper, it is.
+#[test]
+fn only_a_seat_that_leads_home_takes_home() {
+    let [socket, plug] = meshes::funnel(1000);
+    assert!(home(&lathed([socket.clone(), plug.clone()])) > 1e-3);
+    // Both cut off at a depth of 0.2 D, and the plug a little narrower.
+    let bottom = |p: DVec3| if p.z > -0.6 { p.with_z(p.z.max(-0.2)) } else { p };
+    let top = |p: DVec3| DVec3::new(0.95 * p.x, 0.95 * p.y, p.z.min(0.2));
+    let pair = lathed([
+        socket.into_iter().map(|corners| corners.map(bottom)).collect(),
+        plug.into_iter().map(|corners| corners.map(top)).collect(),
+    ]);
+    assert!(pair.asks_trees() && !pair.is_tight());
+    assert_eq!(home(&pair), 0.0);
+    let error = PoseError { x: 1.5e-3, ..PoseError::default() };
+    let rest = Follower::new(&pair, &Settings::default()).come_to_rest(&error);
+    assert!(rest.error.x > 1e-3, "{rest:?}");
 }
 
 /// Trees change what is looked at, not what comes of it; also among slivers that meet in a tip, where most of what is near does not count.
