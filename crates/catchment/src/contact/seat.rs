@@ -131,10 +131,8 @@ impl<'a> Seat<'a> {
     }
 
     fn is_connected(&mut self, error: &PoseError) -> bool {
-        let alignment = &self.pair.alignment;
         let off = self.off(error);
-        let length = off.x.hypot(off.y).hypot(alignment.rotation_length * turn(&off));
-        if length <= CORE {
+        if self.pair.alignment.length(&off) <= CORE {
             return true;
         }
         let mated = PoseError { yaw: error.yaw - off.yaw, ..PoseError::default() };
@@ -200,11 +198,6 @@ fn coarse_first(count: usize) -> impl Iterator<Item = usize> {
     (0..1usize << bits)
         .map(move |k| if bits == 0 { 0 } else { k.reverse_bits() >> (usize::BITS - bits) })
         .filter(move |k| *k < count)
-}
-
-/// Angle of the rotation of an error, for small ones: in radians.
-fn turn(error: &PoseError) -> f64 {
-    error.roll.hypot(error.pitch).hypot(error.yaw)
 }
 
 #[cfg(test)]

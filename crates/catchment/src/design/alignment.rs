@@ -4,7 +4,7 @@ use super::Family;
 use super::complaint::Complaint;
 use super::docked::Docked;
 use super::family::Freedom;
-use crate::pose::{Dof, DofSet, Mount, rotation_angle};
+use crate::pose::{Dof, DofSet, Mount, PoseError, rotation_angle};
 use glam::DMat3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -80,6 +80,12 @@ impl Alignment {
         }
         let turn = TAU / f64::from(self.symmetry.max(1));
         (yaw / turn).round() * turn
+    }
+
+    /// The length of a small error in the ρ-metric, in D.
+    pub(crate) fn length(&self, error: &PoseError) -> f64 {
+        let PoseError { x, y, roll, pitch, yaw } = *error;
+        x.hypot(y).hypot(self.rotation_length * roll.hypot(pitch).hypot(yaw))
     }
 
     /// How far a rotation is from the nearest one that counts as aligned, in radians: the mated one and those of the symmetry;

@@ -15,7 +15,7 @@
 //! Not promised: a fall that needs a larger error, or one in a direction that none of these leads into.
 
 use super::Settings;
-use super::motion::{Motion, Until, distance};
+use super::motion::{Motion, Until};
 use super::rest::TOUCHING;
 use crate::acceptance::Outcome;
 use crate::contact::mated::{About, CONTACT_TOLERANCE, Fall};
@@ -51,21 +51,20 @@ fn about(pair: &Pair) -> About {
         let mut motion = Motion::new(pair, &settings).trusting();
         let mut seat = Seat::new(pair);
         let mut nearby = pair.about(OFF[0]);
-        // Where all facets nearly touch, how all that is near comes home saves motions the longest part of their way.
-        let to_the_end = pair.asks_trees() && !pair.is_tight();
-        let mut within = if to_the_end { TAKEN } else { 0.0 };
+        // Where all facets nearly touch, to know that all that is near comes home saves motions the longest part of their way.
+        let mut within = if pair.asks_trees() && !pair.is_tight() { TAKEN } else { 0.0 };
         let mut falls = |from: PoseError| {
-            // What comes home is followed no further: the last of the way takes the longest.
-            let mut is_home = false;
+            // What comes home is followed no further, unless its end is asked for: the last of the way takes the longest.
+            let (mut is_home, ends) = (false, within > 0.0);
             let mut home = |at: &PoseError| {
-                is_home = !to_the_end && from != PoseError::default() && distance(pair, at) <= HOME;
+                is_home = !ends && from != PoseError::default() && pair.alignment.length(at) <= HOME;
                 is_home.then_some(Outcome::Aligned)
             };
             let (outcome, rest) = motion.follow(&from, Until::AtRest, &mut home);
-            if distance(pair, &rest) > TOUCHING {
+            if pair.alignment.length(&rest) > TOUCHING {
                 within = 0.0;
             } else if from != PoseError::default() {
-                within = within.min(SHARE * distance(pair, &from));
+                within = within.min(SHARE * pair.alignment.length(&from));
             }
             if is_home || outcome == Outcome::Undecided {
                 return None;

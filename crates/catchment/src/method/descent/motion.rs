@@ -85,12 +85,6 @@ const LEVEL_STEPS: usize = 128;
 /// What is near the mated pose, in a seat that is known to lead there ([`home`]), and above it by at least this share of how far it is, is followed no further.
 const TAPER: f64 = 0.1;
 
-/// How far from the mated pose a small error is, in the ρ-metric.
-pub(super) fn distance(pair: &Pair, error: &PoseError) -> f64 {
-    let PoseError { x, y, roll, pitch, yaw } = *error;
-    x.hypot(y).hypot(pair.alignment.rotation_length * roll.hypot(pitch).hypot(yaw))
-}
-
 /// A mover of poses for one pair: owns the buffers.
 pub(super) struct Motion<'a> {
     pub(super) pair: &'a Pair,
@@ -172,7 +166,7 @@ impl<'a> Motion<'a> {
             if self.pair.is_tight() {
                 state = self.feel(&state);
             } else if self.pair.asks_trees() {
-                let far = distance(self.pair, &self.error_of(&state));
+                let far = self.pair.alignment.length(&self.error_of(&state));
                 if far <= near && state.cor.z - self.pair.mated_height() >= TAPER * far {
                     travelled += far;
                     state = self.home();
@@ -310,7 +304,7 @@ impl<'a> Motion<'a> {
 
     /// The mated pose, where halves of many facets have come as near to it, in the ρ-metric, as what touches.
     pub(super) fn home_of(&self, state: &State) -> Option<State> {
-        let is_near = || distance(self.pair, &self.error_of(state)) <= TOUCHING;
+        let is_near = || self.pair.alignment.length(&self.error_of(state)) <= TOUCHING;
         (self.pair.asks_trees() && is_near()).then(|| self.home())
     }
 
