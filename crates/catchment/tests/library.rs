@@ -15,3 +15,4 @@ mod sweep;
 mod threads;
 mod tight_fits;
 mod trials;
+mod waypoints;

@@ -59,7 +59,7 @@ impl Pair {
 }
 
 /// Distance of a point of a facet's plane from the facet's border; negative outside.
-fn inside(shape: &Shape, facet: u32, point: DVec3) -> f64 {
+pub(super) fn inside(shape: &Shape, facet: u32, point: DVec3) -> f64 {
     let facet = &shape.facets[facet as usize];
     let corners = facet.corners.iter().map(|&k| shape.at(k));
     let next = corners.clone().cycle().skip(1);

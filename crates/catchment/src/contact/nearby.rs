@@ -179,10 +179,9 @@ impl<'a> Nearby<'a> {
         self.turned.contacts(position, gaps, seam, |contact| out.push(contact));
     }
 
-    /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than
-    /// touching.
-    pub fn is_pierced(&self, position: DVec3) -> bool {
-        self.turned.is_pierced(position)
+    /// Whether the halves overlap with the COR at `position`, by more than touching.
+    pub fn overlaps(&self, position: DVec3) -> bool {
+        self.turned.pair.overlaps(&self.turned.rotation, position)
     }
 }
 

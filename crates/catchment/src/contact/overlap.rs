@@ -1,140 +1,246 @@
-//! Whether the halves overlap, found near by near.
+//! Whether the halves overlap: whether some point lies inside both.
 //!
 //! ```text
-//!         moving ridge ╲                 an edge of one passes through a facet of the other by more than THROUGH,
-//!      ─────────────────╳───── fixed     at both of its ends and to all sides of the point where it does
-//!                        ╲
+//!      B ┌───────────────┐            the overlap of two solids has a corner that lies on a convex edge of one of them, A;
+//!        │      A        │            from there on that edge runs inside the other, B, or along its surface with
+//!   ●────┼──●────────┼───●            the material of A on the inner side
+//!        └──┼────────┼───┘
+//!           cuts: where the edge meets facets of B      witness: the middle of a part, moved by MARGIN into A
 //! ```
 //!
-//! Between non-convex halves an overlap need not show as a contact with a negative gap: where two rims cross at the foot
-//! of both edges, neither edge supports the normal any more. Only convex edges are tried: a reflex one lies at the bottom of
-//! a valley, where convex edges of the other half have passed before.
+//! Both solids are *open*: surfaces that only touch, or that lie in one plane with the material on opposite sides, share no point. Where both
+//! halves end in the same plane with the material on the same side (extruded profiles of one width, mated), edges of A run along facets of B
+//! or meet them on their borders. No border has an owner then, and none is needed: a *witness* decides, a point that lies inside A and inside B.
+//! Where an edge passes through the middle of a facet, the crossing itself is the proof, and no witness is looked for.
 //!
-//! The same answer as [`Nearby::is_pierced`](super::Nearby::is_pierced) where facets are larger than the overlap, at the cost of
-//! what is near in plan view.
+//! Not promised: overlaps thinner than about [`MARGIN`], and halves one of which lies wholly inside the other.
 
 use super::Pair;
+use super::hold::inside;
 use super::plan::Plan;
-use super::shape::Shape;
-use crate::pose::Dof;
+use super::shape::{Ridge, Shape};
 use glam::{DMat3, DVec3};
 
-/// What counts as through rather than touching, in D.
-const THROUGH: f64 = 1e-6;
+/// What counts as overlapping rather than touching, in D.
+pub(super) const MARGIN: f64 = 3e-7;
+/// Parts of an edge shorter than this hold no witness, in D.
+const SHORT: f64 = 4.0 * MARGIN;
+/// Of an edge between facets that enclose less than 12° a witness is moved no further than that of 12°: a sine.
+const SHARP: f64 = 0.02;
+/// Facets with a smaller z-component of the normal are upright: no vertical line crosses them.
+const UPRIGHT: f64 = 1e-12;
+
+/// From the frame of one half to that of the other.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frames {
+    rotation: DMat3,
+    back: DMat3,
+    position: DVec3,
+}
+
+impl Frames {
+    pub(super) fn new(rotation: &DMat3, position: DVec3) -> Self {
+        Self { rotation: *rotation, back: rotation.transpose(), position }
+    }
+
+    /// A ridge of the moving half as the fixed one sees it.
+    fn placed(&self, moving: &Shape, ridge: &Ridge) -> Segment {
+        let ends = ridge.ends.map(|k| self.rotation * moving.at(k) + self.position);
+        Segment { ends, normals: ridge.normals.map(|n| self.rotation * n) }
+    }
+
+    /// A ridge of the fixed half as the moving one sees it.
+    fn seen(&self, fixed: &Shape, ridge: &Ridge) -> Segment {
+        let ends = ridge.ends.map(|k| self.back * (fixed.at(k) - self.position));
+        Segment { ends, normals: ridge.normals.map(|n| self.back * n) }
+    }
+
+    /// Whether a ridge of the moving shape and a facet of the fixed one show that they overlap.
+    pub(super) fn moving_enters(&self, moving: &Shape, ridge: u32, fixed: &Shape, facet: u32) -> bool {
+        let segment = self.placed(moving, &moving.ridges[ridge as usize]);
+        let in_moving = |p: DVec3| moving.encloses(self.back * (p - self.position));
+        match segment.meets(fixed, facet) {
+            Crossing::Through => true,
+            Crossing::Border(_) => segment.enters(fixed, in_moving),
+            Crossing::None => false,
+        }
+    }
+
+    /// Whether a ridge of the fixed shape and a facet of the moving one show that they overlap.
+    pub(super) fn fixed_enters(&self, fixed: &Shape, ridge: u32, moving: &Shape, facet: u32) -> bool {
+        let segment = self.seen(fixed, &fixed.ridges[ridge as usize]);
+        let in_fixed = |p: DVec3| fixed.encloses(self.rotation * p + self.position);
+        match segment.meets(moving, facet) {
+            Crossing::Through => true,
+            Crossing::Border(_) => segment.enters(moving, in_fixed),
+            Crossing::None => false,
+        }
+    }
+}
 
 impl Pair {
-    /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`; `placed` is scratch for the
-    /// moving vertices.
-    pub(crate) fn overlaps(&self, rotation: &DMat3, position: DVec3, placed: &mut Vec<DVec3>) -> bool {
+    /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`.
+    pub(crate) fn overlaps(&self, rotation: &DMat3, position: DVec3) -> bool {
         match &self.trees {
-            Some(trees) => trees.is_passed(self, rotation, position),
-            None => self.overlaps_by_plan(rotation, position, placed),
+            Some(trees) => trees.overlap(self, rotation, position),
+            None => self.overlaps_by_plan(rotation, position),
         }
     }
 
     /// The same without trees.
-    pub(super) fn overlaps_by_plan(
-        &self,
-        rotation: &DMat3,
-        position: DVec3,
-        placed: &mut Vec<DVec3>,
-    ) -> bool {
+    pub(super) fn overlaps_by_plan(&self, rotation: &DMat3, position: DVec3) -> bool {
+        let frames = Frames::new(rotation, position);
         self.moving_shapes.iter().any(|moving| {
-            placed.clear();
-            let between = Between::new(self, moving, rotation, position);
-            placed.extend(moving.vertices.iter().map(|v| between.placed(*v)));
-            let whole = Plan::around(placed.iter().map(|p| p.truncate()));
-            self.fixed_shapes
-                .iter()
-                .filter(|fixed| fixed.plans.facets.bounds().meets(&whole))
-                .any(|fixed| pierce(fixed, moving, placed, rotation))
+            self.fixed_shapes.iter().any(|fixed| {
+                let in_moving = |p: DVec3| moving.encloses(frames.back * (p - position));
+                let in_fixed = |p: DVec3| fixed.encloses(*rotation * p + position);
+                moving.ridges.iter().any(|r| frames.placed(moving, r).enters(fixed, in_moving))
+                    || fixed.ridges.iter().any(|r| frames.seen(fixed, r).enters(moving, in_fixed))
+            })
         })
     }
 }
 
-/// From the frame of one half to that of the other, for a moving shape of a pair.
-///
-/// Halves that move in the plane of x and z often end in the same two planes, where the edges of one pass the facets of the other on their
-/// borders, which is no passing through. So there a moving shape that is drawn along y between two planes is looked at as a little narrower: it lies
-/// within itself, so that nothing overlaps that did not.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Between {
-    rotation: DMat3,
-    back: DMat3,
-    position: DVec3,
-    /// What becomes of y: its factor, and what is added.
-    narrow: [f64; 2],
-}
-
-impl Between {
-    pub(super) fn new(pair: &Pair, moving: &Shape, rotation: &DMat3, position: DVec3) -> Self {
-        let is_planar = pair.alignment.free.iter().all(|dof| matches!(dof, Dof::X | Dof::Pitch));
-        let narrow = moving.narrow.filter(|_| is_planar).unwrap_or([1.0, 0.0]);
-        Self { rotation: *rotation, back: rotation.transpose(), position, narrow }
-    }
-
-    /// Where a point of the moving shape is.
-    pub(super) fn placed(&self, mut p: DVec3) -> DVec3 {
-        p.y = self.narrow[0] * p.y + self.narrow[1];
-        self.rotation * p + self.position
-    }
-
-    /// Where the moving shape sees a point of the fixed half.
-    pub(super) fn seen(&self, p: DVec3) -> DVec3 {
-        let mut p = self.back * (p - self.position);
-        p.y = (p.y - self.narrow[1]) / self.narrow[0];
-        p
-    }
-}
-
-fn pierce(fixed: &Shape, moving: &Shape, placed: &[DVec3], rotation: &DMat3) -> bool {
-    let at = |k: u32| placed[k as usize];
-    let top = fixed.vertices.iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max);
-    // What is above the fixed shape, or beside it, cannot reach into it.
-    let near = |ids: &[u32], bounds: &Plan| {
-        let plan = Plan::around(ids.iter().map(|&k| at(k).truncate()));
-        (ids.iter().any(|&k| at(k).z <= top) && bounds.meets(&plan)).then_some(plan)
-    };
-    let mut found = false;
-    for ridge in &moving.ridges {
-        let Some(plan) = near(&ridge.ends, fixed.plans.facets.bounds()) else { continue };
-        let ends = ridge.ends.map(at);
-        fixed.plans.facets.visit(&plan, |k| {
-            let facet = &fixed.facets[k as usize];
-            let corners = || facet.corners.iter().map(|&c| fixed.at(c));
-            found = found || passes(ends, facet.normal, corners);
-        });
-        if found {
-            return true;
-        }
-    }
-    for facet in &moving.facets {
-        let Some(plan) = near(&facet.corners, fixed.plans.ridges.bounds()) else { continue };
-        let normal = *rotation * facet.normal;
-        fixed.plans.ridges.visit(&plan, |k| {
-            let ends = fixed.ridges[k as usize].ends.map(|c| fixed.at(c));
-            let corners = || facet.corners.iter().map(|&c| at(c));
-            found = found || passes(ends, normal, corners);
-        });
-        if found {
-            return true;
-        }
-    }
-    false
-}
-
-/// Whether the segment between `ends` passes through a convex polygon of this unit normal.
-pub(super) fn passes<I: Iterator<Item = DVec3> + Clone>(
+/// A convex edge of A in the frame of B.
+struct Segment {
     ends: [DVec3; 2],
-    normal: DVec3,
-    corners: impl Fn() -> I,
-) -> bool {
-    let Some(origin) = corners().next() else { return false };
-    let [above, below] = ends.map(|p| normal.dot(p - origin));
-    if above.min(below) > -THROUGH || above.max(below) < THROUGH {
-        return false;
+    /// Outward normals of the facets of A beside it.
+    normals: [DVec3; 2],
+}
+
+/// How a segment meets a facet.
+enum Crossing {
+    /// Not, or from outside.
+    None,
+    /// Through its middle.
+    Through,
+    /// On its border, in its plane or with an end, and some of A may lie inside B there; where the segment is cut, as a share of its length.
+    Border(Option<f64>),
+}
+
+impl Segment {
+    fn plan(&self) -> Plan {
+        Plan::around(self.ends.iter().map(|p| p.truncate())).widened(MARGIN)
     }
-    let point = ends[0] + (ends[1] - ends[0]) * (above / (above - below));
-    let next = corners().cycle().skip(1);
-    corners().zip(next).all(|(p, q)| normal.dot((q - p).normalize_or_zero().cross(point - p)) > THROUGH)
+
+    /// Whether A overlaps B along this edge of A; `in_a` says which points of the frame of B lie inside A.
+    fn enters(&self, b: &Shape, in_a: impl Fn(DVec3) -> bool) -> bool {
+        let plan = self.plan();
+        if !b.plans.facets.bounds().meets(&plan) {
+            return false;
+        }
+        let (mut cuts, mut may_enter) = (Vec::new(), false);
+        let through = b.plans.facets.any(&plan, |facet| {
+            match self.meets(b, facet) {
+                Crossing::None => {}
+                Crossing::Through => return true,
+                Crossing::Border(cut) => {
+                    may_enter = true;
+                    cuts.extend(cut);
+                }
+            }
+            false
+        });
+        through || may_enter && self.has_witness(cuts, |p| b.encloses(p) && in_a(p))
+    }
+
+    /// How this edge meets one facet of B.
+    fn meets(&self, b: &Shape, facet: u32) -> Crossing {
+        let normal = b.facets[facet as usize].normal;
+        let level = b.levels[facet as usize];
+        let heights = self.ends.map(|p| normal.dot(p) - level);
+        let (low, high) = (heights[0].min(heights[1]), heights[0].max(heights[1]));
+        if low > MARGIN || high < -MARGIN {
+            return Crossing::None;
+        }
+        if high <= MARGIN && low >= -MARGIN {
+            // In the plane: whether any material of A is on the inner side.
+            let along = (self.ends[1] - self.ends[0]).normalize_or_zero();
+            let [left, right] = self.normals;
+            let lowest = left.cross(along).dot(normal).min(along.cross(right).dot(normal));
+            let leads_in = lowest < -SHARP && self.overlaps_facet(b, facet);
+            return if leads_in { Crossing::Border(None) } else { Crossing::None };
+        }
+        if low >= -MARGIN {
+            return Crossing::None;
+        }
+        let share = (heights[0] / (heights[0] - heights[1])).clamp(0.0, 1.0);
+        let inside = inside(b, facet, self.ends[0].lerp(self.ends[1], share));
+        let is_through = high > MARGIN;
+        if inside < -MARGIN {
+            Crossing::None
+        } else if is_through && inside > MARGIN {
+            Crossing::Through
+        } else {
+            Crossing::Border(is_through.then_some(share))
+        }
+    }
+
+    /// Whether a segment in a facet's plane has a point in common with the facet.
+    fn overlaps_facet(&self, b: &Shape, facet: u32) -> bool {
+        let facet = &b.facets[facet as usize];
+        let corners = facet.corners.iter().map(|&k| b.at(k));
+        let (mut from, mut to) = (0.0_f64, 1.0_f64);
+        for (p, q) in corners.clone().zip(corners.cycle().skip(1)) {
+            let side = facet.normal.cross(q - p).normalize_or_zero();
+            let [start, end] = self.ends.map(|e| side.dot(e - p) + MARGIN);
+            if start < 0.0 && end < 0.0 {
+                return false;
+            }
+            if start < 0.0 {
+                from = from.max(start / (start - end));
+            } else if end < 0.0 {
+                to = to.min(start / (start - end));
+            }
+        }
+        from < to
+    }
+
+    /// Whether the middle of some part between cuts, moved into A, is inside both.
+    fn has_witness(&self, mut cuts: Vec<f64>, inside_both: impl Fn(DVec3) -> bool) -> bool {
+        let [start, end] = self.ends;
+        let [left, right] = self.normals;
+        let inward = -(left + right) * (MARGIN / (1.0 + left.dot(right)).max(SHARP));
+        let length = start.distance(end);
+        cuts.extend([0.0, 1.0]);
+        cuts.sort_unstable_by(f64::total_cmp);
+        cuts.windows(2).any(|part| {
+            (part[1] - part[0]) * length > SHORT
+                && inside_both(start.lerp(end, 0.5 * (part[0] + part[1])) + inward)
+        })
+    }
+}
+
+impl Shape {
+    /// Whether a point is inside the solid: its surface winds once about whoever looks up from there.
+    ///
+    /// A vertical line that passes an edge is counted by one of its two facets: which, both decide alike, by the same numbers.
+    fn encloses(&self, point: DVec3) -> bool {
+        let mut winds = 0;
+        self.plans.facets.visit(&Plan::around([point.truncate()].into_iter()), |k| {
+            let (facet, level) = (&self.facets[k as usize], self.levels[k as usize]);
+            let up = facet.normal.z;
+            // Above the point, and over it in plan view.
+            if up.abs() > UPRIGHT && (level - facet.normal.dot(point)) * up > 0.0 && self.is_over(k, point) {
+                winds += if up > 0.0 { 1 } else { -1 };
+            }
+        });
+        winds > 0
+    }
+
+    /// Whether a facet covers a point in plan view, by the number of its sides that a line along +x crosses.
+    fn is_over(&self, facet: u32, point: DVec3) -> bool {
+        let corners = &self.facets[facet as usize].corners;
+        let mut covers = false;
+        for (k, &a) in corners.iter().enumerate() {
+            let b = corners[(k + 1) % corners.len()];
+            // The same for both facets beside the side.
+            let (a, b) = (self.at(a.min(b)), self.at(a.max(b)));
+            if (a.y > point.y) != (b.y > point.y) {
+                let x = a.x + (b.x - a.x) * ((point.y - a.y) / (b.y - a.y));
+                covers ^= x > point.x;
+            }
+        }
+        covers
+    }
 }

@@ -62,20 +62,7 @@ pub(super) struct Shape {
     pub(super) normals: Vec<DVec3>,
     pub(super) ridges: Vec<Ridge>,
     pub(super) convex: bool,
-    /// Of what is drawn along y between two planes: what becomes of y a little narrower, its factor and what is added.
-    pub(super) narrow: Option<[f64; 2]>,
     pub(super) plans: Plans,
-}
-
-/// The width along y that is left to a narrower shape, and how far corners may be off its end planes, in D.
-const NARROWER: f64 = 1.0 - 1e-4;
-const ON_PLANE: f64 = 1e-12;
-
-/// See [`Shape::narrow`].
-fn narrow(surface: &Surface) -> Option<[f64; 2]> {
-    let (DVec3 { y: low, .. }, DVec3 { y: high, .. }) = surface.bounds();
-    let is_drawn = surface.vertices.iter().all(|v| (v.y - low).min(high - v.y) <= ON_PLANE);
-    is_drawn.then(|| [NARROWER, (1.0 - NARROWER) * low.midpoint(high)])
 }
 
 impl Shape {
@@ -123,7 +110,6 @@ impl Shape {
             normals,
             ridges,
             convex: surface.convex,
-            narrow: narrow(surface),
             plans,
         }
     }
@@ -143,54 +129,6 @@ impl Shape {
     /// Outward normals of the facets around a corner.
     pub(super) fn normals_of(&self, corner: &Corner) -> &[DVec3] {
         &self.normals[corner.spokes.start as usize..corner.spokes.end as usize]
-    }
-
-    /// Whether an edge of this shape, moved by `seen` into the other's frame, passes through a facet of the other.
-    pub(super) fn pierces(&self, other: &Self, seen: impl Fn(DVec3) -> DVec3) -> bool {
-        (0..self.facets.len() as u32).any(|own| {
-            self.edges(own).any(|ends| {
-                let ends = ends.map(|k| seen(self.at(k)));
-                let over = Plan::around(ends.iter().map(|p| p.truncate()));
-                other.plans.facets.any(&over, |facet| other.is_passed(facet, ends))
-            })
-        })
-    }
-
-    /// The same of one facet of each.
-    pub(super) fn pierces_at(
-        &self,
-        own: u32,
-        other: &Self,
-        facet: u32,
-        seen: impl Fn(DVec3) -> DVec3,
-    ) -> bool {
-        self.edges(own).any(|ends| other.is_passed(facet, ends.map(|k| seen(self.at(k)))))
-    }
-
-    /// The sides of a facet, each for one of the two facets that it borders.
-    fn edges(&self, facet: u32) -> impl Iterator<Item = [u32; 2]> {
-        let corners = &self.facets[facet as usize].corners;
-        let n = corners.len();
-        (0..n).map(move |k| [corners[k], corners[(k + 1) % n]]).filter(|[a, b]| a < b)
-    }
-
-    /// Whether a segment passes through a facet.
-    fn is_passed(&self, facet: u32, [a, b]: [DVec3; 2]) -> bool {
-        /// What counts as through rather than touching, in D.
-        const THROUGH: f64 = 1e-6;
-        let facet = &self.facets[facet as usize];
-        let origin = self.at(facet.corners[0]);
-        let (above, below) = (facet.normal.dot(a - origin), facet.normal.dot(b - origin));
-        if above.min(below) > -THROUGH || above.max(below) < THROUGH {
-            return false;
-        }
-        let point = a + (b - a) * (above / (above - below));
-        let m = facet.corners.len();
-        (0..m).all(|k| {
-            let (p, q) = (self.at(facet.corners[k]), self.at(facet.corners[(k + 1) % m]));
-            let along = (q - p).normalize_or_zero();
-            facet.normal.dot(along.cross(point - p)) > THROUGH
-        })
     }
 
     pub(super) fn at(&self, vertex: u32) -> DVec3 {

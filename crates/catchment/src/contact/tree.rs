@@ -233,11 +233,6 @@ impl Child {
         const SWAPPED: [u8; 8] = [0, 4, 0, 4, 1, 5, 1, 5];
         self.kinds & SWAPPED[other.kinds as usize] != 0
     }
-
-    /// Whether both hold facets.
-    pub(super) const fn are_facets(self, other: Self) -> bool {
-        self.kinds & other.kinds & Kind::Facet as u8 != 0
-    }
 }
 
 impl Node {

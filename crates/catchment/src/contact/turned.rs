@@ -4,7 +4,6 @@ use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
 use super::nearby::MET;
-use super::overlap::Between;
 use super::search::{Asked, Carried, Gaps, Number, Trees};
 use super::shape::Shape;
 use super::{Contact, Pair};
@@ -214,20 +213,6 @@ impl<'a> Turned<'a> {
         let gaps = Gaps { deep: gaps.deep.max(least), front: gaps.front.max(least) };
         trees.near(pair, rotation, position, *counts, gaps, &mut elements);
         near.push(Near { rotation: *rotation, position, counts: *counts, gaps, elements });
-    }
-
-    /// Whether an edge of one half pierces a facet of the other with the COR at `position`: they overlap, by more than
-    /// touching.
-    pub(super) fn is_pierced(&self, position: DVec3) -> bool {
-        if let Some(trees) = self.trees {
-            return trees.is_pierced(self.pair, &self.rotation, position);
-        }
-        self.pair.moving_shapes.iter().any(|moving| {
-            let between = Between::new(self.pair, moving, &self.rotation, position);
-            self.pair.fixed_shapes.iter().any(|fixed| {
-                fixed.pierces(moving, |p| between.seen(p)) || moving.pierces(fixed, |p| between.placed(p))
-            })
-        })
     }
 
     fn foot(&self, element: &Element, position: DVec3, seam: f64) -> Option<DVec3> {

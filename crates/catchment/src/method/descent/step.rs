@@ -28,10 +28,14 @@ pub(super) struct Pace {
 }
 
 /// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
-const MAX_REACH: f64 = 1e7;
+const MAX_REACH: f64 = 1e5;
 /// The same with friction, whose forces are found less exactly: rest is a slope below 10⁻⁷ beyond what friction holds.
 const MAX_REACH_OF_FRICTION: f64 = 1e4;
-/// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
+/// From this reach on gaps count that a plain push closes: the turn by which they close, at least gap/ρ, changes slopes by as much, and the reach may
+/// make of that no more than the share `SETTLED` of a step. Half a step's slope is 1/reach.
+const HARD: f64 = 16.0;
+const SETTLED: f64 = 1e-3;
+/// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻⁸, which is what gaps known to 10⁻⁹ D make of a contact ρ away.
 const REST: f64 = 1e-3;
 /// Steps are halved down to this share of the chosen one.
 const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
@@ -111,7 +115,7 @@ impl Motion<'_> {
                 let (below, covered) = self.nearby.height_about(next.cor.truncate(), ceiling, expected);
                 let z = below.unwrap_or(next.cor.z);
                 let landed = State { cor: next.cor.truncate().extend(z), ..next };
-                let blocked = covered && self.nearby.is_pierced(landed.cor);
+                let blocked = covered && self.nearby.overlaps(landed.cor);
                 if below.is_none() && !blocked {
                     return Advance::Ended(Outcome::Missed, next);
                 }
@@ -179,8 +183,10 @@ impl Motion<'_> {
         let Pace { step, reach, share } = pace;
         let step = *step;
         let most = self.most_reach();
+        let rotation_length = self.pair.alignment.rotation_length;
         let Self { projection, coulomb, rows, settings, .. } = self;
         let contacts = rows.contacts(settings.friction);
+        // A displacement, its length in the ρ-metric, and the widest gap that it closes.
         let mut solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;
@@ -193,7 +199,8 @@ impl Motion<'_> {
                 })
                 .unwrap_or_default();
             let length = u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>();
-            (u, length.sqrt())
+            let closed = coulomb.pressed().iter().map(|&k| rows.gaps[k]).fold(0.0, f64::max);
+            (u, length.sqrt(), closed)
         };
         // As far as the last push would have had to reach for a whole step.
         *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, most);
@@ -206,8 +213,17 @@ impl Motion<'_> {
             *reach = (*reach * (step / found.1).clamp(1.0 / 16.0, 0.5)).max(1.0);
             found = solve(*reach);
         }
+        if *reach > HARD {
+            // Gaps that a plain push closes already turn the half as they close: by which slope it goes on is known afterwards.
+            let first = solve(1.0);
+            let most = (SETTLED * rotation_length / first.2).max(1.0);
+            if most < *reach {
+                *reach = most;
+                found = if most > 1.0 { solve(most) } else { first };
+            }
+        }
         *share = found.1 / step;
-        let (mut u, mut length) = found;
+        let (mut u, mut length, _) = found;
         // Nothing moved and 0 displacement are both allowed, hence everything in between.
         let longest = length.max(u[2].abs());
         if longest > step {

@@ -79,7 +79,7 @@ proptest! {
             let first = pair.height(&pose).is_some_and(|z| (z - waypoint.height).abs() < 1e-6);
             let mut nearby = pair.nearby(0.0, 0.0);
             nearby.turn(&pose.rotation, pose.lateral, 0.0, 0.0);
-            prop_assert!(first || !nearby.is_pierced(pose.lateral.extend(waypoint.height)), "{waypoint:?}");
+            prop_assert!(first || !nearby.overlaps(pose.lateral.extend(waypoint.height)), "{waypoint:?}");
         }
     }
 

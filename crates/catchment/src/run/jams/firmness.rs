@@ -204,7 +204,7 @@ pub(in crate::run) fn ground(nearby: &mut Nearby<'_>, pose: &CorPose, ceiling: f
     nearby.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
     let (below, covered) = nearby.height_below(pose.lateral, ceiling);
     match below {
-        Some(z) if covered && nearby.is_pierced(pose.lateral.extend(z)) => Ground::Blocked,
+        Some(z) if covered && nearby.overlaps(pose.lateral.extend(z)) => Ground::Blocked,
         Some(z) => Ground::At(z),
         None if covered => Ground::Blocked,
         None => Ground::Gone,

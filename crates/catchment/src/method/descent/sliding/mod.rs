@@ -32,7 +32,7 @@ use super::step::{Advance, Pace};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, FLUSH, Meeting};
 use event::Reached;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2};
 
 /// A gap below this touches, in D: above what a landing leaves, far below what turns a direction.
 const ACTIVE: f64 = 2.0 * LANDING;
@@ -79,8 +79,6 @@ pub(super) struct Sliding {
     carrying: Vec<usize>,
     /// What is touched at the end of a step that is tried.
     touched: Vec<(Contact, Meeting)>,
-    /// The moving half's vertices there.
-    placed: Vec<DVec3>,
     rows: Vec<Vector>,
     tangents: Vec<Tangents>,
     gaps: Vec<f64>,
