@@ -64,9 +64,13 @@ memory *designs:
 reproducible:
     tests/reproducible
 
-# known weaknesses of what is depended on, by the RustSec database, which is fetched; needs `cargo install cargo-deny`
+# known weaknesses of what is depended on: crates by the RustSec database, which is fetched, npm's and PyPI's packages by their registries
 advisories:
-    cargo deny --all-features check advisories
+    test -d ~/.cargo/advisory-db || git clone --quiet https://github.com/rustsec/advisory-db ~/.cargo/advisory-db
+    git -C ~/.cargo/advisory-db pull --quiet --ff-only
+    python3 tests/advisories.py ~/.cargo/advisory-db
+    cd viewer && npm audit
+    uvx pip-audit -r tests/requirements.txt -r site/requirements.txt
 
 # the bill of materials of the program (CycloneDX), beside its Cargo.toml; needs `cargo install cargo-cyclonedx`
 sbom:
