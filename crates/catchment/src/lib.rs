@@ -95,7 +95,7 @@
 //!
 //! [`pose`] owns frames, signs, the order of angles and the metric; [`exec`] owns threads, the clock, cancelling, progress and the
 //! memory budget, none of which changes a bit of a result; [`suggest`] knows what a misspelt word meant, [`advice`] what helps
-//! where something is refused. [`polytope`] is the geometry of convex sets in up to six dimensions. [`prelude`] is one `use` for
+//! where something is refused, [`terminal`] what may be shown of foreign names. [`polytope`] is the geometry of convex sets in up to six dimensions. [`prelude`] is one `use` for
 //! all that a program needs.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
@@ -124,3 +124,4 @@ pub mod report;
 pub mod run;
 pub mod study;
 pub mod suggest;
+pub mod terminal;

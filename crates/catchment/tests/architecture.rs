@@ -25,7 +25,7 @@ const ROOMS: [&str; 13] = [
 /// What knows every room and is imported by none: one `use` for programs.
 const FACADE: &str = "prelude";
 /// What serves every room and knows none.
-const SERVANTS: [&str; 4] = ["pose", "exec", "suggest", "advice"];
+const SERVANTS: [&str; 5] = ["pose", "exec", "suggest", "terminal", "advice"];
 
 /// A room that imports one it must not know.
 #[derive(Debug, PartialEq)]

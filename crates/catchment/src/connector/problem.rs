@@ -2,6 +2,7 @@
 
 use super::mesh::MeshProblem;
 use super::{HullError, PartError, SurfaceError};
+use crate::terminal::shown;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -69,7 +70,7 @@ pub enum Problem {
         error: HullError,
     },
     /// A mesh file that is no half.
-    #[error("{side}, {}: {error}", path.display())]
+    #[error("{side}, {}: {error}", shown(path))]
     Mesh {
         /// Which half.
         side: Side,

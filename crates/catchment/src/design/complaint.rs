@@ -3,6 +3,7 @@
 use super::FamilySpec;
 use super::keys::{MOST_PARTS, Range};
 use crate::pose::Dof;
+use crate::suggest::{number_help, odd};
 
 /// Lengths and angles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,9 +39,11 @@ pub enum Complaint {
     Syntax {
         /// What the TOML parser says.
         message: String,
+        /// What to write, where a number was meant.
+        help: Option<String>,
     },
     /// A key that the table does not have.
-    #[error("unknown key `{key}` in {table}")]
+    #[error("unknown key `{key}` in {table}{}", odd(key))]
     UnknownKey {
         /// The key as written.
         key: String,
@@ -54,7 +57,7 @@ pub enum Complaint {
         known: Vec<&'static str>,
     },
     /// A name that no key has.
-    #[error("no key of a design is called `{name}`")]
+    #[error("no key of a design is called `{name}`{}", odd(name))]
     NoSuchKey {
         /// As written.
         name: String,
@@ -110,7 +113,7 @@ pub enum Complaint {
         text: String,
     },
     /// A unit nobody knows.
-    #[error("unknown unit `{unit}`")]
+    #[error("unknown unit `{unit}`{}", odd(unit))]
     UnknownUnit {
         /// As written.
         unit: String,
@@ -200,7 +203,7 @@ pub enum Complaint {
         key: String,
     },
     /// One of a few words was expected.
-    #[error("unknown {what} `{name}`")]
+    #[error("unknown {what} `{name}`{}", odd(name))]
     UnknownName {
         /// What is named.
         what: &'static str,
@@ -336,9 +339,11 @@ impl Complaint {
                 Some(format!("{doc} Bare angles are radians; degrees are written \"30 deg\""))
             }
             Self::OutOfRange { doc, .. } => Some((*doc).to_owned()),
-            Self::NotAQuantity { .. } => {
+            Self::NotAQuantity { text } => number_help(text).or_else(|| {
                 Some("write the number, a space and the unit, such as \"5 mm\" or \"30 deg\"".to_owned())
-            }
+            }),
+            Self::NotFinite { .. } => Some("write a finite number, or leave it out".to_owned()),
+            Self::NotARatio { text, .. } => number_help(text),
             Self::NoUnit { text } => Some(format!(
                 "write {text} without quotes for D or radians, or add a unit as in \"{text} mm\" or \"{text} deg\""
             )),
@@ -390,17 +395,16 @@ impl Complaint {
                 Some("put large geometry into an STL file: mesh = \"half.stl\"".to_owned())
             }
             Self::OtherSchema { found, known } if found > known => Some("use a newer version of catchment".to_owned()),
-            Self::Syntax { message } if message.contains("string values must be quoted") => {
+            Self::Syntax { help: Some(help), .. } => Some(help.clone()),
+            Self::Syntax { message, .. } if message.contains("string values must be quoted") => {
                 Some("a value with a unit is a string: \"5 mm\"".to_owned())
             }
             Self::Syntax { .. }
             | Self::WrongType { .. }
-            | Self::NotFinite { .. }
             | Self::TooFewPoints { .. }
             | Self::TooFewCorners { .. }
             | Self::NotAPoint { .. }
             | Self::NoDirection { .. }
-            | Self::NotARatio { .. }
             | Self::NotALine { .. }
             | Self::Repeated { .. }
             | Self::DontCareTranslation { .. }

@@ -2,7 +2,7 @@
 
 use super::complaint::Complaint;
 use super::keys::{Key, Kind, Table};
-use crate::suggest::nearest;
+use crate::suggest::{nearest, value_help};
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 /// Short names of keys that people know by them.
@@ -66,7 +66,10 @@ fn value(text: &str) -> Value {
 /// # Errors
 /// The text is not TOML, or something that is no table stands where the key's table should be.
 pub fn with_key(text: &str, path: &str, written: &str) -> Result<String, Complaint> {
-    let syntax = |error: toml_edit::TomlError| Complaint::Syntax { message: error.message().to_owned() };
+    let syntax = |error: toml_edit::TomlError| Complaint::Syntax {
+        message: error.message().to_owned(),
+        help: error.span().and_then(|span| value_help(text, span.start)),
+    };
     let mut document: DocumentMut = text.parse().map_err(syntax)?;
     let mut words: Vec<&str> = path.split('.').collect();
     let last = words.pop().unwrap_or_default();

@@ -1,6 +1,7 @@
 //! What is wrong, where it stands, and what to do about it: data, for whoever shows it.
 
 use super::line_column;
+use crate::terminal::shown;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
@@ -132,7 +133,7 @@ impl fmt::Display for Findings {
         for (k, finding) in self.list.iter().enumerate() {
             f.write_str(if k == 0 { "" } else { "\n" })?;
             if let Some(source) = &self.source {
-                write!(f, "{}:", source.path.display())?;
+                write!(f, "{}:", shown(&source.path))?;
                 if let Some(span) = &finding.span {
                     let (line, column) = source.line_column(span.start);
                     write!(f, "{line}:{column}:")?;

@@ -1,6 +1,7 @@
 //! The bytes of a design file, before they mean anything.
 
 use super::read::LARGEST_FILE;
+use crate::terminal::shown;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The system does not give it.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}", shown(path))]
     Io {
         /// The file.
         path: PathBuf,
@@ -16,7 +17,7 @@ pub enum LoadError {
         source: std::io::Error,
     },
     /// It has no content.
-    #[error("{} is empty", path.display())]
+    #[error("{} is empty", shown(path))]
     Empty {
         /// The file.
         path: PathBuf,
@@ -24,7 +25,7 @@ pub enum LoadError {
     /// It is too large.
     #[error(
         "{} is larger than {} MiB; put large geometry into an STL file: mesh = \"half.stl\"",
-        path.display(),
+        shown(path),
         LARGEST_FILE >> 20
     )]
     TooLarge {
@@ -32,7 +33,7 @@ pub enum LoadError {
         path: PathBuf,
     },
     /// It is not text.
-    #[error("{} is not a text file: byte {offset} is not UTF-8", path.display())]
+    #[error("{} is not a text file: byte {offset} is not UTF-8", shown(path))]
     NotText {
         /// The file.
         path: PathBuf,

@@ -10,7 +10,7 @@ use super::quantity::{Quantity, Scale, Unit, shortened};
 use super::section::Section;
 use super::{Family, LengthUnit};
 use crate::pose::{Dof, Mount};
-use crate::suggest::nearest;
+use crate::suggest::{nearest, value_help};
 use glam::DVec3;
 use std::ops::Range;
 use toml::Spanned;
@@ -59,7 +59,11 @@ impl<'t> Reader<'t> {
         };
         for error in syntax {
             let span = error.span().unwrap_or(0..0);
-            reader.note(|| Complaint::Syntax { message: error.message().to_owned() }, span.clone());
+            let syntax = || Complaint::Syntax {
+                message: error.message().to_owned(),
+                help: value_help(text, span.start),
+            };
+            reader.note(syntax, span.clone());
             if reader.broken.len() < MOST_KEPT {
                 reader.broken.push(span);
             }

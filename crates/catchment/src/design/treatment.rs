@@ -3,6 +3,7 @@
 //! Repairs change a mesh and not the solid that it bounds, but for the deviation that is told; holes are not closed.
 
 use super::{Design, FileSpec, HalfSpec, Meshed};
+use crate::terminal::shown;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -128,7 +129,7 @@ impl HalfSpec {
                     .iter()
                     .filter_map(|part| {
                         let file = part.shape.file()?;
-                        Some(format!("{}: {}", file.path.display(), told(file, design)?))
+                        Some(format!("{}: {}", shown(&file.path), told(file, design)?))
                     })
                     .collect();
                 (!told.is_empty()).then(|| told.join("; "))
@@ -148,7 +149,7 @@ impl HalfSpec {
                     .iter()
                     .filter_map(|part| {
                         let file = part.shape.file()?;
-                        Some(format!("{}: {}", file.path.display(), meshing(file, design)?))
+                        Some(format!("{}: {}", shown(&file.path), meshing(file, design)?))
                     })
                     .collect();
                 (!told.is_empty()).then(|| told.join("; "))

@@ -53,17 +53,19 @@ impl fmt::Debug for Exec {
 }
 
 impl Exec {
-    /// A thread per core (fewer where the system refuses them), no progress, three quarters of the available memory.
+    /// A thread per core, or as many as the environment variable `RAYON_NUM_THREADS` says (fewer where the system refuses them), no
+    /// progress, three quarters of the available memory.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Uses exactly `threads` worker threads of its own; 0 means one per core, or fewer where the system refuses them.
+    /// Uses exactly `threads` worker threads of its own; 0 means as many as [`Exec::new`].
     ///
     /// # Errors
-    /// When the system refuses to start that many threads.
+    /// The system refuses to start that many threads; or none are asked for, and the environment variable `RAYON_NUM_THREADS` is not a
+    /// number from 0 to 1024.
     pub fn with_threads(mut self, threads: usize) -> Result<Self, ThreadsError> {
-        self.threads = if threads == 0 { Threads::Shared } else { Threads::exactly(threads)? };
+        self.threads = if threads == 0 { Threads::shared()? } else { Threads::exactly(threads)? };
         Ok(self)
     }
 

@@ -3,8 +3,8 @@
 //!
 //! ```text
 //!   with_threads(n)   a pool of n threads of its own, or an error
-//!   otherwise         one pool for all runs that do not ask: a thread per core, half as many while the system refuses,
-//!                     and at last none: the caller's own thread does everything
+//!   otherwise         one pool for all runs that do not ask: a thread per core (or as many as RAYON_NUM_THREADS says), half as
+//!                     many while the system refuses, and at last none: the caller's own thread does everything
 //!   each              pieces of work side by side, every one on a thread that works for it alone
 //! ```
 //!
@@ -12,20 +12,59 @@
 //! asked for threads whose stacks would fill what the limit of the address space leaves: they are refused before.
 
 use super::memory::{self, Bytes};
+use crate::terminal::escaped;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::ffi::OsString;
 use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::Builder;
 
-/// The system refuses threads.
+/// The threads that are wanted cannot be had.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the system does not start {threads} threads ({reason}): ask for fewer, or for as many as it gives")]
-pub struct ThreadsError {
-    /// How many were asked for.
-    pub threads: usize,
-    /// What the system says.
-    pub reason: String,
+pub enum ThreadsError {
+    /// The system refuses them.
+    #[error(
+        "the system does not start {threads} threads ({reason}): ask for fewer, or for as many as it gives"
+    )]
+    Refused {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system says.
+        reason: String,
+    },
+    /// The environment asks for a number of threads that is none, or that nothing needs.
+    #[error(
+        "the environment variable {VARIABLE} is \"{}\", not a number of threads from 0 to {MOST}: set it to one, or unset it",
+        escaped(value)
+    )]
+    Environment {
+        /// What it says, cut off where it is long.
+        value: String,
+    },
+}
+
+/// The environment variable that says how many threads runs have that do not ask: that of `rayon`.
+const VARIABLE: &str = "RAYON_NUM_THREADS";
+/// More threads are not started, whatever the environment says.
+const MOST: usize = 1024;
+
+/// How many threads the environment asks for; 0 where it does not say.
+///
+/// # Errors
+/// It says something else than 0 to 1024.
+fn wanted(value: Option<OsString>) -> Result<usize, ThreadsError> {
+    /// Longest value that a message repeats, in characters.
+    const LONGEST: usize = 40;
+    let Some(value) = value.filter(|value| !value.is_empty()) else { return Ok(0) };
+    let value = value.to_string_lossy();
+    let number = value.trim().parse().ok().filter(|threads| *threads <= MOST);
+    number.ok_or_else(|| ThreadsError::Environment { value: value.chars().take(LONGEST).collect() })
+}
+
+/// What the environment says of threads.
+fn environment() -> Option<OsString> {
+    std::env::var_os(VARIABLE)
 }
 
 /// Where work runs.
@@ -41,8 +80,13 @@ pub(super) enum Threads {
 }
 
 impl Threads {
+    /// Those of all runs that did not ask for some.
+    pub(super) fn shared() -> Result<Self, ThreadsError> {
+        wanted(environment()).map(|_| Self::Shared)
+    }
+
     pub(super) fn exactly(threads: usize) -> Result<Self, ThreadsError> {
-        let refused = |reason: String| ThreadsError { threads, reason };
+        let refused = |reason: String| ThreadsError::Refused { threads, reason };
         ensure_room(threads, memory::limit()).map_err(refused)?;
         let pool = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
         Ok(Self::Own(Arc::new(pool.map_err(|error| refused(error.to_string()))?)))
@@ -114,12 +158,12 @@ fn shared() -> Option<&'static ThreadPool> {
     SHARED
         .get_or_init(|| {
             let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
-            let start = |threads: usize| {
-                ensure_room(if threads == 0 { cores } else { threads }, memory::limit()).ok()?;
+            // Refused where a run begins; here nothing can be said.
+            let threads = wanted(environment()).ok().filter(|threads| *threads > 0).unwrap_or(cores);
+            most(threads, |threads| {
+                ensure_room(threads, memory::limit()).ok()?;
                 ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build().ok()
-            };
-            // 0: a thread per core, or what the environment variable of `rayon` says.
-            start(0).or_else(|| most(cores / 2, start))
+            })
         })
         .as_ref()
 }
@@ -151,6 +195,22 @@ mod tests {
             [20, 13, 12, 5, 2, 1, 0].map(limited),
             [Some(13), Some(13), Some(6), Some(3), Some(1), Some(1), None]
         );
+    }
+
+    #[test]
+    fn an_environment_that_asks_for_no_number_of_threads_is_refused() {
+        let wanted = |value: &str| wanted(Some(value.into()));
+        assert_eq!([wanted(""), wanted("0"), wanted(" 8 "), wanted("1024")], [Ok(0), Ok(0), Ok(8), Ok(1024)]);
+        for value in ["1000000000", "1025", "-1", "many", "1e3", "99999999999999999999999"] {
+            let refused = wanted(value).unwrap_err().to_string();
+            assert!(
+                refused.contains(&format!("is \"{value}\"")) && refused.contains("unset it"),
+                "{refused}"
+            );
+        }
+        assert!(wanted("1\u{1b}[2J").unwrap_err().to_string().contains("1\\u{1b}[2J"));
+        assert!(wanted(&"9".repeat(10_000)).unwrap_err().to_string().len() < 200);
+        assert_eq!(super::wanted(None), Ok(0));
     }
 
     #[test]

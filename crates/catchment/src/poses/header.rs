@@ -12,11 +12,14 @@
 //! an axis beside or glued to it are an angle (`theta_z`, `rotx`). A name with a single
 //! word beside decorations and units is near as well where one slip turns that word into roll, pitch or yaw (`rol`).
 //!
+//! A name is read as it looks: `х` with the Cyrillic letter is near an error as `x` would be one, and the message shows the character.
+//!
 //! Names with control characters, or with characters that show nothing (a byte order mark), are refused whatever they say.
 
 use super::{Fault, is_hidden, shortened};
 use crate::design::{Design, LengthUnit, Unit, nearest};
 use crate::pose::Dof;
+use crate::suggest::{as_it_looks, odd};
 
 /// Units that a column's name may give.
 const UNITS: [(&str, Unit); 8] = [
@@ -60,9 +63,14 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Unit)>,
         return Err(Fault::new(format!("`{name}` is a column that the answer adds"), "rename it"));
     }
     let Some((dof, symbol)) = split(name) else {
-        return near(name).map_or(Ok(None), |meant| {
+        let looks = as_it_looks(name);
+        let meant = near(name).or_else(|| {
+            let is_other = looks != name;
+            is_other.then(|| split(&looks).map_or_else(|| near(&looks), |_| Some(looks.clone()))).flatten()
+        });
+        return meant.map_or(Ok(None), |meant| {
             let help = format!("did you mean {meant}? A column to be carried through needs another name");
-            Err(Fault::new(format!("`{}` is no pose error", shortened(name)), help))
+            Err(Fault::new(format!("`{}` is no pose error{}", shortened(name), odd(name)), help))
         });
     };
     let base = dof.name();
@@ -89,7 +97,7 @@ pub(super) fn column(name: &str, design: &Design) -> Result<Option<(Dof, Unit)>,
             let units = UNITS.map(|(symbol, _)| symbol);
             let known = format!("units are {}", units.join(", "));
             let help = nearest(symbol, units).map_or(known, |meant| format!("did you mean {base}_{meant}?"));
-            Err(Fault::new(format!("`{}`: unknown unit", shortened(name)), help))
+            Err(Fault::new(format!("`{}`: unknown unit{}", shortened(name), odd(symbol)), help))
         }
     }
 }
@@ -256,6 +264,25 @@ mod tests {
         }
     }
 
+    /// The first of each is a Cyrillic, Greek, wide or mathematical letter.
+    #[test]
+    fn names_that_only_look_like_errors_are_refused_with_the_odd_character() {
+        for (name, code, meant) in [
+            ("х", "U+0445", "x"),
+            ("у_mm", "U+0443", "y_mm"),
+            ("χ [mm]", "U+03C7", "x [mm]"),
+            ("ｘ_mm", "U+FF58", "x_mm"),
+            ("𝑦aw", "U+1D466", "yaw"),
+            ("уaw_dеg", "U+0443", "yaw_deg"),
+            ("dх", "U+0445", "x"),
+        ] {
+            let fault = read(name).expect_err(name);
+            assert!(fault.message.contains(code), "{}", fault.message);
+            assert!(fault.help.unwrap().starts_with(&format!("did you mean {meant}?")), "{name}");
+        }
+        assert!(read("x_mм").unwrap_err().message.contains("U+043C"));
+    }
+
     #[test]
     fn what_does_not_show_is_refused_and_not_repeated() {
         for name in ["\u{feff}x", "x\0", "pa\0rt", "\x1b[2J", "note\nmore", "x\u{200b}", "\u{202e}x"] {
@@ -287,6 +314,10 @@ mod tests {
             "temp_in",
             "",
             "Prüfer",
+            "деталь",
+            "угол",
+            "α",
+            "γ",
             "tray",
             "proxy",
             "matrix",

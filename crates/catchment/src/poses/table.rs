@@ -6,6 +6,7 @@ use super::{Fault, Found, OffsetsAt, header, shortened};
 use crate::design::Findings;
 use crate::design::{Design, Quantity, Unit};
 use crate::pose::{Dof, PoseError};
+use crate::suggest::number_help;
 use csv::StringRecord;
 use std::ops::Range;
 
@@ -249,7 +250,10 @@ fn number(text: &str) -> Result<f64, Fault> {
         return Err(Fault::new("a value is missing", "write 0 for an error that does not occur"));
     }
     let value: f64 = text.parse().map_err(|_| {
-        let help = "a number with a decimal point; its unit belongs into the name of the column, as in x_mm";
+        let help = number_help(text).unwrap_or_else(|| {
+            "a number with a decimal point; its unit belongs into the name of the column, as in x_mm"
+                .to_owned()
+        });
         Fault::new(format!("`{}` is no number", shortened(text)), help)
     })?;
     if value.is_finite() {

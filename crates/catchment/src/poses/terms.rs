@@ -5,6 +5,7 @@ use super::{Fault, Found, OffsetsAt, shortened};
 use crate::design::Findings;
 use crate::design::{Complaint, Design, Quantity, nearest};
 use crate::pose::{Dof, PoseError};
+use crate::suggest::odd;
 use std::ops::Range;
 
 /// Reads a pose error such as `x=0.2,pitch=10 deg`; what is not named is 0. Offsets are those of the face centre.
@@ -71,7 +72,7 @@ fn term(part: &str) -> Result<(Dof, Quantity), Fault> {
             || "one of x, y, roll, pitch, yaw".to_owned(),
             |meant| format!("did you mean {meant}?"),
         );
-        return Err(Fault::new(format!("there is no error `{}`", shortened(name)), help));
+        return Err(Fault::new(format!("there is no error `{}`{}", shortened(name), odd(name)), help));
     };
     let quantity =
         number.parse().map_err(|c: Complaint| Fault { message: format!("{name}: {c}"), help: c.help() })?;

@@ -303,7 +303,7 @@ fn half(half: &HalfSpec) -> String {
 fn mesh(file: &FileSpec) -> String {
     let bodies = file.content.as_ref().map_or(1, |content| content.bodies);
     let united = if bodies > 1 { format!(", the union of {bodies} bodies") } else { String::new() };
-    format!("mesh {}{united}", file.path.display())
+    format!("mesh {}{united}", crate::terminal::shown(&file.path))
 }
 
 /// The parts of a half, those that are alike together; and how round what is round is.
@@ -319,7 +319,7 @@ fn parts_of(parts: &[PartSpec]) -> String {
             ShapeSpec::Box { .. } => "box".to_owned(),
             ShapeSpec::Profile { outline: OutlineSpec::Corners(_), .. } => "profile".to_owned(),
             ShapeSpec::Profile { outline: OutlineSpec::File(file), .. } => {
-                format!("profile {}", file.path.display())
+                format!("profile {}", crate::terminal::shown(&file.path))
             }
         };
         match kinds.iter_mut().find(|(known, _)| *known == kind) {

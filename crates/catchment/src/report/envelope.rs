@@ -59,7 +59,7 @@ impl<T: Body + Serialize> Envelope<T> {
 
 /// JSON with `\u` and a number for every character that could steer a terminal; they stand in strings alone.
 fn escaped(json: String) -> String {
-    let raw = |c: char| c != '\n' && super::text::steers(c);
+    let raw = |c: char| c != '\n' && crate::terminal::steers(c);
     if !json.contains(raw) {
         return json;
     }
@@ -133,7 +133,7 @@ impl<'de, T: Body + Deserialize<'de>> Deserialize<'de> for Envelope<T> {
         let Read { catchment, kind, body, warnings, timing, .. } = Read::<T>::deserialize(deserializer)?;
         match kind {
             Some(kind) if kind != T::KIND => {
-                let shown = super::printable(&kind);
+                let shown = crate::terminal::escaped(&kind);
                 Err(D::Error::custom(format_args!("it is a report of `{shown}`, not of `{}`", T::KIND)))
             }
             _ => Ok(Self { catchment, body, warnings, timing }),

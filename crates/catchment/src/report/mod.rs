@@ -114,7 +114,7 @@ pub use success::{
 pub use sweep::Parts;
 pub use sweep::{SweepBody, SweepReport};
 pub use table::{table, table_with};
-pub use text::{csv, number, printable, steers};
+pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};
 pub use validation::{

@@ -1,5 +1,6 @@
 //! Text for terminals and tables for programs: what every kind of report is told with.
 
+use crate::terminal::printable;
 use std::fmt::Write;
 
 /// Width of a line.
@@ -26,17 +27,6 @@ pub fn decimals(width: f64) -> usize {
 }
 
 const LEAST_DECIMALS: f64 = 3.0;
-
-/// The text with a question mark for every character that could steer a terminal: controls, and the marks that
-/// change the direction of writing. Names come from files, and files from anywhere.
-pub fn printable(text: &str) -> String {
-    text.chars().map(|c| if steers(c) { '?' } else { c }).collect()
-}
-
-/// Whether a character could steer a terminal, or a reader's eye.
-pub fn steers(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-}
 
 /// Ends a line of text with what may be printed of `content`.
 pub fn line(text: &mut String, content: &str) {

@@ -1,4 +1,11 @@
-//! "Did you mean …?": the known word nearest to a misspelt one.
+//! "Did you mean …?": the known word nearest to a misspelt one; the character in a name that only looks like another
+//! ([`odd`]); what to write instead of a text that is no number ([`number_help`]).
+
+mod lookalike;
+mod number;
+
+pub use lookalike::{as_it_looks, odd};
+pub use number::{number_help, value_help};
 
 /// The word of `known` that `written` most likely stands for: at most one third of its letters wrong (and at
 /// least one is allowed). `None` when nothing is near; the first of equals wins.
@@ -7,7 +14,7 @@ pub fn nearest<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> O
     if written.len() > LONGEST {
         return None;
     }
-    let written = written.to_lowercase().replace(['_', ' '], "-");
+    let written = as_it_looks(written).to_lowercase().replace(['_', ' '], "-");
     let mut best: Option<(usize, &str)> = None;
     for word in known {
         let distance = edits(&written, &word.to_lowercase().replace('_', "-"));
@@ -61,6 +68,7 @@ mod tests {
         assert_eq!(nearest("aspectratio", known), Some("aspect_ratio"));
         assert_eq!(nearest("Aspect-Ratio", known), Some("aspect_ratio"));
         assert_eq!(nearest("widht", known), Some("width"));
+        assert_eq!(nearest("wіԁtһ", known), Some("width"), "letters that only look alike are right");
         assert_eq!(nearest("colour", known), None);
         assert_eq!(nearest(&"x".repeat(100_000), known), None);
     }

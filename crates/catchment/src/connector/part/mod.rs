@@ -18,6 +18,7 @@ use super::source::{self, FileBytes};
 use super::{Half, HullError, Problem, Side, Size, Surface, SurfaceError, convex_hull, place};
 use crate::design::{FileSpec, MeshContent, OutlineSpec, PartSpec, ShapeSpec};
 use crate::exec::Exec;
+use crate::terminal::shown;
 use glam::DVec2;
 use std::path::PathBuf;
 
@@ -27,7 +28,7 @@ pub(super) use outline::MOST_BYTES as MOST_BYTES_OF_A_DRAWING;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PartError {
     /// A mesh file that is none.
-    #[error("{}: {error}", path.display())]
+    #[error("{}: {error}", shown(path))]
     Mesh {
         /// The file.
         path: PathBuf,
@@ -35,7 +36,7 @@ pub enum PartError {
         error: MeshProblem,
     },
     /// Outlines that bound nothing.
-    #[error("{}{error}", path.as_ref().map_or_else(String::new, |path| format!("{}: ", path.display())))]
+    #[error("{}{error}", path.as_ref().map_or_else(String::new, |path| format!("{}: ", shown(path))))]
     Outline {
         /// The file, if they come from one.
         path: Option<PathBuf>,

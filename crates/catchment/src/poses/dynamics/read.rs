@@ -3,6 +3,7 @@
 use super::super::{Fault, Found, shortened};
 use super::{Circumstance, Dynamics, Law};
 use crate::design::{Design, Findings, Quantity, SourceText, nearest};
+use crate::suggest::{number_help, value_help};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -52,7 +53,8 @@ pub fn read_dynamics(source: &SourceText, design: &Design) -> Result<Dynamics, F
     let mut found = Found::default();
     let broken: Vec<Range<usize>> = syntax.iter().map(|error| error.span().unwrap_or(0..0)).collect();
     for (error, span) in syntax.iter().zip(&broken) {
-        let fault = Fault { message: error.message().to_owned(), help: None };
+        let help = value_help(&source.text, span.start);
+        let fault = Fault { message: error.message().to_owned(), help };
         found.push(fault, || Some(span.clone()));
     }
     let mut reader = Reader { found, broken, design, dynamics: Dynamics::default() };
@@ -235,7 +237,10 @@ fn unit_of(text: &str) -> &str {
 /// A number without a unit.
 fn plain(text: &str) -> Result<f64, Fault> {
     let read = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-    read.ok_or_else(|| Fault::new(format!("`{}` is no number", shortened(text.trim())), FORM))
+    read.ok_or_else(|| {
+        let help = number_help(text).unwrap_or_else(|| FORM.to_owned());
+        Fault::new(format!("`{}` is no number", shortened(text.trim())), help)
+    })
 }
 
 /// A number of a circumstance, in its unit; one without a unit has that which is written beside it.

@@ -1,8 +1,8 @@
 //! Correlations and covariances of a file of robots: axes, units, a matrix, and what makes it one.
 
-use super::super::Fault;
 use super::super::covariance::{IDENTITY, Matrix, cholesky, least_eigenvalue};
 use super::super::distribution::size;
+use super::super::{Fault, shortened};
 use super::read::{Reader, Value};
 use crate::design::Quantity;
 use crate::pose::{Dof, PoseError};
@@ -74,7 +74,7 @@ impl Reader<'_> {
                 let Some(number) = number.filter(|number| number.is_finite()) else {
                     self.refuse(
                         entry.span(),
-                        "it is no finite number",
+                        format!("`{}` is no finite number", written(entry.get_ref())),
                         "bare numbers, their units in `units`",
                     );
                     return None;
@@ -250,5 +250,15 @@ impl Reader<'_> {
             }
         }
         Some(correlation)
+    }
+}
+
+/// A value as a message repeats it: a number as it is written, the kind of anything else.
+fn written(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::Integer(number) => shortened(number.as_str()),
+        DeValue::Float(number) => shortened(number.as_str()),
+        DeValue::String(text) => shortened(text),
+        other => other.type_str().to_owned(),
     }
 }

@@ -7,6 +7,7 @@ use super::super::{Fault, Found, OffsetsAt, PoseTable, shortened};
 use super::{Robot, Spread};
 use crate::design::{Design, Findings, Quantity, SourceText, nearest};
 use crate::pose::{Dof, PoseError};
+use crate::suggest::value_help;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -34,7 +35,8 @@ pub fn read_robots(
     let mut reader = Reader { found: Found::default(), broken: Vec::new(), foreign: None, design, table };
     for error in syntax {
         let span = error.span().unwrap_or(0..0);
-        reader.found.push(Fault { message: error.message().to_owned(), help: None }, || Some(span.clone()));
+        let help = value_help(&source.text, span.start);
+        reader.found.push(Fault { message: error.message().to_owned(), help }, || Some(span.clone()));
         reader.broken.push(span);
     }
     let robots = reader.robots(document.get_ref());

@@ -153,7 +153,7 @@ fn inert(json: &str) -> String {
 
 /// Text for people, between tags.
 fn escaped(text: &str) -> String {
-    super::printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    crate::terminal::printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 fn half(half: &Half) -> Result<String, PageError> {

@@ -34,6 +34,7 @@ use crate::design::{LengthUnit, SourceText};
 use crate::exec::{Cancelled, Exec};
 use crate::pose::{Dof, DofSet, PoseError};
 use crate::problem::{Draft, Problem, ProblemError};
+use crate::terminal::shown;
 use glam::{DMat3, DVec2};
 use halves::design_unit;
 use judge::{Judged, Refusal, judge};
@@ -161,7 +162,7 @@ pub enum ProposalError {
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// A file does not say its unit, and nobody else does.
-    #[error("{} does not say its unit: the part is {} in its file", path.display(), told(*size))]
+    #[error("{} does not say its unit: the part is {} in its file", shown(path), told(*size))]
     NoUnit {
         /// The file.
         path: PathBuf,
