@@ -9,6 +9,7 @@
 
 use super::write::{self, WriteError};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::terminal::shown;
 use std::path::Path;
 
 /// The name of the JSON report in such a folder.
@@ -97,7 +98,7 @@ pub fn save_files(
     files: &[(String, Vec<u8>)],
     exec: &Exec,
 ) -> Result<(), SaveError> {
-    write::folder(path, kind, |folder| {
+    write::folder(path, kind, exec, |folder| {
         write_all(folder, files, exec)?;
         Ok(exec.check()?)
     })
@@ -116,10 +117,10 @@ impl StudyFolder<'_> {
     /// Refuses a place that cannot be written, before anything is computed.
     ///
     /// # Errors
-    /// Something else is there, or its parent is no folder.
-    pub fn check(&self) -> Result<(), WriteError> {
+    /// Something else is there, another process keeps it locked, or its parent is no folder.
+    pub fn check(&self, exec: &Exec) -> Result<(), WriteError> {
         write::check_utf8(self.path)?;
-        write::check_folder(self.path, self.name)
+        write::check_folder(self.path, self.name, exec)
     }
 
     /// Writes everything and says what was written; `more` adds to the folder.
@@ -136,13 +137,13 @@ impl StudyFolder<'_> {
     ) -> Result<String, SaveError> {
         let drawn = if files.is_empty() { String::new() } else { format!(", {} as PNG and SVG", self.name) };
         files.push((format!("{}.csv", self.name), super::text::csv(records)?));
-        write::folder(self.path, self.name, |folder| -> Result<(), SaveError> {
+        write::folder(self.path, self.name, exec, |folder| -> Result<(), SaveError> {
             write_all(folder, &files, exec)?;
             more(folder)?;
             write::part(folder, REPORT, json.as_bytes())?;
             Ok(exec.check()?)
         })?;
-        let (place, name) = (self.path.display(), self.name);
+        let (place, name) = (shown(self.path), self.name);
         Ok(format!("wrote {place}: {REPORT}, {name}.csv{drawn}"))
     }
 }
@@ -158,9 +159,9 @@ mod tests {
         let [slices, other] = ["slices", "difference"].map(|name| StudyFolder { path, name });
         let write = |study: StudyFolder| study.write("{}", &[], Files::new(), &Exec::new(), |_| Ok(()));
         std::fs::create_dir(path).unwrap();
-        assert!(slices.check().is_ok(), "nothing is lost with an empty folder");
+        assert!(slices.check(&Exec::new()).is_ok(), "nothing is lost with an empty folder");
         write(slices).unwrap();
-        assert!(slices.check().is_ok() && other.check().is_err());
+        assert!(slices.check(&Exec::new()).is_ok() && other.check(&Exec::new()).is_err());
         assert!(matches!(write(other), Err(SaveError::Write(WriteError::OtherKind { .. }))));
         std::fs::write(path.join("notes.txt"), "mine").unwrap();
         assert!(matches!(write(slices), Err(SaveError::Write(WriteError::Strange { changed: false, .. }))));

@@ -51,7 +51,7 @@ impl Answer {
         let pictures = encode(&drawn.pictures, exec)?;
         let report = self.report();
         let json = report.to_json()?;
-        write::folder(path, RUN, |folder| -> Result<(), SaveError> {
+        write::folder(path, RUN, exec, |folder| -> Result<(), SaveError> {
             write_all(folder, &pictures, exec)?;
             zarr::write(&folder.join(RESULT), &report, &self.acceptance, &self.layers(), exec)?;
             write::part(folder, REPORT, json.as_bytes())?;
@@ -152,15 +152,15 @@ impl Target<'_> {
     /// Refuses a place that cannot be written, before anything is computed.
     ///
     /// # Errors
-    /// Something else is there, or its parent is no folder.
-    pub fn check(&self) -> Result<(), WriteError> {
+    /// Something else is there, another process keeps it locked, or its parent is no folder.
+    pub fn check(&self, exec: &Exec) -> Result<(), WriteError> {
         if let Self::Folder(path) | Self::Group(path) = self {
             write::check_utf8(path)?;
         }
         match self {
-            Self::Folder(path) => write::check_folder(path, RUN),
-            Self::Group(path) => write::check_folder(path, zarr::KIND),
-            Self::Pictures(path) => write::check_folder(path, PICTURES),
+            Self::Folder(path) => write::check_folder(path, RUN, exec),
+            Self::Group(path) => write::check_folder(path, zarr::KIND, exec),
+            Self::Pictures(path) => write::check_folder(path, PICTURES, exec),
             Self::Set(path, _) => write::check_file(path, false),
         }
     }

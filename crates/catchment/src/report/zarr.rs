@@ -29,6 +29,7 @@ use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::landscape::{Grid, GridAxis};
 use crate::merit::MeritError;
 use crate::method::flood::{DAM, Watersheds};
+use crate::terminal::shown;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -67,7 +68,7 @@ pub enum ZarrError {
         cells: usize,
     },
     /// What is there is no group to read.
-    #[error("cannot read {}: {reason}", path.display())]
+    #[error("cannot read {}: {reason}", shown(path))]
     Content {
         /// The group.
         path: PathBuf,
@@ -124,7 +125,7 @@ pub fn write(
     if let Some(heights) = lengths.into_iter().flatten().find(|length| *length != grid.len()) {
         return Err(ZarrError::Shape { heights, cells: grid.len() });
     }
-    let filled = write::folder(path, KIND, |folder| {
+    let filled = write::folder(path, KIND, exec, |folder| {
         exec.install(|| fill(folder, report, acceptance, grid, layers, exec))
     });
     filled.map_err(|error| match error {

@@ -7,11 +7,18 @@
 //! Several steps under one permit, such as an exchange and what must follow it, are not torn apart by [`abandon`]. A
 //! process that is killed is another matter: it stops between any two steps, and the next start sees to it.
 
-use std::fs::{self, File, OpenOptions, Permissions};
+use std::fs::{self, DirBuilder, File, OpenOptions, Permissions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
+
+/// What a folder's owner may do who works in it.
+#[cfg(unix)]
+const OWNER: u32 = 0o700;
+/// What anybody may do, without the bits that mean something else.
+#[cfg(unix)]
+const EVERYBODY: u32 = 0o777;
 
 /// How long [`abandon`] waits for steps that have begun: a disk that does not answer must not hold the process.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -45,7 +52,37 @@ pub fn abandon() {
     }
     for path in std::mem::take(&mut gate.unfinished) {
         // The process ends; what cannot be removed now is removed by the next start.
-        let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+        let _ = remove(&path);
+    }
+}
+
+/// Removes a file, or a folder with all that is in it, a descriptor at a time; not through the gate.
+fn remove(path: &Path) -> io::Result<()> {
+    if !fs::symlink_metadata(path)?.is_dir() {
+        return fs::remove_file(path);
+    }
+    open_up(path);
+    entries(path)?.iter().try_for_each(|entry| remove(entry))?;
+    fs::remove_dir(path)
+}
+
+/// What is in a folder, which is not kept open.
+pub(super) fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect()
+}
+
+/// Whether the system refuses another open file: nothing is known of what it was to be opened for.
+pub(super) fn is_exhausted(error: &io::Error) -> bool {
+    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
+    {
+        use rustix::io::Errno;
+        let refused = [Errno::MFILE, Errno::NFILE].map(Errno::raw_os_error);
+        error.raw_os_error().is_some_and(|code| refused.contains(&code))
+    }
+    #[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
+    {
+        let _ = error;
+        false
     }
 }
 
@@ -111,12 +148,31 @@ impl Permit {
         }
     }
 
-    pub(super) fn create_dir(&self, path: &Path) -> io::Result<()> {
-        self.step(path, || fs::create_dir(path))
+    /// Makes a folder: with `like`, no more open than what has these permissions, and open to its owner.
+    pub(super) fn create_dir(&self, path: &Path, like: Option<&Permissions>) -> io::Result<()> {
+        let mut builder = DirBuilder::new();
+        #[cfg(unix)]
+        if let Some(like) = like {
+            use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+            builder.mode(like.mode() & EVERYBODY | OWNER);
+        }
+        #[cfg(not(unix))]
+        let _ = like;
+        self.step(path, || builder.create(path))
     }
 
-    pub(super) fn create(&self, path: &Path) -> io::Result<File> {
-        self.step(path, || OpenOptions::new().write(true).create_new(true).open(path))
+    /// Makes a file: with `like`, no more open than what has these permissions.
+    pub(super) fn create(&self, path: &Path, like: Option<&Permissions>) -> io::Result<File> {
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        if let Some(like) = like {
+            use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+            options.mode(like.mode() & EVERYBODY);
+        }
+        #[cfg(not(unix))]
+        let _ = like;
+        self.step(path, || options.open(path))
     }
 
     pub(super) fn write(&self, path: &Path, file: &mut File, bytes: &[u8]) -> io::Result<()> {
@@ -173,9 +229,8 @@ impl Permit {
             return self.remove_file(path);
         }
         open_up(path);
-        for entry in fs::read_dir(path)? {
-            self.remove_tree(&entry?.path())?;
-        }
+        // Listed first: a folder kept open at every depth is more than some processes may have.
+        entries(path)?.iter().try_for_each(|entry| self.remove_tree(entry))?;
         self.remove_dir(path)
     }
 }
@@ -190,7 +245,6 @@ pub(super) fn open_up(folder: &Path) {
     #[cfg(unix)]
     if let Ok(meta) = fs::symlink_metadata(folder) {
         use std::os::unix::fs::PermissionsExt;
-        const OWNER: u32 = 0o700;
         let mode = meta.permissions().mode();
         if mode & OWNER != OWNER {
             // Where it does not help, removing will say why.

@@ -7,7 +7,7 @@
 //! It is written last, so a folder without it is not complete or not ours. What is in the folder and not in the manifest,
 //! or differs from it, belongs to somebody else. What is missing is nobody's loss.
 
-use super::disk::{Permit, open_up};
+use super::disk::{Permit, is_exhausted, open_up};
 use crate::design::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -56,13 +56,24 @@ impl Manifest {
     }
 
     /// Of the folder, if it has one that can be read.
-    pub(super) fn read(folder: &Path) -> Option<Self> {
+    ///
+    /// # Errors
+    /// The system refuses another open file, so that it cannot be known.
+    pub(super) fn read(folder: &Path) -> io::Result<Option<Self>> {
         let path = folder.join(MANIFEST);
         // Nothing else, such as a pipe, is opened.
-        let meta = fs::symlink_metadata(&path).ok().filter(|meta| meta.is_file() && meta.len() <= LARGEST)?;
+        let meta = fs::symlink_metadata(&path).ok().filter(|meta| meta.is_file() && meta.len() <= LARGEST);
+        let Some(meta) = meta else { return Ok(None) };
         let mut text = Vec::with_capacity(meta.len() as usize);
-        File::open(&path).ok()?.take(LARGEST).read_to_end(&mut text).ok()?;
-        let manifest: Self = serde_json::from_slice(&text).ok()?;
+        match File::open(&path).and_then(|file| file.take(LARGEST).read_to_end(&mut text)) {
+            Err(error) if is_exhausted(&error) => Err(error),
+            Err(_) => Ok(None),
+            Ok(_) => Ok(Self::parse(&text)),
+        }
+    }
+
+    fn parse(text: &[u8]) -> Option<Self> {
+        let manifest: Self = serde_json::from_slice(text).ok()?;
         // What it lists will be removed one day: nothing above the folder or beside it.
         let inside =
             |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
@@ -91,7 +102,11 @@ impl Manifest {
             }
             let known = word(&name).and_then(|word| self.files.get(&word));
             let changed = known.is_some();
-            if !changed || known != digest(&folder.join(&name)).ok().as_ref() {
+            let there = match digest(&folder.join(&name)) {
+                Err(error) if is_exhausted(&error) => return Err(error),
+                there => there.ok(),
+            };
+            if !changed || known != there.as_ref() {
                 return Ok(Some(Strange { name, changed }));
             }
         }

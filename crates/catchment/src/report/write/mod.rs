@@ -20,6 +20,7 @@
 mod disk;
 #[cfg(test)]
 pub(crate) mod faults;
+mod lock;
 mod manifest;
 #[cfg(test)]
 mod stops;
@@ -27,17 +28,22 @@ mod temporary;
 #[cfg(test)]
 mod tests;
 
-use disk::is_mount_point;
 pub(crate) use disk::permit;
 pub use disk::{abandon, abandon_at_once};
+pub use lock::Holder;
 pub use manifest::MANIFEST;
+pub(crate) use temporary::sweep;
 
+use crate::exec::{Cancelled, Exec};
+use crate::terminal::shown;
+use disk::{entries, is_exhausted, is_mount_point};
+use lock::{AFTER, BEFORE, claim};
 use manifest::Manifest;
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-pub(crate) use temporary::sweep;
-use temporary::{ASIDE, Temporary, claim, hidden};
+use std::time::Duration;
+use temporary::{ASIDE, Temporary, hidden};
 
 /// Links that lead to links that lead to links: the system's own limit.
 const LINKS: usize = 40;
@@ -46,19 +52,19 @@ const LINKS: usize = 40;
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// No room left.
-    #[error("cannot write {}: the disk is full", path.display())]
+    #[error("cannot write {}: the disk is full", shown(path))]
     DiskFull {
         /// What was to be written.
         path: PathBuf,
     },
     /// The system does not allow it.
-    #[error("cannot write {}: permission denied", path.display())]
+    #[error("cannot write {}: permission denied", shown(path))]
     Denied {
         /// What was to be written.
         path: PathBuf,
     },
     /// The folder to write into does not exist.
-    #[error("cannot write {}: its folder does not exist; create it first", path.display())]
+    #[error("cannot write {}: its folder does not exist; create it first", shown(path))]
     NoFolder {
         /// What was to be written.
         path: PathBuf,
@@ -67,7 +73,7 @@ pub enum WriteError {
     #[error(
         "cannot write {}: something is there that is not a catchment result (it has no readable {MANIFEST}); \
          move it away or choose another name",
-        path.display()
+        shown(path)
     )]
     NotAResult {
         /// What was to be written.
@@ -76,7 +82,7 @@ pub enum WriteError {
     /// A result of another kind is there, and it would be lost.
     #[error(
         "cannot write {}: another result is there ({found}, not {kind}); move it away or choose another name",
-        path.display()
+        shown(path)
     )]
     OtherKind {
         /// What was to be written.
@@ -89,8 +95,8 @@ pub enum WriteError {
     /// Something in the result that is there would be lost.
     #[error(
         "cannot write {}: {} in it was {}; move it away or choose another name",
-        path.display(),
-        name.display(),
+        shown(path),
+        shown(name),
         if *changed { "changed since it was written" } else { "not written by catchment" }
     )]
     Strange {
@@ -102,49 +108,86 @@ pub enum WriteError {
         changed: bool,
     },
     /// A file is there that is not to be replaced.
-    #[error("cannot write {}: it exists", path.display())]
+    #[error("cannot write {}: it exists", shown(path))]
     Exists {
         /// What was to be written.
         path: PathBuf,
     },
     /// A folder is where a file shall be.
-    #[error("cannot write {}: it is a folder", path.display())]
+    #[error("cannot write {}: it is a folder", shown(path))]
     IsFolder {
         /// What was to be written.
         path: PathBuf,
     },
     /// A device, a pipe or a socket is there.
-    #[error("cannot write {}: it is not an ordinary file", path.display())]
+    #[error("cannot write {}: it is not an ordinary file", shown(path))]
     NotAFile {
         /// What was to be written.
         path: PathBuf,
     },
     /// A disk of its own is there, which cannot be exchanged with what lies beside it.
-    #[error("cannot write {}: it is a mount point, which cannot be replaced; name something inside it", path.display())]
+    #[error(
+        "cannot write {}: it is a mount point, which cannot be replaced; name something inside it",
+        shown(path)
+    )]
     MountPoint {
         /// What was to be written.
         path: PathBuf,
     },
     /// The name leaves no room for a temporary one, or is too long for the system.
-    #[error("cannot write {}: its name is too long", path.display())]
+    #[error("cannot write {}: its name is too long", shown(path))]
     NameTooLong {
         /// What was to be written.
         path: PathBuf,
     },
+    /// Another process keeps the folder locked.
+    #[error("cannot write {}: {by} has kept the folder locked for {seconds} s; {}", shown(path), by.remedy())]
+    Locked {
+        /// The folder.
+        path: PathBuf,
+        /// Which one.
+        by: Holder,
+        /// How long it was waited for.
+        seconds: u64,
+    },
+    /// A process that started this one keeps the folder locked, and each would wait for the other.
+    #[error(
+        "cannot write {}: {by}, which started this program, keeps the folder locked and waits for this program to end; \
+         lock a file beside the folder, not the folder itself",
+        shown(path)
+    )]
+    LockedAbove {
+        /// The folder.
+        path: PathBuf,
+        /// Which one.
+        by: Holder,
+    },
+    /// The system refuses another open file.
+    #[error(
+        "cannot write {}: too many open files; allow more (ulimit -n), or end programs that hold many",
+        shown(path)
+    )]
+    TooManyOpen {
+        /// What was to be written.
+        path: PathBuf,
+    },
+    /// It was asked to stop while it waited.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Groups are named in UTF-8.
-    #[error("cannot write {}: the path is not UTF-8, which stored grids need", path.display())]
+    #[error("cannot write {}: the path is not UTF-8, which stored grids need", shown(path))]
     NotUtf8 {
         /// What was to be written.
         path: PathBuf,
     },
     /// The path names no file.
-    #[error("cannot write {}: the path does not end with a name", path.display())]
+    #[error("cannot write {}: the path does not end with a name", shown(path))]
     NoName {
         /// The path.
         path: PathBuf,
     },
     /// Anything else the system reports.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {source}", shown(path))]
     Io {
         /// What was to be written.
         path: PathBuf,
@@ -157,6 +200,9 @@ impl WriteError {
     /// Sorts a system error.
     pub(crate) fn at(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
+        if is_exhausted(&source) {
+            return Self::TooManyOpen { path };
+        }
         match source.kind() {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::DiskFull { path },
             ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => Self::Denied { path },
@@ -230,9 +276,9 @@ fn look_for_file(path: &Path, replace: bool) -> Result<(PathBuf, Option<Permissi
 /// # Errors
 /// Those of [`file()`].
 pub fn check_file(path: &Path, replace: bool) -> Result<(), WriteError> {
-    let (place, _) = look_for_file(path, replace)?;
+    let (place, permissions) = look_for_file(path, replace)?;
     sweep(&place)?;
-    Temporary::file(&place).map(drop)
+    Temporary::file(&place, permissions.as_ref()).map(drop)
 }
 
 /// Writes a file; an existing ordinary *file* stays or is replaced. Links stay, and so do permissions.
@@ -242,7 +288,7 @@ pub fn check_file(path: &Path, replace: bool) -> Result<(), WriteError> {
 pub fn file(path: &Path, bytes: &[u8], replace: bool) -> Result<(), WriteError> {
     let (place, permissions) = look_for_file(path, replace)?;
     sweep(&place)?;
-    let (mut temporary, mut file) = Temporary::file(&place)?;
+    let (mut temporary, mut file) = Temporary::file(&place, permissions.as_ref())?;
     let write = || -> io::Result<()> {
         let new = &temporary.path;
         if let Some(permissions) = permissions {
@@ -267,9 +313,9 @@ pub fn part(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
     let write = || -> io::Result<()> {
         let permit = permit();
         if !parent(&path).is_dir() {
-            permit.create_dir(parent(&path))?;
+            permit.create_dir(parent(&path), None)?;
         }
-        let mut file = permit.create(&path)?;
+        let mut file = permit.create(&path, None)?;
         permit.write(&path, &mut file, bytes)
     };
     write().map_err(|error| WriteError::at(&path, error))
@@ -292,11 +338,12 @@ fn look(place: &Path, kind: &str) -> Result<There, WriteError> {
         Ok(_) if is_mount_point(place) => return Err(WriteError::MountPoint { path: path() }),
         Ok(_) => {}
     }
-    let mut entries = fs::read_dir(place).map_err(|error| WriteError::at(place, error))?;
-    if entries.next().is_none() {
+    let at = |error| WriteError::at(place, error);
+    if fs::read_dir(place).map_err(at)?.next().is_none() {
         return Ok(There::Empty);
     }
-    let manifest = Manifest::read(place).ok_or_else(|| WriteError::NotAResult { path: path() })?;
+    let manifest =
+        Manifest::read(place).map_err(at)?.ok_or_else(|| WriteError::NotAResult { path: path() })?;
     if manifest.kind != kind {
         return Err(WriteError::OtherKind { path: path(), found: manifest.kind, kind: kind.to_owned() });
     }
@@ -304,12 +351,17 @@ fn look(place: &Path, kind: &str) -> Result<There, WriteError> {
     Ok(There::Ours(manifest))
 }
 
-/// The same while nobody else of this program works on it, and what keeps others waiting until it is dropped.
-fn look_undisturbed(place: &Path, kind: &str) -> Result<(Option<File>, There), WriteError> {
-    /// Where the system knows no locks nobody can be kept away.
+/// The same while no other process of this program works on it, and what keeps others waiting until it is dropped.
+fn look_undisturbed(
+    place: &Path,
+    kind: &str,
+    patience: Duration,
+    exec: &Exec,
+) -> Result<(Option<File>, There), WriteError> {
+    /// Where the system has no locks, others cannot be kept away.
     const TRIES: usize = 100;
     for _ in 0..TRIES {
-        if let Some(others_wait) = claim(place) {
+        if let Some(others_wait) = claim(place, patience, exec)? {
             return Ok((Some(others_wait), look(place, kind)?));
         }
         match fs::symlink_metadata(place) {
@@ -335,11 +387,11 @@ fn nothing_strange(manifest: &Manifest, folder: &Path, shown: &Path) -> Result<(
 /// Refuses a place for a folder as [`folder`] would, and tries it out; puts in order what a killed run left there.
 ///
 /// # Errors
-/// Those of [`folder`].
-pub fn check_folder(path: &Path, kind: &str) -> Result<(), WriteError> {
+/// Those of [`folder`]; a lock is waited for 5 s.
+pub fn check_folder(path: &Path, kind: &str, exec: &Exec) -> Result<(), WriteError> {
     let place = place(path)?;
     sweep(&place)?;
-    look_undisturbed(&place, kind)?;
+    look_undisturbed(&place, kind, BEFORE, exec)?;
     Temporary::folder(&place).map(drop)
 }
 
@@ -347,15 +399,16 @@ pub fn check_folder(path: &Path, kind: &str) -> Result<(), WriteError> {
 /// replaced only if it is of the same kind and nothing in it was added or changed.
 ///
 /// # Errors
-/// Those of `fill`, and whatever the system refuses. What was there is there again.
+/// Those of `fill`, and whatever the system refuses; a lock is waited for 60 s. What was there is there again.
 pub fn folder<E: From<WriteError>>(
     path: &Path,
     kind: &str,
+    exec: &Exec,
     fill: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<(), E> {
     let place = place(path)?;
     sweep(&place)?;
-    look_undisturbed(&place, kind)?;
+    look_undisturbed(&place, kind, AFTER, exec)?;
     let mut new = Temporary::folder(&place)?;
     fill(&new.path)?;
     let complete = || -> io::Result<()> {
@@ -363,7 +416,7 @@ pub fn folder<E: From<WriteError>>(
         sync_tree(&new.path)?;
         let path = new.path.join(MANIFEST);
         let permit = permit();
-        let mut file = permit.create(&path)?;
+        let mut file = permit.create(&path, None)?;
         permit.write(&path, &mut file, &manifest)?;
         permit.sync(&path, &file)?;
         // Its entry, which some systems do not let be synced.
@@ -371,15 +424,15 @@ pub fn folder<E: From<WriteError>>(
         Ok(())
     };
     complete().map_err(|error| WriteError::at(path, error))?;
-    while !put(&mut new, &place, kind)? {}
+    while !put(&mut new, &place, kind, exec)? {}
     sync_parent(&place);
     Ok(())
 }
 
 /// Lets a complete folder take its place; says `false` if somebody else was faster and it has to be tried again.
-fn put(new: &mut Temporary, place: &Path, kind: &str) -> Result<bool, WriteError> {
+fn put(new: &mut Temporary, place: &Path, kind: &str, exec: &Exec) -> Result<bool, WriteError> {
     let at = |error| WriteError::at(place, error);
-    let (others_wait, there) = look_undisturbed(place, kind)?;
+    let (others_wait, there) = look_undisturbed(place, kind, AFTER, exec)?;
     if let (There::Empty | There::Ours(_), Ok(meta)) = (&there, fs::symlink_metadata(place)) {
         permit().set_permissions(&new.path, meta.permissions()).map_err(at)?;
     }
@@ -438,8 +491,7 @@ fn replace(new: &mut Temporary, place: &Path, old: &Manifest) -> Result<(), Writ
 }
 
 fn sync_tree(folder: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
+    for path in entries(folder)? {
         if path.is_dir() {
             sync_tree(&path)?;
             // Its entries, which some systems do not let be synced.

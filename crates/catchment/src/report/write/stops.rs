@@ -80,7 +80,7 @@ fn a_file_survives_every_stop() {
 fn a_folder_survives_every_stop() {
     let steps = stop_everywhere(&Writer {
         write: &|path, version| save(path, version).is_ok(),
-        check: &|path| check_folder(path, KIND).is_ok(),
+        check: &|path| check_folder(path, KIND, &Exec::new()).is_ok(),
         read: &saved,
         is_folder: true,
     });
@@ -101,9 +101,9 @@ fn recovery_survives_every_stop() {
                 let _ = save(path, 2);
                 happened = faults::clear(home.path());
                 faults::set(home.path(), Fault::Crash, again, exchange);
-                let _ = check_folder(path, KIND);
+                let _ = check_folder(path, KIND, &Exec::new());
                 let stopped = faults::clear(home.path());
-                check_folder(path, KIND).unwrap();
+                check_folder(path, KIND, &Exec::new()).unwrap();
                 assert!(matches!(saved(path), Some(1 | 2)), "{exchange} {step} {again}");
                 assert_eq!(names(home.path()), ["out"], "{exchange} {step} {again}");
                 if !stopped {
@@ -130,11 +130,11 @@ fn a_study_survives_every_stop() {
             };
             study(path).write(&version.to_string(), &[], Files::new(), &Exec::new(), more).is_ok()
         },
-        check: &|path| study(path).check().is_ok(),
+        check: &|path| study(path).check(&Exec::new()).is_ok(),
         read: &|path| {
-            Manifest::read(path)?.is_whole(path).then_some(())?;
+            Manifest::read(path).unwrap()?.is_whole(path).then_some(())?;
             let group = path.join("x-y.zarr");
-            (!cfg!(feature = "zarr") || Manifest::read(&group)?.is_whole(&group)).then_some(())?;
+            (!cfg!(feature = "zarr") || Manifest::read(&group).unwrap()?.is_whole(&group)).then_some(())?;
             fs::read_to_string(path.join("report.json")).ok()?.parse().ok()
         },
         is_folder: true,
@@ -170,9 +170,9 @@ fn write_group(_: &Path, _: usize) -> bool {
 fn a_group_survives_every_stop() {
     let steps = stop_everywhere(&Writer {
         write: &write_group,
-        check: &|path| check_folder(path, "group").is_ok(),
+        check: &|path| check_folder(path, "group", &Exec::new()).is_ok(),
         read: &|path| {
-            Manifest::read(path)?.is_whole(path).then_some(())?;
+            Manifest::read(path).unwrap()?.is_whole(path).then_some(())?;
             let root: serde_json::Value =
                 serde_json::from_slice(&fs::read(path.join("zarr.json")).ok()?).ok()?;
             Some(root["attributes"]["report"]["settings"].as_u64()? as usize)
@@ -212,9 +212,9 @@ fn a_run_survives_every_stop() {
             let (answer, drawn) = &answers[version - 1];
             answer.save_drawn(path, drawn, &exec).is_ok()
         },
-        check: &|path| Target::Folder(path).check().is_ok(),
+        check: &|path| Target::Folder(path).check(&Exec::new()).is_ok(),
         read: &|path| {
-            Manifest::read(path)?.is_whole(path).then_some(())?;
+            Manifest::read(path).unwrap()?.is_whole(path).then_some(())?;
             let (_, acceptance) = crate::report::zarr::read(&path.join("result.zarr"), &exec).ok()?;
             Some(1 + cells.iter().position(|cells| *cells == acceptance.outcomes.len())?)
         },

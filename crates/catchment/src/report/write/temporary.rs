@@ -11,13 +11,14 @@
 //! Whoever writes holds a lock on it, which ends with the process. So the next start knows what nobody works on any
 //! more, on every machine that sees the same disk. Where the system knows no such locks, left-overs stay.
 
-use super::disk::{Permit, permit};
+use super::disk::{Permit, is_exhausted, permit};
+use super::lock::is_at;
 use super::manifest::Manifest;
 use super::{WriteError, parent};
 use crate::design::hex;
 use sha2::{Digest, Sha256};
 use std::ffi::{OsStr, OsString};
-use std::fs::{self, File};
+use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -35,7 +36,7 @@ pub(super) struct Temporary {
     pub(super) path: PathBuf,
     finished: bool,
     /// Released when dropped.
-    _lock: Option<File>,
+    lock: Option<File>,
 }
 
 /// What was made under a name that was free.
@@ -49,14 +50,20 @@ enum Made<T> {
 }
 
 impl Temporary {
-    /// An empty folder.
+    /// An empty folder, open to nobody to whom the folder that it will replace is closed.
     pub(super) fn folder(place: &Path) -> Result<Self, WriteError> {
+        let replaced = fs::symlink_metadata(place).ok().filter(fs::Metadata::is_dir);
+        let permissions = replaced.map(|meta| meta.permissions());
         Self::make(place, |permit, path| {
-            permit.create_dir(path)?;
+            permit.create_dir(path, permissions.as_ref())?;
             match File::open(path) {
                 Ok(folder) => Ok(Made::Locked(folder, ())),
                 Err(error) if error.kind() == ErrorKind::NotFound => Ok(Made::Swept),
-                Err(error) if cfg!(unix) => Err(error),
+                Err(error) if cfg!(unix) => {
+                    // Nobody can know it any more, not even by its lock.
+                    let _ = permit.remove_dir(path);
+                    Err(error)
+                }
                 // Some systems cannot open folders.
                 Err(_) => Ok(Made::Unlocked(())),
             }
@@ -64,10 +71,10 @@ impl Temporary {
         .map(|(made, ())| made)
     }
 
-    /// An empty file.
-    pub(super) fn file(place: &Path) -> Result<(Self, File), WriteError> {
+    /// An empty file, open to nobody to whom the file that it will replace is closed.
+    pub(super) fn file(place: &Path, permissions: Option<&Permissions>) -> Result<(Self, File), WriteError> {
         Self::make(place, |permit, path| {
-            let file = permit.create(path)?;
+            let file = permit.create(path, permissions)?;
             Ok(match file.try_clone() {
                 Ok(lock) => Made::Locked(lock, file),
                 Err(_) => Made::Unlocked(file),
@@ -91,7 +98,7 @@ impl Temporary {
                 Err(error) => return Err(WriteError::at(place, error)),
             };
             permit.unfinished(&path, true);
-            return Ok((Self { path, finished: false, _lock: lock }, made));
+            return Ok((Self { path, finished: false, lock }, made));
         }
         Err(WriteError::at(place, ErrorKind::ResourceBusy.into()))
     }
@@ -107,8 +114,13 @@ impl Drop for Temporary {
     fn drop(&mut self) {
         if !self.finished {
             let permit = permit();
-            // Nobody is left to tell; the next start tries again.
-            let _ = permit.remove_tree(&self.path);
+            let mut removed = permit.remove_tree(&self.path);
+            if removed.as_ref().is_err_and(is_exhausted) && self.lock.take().is_some() {
+                // The lock's own descriptor is the one that was missing.
+                removed = permit.remove_tree(&self.path);
+            }
+            // Nobody is left to report to; the next start tries again.
+            drop(removed);
             permit.unfinished(&self.path, false);
         }
     }
@@ -156,34 +168,6 @@ fn is_held(file: &File) -> bool {
     matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock))
 }
 
-/// Whether a file or folder that was opened is still the one at `path`.
-fn is_at(file: &File, path: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let same = |a: fs::Metadata, b: fs::Metadata| a.dev() == b.dev() && a.ino() == b.ino();
-        fs::symlink_metadata(path).is_ok_and(|there| file.metadata().is_ok_and(|here| same(here, there)))
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = file;
-        fs::symlink_metadata(path).is_ok()
-    }
-}
-
-/// Waits until nobody else works on the folder at `place`, and keeps others waiting until the lock is dropped.
-pub(super) fn claim(place: &Path) -> Option<File> {
-    loop {
-        // Nothing else, such as a pipe, is opened.
-        fs::symlink_metadata(place).ok().filter(fs::Metadata::is_dir)?;
-        let folder = File::open(place).ok()?;
-        folder.lock().ok()?;
-        if is_at(&folder, place) {
-            return Some(folder);
-        }
-    }
-}
-
 /// Restores and removes what killed processes left beside a place.
 ///
 /// # Errors
@@ -212,7 +196,7 @@ pub(crate) fn sweep(place: &Path) -> Result<(), WriteError> {
         }
         let at = |error| WriteError::at(&path, error);
         let permit = permit();
-        let manifest = if meta.is_dir() { Manifest::read(&path) } else { None };
+        let manifest = if meta.is_dir() { Manifest::read(&path).map_err(at)? } else { None };
         if ending == ASIDE && (marked || manifest.is_some()) && fs::symlink_metadata(place).is_err() {
             permit.rename_to_new(&path, place).map_err(at)?;
         } else if let Some(manifest) = manifest {

@@ -33,7 +33,7 @@ pub(super) fn save(path: &Path, version: usize) -> Result<(), SaveError> {
 
 /// Which version a folder holds, if it is whole.
 pub(super) fn saved(path: &Path) -> Option<usize> {
-    if !Manifest::read(path)?.is_whole(path) {
+    if !Manifest::read(path).unwrap()?.is_whole(path) {
         return None;
     }
     let text = fs::read_to_string(path.join("a")).ok()?;
@@ -59,19 +59,28 @@ fn refusals_are_typed_and_leave_nothing() {
     let home = home();
     let nowhere = home.path().join("missing/a.json");
     assert!(matches!(file(&nowhere, b"", true), Err(WriteError::NoFolder { .. })));
-    assert!(matches!(check_folder(&nowhere, KIND), Err(WriteError::NoFolder { .. })));
+    assert!(matches!(check_folder(&nowhere, KIND, &Exec::new()), Err(WriteError::NoFolder { .. })));
     assert!(matches!(file(home.path(), b"", true), Err(WriteError::IsFolder { .. })));
-    assert!(matches!(check_folder(Path::new("/"), KIND), Err(WriteError::NoName { .. })));
-    assert!(matches!(check_folder(&home.path().join(".."), KIND), Err(WriteError::NoName { .. })));
+    assert!(matches!(check_folder(Path::new("/"), KIND, &Exec::new()), Err(WriteError::NoName { .. })));
+    assert!(matches!(
+        check_folder(&home.path().join(".."), KIND, &Exec::new()),
+        Err(WriteError::NoName { .. })
+    ));
     for length in [250, 300] {
         let long = home.path().join("a".repeat(length));
         assert!(matches!(check_file(&long, false), Err(WriteError::NameTooLong { .. })), "{length}");
-        assert!(matches!(check_folder(&long, KIND), Err(WriteError::NameTooLong { .. })), "{length}");
+        assert!(
+            matches!(check_folder(&long, KIND, &Exec::new()), Err(WriteError::NameTooLong { .. })),
+            "{length}"
+        );
     }
     let file = home.path().join("file");
     fs::write(&file, "").unwrap();
-    assert!(matches!(check_folder(&file.join("inner"), KIND), Err(WriteError::NoFolder { .. })));
-    assert!(matches!(check_folder(&file, KIND), Err(WriteError::NotAResult { .. })));
+    assert!(matches!(
+        check_folder(&file.join("inner"), KIND, &Exec::new()),
+        Err(WriteError::NoFolder { .. })
+    ));
+    assert!(matches!(check_folder(&file, KIND, &Exec::new()), Err(WriteError::NotAResult { .. })));
     assert_eq!(names(home.path()), ["file"]);
     // A device that is always full, where the system has one.
     if Path::new("/dev/full").exists() {
@@ -86,7 +95,7 @@ fn a_folder_appears_whole_or_not_at_all() {
     let path = home.path().join("out");
     save(&path, 1).unwrap();
     save(&path, 2).unwrap();
-    let failed = folder(&path, KIND, |new| {
+    let failed = folder(&path, KIND, &Exec::new(), |new| {
         part(new, "half", b"three")?;
         Err(WriteError::DiskFull { path: new.to_owned() })
     });
@@ -106,7 +115,8 @@ fn only_an_unchanged_result_of_the_same_kind_is_replaced() {
     };
     let refuses = |why: fn(&WriteError) -> bool| {
         let before = Manifest::of(path, KIND).ok();
-        let [checked, written] = [check_folder(path, KIND), folder(path, KIND, |_| Ok(()))];
+        let [checked, written] =
+            [check_folder(path, KIND, &Exec::new()), folder(path, KIND, &Exec::new(), |_| Ok(()))];
         assert!(
             checked.as_ref().is_err_and(why) && written.as_ref().is_err_and(why),
             "{checked:?} {written:?}"
@@ -126,7 +136,7 @@ fn only_an_unchanged_result_of_the_same_kind_is_replaced() {
     fs::create_dir(path.join("plans")).unwrap();
     refuses(|e| matches!(e, WriteError::Strange { changed: false, .. }));
     renew();
-    let other = folder(path, "another", |_| Ok::<_, WriteError>(()));
+    let other = folder(path, "another", &Exec::new(), |_| Ok::<_, WriteError>(()));
     assert!(matches!(other, Err(WriteError::OtherKind { .. })));
     for manifest in ["", "{}", r#"{"catchment":"0","kind":"test","files":{"../../x":"00"}}"#] {
         renew();
@@ -164,7 +174,7 @@ fn what_comes_while_the_new_is_written_is_kept() {
                 }
                 Ok(())
             };
-            let refused = folder::<WriteError>(&path, KIND, fill);
+            let refused = folder::<WriteError>(&path, KIND, &Exec::new(), fill);
             faults::clear(home.path());
             assert!(matches!(refused, Err(WriteError::Strange { changed: false, .. })), "{refused:?}");
             assert_eq!(names(home.path()), ["out"]);
@@ -217,6 +227,36 @@ fn links_stay_and_so_do_permissions() {
     assert!(matches!(save(&at("empty"), 3), Err(SaveError::Write(WriteError::Strange { .. }))));
 }
 
+/// Whoever may not look into the old one may not look into the new one while it is filled.
+#[cfg(unix)]
+#[test]
+fn what_is_unfinished_is_no_more_open_than_what_it_replaces() {
+    use std::os::unix::fs::PermissionsExt;
+    let home = home();
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    let path = home.path().join("out");
+    save(&path, 1).unwrap();
+    for (old, meanwhile) in [(0o700, 0o700), (0o750, 0o750), (0o500, 0o700)] {
+        fs::set_permissions(&path, Permissions::from_mode(old)).unwrap();
+        let mut seen = None;
+        folder::<WriteError>(&path, KIND, &Exec::new(), |new| {
+            seen = Some(mode(new));
+            part(new, "a", b"a")
+        })
+        .unwrap();
+        // The umask of the process may take more away.
+        assert_eq!(seen.unwrap() & !meanwhile, 0, "{old:o}: {:o}", seen.unwrap());
+        assert_eq!(mode(&path), old, "{old:o}");
+        fs::set_permissions(&path, Permissions::from_mode(0o700)).unwrap();
+    }
+    let file = home.path().join("file");
+    fs::write(&file, "old").unwrap();
+    fs::set_permissions(&file, Permissions::from_mode(0o600)).unwrap();
+    let permissions = fs::metadata(&file).unwrap().permissions();
+    let (made, _open) = Temporary::file(&file, Some(&permissions)).unwrap();
+    assert_eq!(mode(&made.path), 0o600);
+}
+
 #[cfg(unix)]
 #[test]
 fn what_is_no_ordinary_file_stays() {
@@ -227,15 +267,15 @@ fn what_is_no_ordinary_file_stays() {
         assert!(matches!(check_file(path, true), Err(WriteError::NotAFile { .. })));
         assert!(matches!(file(path, b"", true), Err(WriteError::NotAFile { .. })));
     }
-    assert!(matches!(check_folder(&pipe, KIND), Err(WriteError::NotAResult { .. })));
+    assert!(matches!(check_folder(&pipe, KIND, &Exec::new()), Err(WriteError::NotAResult { .. })));
     // A pipe in the place of a part is not opened, which would wait for ever.
     let out = home.path().join("out");
     save(&out, 1).unwrap();
     fs::remove_file(out.join("a")).unwrap();
     fs::rename(&pipe, out.join("a")).unwrap();
-    assert!(matches!(check_folder(&out, KIND), Err(WriteError::Strange { changed: true, .. })));
+    assert!(matches!(check_folder(&out, KIND, &Exec::new()), Err(WriteError::Strange { changed: true, .. })));
     fs::rename(out.join("a"), out.join(MANIFEST)).unwrap();
-    assert!(matches!(check_folder(&out, KIND), Err(WriteError::NotAResult { .. })));
+    assert!(matches!(check_folder(&out, KIND, &Exec::new()), Err(WriteError::NotAResult { .. })));
 }
 
 #[test]
@@ -249,7 +289,7 @@ fn left_overs_are_put_in_order_and_nothing_of_others_is() {
     fs::create_dir(at(&ours("1"))).unwrap();
     fs::write(at(&ours("1")).join("a"), "half").unwrap();
     fs::write(at(&ours("1-3")), "half a file").unwrap();
-    check_folder(&at("out"), KIND).unwrap();
+    check_folder(&at("out"), KIND, &Exec::new()).unwrap();
     assert_eq!((names(home.path()), saved(&at("out"))), (vec!["out".to_owned()], Some(1)));
     // What looks like ours.
     fs::create_dir(at(".out.123.tmp")).unwrap();
@@ -261,7 +301,7 @@ fn left_overs_are_put_in_order_and_nothing_of_others_is() {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, "mine").unwrap();
     }
-    check_folder(&at("out"), KIND).unwrap();
+    check_folder(&at("out"), KIND, &Exec::new()).unwrap();
     check_file(&at("new"), true).unwrap();
     let others =
         [".new.5.old", ".new.6.old/notes", ".out.123.tmp/notes", ".out.77.01234567.tmp", ".out.77.tmp"];
@@ -277,17 +317,17 @@ fn left_overs_are_put_in_order_and_nothing_of_others_is() {
     }
     // Somebody writes there now.
     let working = Temporary::folder(&at("out")).unwrap();
-    check_folder(&at("out"), KIND).unwrap();
+    check_folder(&at("out"), KIND, &Exec::new()).unwrap();
     assert_eq!(names(home.path()).len(), 7);
     drop(working);
     assert_eq!(names(home.path()).len(), 6);
     // An old result, to be removed, into which somebody has put something.
     save(&at(".out.2.old"), 2).unwrap();
     fs::write(at(".out.2.old/notes"), "mine").unwrap();
-    let refused = check_folder(&at("out"), KIND);
+    let refused = check_folder(&at("out"), KIND, &Exec::new());
     assert!(matches!(refused, Err(WriteError::Strange { path, .. }) if path == at(".out.2.old")));
     fs::remove_file(at(".out.2.old/notes")).unwrap();
-    check_folder(&at("out"), KIND).unwrap();
+    check_folder(&at("out"), KIND, &Exec::new()).unwrap();
     assert_eq!(saved(&at("out")), Some(1));
     assert_eq!(names(home.path()).len(), 6);
 }
@@ -298,7 +338,7 @@ fn a_process_without_memory_leaves_nothing_unfinished() {
     const HERE: &str = "CATCHMENT_TEST_ABANDON";
     if let Some(home) = std::env::var_os(HERE) {
         let home = Path::new(&home);
-        let (half, _open) = Temporary::file(&home.join("a.json")).unwrap();
+        let (half, _open) = Temporary::file(&home.join("a.json"), None).unwrap();
         let folder = Temporary::folder(&home.join("out")).unwrap();
         fs::write(folder.path.join("half"), "half").unwrap();
         // Somebody works on a folder: it stays, and files go.
@@ -317,7 +357,7 @@ fn a_process_without_memory_leaves_nothing_unfinished() {
         let child =
             Command::new(std::env::current_exe().unwrap()).arg(itself).env(HERE, &inner).output().unwrap();
         assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stdout));
-        check_folder(&inner.join("out"), KIND).unwrap();
+        check_folder(&inner.join("out"), KIND, &Exec::new()).unwrap();
         assert!(names(&inner).is_empty());
     }
 }
