@@ -2,11 +2,13 @@
 
 use crate::command::Command;
 use crate::failure::Failure;
+use crate::setting::number;
 use catchment::design::{Complaint, Quantity, parse_dofs};
 use catchment::exec::Exec;
 use catchment::pose::DofSet;
 use catchment::problem::{Draft, Problem, ProblemError};
 use catchment::report::page::Parts;
+use catchment::terminal::{escaped, shown};
 use clap::{Args, Parser};
 use std::path::PathBuf;
 
@@ -87,7 +89,7 @@ pub(crate) struct DesignArgs {
     /// H/D, height of the mating profile over the width
     #[arg(
         long,
-        value_name = "RATIO",
+        value_name = "RATIO", value_parser = number,
         allow_hyphen_values = true,
         help_heading = "Instead of what the design says"
     )]
@@ -150,14 +152,14 @@ impl DesignArgs {
             return Ok((self.problem()?, 0.0));
         }
         if let Some((option, _)) = self.changed().next() {
-            let message = format!("{option}: {} is a result, which has been decided", path.display());
+            let message = format!("{option}: {} is a result, which has been decided", shown(path));
             return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
         }
         let Parts { report, problem, notes, .. } = Parts::stored(path, exec)?;
         let friction = report.friction();
         problem.map(|problem| (problem, friction)).ok_or_else(|| {
             let help = "give the design instead".to_owned();
-            Failure::with_help(format!("{}: {}", path.display(), notes.join("; ")), Some(help))
+            Failure::with_help(format!("{}: {}", shown(path), notes.join("; ")), Some(help))
         })
     }
 }
@@ -171,11 +173,12 @@ pub(crate) fn quantity(text: &str) -> Result<Quantity, String> {
     text.parse().map_err(|complaint| with_advice(&complaint))
 }
 
-fn with_advice(complaint: &Complaint) -> String {
-    match complaint.help() {
+/// A complaint about the text of an option, and what to write instead.
+pub(crate) fn with_advice(complaint: &Complaint) -> String {
+    escaped(&match complaint.help() {
         Some(help) => format!("{complaint}; {help}"),
         None => complaint.to_string(),
-    }
+    })
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout};
 use catchment::report::{Body, Envelope};
 use catchment::run::Requirement;
+use catchment::terminal::escaped;
 use clap::Args;
 use serde::Serialize;
 
@@ -21,7 +22,7 @@ pub(crate) struct AskedArgs {
 
 /// Reads a requirement.
 pub(crate) fn requirement(text: &str) -> Result<Requirement, String> {
-    text.parse::<Requirement>().map_err(|error| error.to_string())
+    text.parse::<Requirement>().map_err(|error| escaped(&error.to_string()))
 }
 
 impl AskedArgs {

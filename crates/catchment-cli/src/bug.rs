@@ -3,7 +3,7 @@
 
 use crate::exit::ExitStatus;
 use catchment::exec::is_panic_expected;
-use catchment::report::printable;
+use catchment::terminal::escaped;
 use std::io::{self, Write};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 
@@ -26,7 +26,7 @@ fn told(bug: &PanicHookInfo<'_>) -> String {
     format!(
         "catchment: this is a bug of the program, not of your input: {}\n  at {place}, version {}, {} {}\n  Please report it \
          with the command line and its files at {}.\n",
-        printable(message),
+        escaped(message),
         env!("CARGO_PKG_VERSION"),
         std::env::consts::OS,
         std::env::consts::ARCH,
@@ -54,7 +54,7 @@ mod tests {
         let _ = panic::take_hook();
         assert_eq!(ended, ExitStatus::Failed);
         let heard = heard.lock().unwrap();
-        assert!(heard.contains("a bug of the program") && heard.contains("a ?[2Jbug"), "{heard}");
+        assert!(heard.contains("a bug of the program") && heard.contains("a \\u{1b}[2Jbug"), "{heard}");
         assert!(heard.contains("bug.rs:") && heard.contains(env!("CARGO_PKG_REPOSITORY")), "{heard}");
     }
 }

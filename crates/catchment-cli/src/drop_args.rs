@@ -1,6 +1,7 @@
 //! The settings of drop tests, as a person writes them.
 
 use crate::failure::Failure;
+use crate::setting::number;
 use crate::setting::{Change, with_changes};
 use catchment::method::Method;
 use catchment::method::drop::{Launch, PRESETS, Settings};
@@ -16,46 +17,46 @@ pub(crate) struct DropArgs {
     #[arg(long, value_name = "PRESET", value_parser = preset_parser(), help_heading = DROP)]
     preset: Option<Settings>,
     /// Force along the approach, through the centre of rotation, in kg·D/s² [default: 5000]
-    #[arg(long, value_name = "FORCE", help_heading = DROP)]
+    #[arg(long, value_name = "FORCE", value_parser = number, help_heading = DROP)]
     push: Option<f64>,
     /// Gravity along the approach, through the centre of mass, in D/s²; instead of --push
-    #[arg(long, value_name = "ACCELERATION", help_heading = DROP, conflicts_with = "push")]
+    #[arg(long, value_name = "ACCELERATION", value_parser = number, help_heading = DROP, conflicts_with = "push")]
     gravity: Option<f64>,
     /// Mass of the moving half in kg, at the centre of rotation [default: 1]
-    #[arg(long, value_name = "MASS", help_heading = DROP)]
+    #[arg(long, value_name = "MASS", value_parser = number, help_heading = DROP)]
     mass: Option<f64>,
     /// Radius of gyration about it in D: inertia = mass·gyration² [default: rho]
-    #[arg(long, value_name = "LENGTH", help_heading = DROP)]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
     gyration: Option<f64>,
     /// Centre of mass from the moving face centre, along the axes of the fixed half when docked, in D [default: the centre of rotation]
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true, help_heading = DROP)]
     mass_center: Option<[f64; 3]>,
     /// Density in kg/D³: mass, centre of mass and inertia are those of the solid; instead of --mass
-    #[arg(long, value_name = "DENSITY", help_heading = DROP, conflicts_with_all = ["mass", "gyration", "mass_center"])]
+    #[arg(long, value_name = "DENSITY", value_parser = number, help_heading = DROP, conflicts_with_all = ["mass", "gyration", "mass_center"])]
     density: Option<f64>,
     /// Friction with the surroundings, 1/s: the force -mass·damping·v [default: 1000, heavy]
-    #[arg(long, value_name = "RATE", help_heading = DROP)]
+    #[arg(long, value_name = "RATE", value_parser = number, help_heading = DROP)]
     damping: Option<f64>,
     /// The same for turning, 1/s: the torque -mass·rate·rho²·omega [default: as --damping]
-    #[arg(long, value_name = "RATE", help_heading = DROP)]
+    #[arg(long, value_name = "RATE", value_parser = number, help_heading = DROP)]
     angular_damping: Option<f64>,
     /// Coefficient of friction between the halves, in exact motions and in drop tests [default: 0]
-    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
     /// Exact motions end where the height falls by no more than this per length (rho-metric), a rule of thumb for friction [default: 0]
-    #[arg(long, value_name = "SLOPE")]
+    #[arg(long, value_name = "SLOPE", value_parser = number)]
     slope_threshold: Option<f64>,
     /// Share of the approach speed that a bounce gives back [default: 0]
-    #[arg(long, value_name = "SHARE", help_heading = DROP)]
+    #[arg(long, value_name = "SHARE", value_parser = number, help_heading = DROP)]
     restitution: Option<f64>,
     /// A ground to come to rest on, so far below the lowest point of the fixed half, in D [default: none]
-    #[arg(long, value_name = "LENGTH", help_heading = DROP)]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
     ground: Option<f64>,
     /// Height above first contact from which the half is let go, in D [default: 0.01]
-    #[arg(long, value_name = "LENGTH", help_heading = DROP)]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
     drop_height: Option<f64>,
     /// Speed along the approach with which it is let go, in D/s [default: 0]
-    #[arg(long, value_name = "SPEED", help_heading = DROP)]
+    #[arg(long, value_name = "SPEED", value_parser = number, help_heading = DROP)]
     speed: Option<f64>,
     /// Velocity of the centre of rotation along x and y then, in D/s [default: 0,0]
     #[arg(long, value_name = "X,Y", value_parser = pair, allow_hyphen_values = true, help_heading = DROP)]
@@ -64,19 +65,19 @@ pub(crate) struct DropArgs {
     #[arg(long, value_name = "ROLL,PITCH,YAW", value_parser = triple, allow_hyphen_values = true, help_heading = DROP)]
     spin: Option<[f64; 3]>,
     /// Inertia, and friction against turning, times this: 1e5 all but locks rotations [default: 1]
-    #[arg(long, value_name = "FACTOR", help_heading = DROP)]
+    #[arg(long, value_name = "FACTOR", value_parser = number, help_heading = DROP)]
     inertia_factor: Option<f64>,
     /// Time step of the engine, in s [default: 0.001]
-    #[arg(long, value_name = "TIME", help_heading = DROP)]
+    #[arg(long, value_name = "TIME", value_parser = number, help_heading = DROP)]
     timestep: Option<f64>,
     /// Simulated time after which a trial ends, in s [default: 20]
-    #[arg(long, value_name = "TIME", help_heading = DROP)]
+    #[arg(long, value_name = "TIME", value_parser = number, help_heading = DROP)]
     timeout: Option<f64>,
     /// Trials per pose, odd: more than half must align [default: 3]
     #[arg(long, value_name = "N", help_heading = DROP)]
     trials: Option<u32>,
     /// Largest random change of the start of a trial, in D and radians times rho [default: 0.001]
-    #[arg(long, value_name = "LENGTH", help_heading = DROP)]
+    #[arg(long, value_name = "LENGTH", value_parser = number, help_heading = DROP)]
     perturbation: Option<f64>,
     /// Seed of these changes [default: 1]
     #[arg(long, value_name = "SEED", help_heading = DROP)]
@@ -221,9 +222,10 @@ fn triple(text: &str) -> Result<[f64; 3], String> {
 }
 
 fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
-    let read: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    let read = read
-        .and_then(|list| <[f64; N]>::try_from(list).ok())
-        .filter(|list| list.iter().all(|v| v.is_finite()));
-    read.ok_or_else(|| format!("give {N} numbers with commas between them"))
+    let read: Result<Vec<f64>, String> = text
+        .split(',')
+        .map(|part| number(part).map_err(|reason| format!("`{}`: {reason}", part.trim())))
+        .collect();
+    <[f64; N]>::try_from(read?)
+        .map_err(|list| format!("it has {} numbers: give {N} numbers with commas between them", list.len()))
 }

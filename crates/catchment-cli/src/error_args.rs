@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::source::read_table;
 use catchment::design::{Design, SourceText, load};
 use catchment::poses::{Distribution, Robot, Spread, TextError, read_robots, read_text};
+use catchment::terminal::shown;
 use clap::Args;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -61,7 +62,7 @@ impl SpreadArgs {
                 (Some(robot), 0) => Ok(Some(robot.errors)),
                 (_, others) => {
                     let message =
-                        format!("{} has {} robots, and one is asked about", path.display(), others + 1);
+                        format!("{} has {} robots, and one is asked about", shown(path), others + 1);
                     Err(Failure::with_help(message, Some("write that one into a file of its own".to_owned())))
                 }
             };
@@ -81,7 +82,7 @@ pub(crate) fn robots_of(path: &Path, design: &Design) -> Result<Vec<Robot>, Fail
     let mut table = |name: &str| {
         let place = folder.join(name);
         let read = File::open(&place).map_err(TextError::from).and_then(read_text);
-        let told = |error: TextError| format!("cannot read {}: {error}", place.display());
+        let told = |error: TextError| format!("cannot read {}: {error}", shown(&place));
         read.map(|text| SourceText::new(&place, text)).map_err(told)
     };
     Ok(read_robots(&source, design, &mut table)?)

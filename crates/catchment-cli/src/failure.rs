@@ -5,7 +5,7 @@ use crate::exit::ExitStatus;
 use crate::{output, signals};
 use catchment::design::Findings;
 use catchment::problem::ProblemError;
-use catchment::report::printable;
+use catchment::terminal::escaped;
 use miette::{MietteDiagnostic, Report};
 use std::any::Any;
 use std::io::Write;
@@ -36,7 +36,7 @@ impl Failure {
         let reports = refusal.list.into_iter().map(|objection| {
             Report::new(diagnostic(&format!("{option}: {}", objection.message), objection.help))
         });
-        let shown: String = printable(text).chars().take(80).collect();
+        let shown: String = escaped(text).chars().take(80).collect();
         let closing = (count > 1).then(|| format!("{count} problems in {option} \"{shown}\""));
         Self::many(reports.collect(), closing)
     }
@@ -88,11 +88,11 @@ impl<E: std::error::Error + Send + Sync + 'static> From<E> for Failure {
     }
 }
 
-/// A message and its advice, which may repeat what a file says: a file must not steer the terminal.
+/// A message and its advice, which may repeat what a file or its name says: neither steers the terminal, nor begins a line that
+/// looks like one of the program's own.
 pub(crate) fn diagnostic(message: &str, help: Option<String>) -> MietteDiagnostic {
-    let lines = |text: &str| text.lines().map(printable).collect::<Vec<_>>().join("\n");
-    let mut diagnostic = MietteDiagnostic::new(lines(message));
-    diagnostic.help = help.map(|help| lines(&help));
+    let mut diagnostic = MietteDiagnostic::new(escaped(message.trim_end()));
+    diagnostic.help = help.map(|help| escaped(help.trim_end()));
     diagnostic
 }
 

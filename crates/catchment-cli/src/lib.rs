@@ -44,6 +44,7 @@ pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -
 /// The first word is the name of the program.
 pub fn complaint(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Option<String> {
     let mut usage = Cli::try_parse_from(words).err().filter(clap::Error::use_stderr)?;
+    usage::advise(&mut usage);
     usage::silence(&mut usage);
     Some(usage::still_steering(&usage).unwrap_or_else(|| usage.to_string()))
 }

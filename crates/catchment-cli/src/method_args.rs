@@ -2,6 +2,7 @@
 
 use crate::drop_args::DropArgs;
 use crate::failure::Failure;
+use crate::setting::number;
 use crate::setting::{Change, with_changes};
 use catchment::method::{Entry, Method, REGISTRY};
 use clap::Args;
@@ -31,7 +32,7 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "COUNT")]
     strips: Option<usize>,
     /// Certified: undecided share of the error box at which it is enough [default: 0.02]
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", value_parser = number)]
     gap: Option<f64>,
     /// Certified: boxes of poses that are looked at at most
     #[arg(long, value_name = "COUNT")]
@@ -133,8 +134,6 @@ fn choice_parser() -> ValueParser {
 }
 
 fn depth(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(depth) if depth >= 0.0 && depth.is_finite() => Ok(depth),
-        _ => Err("a depth is a number of D, at least 0".to_owned()),
-    }
+    let depth = number(text)?;
+    if depth >= 0.0 { Ok(depth) } else { Err("a depth is a number of D, at least 0".to_owned()) }
 }

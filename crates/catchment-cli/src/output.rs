@@ -2,9 +2,10 @@
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
+use catchment::exec::Exec;
 use catchment::report::figure::Picture;
-use catchment::report::printable;
 use catchment::report::write::{self, WriteError};
+use catchment::terminal::{escaped, shown};
 use clap::{ArgGroup, Args};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -88,7 +89,7 @@ impl FileArgs {
         let Some(kind) = known.iter().find(|k| k.eq_ignore_ascii_case(ending)) else {
             let help = format!("let its name end in .{}", known.join(", ."));
             return Err(Failure::with_help(
-                format!("cannot tell what to write into {}", path.display()),
+                format!("cannot tell what to write into {}", shown(path)),
                 Some(help),
             ));
         };
@@ -105,7 +106,7 @@ impl FileArgs {
             return Err(Failure::with_help("--force is for files".to_owned(), Some(help.to_owned())));
         }
         let Some(path) = self.output.as_deref() else { return Ok(None) };
-        write::check_folder(path, kind)?;
+        write::check_folder(path, kind, &Exec::new())?;
         Ok(Some(path))
     }
 
@@ -136,7 +137,7 @@ impl FigureArgs {
         check_apart(Some(path), file.output.as_deref())?;
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
         let Some(kind) = ["png", "svg"].into_iter().find(|kind| kind.eq_ignore_ascii_case(ending)) else {
-            let message = format!("cannot tell what to draw into {}", path.display());
+            let message = format!("cannot tell what to draw into {}", shown(path));
             return Err(Failure::with_help(message, Some("let its name end in .png or .svg".to_owned())));
         };
         check_place(path, file.force)?;
@@ -177,7 +178,7 @@ pub(crate) fn check_apart(first: Option<&Path>, second: Option<&Path>) -> Result
     if place(first)? != place(second)? {
         return Ok(());
     }
-    let message = format!("{} and {} are the same file", first.display(), second.display());
+    let message = format!("{} and {} are the same file", shown(first), shown(second));
     Err(Failure::with_help(message, Some("give two names".to_owned())))
 }
 
@@ -205,7 +206,7 @@ static WRITTEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// A file or folder is complete, whatever happens from now on.
 pub(crate) fn written(path: &Path) {
-    kept(&path.display().to_string());
+    kept(&shown(path).to_string());
 }
 
 /// Something is complete, whatever happens from now on.
@@ -222,7 +223,7 @@ pub(crate) fn what_was_written() -> String {
     if written.is_empty() {
         "nothing was written".to_owned()
     } else {
-        printable(&format!("complete before that: {}", written.join(", ")))
+        escaped(&format!("complete before that: {}", written.join(", ")))
     }
 }
 
@@ -248,7 +249,7 @@ pub(crate) fn to_stderr(lines: &[String]) {
     let mut stderr = io::stderr().lock();
     for line in lines {
         // Nobody is left to tell when stderr itself is gone.
-        let _ = writeln!(stderr, "{}", printable(line));
+        let _ = writeln!(stderr, "{}", escaped(line));
     }
 }
 

@@ -2,7 +2,23 @@
 
 use crate::failure::Failure;
 use catchment::method::{Method, MethodError};
+use catchment::suggest::number_help;
 use serde_json::{Map, Value};
+
+/// Reads a plain number of an option: finite, and its unit is that of the option.
+///
+/// # Errors
+/// What to write instead.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => {
+            let help = number_help(text)
+                .unwrap_or_else(|| "write it with a point and without a unit, such as 0.5".to_owned());
+            Err(format!("it is not a number: {help}"))
+        }
+    }
+}
 
 /// A setting that was given by an option.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,6 +4,7 @@ use crate::failure::{Failure, diagnostic};
 use catchment::design::{Finding, Findings, SourceText};
 use catchment::poses::{TextError, read_text};
 use catchment::problem::ProblemError;
+use catchment::terminal::{shown, steers};
 use miette::{LabeledSpan, MietteError, MietteSpanContents, Report, SourceCode, SourceSpan, SpanContents};
 use std::fs::File;
 use std::io;
@@ -13,14 +14,14 @@ use std::path::Path;
 /// Reads the text of a table from a file, or from stdin for `-`.
 pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
     let stdin = path.as_os_str() == "-";
-    let shown = if stdin { Path::new("stdin") } else { path };
-    let name = printable(&shown.display().to_string());
+    let named = if stdin { Path::new("stdin") } else { path };
+    let name = shown(named);
     let read = if stdin {
         read_text(io::stdin().lock())
     } else {
         File::open(path).map_err(TextError::from).and_then(read_text)
     };
-    read.map(|text| SourceText::new(shown, text)).map_err(|error| {
+    read.map(|text| SourceText::new(named, text)).map_err(|error| {
         let (message, help) = match &error {
             TextError::Read(_) => (format!("cannot read {name}: {error}"), None),
             TextError::TooLarge => (format!("{name} is {error}"), Some("split the table")),
@@ -35,7 +36,7 @@ pub(crate) fn read_table(path: &Path) -> Result<SourceText, Failure> {
 fn report(source: Option<&SourceText>, finding: Finding) -> Report {
     let mut diagnostic = diagnostic(&finding.message, finding.help);
     let Some(source) = source else { return Report::new(diagnostic) };
-    let name = printable(&source.path.display().to_string());
+    let name = shown(&source.path).to_string();
     let Some(span) = finding.span else {
         // What is said of an option is not said of the file.
         if !diagnostic.message.contains(&name) && !diagnostic.message.starts_with("--") {
@@ -108,7 +109,7 @@ fn printable(text: &str) -> String {
         match c {
             '\n' | '\t' => shown.push(c),
             '\r' if rest.peek() == Some(&'\n') => shown.push(c),
-            _ if catchment::report::steers(c) => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
+            _ if steers(c) => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
             _ => shown.push(c),
         }
     }
@@ -121,13 +122,13 @@ impl Failure {
         let Findings { source, mut list, omitted } = findings;
         let count = list.len() + omitted;
         list.truncate(Findings::MOST);
-        let shown = if count > list.len() {
+        let part = if count > list.len() {
             format!(", of which the first {} are shown", list.len())
         } else {
             String::new()
         };
-        let place = source.as_ref().map(|source| printable(&source.path.display().to_string()));
-        let closing = place.filter(|_| count > 1).map(|place| format!("{count} problems in {place}{shown}"));
+        let place = source.as_ref().map(|source| shown(&source.path));
+        let closing = place.filter(|_| count > 1).map(|place| format!("{count} problems in {place}{part}"));
         Self::many(list.into_iter().map(|finding| report(source.as_ref(), finding)).collect(), closing)
     }
 }

@@ -2,13 +2,16 @@
 
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use catchment::report::printable;
+use catchment::suggest::number_help;
+use catchment::terminal::printable;
 use clap::error::{ContextKind, ContextValue};
+use std::error::Error;
 use std::io::{self, Write};
 
 /// Prints it: help and version on stdout, complaints on stderr.
 pub(crate) fn tell(mut usage: clap::Error) -> ExitStatus {
     if usage.use_stderr() {
+        advise(&mut usage);
         silence(&mut usage);
         // Nobody is left to tell when stderr itself is gone.
         let _ = match still_steering(&usage) {
@@ -42,6 +45,21 @@ pub(crate) fn silence(usage: &mut clap::Error) {
     for (kind, value) in repeated {
         usage.insert(kind, value);
     }
+}
+
+/// Says what to write in the place of a number that is none, where the complaint is that of a parser that does not.
+pub(crate) fn advise(usage: &mut clap::Error) {
+    const NO_WHOLE_NUMBER: &str = "invalid digit found in string";
+    let reason = usage.source().map(ToString::to_string).unwrap_or_default();
+    let Some(ContextValue::String(value)) = usage.get(ContextKind::InvalidValue) else { return };
+    let tip = match reason.as_str() {
+        NO_WHOLE_NUMBER => {
+            number_help(value).unwrap_or_else(|| "write a whole number in digits, such as 1000".to_owned())
+        }
+        "number too large to fit in target type" => "write a smaller number".to_owned(),
+        _ => return,
+    };
+    usage.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
 }
 
 /// A silenced complaint in which the reason of a parser still repeats such characters: its text without them, and without colours.

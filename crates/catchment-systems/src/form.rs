@@ -29,6 +29,7 @@
 //! is wrong: the problem is on the list then, and [`Form::read`] returns the list.
 
 use catchment::design::{Complaint, Finding, Findings, LengthUnit, Quantity, SourceText, Unit, nearest};
+use catchment::suggest::{odd, value_help};
 use std::cell::RefCell;
 use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
@@ -107,7 +108,11 @@ impl Form<'_> {
     ) -> Result<T, Findings> {
         let (document, syntax) = DeTable::parse_recoverable(&source.text);
         let broken = syntax.iter().map(|e| e.span().unwrap_or_default()).collect();
-        let found = syntax.into_iter().map(|e| Finding::new(e.message(), None).at(e.span())).collect();
+        let refused = |error: toml::de::Error| {
+            let help = value_help(&source.text, error.span().unwrap_or_default().start);
+            Finding::new(error.message(), help).at(error.span())
+        };
+        let found = syntax.into_iter().map(refused).collect();
         let mut form = Form { found, broken, text: &source.text };
         let root = Section {
             path: String::new(),
@@ -205,7 +210,11 @@ impl<'t> Form<'t> {
                 Some(meant) => format!("did you mean `{meant}`?"),
                 None => format!("it has {}", asked.join(", ")),
             };
-            self.refuse(name.span(), format!("unknown key `{written}` in {named}"), Some(&help));
+            self.refuse(
+                name.span(),
+                format!("unknown key `{written}` in {named}{}", odd(written)),
+                Some(&help),
+            );
         }
     }
 
@@ -394,7 +403,7 @@ impl<'t> Form<'t> {
             Some(meant) => format!("did you mean \"{meant}\"?"),
             None => format!("it can be {}", names.map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(", ")),
         };
-        let written = catchment::report::printable(word.text);
+        let written = catchment::terminal::printable(word.text);
         self.refuse(word.span, format!("`{}` cannot be \"{written}\"", section.place(key)), Some(&help));
         known[0].1
     }

@@ -1,5 +1,6 @@
 //! `catchment chain`: chains of modules.
 
+use crate::args::with_advice;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -88,7 +89,7 @@ fn angles(text: &str) -> Result<Angles, String> {
     /// The largest that a chain file takes, in radians.
     const LARGEST: f64 = 0.5;
     let angle = |text: &str| {
-        let quantity: Quantity = text.trim().parse().map_err(|error| format!("{error}"))?;
+        let quantity: Quantity = text.trim().parse().map_err(|complaint| with_advice(&complaint))?;
         let angle = quantity.angle_rad().map_err(|error| error.to_string())?;
         let shown = text.trim();
         (0.0..=LARGEST)

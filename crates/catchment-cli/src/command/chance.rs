@@ -8,6 +8,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, to_stderr};
+use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::{Design, Findings, SourceText, load, parse_dofs};
 use catchment::pose::Dof;
@@ -71,7 +72,7 @@ pub(crate) struct ChanceArgs {
     #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u16).range(2..=500), help_heading = ASKED)]
     cells: u16,
     /// The probability with every velocity multiplied by each of these, such as "0.01,0.1,1,10"
-    #[arg(long, value_name = "FACTOR,…", value_delimiter = ',', help_heading = ASKED)]
+    #[arg(long, value_name = "FACTOR,…", value_parser = number, value_delimiter = ',', help_heading = ASKED)]
     times: Vec<f64>,
     /// Trials of the probability under expected errors, and of each speed
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000), help_heading = ASKED)]

@@ -12,6 +12,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::method_parser;
 use crate::output::{tell, written};
+use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::method::Method;
 use catchment::problem::Problem;
@@ -58,7 +59,7 @@ pub(crate) struct CompareArgs {
 
 pub(crate) fn run(args: &CompareArgs) -> Result<ExitStatus, Failure> {
     let folder = args.output.as_deref().map(|path| StudyFolder { path, name: "difference" });
-    folder.as_ref().map_or(Ok(()), StudyFolder::check)?;
+    folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
     let subjects = subjects(args)?;
     let running = args.exec.start()?;
     let exec = &running.exec;

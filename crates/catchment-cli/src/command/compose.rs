@@ -1,5 +1,6 @@
 //! `catchment compose`: where two halves meet that both move.
 
+use crate::args::with_advice;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -9,6 +10,7 @@ use catchment::design::{Quantity, Unit};
 use catchment::exec::Exec;
 use catchment::report::csv;
 use catchment::report::figure::ensure_fits;
+use catchment::terminal::shown;
 use catchment_systems::compose::read::{Read, ReadError, read};
 use catchment_systems::compose::{Frames, Settings, compose, figure, outline_records, outline_svg, report};
 use clap::Args;
@@ -101,7 +103,7 @@ fn region(path: &Path, exec: &Exec) -> Result<Read, Failure> {
     read(read_table(path)?, exec).map_err(|error| match error {
         ReadError::Findings(findings) => findings.into(),
         ReadError::Problem(problem) => problem.into(),
-        error => Failure::with_help(format!("{}: {error}", path.display()), None),
+        error => Failure::with_help(format!("{}: {error}", shown(path)), None),
     })
 }
 
@@ -117,7 +119,7 @@ fn spread([from, to]: [f64; 2], count: u16) -> Vec<f64> {
 /// `5 deg`, `-20..20 deg`, `-0.3..0.3`.
 fn headings(text: &str) -> Result<[f64; 2], String> {
     let angle = |part: &str, unit: Option<Unit>| -> Result<(f64, Unit), String> {
-        let mut quantity: Quantity = part.parse().map_err(|complaint| format!("{complaint}"))?;
+        let mut quantity: Quantity = part.parse().map_err(|complaint| with_advice(&complaint))?;
         if let (Unit::Bare, Some(unit)) = (quantity.unit, unit) {
             quantity.unit = unit;
         }

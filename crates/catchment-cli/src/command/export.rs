@@ -94,7 +94,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
             Some(help),
         ));
     };
-    write::check_folder(&args.output, KIND)?;
+    write::check_folder(&args.output, KIND, &exec)?;
     let problem = args.design.problem()?;
     let (design, pair) = (problem.design(), problem.pair());
     let error = parse_pose(pose, design).map_err(|findings| Failure::of_option("--pose", pose, findings))?;

@@ -6,6 +6,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
+use crate::setting::number;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{FrictionReport, csv, figure};
 use catchment::study::friction::{Friction, FrictionError, Settings, run as follow};
@@ -29,7 +30,7 @@ pub(crate) struct FrictionArgs {
     #[command(flatten)]
     design: DesignArgs,
     /// Coefficients of friction, beside none [default: 0.05,0.1,0.15,0.2,0.25,0.3,0.4,0.5]
-    #[arg(long, value_name = "MU,…", value_delimiter = ',')]
+    #[arg(long, value_name = "MU,…", value_parser = number, value_delimiter = ',')]
     frictions: Vec<f64>,
     /// Random poses of the error box [default: 1000, fewer for round halves]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]

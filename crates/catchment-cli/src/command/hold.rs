@@ -6,6 +6,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
+use crate::setting::number;
 use catchment::design::Quantity;
 use catchment::poses::parse_pose;
 use catchment::problem::Problem;
@@ -34,7 +35,7 @@ pub(crate) struct HoldArgs {
     #[command(flatten)]
     design: DesignArgs,
     /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     /// What presses the half on, in newtons: forces are told in N instead of shares of it
     #[arg(long, value_name = "NEWTONS", value_parser = newtons, allow_hyphen_values = true)]
@@ -109,11 +110,12 @@ impl HoldArgs {
 
 /// A preload.
 fn newtons(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        Ok(_) => Err("a preload presses the half on: a number above 0, in newtons".to_owned()),
-        Err(_) => Err("a preload is a number of newtons, such as 40".to_owned()),
+    let preload =
+        number(text).map_err(|reason| format!("a preload is a number of newtons, such as 40; {reason}"))?;
+    if preload > 0.0 {
+        return Ok(preload);
     }
+    Err("a preload presses the half on: a number above 0, in newtons".to_owned())
 }
 
 /// Why nothing can be said, with what helps.

@@ -1,14 +1,17 @@
 //! `catchment invert`: wanted heights and the fixed half give the moving half.
 
 use crate::args::DesignArgs;
+use crate::args::{quantity, with_advice};
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FileArgs, tell};
+use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::{Design, Quantity};
 use catchment::problem::Problem;
 use catchment::report::figure::{FigureError, Picture, Placement, ensure_fits, section};
+use catchment::terminal::shown;
 use catchment_systems::invert::{
     Heights, Inverse, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, list_of_angles, report,
     wanted_from_table,
@@ -46,7 +49,7 @@ pub(crate) struct InvertArgs {
     #[arg(long, value_name = "ANGLES", value_parser = angles, allow_hyphen_values = true)]
     yaw: Vec<Angles>,
     /// Material behind the deepest point of the new half, in D
-    #[arg(long, value_name = "D", default_value_t = 0.25)]
+    #[arg(long, value_name = "D", value_parser = number, default_value_t = 0.25)]
     backing: f64,
     /// Least width of a facet that can be made; a bare number is in D
     #[arg(long, value_name = "LENGTH", default_value = "0.01", value_parser = quantity)]
@@ -144,17 +147,13 @@ fn wanted(path: &Path, design: &Design) -> Result<Wanted, Failure> {
         }
         _ => {
             let help = "heights are read from a design (.toml) or a table (.csv)".to_owned();
-            Err(Failure::with_help(format!("cannot tell what is in {}", path.display()), Some(help)))
+            Err(Failure::with_help(format!("cannot tell what is in {}", shown(path)), Some(help)))
         }
     }
 }
 
-fn quantity(text: &str) -> Result<Quantity, String> {
-    text.parse().map_err(|complaint| format!("{complaint}"))
-}
-
 fn angle(text: &str) -> Result<f64, String> {
-    quantity(text)?.angle_rad().map_err(|complaint| format!("{complaint}"))
+    quantity(text)?.angle_rad().map_err(|complaint| with_advice(&complaint))
 }
 
 /// Angles of a list or a range, in radians.

@@ -8,6 +8,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
+use crate::setting::number;
 use catchment::landscape::Resolution;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{JamsReport, csv, figure};
@@ -49,7 +50,7 @@ pub(crate) struct JamsArgs {
     #[arg(long)]
     certified: bool,
     /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     #[command(flatten)]
     errors: SpreadArgs,

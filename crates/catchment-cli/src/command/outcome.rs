@@ -14,6 +14,7 @@ use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
 use catchment::problem::Problem;
 use catchment::report::{Doubts, OutcomeRows, OutcomesReport};
+use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -107,7 +108,7 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     };
     if report.partial().is_some() {
         let place = args.output.write_partial(&text)?;
-        let beside = place.map(|path| format!("they are in {}", path.display()));
+        let beside = place.map(|path| format!("they are in {}", shown(&path)));
         let said = report.warnings.iter().map(|warning| format!("warning: {}", warning.message));
         let lines = said.chain(report.summary()).chain(beside);
         to_stderr(&std::iter::once("interrupted".to_owned()).chain(lines).collect::<Vec<_>>());

@@ -9,6 +9,7 @@ use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
 use catchment::report::figure;
 use catchment::study::proposal::{Beside, Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
+use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use std::path::{Component, Path, PathBuf};
 
@@ -115,7 +116,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
     let absent: Vec<String> = [&args.fixed, &args.moving]
         .iter()
         .filter(|path| !path.exists())
-        .map(|path| path.display().to_string())
+        .map(|path| shown(path).to_string())
         .collect();
     if !absent.is_empty() {
         let help = "name two files: STL, OBJ, PLY, 3MF or STEP".to_owned();
@@ -161,7 +162,7 @@ fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     let kind = KINDS.into_iter().find(|kind| kind.eq_ignore_ascii_case(ending));
     kind.map(Some).ok_or_else(|| {
         let help = format!("let its name end in .{}", KINDS.join(", ."));
-        Failure::with_help(format!("cannot tell what to write into {}", path.display()), Some(help))
+        Failure::with_help(format!("cannot tell what to write into {}", shown(path)), Some(help))
     })
 }
 
@@ -279,7 +280,7 @@ fn part(path: &Path, place: &Path) -> Result<PartFile, Failure> {
     let Some(written) = written.to_str() else {
         let help = "rename it: a design file is UTF-8".to_owned();
         return Err(Failure::with_help(
-            format!("{} cannot be written into a design", path.display()),
+            format!("{} cannot be written into a design", shown(path)),
             Some(help),
         ));
     };

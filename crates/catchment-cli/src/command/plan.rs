@@ -7,6 +7,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FigureArgs, FileArgs};
+use crate::setting::number;
 use catchment::design::Findings;
 use catchment::method::descent;
 use catchment::pose::{Dof, PoseError};
@@ -60,7 +61,7 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
     /// Coefficient of friction between the halves [default: 0, or that of the result]
-    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
     /// Seed of the order, of random lines and of the search for the border
     #[arg(long, value_name = "SEED", default_value_t = 1)]

@@ -7,6 +7,7 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::method_parser;
 use crate::output::{OutputArgs, to_stderr};
+use crate::setting::number;
 use crate::setting::{Change, with_changes};
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
@@ -14,6 +15,7 @@ use catchment::method::Method;
 use catchment::problem::Problem;
 use catchment::report::page::{Parts, Studies};
 use catchment::run::{Over, Run};
+use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use serde_json::Value;
 
@@ -54,7 +56,7 @@ pub(super) struct MadeArgs {
     #[arg(long, value_name = "CELLS", value_parser = resolution)]
     resolution: Option<Resolution>,
     /// Coefficient of friction between the halves, of a design
-    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
     /// What is not computed beside the result
     #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
@@ -121,7 +123,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
     let parts = if path.is_dir() {
         let asked = args.design.changed().map(|(option, _)| option).chain(args.made.asked()).next();
         if let Some(option) = asked {
-            let message = format!("{option}: {} is a result, which has been decided", path.display());
+            let message = format!("{option}: {} is a result, which has been decided", shown(path));
             return Err(Failure::with_help(message, Some("give the design instead".to_owned())));
         }
         let running = args.exec.start()?;

@@ -5,6 +5,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{to_stderr, to_stdout, written};
+use catchment::exec::Exec;
 use catchment::report::csv;
 use catchment_validation::report::{Effort, folder};
 use catchment_validation::study::accuracy::{self, CASES, DRAWN, LABELLED};
@@ -99,7 +100,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help(format!("{COVERAGE} is no table of published entries"), help));
     }
     if let Some(path) = &args.output {
-        folder::check(path)?;
+        folder::check(path, &Exec::new())?;
     }
     let running = args.exec.start()?;
     let found = request.run(&running.exec)?;

@@ -7,12 +7,14 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::PoseMethodArgs;
 use crate::output::{tell, written};
+use catchment::exec::Exec;
 use catchment::landscape::Resolution;
 use catchment::pose::Dof;
 use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
 use catchment::report::{SlicesReport, figure};
 use catchment::study::slices::{Settings, SlicesError, ensure_fits, run as compute};
+use catchment::terminal::escaped;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -50,7 +52,7 @@ pub(crate) struct SlicesArgs {
 }
 
 fn pair(text: &str) -> Result<[Dof; 2], String> {
-    let dof = |name: &str| name.trim().parse::<Dof>().map_err(|error| error.to_string());
+    let dof = |name: &str| name.trim().parse::<Dof>().map_err(|error| escaped(&error.to_string()));
     match text.split_once(',') {
         Some((a, b)) => Ok([dof(a)?, dof(b)?]),
         None => Err("a slice varies two errors, such as x,pitch".to_owned()),
@@ -60,7 +62,7 @@ fn pair(text: &str) -> Result<[Dof; 2], String> {
 pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let folder = args.output.as_deref().map(|path| StudyFolder { path, name: "slices" });
-    folder.as_ref().map_or(Ok(()), StudyFolder::check)?;
+    folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
     let problem = args.design.problem()?;
     let settings =
         Settings { resolution: args.resolution, pairs: args.axes.clone(), method: args.method.of()? };

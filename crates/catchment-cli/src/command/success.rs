@@ -7,6 +7,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
+use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::{Design, Findings};
 use catchment::poses::{Distribution, Robot, Spread};
@@ -42,7 +43,7 @@ pub(crate) struct SuccessArgs {
     #[command(flatten)]
     errors: ExpectedArgs,
     /// The success for which the largest standard deviations are sought
-    #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
+    #[arg(long, value_name = "SHARE", value_parser = number, default_value_t = 0.99)]
     required: f64,
     /// Exact motions of each robot's probability [default: 8000, fewer for round halves]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
@@ -54,7 +55,7 @@ pub(crate) struct SuccessArgs {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     #[command(flatten)]
     asked: AskedArgs,

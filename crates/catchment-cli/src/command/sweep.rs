@@ -17,6 +17,7 @@ use catchment::report::schema::Timing;
 use catchment::report::{Parts, SweepReport, figure};
 use catchment::run::{Over, Run, RunError};
 use catchment::study::sweep::{Axis, Keep, Nowhere, Plan, Settings, Sweep, SweepError};
+use catchment::terminal::{escaped, shown};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -61,13 +62,13 @@ pub(crate) struct SweepArgs {
 }
 
 fn axis(text: &str) -> Result<Axis, String> {
-    text.parse::<Axis>().map_err(|error| error.to_string())
+    text.parse::<Axis>().map_err(|error| escaped(&error.to_string()))
 }
 
 pub(crate) fn run(args: &SweepArgs) -> Result<ExitStatus, Failure> {
     let started = Instant::now();
     let folder = args.output.as_deref().map(|path| StudyFolder { path, name: "sweep" });
-    folder.as_ref().map_or(Ok(()), StudyFolder::check)?;
+    folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
     let plan = plan(args)?;
     let running = args.exec.start()?;
     let exec = &running.exec;
@@ -141,7 +142,7 @@ fn tell_kept(parts: Option<&Parts>, designs: usize) {
     else {
         return;
     };
-    let place = parts.folder().display();
+    let place = shown(parts.folder());
     kept(&format!("{finished} of {designs} designs in {place}, from where the same command goes on"));
 }
 

@@ -8,6 +8,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::{FigureArgs, FileArgs};
+use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::Findings;
 use catchment::method::descent;
@@ -49,13 +50,13 @@ pub(crate) struct ValidateArgs {
     #[arg(long, value_name = "AXIS=SIZE,…")]
     accuracy: String,
     /// k: disagreements nearer to the border than so many accuracies do not count
-    #[arg(long, value_name = "K", default_value_t = catchment::study::validate::LIMIT)]
+    #[arg(long, value_name = "K", value_parser = number, default_value_t = catchment::study::validate::LIMIT)]
     limit: f64,
     /// The point of the moving half where the table gives x and y
     #[arg(long, value_enum, default_value_t = Point::Face)]
     offsets_at: Point,
     /// Coefficient of friction of the prediction [default: 0, or that of the result]
-    #[arg(long, value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, allow_negative_numbers = true)]
     friction: Option<f64>,
     /// Look for the friction that explains the trials
     #[arg(long)]

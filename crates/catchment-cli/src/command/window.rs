@@ -6,6 +6,7 @@ use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::FileArgs;
+use crate::setting::number;
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
 use catchment::problem::Problem;
@@ -46,7 +47,7 @@ pub(crate) struct WindowArgs {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Coefficient of friction between the halves
-    #[arg(long, value_name = "MU", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,
     #[command(flatten)]
     asked: AskedArgs,

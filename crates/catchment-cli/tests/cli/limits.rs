@@ -146,6 +146,52 @@ fn threads_that_cannot_be_had_are_named() {
     assert!(said.contains("the system does not start 1024 threads"), "{said}");
 }
 
+/// A thousand million threads are what a typing error asks for.
+#[test]
+fn threads_that_the_environment_asks_for_in_vain_are_refused() {
+    let home = home();
+    let run = |value: &str, args: &[&str]| {
+        let output = catchment(home.path()).env("RAYON_NUM_THREADS", value).args(args).output().unwrap();
+        (output.status.code(), told(&output).split_whitespace().collect::<Vec<_>>().join(" "))
+    };
+    let fast = ["run", "v.toml", "--method", "flood", "--resolution", "6"];
+    for value in ["1000000000", "1025", "-3", "many"] {
+        let (code, said) = run(value, &fast);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(&format!("RAYON_NUM_THREADS is \"{value}\"")), "{said}");
+        assert!(said.contains("from 0 to 1024") && said.contains("unset it"), "{said}");
+    }
+    for (value, args) in [("3", &fast[..]), ("", &fast), ("1000000000", &["check", "v.toml"])] {
+        let (code, said) = run(value, args);
+        assert_eq!(code, Some(0), "{value}: {said}");
+    }
+    let (code, said) = run("1000000000", &[&fast[..], &["--threads", "2"]].concat());
+    assert_eq!(code, Some(0), "{said}");
+}
+
+/// What cannot be opened any more is removed all the same.
+#[test]
+fn a_process_without_descriptors_leaves_nothing_behind() {
+    let home = home();
+    let mut refused = 0;
+    for most in 5..16 {
+        for args in [
+            "run v.toml --method flood --resolution 6 -o out",
+            "export v.toml --pose x=0.1 -o trial",
+            "schema -o s.json --force",
+        ] {
+            let output = limited(home.path(), &format!("ulimit -n {most}"), args);
+            let said = told(&output);
+            assert!(matches!(output.status.code(), Some(0 | 2)), "{most}, {args}: {}: {said}", output.status);
+            refused += usize::from(output.status.code() == Some(2) && said.contains("too many open files"));
+            let mut left = crate::entries(home.path());
+            left.retain(|name| !["out", "trial", "s.json", "v.toml"].contains(&name.as_str()));
+            assert!(left.is_empty(), "{most}, {args}: {left:?} left behind: {said}");
+        }
+    }
+    assert!(refused > 0);
+}
+
 #[test]
 fn help_that_cannot_be_written_says_so() {
     let home = home();

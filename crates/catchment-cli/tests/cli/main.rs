@@ -20,6 +20,7 @@ mod jams;
 mod kills;
 mod latch;
 mod limits;
+mod locks;
 mod meshes;
 mod new;
 mod place;

@@ -7,7 +7,8 @@ use super::facts::{Fact, Number, numbers};
 use super::rule::{Extents, HIGH};
 use catchment::design::Design;
 use catchment::report::text::{line, number, row, significant, wrapped};
-use catchment::report::{Body, Envelope, printable};
+use catchment::report::{Body, Envelope};
+use catchment::terminal::printable;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

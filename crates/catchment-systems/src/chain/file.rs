@@ -290,7 +290,7 @@ fn own_latches(form: &mut Form<'_>, text: &str, span: &Range<usize>, lattice: &[
         }
         let names: Vec<String> = possible.iter().map(|l| format!("{}-{}", l.from, l.to)).collect();
         let there = if names.is_empty() { "there are none".to_owned() } else { names.join(", ") };
-        let shown: String = catchment::report::printable(pair).chars().take(40).collect();
+        let shown: String = catchment::terminal::printable(pair).chars().take(40).collect();
         let message =
             format!("`{shown}` are no two modules whose faces meet on the lattice of the last step");
         form.refuse(span.clone(), message, Some(&format!("those that do: {there}")));
@@ -356,7 +356,7 @@ fn command(form: &mut Form<'_>, entry: &Section<'_>) -> Option<Command> {
     }
     if written.trim().starts_with(|c: char| c.is_alphabetic()) {
         let word = form.word(entry, "command")?;
-        let shown: String = catchment::report::printable(word.text).chars().take(40).collect();
+        let shown: String = catchment::terminal::printable(word.text).chars().take(40).collect();
         let message = format!("`{shown}` is neither an angle nor \"slack\"");
         form.refuse(word.span, message, Some("write an angle such as \"-95.7 deg\", or \"slack\""));
         return None;

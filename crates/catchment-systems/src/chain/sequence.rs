@@ -17,6 +17,7 @@
 use super::kinematics::nearest_quarter;
 use super::shape::{Latch, Reading, Shape, latches};
 use catchment::design::{Finding, Findings, Found, SourceText};
+use catchment::suggest::number_help;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -204,23 +205,24 @@ pub fn table(source: &SourceText) -> Result<Vec<Step>, Findings> {
         };
         let start = record.position().map_or(0, |p| p.byte() as usize);
         let end = source.text[start..].find('\n').map_or(source.text.len(), |at| start + at);
-        let mut refuse = |what: String| wrong.push(Finding::new(what, None).at(Some(start..end)));
+        let mut refuse = |what: String, help| wrong.push(Finding::new(what, help).at(Some(start..end)));
         let time_s = match record.get(0).unwrap_or_default().parse::<f64>() {
             Ok(time) if time.is_finite() => time,
             _ => {
-                refuse(format!("`{}` is no time in seconds", record.get(0).unwrap_or_default()));
+                let cell = record.get(0).unwrap_or_default();
+                refuse(format!("`{cell}` is no time in seconds"), number_help(cell));
                 continue;
             }
         };
         if steps.last().is_some_and(|before| before.time_s >= time_s) {
-            refuse(format!("{time_s} s does not come after the row before"));
+            refuse(format!("{time_s} s does not come after the row before"), None);
         }
         let mut commands = Vec::new();
         for (joint, cell) in joints.iter().flatten().zip(record.iter().skip(1)) {
             match (cell, cell.parse::<f64>()) {
                 ("slack", _) => commands.push((*joint, Command::Slack)),
                 (_, Ok(angle)) if angle.is_finite() => commands.push((*joint, Command::Angle(angle))),
-                _ => refuse(format!("`{cell}` is neither an angle in radians nor slack")),
+                _ => refuse(format!("`{cell}` is neither an angle in radians nor slack"), number_help(cell)),
             }
         }
         steps.push(Step { time_s, commands });

@@ -43,7 +43,7 @@ fn fixed_pieces(fixed: &Half) -> (Vec<Vec<DVec3>>, bool) {
 pub fn design_file(design: &Design, found: &Inverse) -> String {
     let alignment = &design.alignment;
     let mut text = String::new();
-    let name = catchment::report::printable(&design.name).replace(['"', '\\'], "'");
+    let name = catchment::terminal::printable(&design.name).replace(['"', '\\'], "'");
     line(
         &mut text,
         "# The moving half was computed from the fixed one and wanted heights: catchment invert.",

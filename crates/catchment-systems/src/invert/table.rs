@@ -3,6 +3,8 @@
 use super::Heights;
 use catchment::design::{Finding, Findings, Found, SourceText};
 use catchment::method::zraa::HeightFacet;
+use catchment::suggest::number_help;
+use catchment::terminal::escaped;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -59,7 +61,13 @@ fn rows(text: &str, found: &mut Found) -> (Vec<(DVec3, Range<usize>)>, usize) {
                     rows.push((DVec3::new(x, y, z), span));
                 }
             }
-            _ => refuse("the line is not three finite numbers".to_owned(), "x, y and height, in D"),
+            _ => {
+                let is_number = |field: &&&str| field.parse().is_ok_and(f64::is_finite);
+                let odd = fields.iter().find(|field| !is_number(field)).copied();
+                let named = odd.map_or_else(String::new, |odd| format!(": `{}`", escaped(odd)));
+                let help = odd.and_then(number_help).unwrap_or_else(|| "x, y and height, in D".to_owned());
+                refuse(format!("the line is not three finite numbers{named}"), &help);
+            }
         }
     }
     (rows, count)

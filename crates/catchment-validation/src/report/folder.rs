@@ -6,6 +6,7 @@ use catchment::exec::Exec;
 use catchment::report::csv;
 use catchment::report::folder::{REPORT, SaveError, encode, save_files};
 use catchment::report::write::{self, WriteError};
+use catchment::terminal::shown;
 use std::path::Path;
 
 /// The kind of such a folder.
@@ -17,9 +18,9 @@ const CSV: &str = "tables.csv";
 /// Refuses a place that cannot be written, before anything is computed.
 ///
 /// # Errors
-/// Something else is there, or its parent is no folder.
-pub fn check(path: &Path) -> Result<(), WriteError> {
-    write::check_folder(path, KIND)
+/// Something else is there, another process keeps it locked, or its parent is no folder.
+pub fn check(path: &Path, exec: &Exec) -> Result<(), WriteError> {
+    write::check_folder(path, KIND, exec)
 }
 
 /// Writes everything and says what was written; `version` is the program's.
@@ -35,5 +36,5 @@ pub fn save(found: &Reproduction, path: &Path, version: &str, exec: &Exec) -> Re
     files.push((CSV.to_owned(), csv(&found.records())?));
     files.push((REPORT.to_owned(), format!("{:#}\n", found.json(version)).into_bytes()));
     save_files(path, KIND, &files, exec)?;
-    Ok(format!("wrote {}: {REPORT}, {CSV}, {} pictures as PNG and SVG", path.display(), drawn.len()))
+    Ok(format!("wrote {}: {REPORT}, {CSV}, {} pictures as PNG and SVG", shown(path), drawn.len()))
 }

@@ -11,10 +11,11 @@ use catchment::report::compare::group;
 use catchment::report::set::{ENDINGS, Kind};
 use catchment::report::vtk::View;
 use catchment::report::zarr;
+use catchment::terminal::shown;
 
 pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure> {
     let Some(kind) = Kind::of(&args.output) else {
-        let message = format!("cannot tell what to write into {}", args.output.display());
+        let message = format!("cannot tell what to write into {}", shown(&args.output));
         return Err(Failure::with_help(
             message,
             Some(format!("let its name end in .{}", ENDINGS.join(", ."))),
@@ -48,7 +49,7 @@ pub(super) fn run(args: &ExportArgs, exec: &Exec) -> Result<ExitStatus, Failure>
     let bytes = kind.bytes(&view, &acceptance, heights.as_deref(), exec)?;
     write_file(&args.output, &bytes, args.force)?;
     let told = if kind == Kind::Table { String::new() } else { view.table() };
-    tell(&told, &[format!("wrote {}", args.output.display())])
+    tell(&told, &[format!("wrote {}", shown(&args.output))])
 }
 
 /// The first option that only a drop test has.

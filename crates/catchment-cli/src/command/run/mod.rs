@@ -18,6 +18,7 @@ use crate::output::{to_stderr, to_stdout};
 use catchment::landscape::Resolution;
 use catchment::report::{UnanswerableError, figure, table_with};
 use catchment::run::{Over, Requirement, Run, RunError};
+use catchment::terminal::escaped;
 use clap::Args;
 
 /// Compute the area of acceptance: which pose errors contact corrects
@@ -74,7 +75,7 @@ pub(crate) struct RunArgs {
 
 /// Reads a resolution.
 pub(super) fn resolution(text: &str) -> Result<Resolution, String> {
-    text.parse::<Resolution>().map_err(|error| error.to_string())
+    text.parse::<Resolution>().map_err(|error| escaped(&error.to_string()))
 }
 
 pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {

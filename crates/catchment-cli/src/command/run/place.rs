@@ -9,6 +9,7 @@ use catchment::report::folder::{REPORT, RESULT, StudyFolder};
 use catchment::report::set::Kind;
 use catchment::report::write;
 use catchment::run::Answer;
+use catchment::terminal::shown;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -56,7 +57,7 @@ impl PlaceArgs {
             None => Target::Folder(path),
         });
         let targets: Vec<Target> = figures.map(Target::Pictures).into_iter().chain(output).collect();
-        targets.iter().try_for_each(Target::check)?;
+        targets.iter().try_for_each(|target| target.check(&Exec::new()))?;
         Ok(Targets(targets))
     }
 
@@ -68,7 +69,7 @@ impl PlaceArgs {
     /// The folder of a study of this name, if one is to be written; refused now if it cannot be.
     pub(super) fn study(&self, name: &'static str) -> Result<Option<StudyFolder<'_>>, Failure> {
         let folder = self.output.as_deref().map(|path| StudyFolder { path, name });
-        folder.as_ref().map_or(Ok(()), StudyFolder::check)?;
+        folder.as_ref().map_or(Ok(()), |folder| folder.check(&Exec::new()))?;
         Ok(folder)
     }
 }
@@ -93,22 +94,22 @@ impl Targets<'_> {
                 Target::Pictures(path) => {
                     let saved = answer.save_pictures(path, &drawn, exec)?;
                     written(path);
-                    format!("wrote {} pictures as PNG and SVG into {}", saved.pictures, path.display())
+                    format!("wrote {} pictures as PNG and SVG into {}", saved.pictures, shown(path))
                 }
                 Target::Group(path) => {
                     answer.save_group(path, exec)?;
                     written(path);
-                    format!("wrote {}", path.display())
+                    format!("wrote {}", shown(path))
                 }
                 Target::Set(path, kind) => {
                     answer.save_set(path, *kind, exec)?;
                     written(path);
-                    format!("wrote {}", path.display())
+                    format!("wrote {}", shown(path))
                 }
                 Target::Folder(path) => {
                     let pictures = answer.save_drawn(path, &drawn, exec)?.pictures;
                     written(path);
-                    let place = path.display();
+                    let place = shown(path);
                     format!("wrote {place}: {REPORT}, {RESULT}, {pictures} pictures as PNG and SVG")
                 }
             });

@@ -5,7 +5,7 @@ use crate::command::report::MadeArgs;
 use crate::failure::Failure;
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
-use catchment::report::printable;
+use catchment::terminal::printable;
 use serde_json::json;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -3,6 +3,7 @@
 use super::rings::{MOST_CORNERS, Ring, region, too_many};
 use super::{Measure, Read, ReadError};
 use catchment::design::{Finding, Found, LengthUnit, Quantity, SourceText, Unit, nearest};
+use catchment::suggest::{number_help, odd};
 use glam::DVec2;
 use std::collections::HashSet;
 use std::ops::Range;
@@ -86,7 +87,8 @@ fn columns(header: &Record, found: &mut Found) -> Option<Columns> {
                 let help = nearest(&base, ["x", "y", "ring"])
                     .map_or_else(|| HELP.to_owned(), |meant| format!("did you mean `{meant}`?"));
                 found.push(
-                    Finding::new(format!("unknown column `{name}`"), Some(help)).at(Some(span.clone())),
+                    Finding::new(format!("unknown column `{name}`{}", odd(name)), Some(help))
+                        .at(Some(span.clone())),
                 );
             }
         }
@@ -190,6 +192,9 @@ fn number(text: &str, span: &Range<usize>) -> Result<f64, Finding> {
             format!("the units are mixed: `{text}` has one of its own"),
             "give the unit once, in the names of the columns: x [cm], y [cm]",
         )),
-        Err(complaint) => Err(finding(complaint.to_string(), "a coordinate is a finite number")),
+        Err(complaint) => {
+            let help = number_help(text).unwrap_or_else(|| "a coordinate is a finite number".to_owned());
+            Err(finding(complaint.to_string(), &help))
+        }
     }
 }

@@ -23,6 +23,7 @@ use catchment::design::{Finding, Findings, LengthUnit, SourceText};
 use catchment::exec::Exec;
 use catchment::method::zraa::{self, Zraa, ZraaError};
 use catchment::problem::{Draft, ProblemError};
+use catchment::terminal::shown;
 use glam::DVec2;
 use serde::Serialize;
 
@@ -108,7 +109,7 @@ pub fn read(source: SourceText, exec: &Exec) -> Result<Read, ReadError> {
         }
         _ => {
             let help = "a region is read from .csv, .svg or .toml".to_owned();
-            let message = format!("cannot tell what is in {}", source.path.display());
+            let message = format!("cannot tell what is in {}", shown(&source.path));
             Err(Findings { source: None, list: vec![Finding::new(message, Some(help))], omitted: 0 }.into())
         }
     }

@@ -1,0 +1,101 @@
+//! A folder that another process keeps locked: refused after a while with the process that keeps it, at once where that process waits for
+//! the program, and left as soon as a signal says so.
+
+#![cfg(target_os = "linux")]
+
+use crate::{catchment, entries, home};
+use std::fs::{self, File};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+const EXPORT: [&str; 6] = ["export", "v.toml", "--pose", "x=0.1", "-o", "out"];
+
+/// A folder in which a trial is written.
+fn exported() -> tempfile::TempDir {
+    let home = home();
+    assert_eq!(catchment(home.path()).args(EXPORT).status().unwrap().code(), Some(0));
+    home
+}
+
+/// What was said on stderr, without its frames.
+fn said(output: &Output) -> String {
+    let text = String::from_utf8_lossy(&output.stderr);
+    text.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+}
+
+/// Waits until the program has a thread that listens to signals; `false` where it has ended before.
+fn listens(child: &mut Child) -> bool {
+    let tasks = format!("/proc/{}/task", child.id());
+    while child.try_wait().unwrap().is_none() {
+        let names = fs::read_dir(&tasks).into_iter().flatten().flatten();
+        let mut names = names.filter_map(|task| fs::read_to_string(task.path().join("comm")).ok());
+        if names.any(|name| name.trim() == "signals") {
+            return true;
+        }
+        std::thread::yield_now();
+    }
+    false
+}
+
+#[test]
+fn a_locked_folder_is_refused_with_the_process_that_keeps_it() {
+    let home = exported();
+    let lock = File::open(home.path().join("out")).unwrap();
+    lock.lock_shared().unwrap();
+    let output = catchment(home.path()).args(EXPORT).output().unwrap();
+    let (said, me) = (said(&output), std::process::id());
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains(&format!("cannot write out: process {me} (")), "{said}");
+    assert!(said.contains("has kept the folder locked for 5 s"), "{said}");
+    assert!(said.contains(&format!("end it (kill {me}), or choose another folder")), "{said}");
+    drop(lock);
+    assert_eq!(catchment(home.path()).args(EXPORT).status().unwrap().code(), Some(0));
+    assert_eq!(entries(home.path()), ["out", "v.toml"]);
+}
+
+/// `flock` hands its lock down, or keeps it for itself with -o: in both cases it waits for the program.
+#[test]
+fn a_program_that_was_started_with_the_lock_says_so() {
+    let home = exported();
+    for own in [&[][..], &["-o"]] {
+        let output = Command::new("flock")
+            .args(own)
+            .args(["out", env!("CARGO_BIN_EXE_catchment")])
+            .args(EXPORT)
+            .current_dir(home.path())
+            .env("NO_COLOR", "1")
+            .output()
+            .unwrap();
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("(flock), which started this program, keeps the folder locked"), "{said}");
+        assert!(said.contains("lock a file beside the folder"), "{said}");
+    }
+    assert_eq!(entries(home.path()), ["out", "v.toml"]);
+}
+
+/// Says how the program ended that waits for a lock and hears a signal.
+fn ended_by(home: &Path, signal: &str) -> Option<i32> {
+    let lock = File::open(home.join("out")).unwrap();
+    lock.lock().unwrap();
+    let mut child =
+        catchment(home).args(EXPORT).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    if listens(&mut child) {
+        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    }
+    let output = child.wait_with_output().unwrap();
+    // Where the machine stood still for longer than a lock is waited for, the program was faster than the signal.
+    let code = output.status.code().filter(|code| *code != 2)?;
+    assert!(said(&output).contains("interrupted; nothing was written"), "{}", said(&output));
+    Some(code)
+}
+
+#[test]
+fn one_signal_ends_the_wait_for_a_lock() {
+    let home = exported();
+    for (signal, code) in [("-TERM", 143), ("-INT", 130), ("-HUP", 143)] {
+        let ended = (0..5).find_map(|_| ended_by(home.path(), signal));
+        assert_eq!(ended, Some(code), "{signal}");
+    }
+    assert_eq!(entries(home.path()), ["out", "v.toml"]);
+}
