@@ -80,7 +80,7 @@ impl Sweep {
             }
             let run = asked.run(&problem.inner, &expected)?;
             if let Some(path) = &output {
-                StudyFolder { path, name: "sweep" }.check()?;
+                StudyFolder { path, name: "sweep" }.check(&Exec::new())?;
             }
             let settings = Settings { axes, run };
             Plan::new(&problem.source, settings, |draft| problem.changes.apply(draft)).map_err(refused)

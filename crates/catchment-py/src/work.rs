@@ -5,6 +5,8 @@
 //!   a thread          work(&Exec) ──▶ whole or nothing
 //! ```
 //!
+//! A process that was forked from one that has computed is refused: `fork` copies no threads.
+//!
 //! The interpreter is free while it waits. Not promised: that a stop comes at once; rooms look for it once per pose.
 
 use crate::refusal::Refusal;
@@ -13,7 +15,7 @@ use pyo3::prelude::*;
 use std::panic::resume_unwind;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -46,6 +48,20 @@ impl How {
     }
 }
 
+/// The number of the process that computed first. A fork has its memory and none of its threads: whoever waits for one there waits
+/// for ever.
+static OWNER: OnceLock<u32> = OnceLock::new();
+
+/// Refuses to compute in a fork.
+fn ensure_not_forked() -> Result<(), Refusal> {
+    if *OWNER.get_or_init(std::process::id) == std::process::id() {
+        return Ok(());
+    }
+    let message = "this process was forked from one in which catchment had computed, and a fork has none of its threads: start \
+                   processes by \"spawn\", as in multiprocessing.get_context(\"spawn\").Pool()";
+    Err(Refusal::Compute(message.to_owned()))
+}
+
 /// The last thing that was told.
 type Told = Arc<Mutex<Option<(f64, &'static str)>>>;
 
@@ -65,7 +81,7 @@ pub(crate) fn work<T: Send>(
     how: &How,
     task: impl FnOnce(&Exec) -> Result<T, Refusal> + Send,
 ) -> PyResult<T> {
-    let mut exec = how.exec().map_err(|refusal| refusal.raise(py))?;
+    let mut exec = ensure_not_forked().and_then(|()| how.exec()).map_err(|refusal| refusal.raise(py))?;
     let told = Told::default();
     if how.progress.is_some() {
         let told = Arc::clone(&told);

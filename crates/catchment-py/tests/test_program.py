@@ -1,7 +1,9 @@
 """The command of the wheel, Ctrl-C, types, and the lines of the README."""
 
 import contextlib
+import importlib.metadata
 import os
+import pickle
 import re
 import shlex
 import signal
@@ -72,6 +74,51 @@ def test_ctrl_c_ends_it(what: str) -> None:
         assert said.endswith("stopped\n") and process.returncode == 0, complaint
     else:
         assert process.returncode == 130 and "interrupted" in complaint, complaint
+
+
+#: Two processes that are forked from one that has computed, and one that is not.
+FORKED = """
+import multiprocessing
+import catchment
+
+def main():
+    problem = catchment.load("designs/v-face.toml")
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        for refused in (pool.apply_async(problem.follow, ("x=0.1",)), pool.apply_async(catchment.load, ("designs/v-face.toml",))):
+            try:
+                refused.get(100)
+            except catchment.ComputeError as error:
+                print(error)
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        print(pool.apply_async(problem.follow, ("x=0.1",)).get(100).outcome)
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no fork")
+def test_a_fork_is_refused_and_does_not_wait_for_ever(tmp_path: Path) -> None:
+    script = tmp_path / "forked.py"
+    script.write_text(FORKED)
+    words = [sys.executable, "-W", "ignore::DeprecationWarning", str(script)]
+    said = subprocess.run(words, capture_output=True, text=True, check=True, cwd=ROOT, timeout=300).stdout.splitlines()
+    assert len(said) == 3 and said[2] == "aligned", said
+    assert all("was forked" in line and 'multiprocessing.get_context("spawn")' in line for line in said[:2]), said
+
+
+def test_a_problem_out_of_a_pickle_is_built_when_it_is_needed() -> None:
+    problem = catchment.load("designs/pyramid-stl.toml")
+    again = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(problem))))
+    assert again == problem and hash(again) == hash(problem)
+    assert again.follow("x=1 mm").outcome == problem.follow("x=1 mm").outcome
+
+
+def test_the_wheel_has_the_licences_of_what_is_compiled_in() -> None:
+    files = {Path(str(file)).name: file for file in importlib.metadata.files("catchment") or []}
+    assert {"LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY.txt"} <= set(files)
+    text = files["LICENSE-THIRD-PARTY.txt"].read_text()
+    assert all(f"\n{name} " in text for name in ("rayon", "pyo3", "numpy", "dejavu", "three"))
 
 
 def listens(process: int) -> None:

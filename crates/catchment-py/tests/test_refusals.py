@@ -1,5 +1,6 @@
 """What is refused says where, why, and what helps."""
 
+import json
 import pickle
 
 import numpy as np
@@ -53,6 +54,22 @@ def test_a_file_that_is_not_there_is_said() -> None:
         ({"error_sigma": {"x": 1}, "error_uniform": {"x": 1}}, "leave out one"),
         ({"settings": {"friction": "much"}}, "invalid type"),
         ({"require": "onaa.edge"}, "require"),
+        ({"samples": -1}, "^samples: -1 is out of range: a whole number from 0"),
+        ({"samples": 1e6}, "^samples: a whole number is expected, not 1000000.0"),
+        ({"samples": True}, "^samples: a whole number is expected, not True"),
+        ({"samples": 2**64}, "^samples: 18446744073709551616 is out of range"),
+        ({"poses": -5}, "^poses: -5 is out of range"),
+        ({"seed": -1}, "^seed: -1 is out of range"),
+        ({"seed": "one"}, "^seed: a whole number is expected, not 'one'"),
+        ({"threads": -1}, "^threads: -1 is out of range: a whole number from 0 to 1024"),
+        ({"threads": 70_000}, "^threads: 70000 is out of range"),
+        ({"memory": -1}, "^memory: -1 is out of range"),
+        ({"budget": "soon"}, "^budget: a number is expected, not 'soon'"),
+        ({"tolerance": None, "budget": float("nan")}, "budget: a time is a positive number"),
+        ({"resolution": {"x": 2.5}}, "^resolution: x: a whole number is expected, not 2.5"),
+        ({"settings": {"friction": float("nan")}}, "^settings: .*finite numbers"),
+        ({"error_sigma": {"x": object()}}, "^error_sigma: x: a number is expected"),
+        ({"error_sigma": {"x": "100%"}}, "error_sigma: x: `100%` is not a number with a unit"),
     ],
 )
 def test_arguments_are_refused_before_anything_is_computed(arguments: dict[str, object], said: str) -> None:
@@ -78,6 +95,90 @@ def test_poses_that_cannot_be_tried_are_refused_by_their_rows() -> None:
         problem.follow([0.1, 0.2])
     with pytest.raises(catchment.ComputeError, match="confluence"):
         problem.follow([0.0] * 5, method="confluence")
+
+
+@pytest.mark.parametrize("name", ["motions", "seed", "examine"])
+def test_counts_of_studies_name_their_argument(name: str) -> None:
+    problem = catchment.load("designs/v-face.toml")
+    with pytest.raises(catchment.ArgumentError, match=f"^{name}: -1 is out of range"):
+        problem.jams(**{name: -1})  # type: ignore[arg-type]
+    if name != "examine":
+        with pytest.raises(catchment.ArgumentError, match=f"^{name}: -1 is out of range"):
+            problem.window(**{name: -1})  # type: ignore[arg-type]
+    with pytest.raises(catchment.ArgumentError, match="^friction: a number is expected, not 'ice'"):
+        problem.trace("x=0.1", friction="ice")  # type: ignore[arg-type]
+
+
+def test_what_is_masked_is_no_number() -> None:
+    problem = catchment.load("designs/v-face.toml")
+    poses = np.zeros((3, 5))
+    hidden = np.ma.masked_array(poses, mask=np.zeros((3, 5), dtype=bool))
+    assert problem.follow_many(hidden).outcomes.shape == (3,)
+    hidden[1, 0] = np.ma.masked
+    for masked in (hidden, list(hidden)):
+        with pytest.raises(catchment.ArgumentError, match="^poses: 1 of its values are masked; leave their rows out"):
+            problem.follow_many(masked)
+    with pytest.raises(catchment.ArgumentError, match="^pose: 1 of its values are masked"):
+        problem.follow(hidden[1])
+    with pytest.raises(catchment.ArgumentError, match="^poses: an array of numbers is expected"):
+        problem.follow_many([["a"] * 5])  # type: ignore[list-item]
+    with pytest.raises(catchment.ArgumentError, match="^pose: a text, a mapping or five numbers are expected"):
+        problem.follow(5.0)  # type: ignore[arg-type]
+    cube = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    half = (np.ma.masked_equal(cube, 1.0), np.array([[0, 1, 2]]))
+    with pytest.raises(catchment.ArgumentError, match="^fixed: vertices: 12 of its values are masked"):
+        catchment.Problem(fixed=half, moving=half, width=1.0)
+
+
+@pytest.mark.parametrize("name", ["socket 🔩", "розетка", 'a "quoted" \\ name', "𝔻"])
+def test_names_may_hold_any_character(name: str) -> None:
+    assert catchment.Problem.from_text(f"name = {toml(name)}\n{V_FACE}").name == name
+    assert pyramid(name).name == name
+
+
+def test_what_is_no_text_names_its_argument() -> None:
+    with pytest.raises(catchment.ArgumentError, match="^name: character 1 is half of a surrogate pair"):
+        pyramid("a\ud800")
+    with pytest.raises(catchment.ArgumentError, match="^text: character 8 is half of a surrogate pair"):
+        catchment.Problem.from_text('name = "\ud800"\n')
+
+
+def test_no_exception_steers_a_terminal() -> None:
+    steering = "a\x1b[2J\x9b2J\u202eb"
+    caught: list[catchment.Error] = []
+    for text in (f'[connector]\nfamily = "{steering}"\n', f'{V_FACE}"{steering}" = 1\n'):
+        with pytest.raises(catchment.Error) as error:
+            catchment.Problem.from_text(text, f"{steering}.toml")
+        caught.append(error.value)
+    with pytest.raises(catchment.Error) as error:
+        catchment.load(f"{steering}.toml")
+    caught.append(error.value)
+    problem = catchment.load("designs/v-face.toml")
+    for arguments in ({"method": steering}, {"require": steering}, {"error_sigma": {steering: 1}}, {"samples": steering}):
+        with pytest.raises(catchment.Error) as error:
+            problem.run(**arguments)  # type: ignore[arg-type]
+        caught.append(error.value)
+    for one in caught:
+        said = [str(one), repr(one), *(part or "" for found in one.findings for part in found[:2])]
+        assert not any(c in "".join(said) for c in "\x1b\x9b\u202e"), said
+
+
+def toml(text: str) -> str:
+    """A string of TOML, every character beyond ASCII as it is."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def pyramid(name: str) -> catchment.Problem:
+    """A pyramid in its pit, from arrays: base 2, height 1."""
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
+    base = np.column_stack([corners, np.full(4, -1.0)])
+    rim = np.column_stack([corners, np.zeros(4)])
+    sides = [[0, 2, 1], [0, 3, 2]]
+    sides += [f for k in range(4) for f in ([k, (k + 1) % 4, (k + 1) % 4 + 4], [k, (k + 1) % 4 + 4, k + 4])]
+    roof = [[k + 4, (k + 1) % 4 + 4, 8] for k in range(4)]
+    plug = np.vstack([base, rim, [[0, 0, 1.0]]])
+    pit = np.vstack([base - [0, 0, 1], rim, [[0, 0, -1.0]]])
+    return catchment.Problem(fixed=(pit, np.array(sides + roof)), moving=(plug, np.array(sides + roof)), width=2.0, name=name)
 
 
 def test_what_does_not_fit_into_memory_is_not_begun() -> None:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+import operator
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict, Union
 
+import numpy as np
+
 from ._errors import ArgumentError
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 #: A length in D or with a unit ("5 mm"); an angle in radians or with a unit ("10 deg").
 Quantity: TypeAlias = Union[float, str]
@@ -69,22 +71,87 @@ class Asked(TypedDict):
     window: bool
 
 
-def quantity(value: Quantity) -> str:
+#: The largest number of seeds and counts.
+MOST = 2**64 - 1
+#: The largest number of threads, as on the command line.
+MOST_THREADS = 1024
+
+
+def whole(value: Any, name: str, *, least: int = 0, most: int = MOST) -> int:
+    """A whole number of an argument, in [least, most]. Raises ArgumentError with the name of the argument."""
+    try:
+        number = None if isinstance(value, (bool, np.bool_)) else operator.index(value)
+    except TypeError:
+        number = None
+    if number is None:
+        raise ArgumentError(f"{name}: a whole number is expected, not {value!r}")
+    if not least <= number <= most:
+        raise ArgumentError(f"{name}: {number} is out of range: a whole number from {least} to {most} is expected")
+    return number
+
+
+def count(value: Any, name: str, *, least: int = 0) -> int | None:
+    """The same of an argument that may be left out."""
+    return None if value is None else whole(value, name, least=least)
+
+
+def real(value: Any, name: str) -> float:
+    """A number of an argument. Raises ArgumentError with the name of the argument."""
+    try:
+        return float(unmasked(value, name))
+    except (TypeError, ValueError) as error:
+        if isinstance(error, ArgumentError):
+            raise
+        raise ArgumentError(f"{name}: a number is expected, not {value!r}") from None
+
+
+def unmasked(value: Any, name: str) -> Any:
+    """The value, refused where a part of it is masked: behind a mask there is no number to compute with."""
+    parts = value if isinstance(value, (list, tuple)) else [value]
+    masks = [np.ma.getmaskarray(part) for part in parts if isinstance(part, np.ma.MaskedArray)]
+    hidden = sum(int(np.count_nonzero(mask)) for mask in masks)
+    if hidden:
+        raise ArgumentError(
+            f"{name}: {hidden} of its values are masked; leave their rows out (numpy.ma.compress_rows) or fill them in (.filled(0.0))"
+        )
+    return value
+
+
+def array(value: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Numbers as a contiguous array of float64; one that is already so is not copied."""
+    try:
+        return np.ascontiguousarray(unmasked(value, name), dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, ArgumentError):
+            raise
+        raise ArgumentError(f"{name}: an array of numbers is expected: {error}") from None
+
+
+def unicode(text: str, name: str) -> str:
+    """A text that can be written as UTF-8: without halves of surrogate pairs."""
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        raise ArgumentError(f"{name}: character {error.start} is half of a surrogate pair, which is no text") from None
+    return text
+
+
+def quantity(value: Quantity, name: str) -> str:
     """A number with all its digits, or as written."""
-    return value if isinstance(value, str) else repr(float(value))
+    return unicode(value, name) if isinstance(value, str) else repr(real(value, name))
 
 
-def errors(value: Errors | None) -> str | None:
+def errors(value: Errors | None, argument: str) -> str | None:
     """Errors by name, as the library reads them."""
     if value is None or isinstance(value, str):
         return value
-    return ",".join(f"{name}={quantity(size)}" for name, size in value.items())
+    return ",".join(f"{name}={quantity(size, f'{argument}: {name}')}" for name, size in value.items())
 
 
 def cells(value: Cells | None) -> str | None:
     """A resolution, as the library reads it."""
     if isinstance(value, Mapping):
-        return ",".join(f"{name}={int(number)}" for name, number in value.items())
+        return ",".join(f"{name}={whole(number, f'resolution: {name}')}" for name, number in value.items())
     return None if value is None else str(value)
 
 
@@ -96,9 +163,9 @@ def free(value: str | Iterable[str] | None) -> str | None:
 def settings(value: Mapping[str, object] | None) -> str:
     """Settings of a method as JSON."""
     try:
-        return json.dumps(dict(value or {}))
-    except TypeError as error:
-        raise ArgumentError(f"settings: {error}; give numbers, texts and lists") from None
+        return json.dumps(dict(value or {}), allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"settings: {error}; give finite numbers, texts and lists") from None
 
 
 def changes(
@@ -110,9 +177,9 @@ def changes(
     """What is changed in a design."""
     return Changes(
         free=free(free_),
-        cor=None if cor is None else quantity(cor),
-        aspect_ratio=None if aspect_ratio is None else float(aspect_ratio),
-        rotation_length=None if rotation_length is None else quantity(rotation_length),
+        cor=None if cor is None else quantity(cor, "cor"),
+        aspect_ratio=None if aspect_ratio is None else real(aspect_ratio, "aspect_ratio"),
+        rotation_length=None if rotation_length is None else quantity(rotation_length, "rotation_length"),
     )
 
 
@@ -128,7 +195,8 @@ def how(threads: int = 0, memory: int | None = None, progress: Progress = False)
         shown = bar()
     else:
         shown = progress or None
-    return How(threads=threads, memory=memory, progress=shown)
+    number = whole(threads, "threads", most=MOST_THREADS)
+    return How(threads=number, memory=count(memory, "memory", least=1), progress=shown)
 
 
 def bar() -> Callable[[float, str], object]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -19,6 +20,16 @@ class Finding(NamedTuple):
     column: int | None
 
 
+#: Marks that turn the direction of writing, and breaks of lines that no line shows.
+_MARKS = frozenset("\u200e\u200f\u2028\u2029\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+
+
+def _escaped(text: str) -> str:
+    """The text with control characters as Python writes them, but for breaks of lines: files and names must not steer a terminal."""
+    steers = (c != "\n" and (unicodedata.category(c) == "Cc" or c in _MARKS) for c in text)
+    return "".join(c.encode("unicode_escape").decode() if bad else c for c, bad in zip(text, steers))
+
+
 class Error(Exception):
     """Whatever this package refuses. `except catchment.Error` catches all of it, and nothing else."""
 
@@ -34,6 +45,8 @@ class Error(Exception):
         omitted: int = 0,
         path: str | None = None,
     ) -> None:
+        message = _escaped(message)
+        findings = [(_escaped(said), advice and _escaped(advice), place) for said, advice, place in findings]
         super().__init__(message, findings, omitted, path)
         self.findings = tuple(
             Finding(said, advice, *(place or (None, None))) for said, advice, place in findings

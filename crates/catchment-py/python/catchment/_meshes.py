@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from ._arguments import array, unmasked
 from ._errors import ArgumentError
 
 #: A trimesh, anything else with `vertices` and `faces`, or the two arrays: (n, 3) coordinates, (m, 3) numbers of corners,
@@ -25,8 +26,8 @@ def arrays(mesh: Mesh, name: str) -> tuple[NDArray[np.float64], NDArray[np.int32
             raise ArgumentError(
                 f"{name}: a half is a trimesh or (vertices, faces), not {type(mesh).__name__}"
             ) from None
-    points = np.ascontiguousarray(vertices, dtype=np.float64)
-    corners = np.asarray(faces)
+    points = array(vertices, f"{name}: vertices")
+    corners = np.asarray(unmasked(faces, f"{name}: faces"))
     if points.ndim != 2 or points.shape[1] != 3:
         raise ArgumentError(f"{name}: vertices have the shape (n, 3), not {points.shape}")
     if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -21,14 +22,20 @@ from ._arguments import (
     Pose,
     Progress,
     Quantity,
+    array,
     cells,
     changes,
+    count,
     errors,
     free as names,
     how,
     quantity,
+    real,
     require as requirements,
     settings as as_json,
+    unicode,
+    unmasked,
+    whole,
 )
 from ._errors import ArgumentError
 from ._results import End, Ends, Picture, Report, Result
@@ -60,7 +67,8 @@ def load(
 class Problem:
     """An alignment problem: two halves, which errors are free and how far, checked once.
 
-    It never changes; `replace` makes another. It can be pickled, with the meshes that it came from.
+    It never changes; `replace` makes another. It can be pickled, with the meshes that it came from; read no pickle of a stranger: it
+    can run any program. A process that was forked after something was computed cannot compute: start processes by "spawn".
 
     From two meshes, each a trimesh or (vertices, faces) with vertices (n, 3) in `unit` and faces (m, 3) counter-clockwise
     seen from outside:
@@ -76,7 +84,7 @@ class Problem:
     error_box: half-widths of the errors to consider, such as {"x": "20 mm", "yaw": "30 deg"}.
     """
 
-    _native: _catchment.Problem
+    _built: _catchment.Problem | None
     _path: str
     _text: str
     _files: list[tuple[str, bytes]]
@@ -101,18 +109,18 @@ class Problem:
     ) -> None:
         files = [("fixed.ply", _meshes.ply(fixed, "fixed")), ("moving.ply", _meshes.ply(moving, "moving"))]
         connector = {
-            "width": None if width is None else float(width),
+            "width": None if width is None else real(width, "width"),
             "unit": unit,
             "drawn": drawn,
             "approach": approach,
-            "face_height": None if face_height is None else float(face_height),
+            "face_height": None if face_height is None else real(face_height, "face_height"),
             "settle": settle,
         }
         alignment: dict[str, object] = {"center_of_rotation": cor, "rotation_length": rotation_length}
         if free is not None:
             alignment["free"] = [word.strip() for word in (names(free) or "").split(",")]
-        lines = [f"name = {json.dumps(name)}", "[connector]", *_keys(connector)]
-        lines += [f'{half} = {{ mesh = "{half}.ply", unit = {json.dumps(unit)} }}' for half in ("fixed", "moving")]
+        lines = [f"name = {_toml(name, 'name')}", "[connector]", *_keys(connector)]
+        lines += [f'{half} = {{ mesh = "{half}.ply", unit = {_toml(unit, "unit")} }}' for half in ("fixed", "moving")]
         lines += ["[alignment]", *_keys(alignment), "[errors]", *_keys(error_box or {})]
         self._make(f"{name}.toml".replace("/", "-"), "\n".join(lines) + "\n", files, NOTHING)
 
@@ -127,12 +135,33 @@ class Problem:
         problem._make(path, text, files, given)
         return problem
 
+    @classmethod
+    def _restored(cls, path: str, text: str, files: list[tuple[str, bytes]], given: Changes) -> Problem:
+        """A problem out of a pickle, built when it is first needed: a pool of processes loses a task that cannot be unpickled, and
+        whoever waits for it waits for ever; what a call raises comes back."""
+        problem = cls.__new__(cls)
+        problem._hold(path, text, files, given)
+        return problem
+
     def _make(self, path: str, text: str, files: list[tuple[str, bytes]], given: Changes) -> None:
-        self._path, self._text, self._files, self._changes = path, text, files, given
-        self._native = _catchment.Problem(path, text, files, given, how())
+        self._hold(path, unicode(text, "text"), files, given)
+        self._built = self._build()
+
+    def _hold(self, path: str, text: str, files: list[tuple[str, bytes]], given: Changes) -> None:
+        self._path, self._text, self._files, self._changes, self._built = path, text, files, given, None
+
+    def _build(self) -> _catchment.Problem:
+        return _catchment.Problem(self._path, self._text, self._files, self._changes, how())
+
+    @property
+    def _native(self) -> _catchment.Problem:
+        if self._built is None:
+            self._built = self._build()
+        return self._built
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Problem._made, (self._path, self._text, self._native.files(), self._changes)
+        files = self._files if self._built is None else self._built.files()
+        return Problem._restored, (self._path, self._text, files, self._changes)
 
     def replace(
         self,
@@ -210,9 +239,12 @@ class Problem:
     def _pose(self, pose: Pose) -> list[float]:
         """Five numbers of a pose error."""
         if isinstance(pose, (str, Mapping)):
-            written = errors(pose) or ""
+            written = errors(pose, "pose") or ""
             return self._native.pose(written) if written else [0.0] * 5
-        row = [float(value) for value in pose]
+        try:
+            row = [real(value, "pose") for value in unmasked(pose, "pose")]
+        except TypeError:
+            raise ArgumentError(f"pose: a text, a mapping or five numbers are expected, not {pose!r}") from None
         if len(row) != 5:
             raise ArgumentError(f"pose: five numbers x, y, roll, pitch, yaw in D and radians are wanted, not {len(row)}")
         return row
@@ -266,11 +298,11 @@ class Problem:
             method=method,
             settings=as_json(settings),
             resolution=cells(resolution),
-            poses=poses,
-            samples=samples,
-            budget_s=budget,
-            tolerance=tolerance,
-            seed=seed,
+            poses=count(poses, "poses"),
+            samples=count(samples, "samples"),
+            budget_s=None if budget is None else real(budget, "budget"),
+            tolerance=None if tolerance is None else real(tolerance, "tolerance"),
+            seed=whole(seed, "seed"),
             require=requirements(require),
             heights=heights,
             jams=jams,
@@ -281,7 +313,7 @@ class Problem:
         if client is not None:
             from . import _cluster
 
-            found = _cluster.parts(client, self, plan, parts, run_how)
+            found = _cluster.parts(client, self, plan, count(parts, "parts", least=1), run_how)
             return Result(self, plan, self._native.merge(plan, found, run_how))
         return Result(self, plan, self._native.run(plan, run_how))
 
@@ -316,7 +348,7 @@ class Problem:
         it lies; it must not be written to meanwhile.
         Returns outcomes (n,) and errors (n, 5).
         """
-        rows = np.ascontiguousarray(poses, dtype=np.float64)
+        rows = array(poses, "poses")
         if rows.ndim != 2 or rows.shape[1] != 5:
             raise ArgumentError(
                 f"poses: an array of shape (n, 5) is wanted, {', '.join(AXES)} of each pose, not {rows.shape}"
@@ -325,7 +357,7 @@ class Problem:
 
     def trace(self, pose: Pose, *, friction: float = 0.0) -> Report:
         """The way of one pose error, from first contact to where it rests, with its picture."""
-        return Report._of(self._native.trace(self._pose(pose), friction, how()))
+        return Report._of(self._native.trace(self._pose(pose), real(friction, "friction"), how()))
 
     def window(
         self,
@@ -346,7 +378,9 @@ class Problem:
         motions: random poses of the certificate.
         """
         run_how = how(threads, memory, progress)
-        return Report._of(self._native.window(errors(fix), errors(proportions), motions, seed, friction, run_how))
+        sizes = errors(fix, "fix"), errors(proportions, "proportions")
+        drawn = count(motions, "motions"), whole(seed, "seed")
+        return Report._of(self._native.window(*sizes, *drawn, real(friction, "friction"), run_how))
 
     def jams(
         self,
@@ -371,7 +405,9 @@ class Problem:
         """
         expected = _expected(error_sigma, error_uniform)
         run_how = how(threads, memory, progress)
-        return Report._of(self._native.jams(motions, seed, examine, cells(resolution), friction, certified, expected, run_how))
+        drawn = count(motions, "motions"), whole(seed, "seed"), whole(examine, "examine")
+        mu = real(friction, "friction")
+        return Report._of(self._native.jams(*drawn, cells(resolution), mu, certified, expected, run_how))
 
     def zraa(self, *, threads: int = 0, memory: int | None = None, progress: Progress = False) -> Report:
         """Offsets that are corrected by sliding alone, all rotations locked, exactly. `report["area_d2"]` or `report["from_d"]`."""
@@ -379,19 +415,33 @@ class Problem:
 
 
 def _expected(error_sigma: Errors | None, error_uniform: Errors | None) -> Expected:
-    return Expected(error_sigma=errors(error_sigma), error_uniform=errors(error_uniform))
+    return Expected(
+        error_sigma=errors(error_sigma, "error_sigma"), error_uniform=errors(error_uniform, "error_uniform")
+    )
+
+
+#: Keys of TOML that need no quotes.
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def _toml(text: str, name: str) -> str:
+    """A string of TOML: characters as they are, and escapes for what TOML does not take so."""
+    return json.dumps(unicode(text, name), ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _keys(table: Mapping[str, object]) -> list[str]:
     """Lines of a TOML table; what is None is left out."""
     lines = []
     for key, value in table.items():
+        written = key if _BARE.fullmatch(key) else _toml(key, "key")
         if isinstance(value, str):
-            lines.append(f"{key} = {json.dumps(value)}")
-        elif isinstance(value, (bool, list)):
-            lines.append(f"{key} = {json.dumps(value)}")
+            lines.append(f"{written} = {_toml(value, key)}")
+        elif isinstance(value, bool):
+            lines.append(f"{written} = {json.dumps(value)}")
+        elif isinstance(value, list):
+            lines.append(f"{written} = [{', '.join(_toml(word, key) for word in value)}]")
         elif value is not None:
-            lines.append(f"{key} = {quantity(value)}")  # type: ignore[arg-type]
+            lines.append(f"{written} = {quantity(value, key)}")  # type: ignore[arg-type]
     return lines
 
 

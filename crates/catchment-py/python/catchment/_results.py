@@ -48,7 +48,7 @@ class Report:
     """A report: the same JSON, table and picture as the command line's.
 
     Fields of the JSON are read by `report["sum"]` or `report.to_dict()`; lengths in it are in D, angles in radians.
-    It can be pickled.
+    It can be pickled; read no pickle of a stranger: it can run any program.
     """
 
     def __init__(self, json_text: str, table: str, csv: str | None, picture: Picture | None) -> None:

@@ -14,9 +14,12 @@ from ._arguments import (
     Progress,
     Quantity,
     cells,
+    count,
     how,
     quantity,
+    real,
     settings as as_json,
+    whole,
 )
 from ._errors import ArgumentError
 from ._problem import Problem, _expected
@@ -96,7 +99,7 @@ def sweep(
     """
     axes = [f"{key}={values if isinstance(values, str) else _values(key, values)}" for key, values in over.items()]
     expected = _expected(error_sigma, error_uniform)
-    seeds = [seed] if isinstance(seed, int) else list(seed)
+    seeds = [whole(number, "seed") for number in ([seed] if isinstance(seed, int) else seed)]
     place = None if output is None else os.fspath(output)
     if place is not None and not isinstance(seed, int):
         os.makedirs(place, exist_ok=True)
@@ -107,9 +110,9 @@ def sweep(
             settings=as_json(settings),
             resolution=cells(resolution),
             poses=None,
-            samples=samples,
+            samples=count(samples, "samples"),
             budget_s=None,
-            tolerance=tolerance,
+            tolerance=None if tolerance is None else real(tolerance, "tolerance"),
             seed=number,
             require=[],
             heights=False,
@@ -131,7 +134,7 @@ def sweep(
 
 def _values(key: str, values: Iterable[Quantity]) -> str:
     """Values as a person writes them; whole numbers stay whole."""
-    written = [str(value) if isinstance(value, (str, int)) else quantity(value) for value in values]
+    written = [str(value) if isinstance(value, (str, int)) else quantity(value, f"over: {key}") for value in values]
     if not written:
         raise ArgumentError(f"over: {key} has no values")
     return ",".join(written)
