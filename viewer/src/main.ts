@@ -3,11 +3,12 @@
 
 import { Helper, latest } from "./asking";
 import { Friction, Sliders } from "./controls";
+import { Cuts } from "./cuts";
 import { make } from "./dom";
 import { Units } from "./format";
 import { help, keys } from "./keys";
 import type { Computing, Painting } from "./messages";
-import { AXES, listed, page as read, text, type Jam, type Pose, type Trace } from "./page";
+import { AXES, listed, page as read, text, type Jam, type Outcome, type Pose, type Trace } from "./page";
 import { doubts, jamsCard, merits, summary, windowCard } from "./panels";
 import { Player } from "./player";
 import { again } from "./served";
@@ -45,11 +46,16 @@ const marks = (): Marks => ({
     ],
     jams: (page.jams?.jams ?? []).slice(0, 12).map((jam) => listed(jam.pose)),
 });
+const cuts = new Cuts(page, units, helper);
 const host = {
     axes, units, marks,
     pose: () => pose,
-    plane: (asked: number[], at: number[]) => helper.ask("plane", { axes: asked, at }),
-    border: (asked: number[], at: number[], code: number) => helper.ask("border", { axes: asked, at, code }),
+    cut: (chosen: [number, number]) => cuts.cut(chosen, pose),
+    border: async (chosen: number[], code: number) => {
+        const at = cuts.at(pose);
+        return { ...(await helper.ask("border", { axes: chosen, at, code })), fixed: cuts.fixed(chosen, at) };
+    },
+    has: (outcome: Outcome) => report.acceptance.outcomes[outcome] > 0,
     choose: (chosen: Pose) => choose(chosen, true),
 };
 const pairs: [number, number][] = axes.length < 3 ? [[0, 1]] : axes.length === 3 ? [[0, 1], [0, 2], [1, 2]] : [[0, 1], [2, 3], [0, axes.length - 1]];
@@ -78,7 +84,7 @@ function show(trace: Trace, told: string) {
     json = told;
     if (trace.waypoints.length === 0) stage?.place(listed(trace.start), mated, [], locked);
     player.take(trace);
-    tell(trace.outcome, ending(trace, mated, units) + friction.remark);
+    tell(trace.outcome, ending(trace, mated, units, design) + friction.remark);
     if (play) player.play();
 }
 
@@ -130,7 +136,7 @@ function build() {
     document.body.append(
         make("header", {}, make("div", {}, make("h1", {}, design.name), make("p", {}, summary(page, units))), make("div", { class: "tools" }, ...(page.served ? [again()] : []), help(), theme(repaint))),
         make("main", {}, make("div", { class: "top" }, halves, set), make("div", { class: "cards" }, ...cards)),
-        make("footer", {}, `catchment ${report.catchment}; this page holds everything it shows and asks nobody.`));
+        make("footer", {}, `catchment ${report.catchment}; works offline.`));
     keys({ player, sliders, section: section as HTMLSelectElement, mated: () => examine([0, 0, 0, 0, 0]) });
     // On paper everything is dark on white.
     const root = document.documentElement;
@@ -155,6 +161,7 @@ async function begin() {
     const [fixed, moving, module] = packed;
     await helper.ask("start", {
         shape: axes.map((axis) => axis.cells), chunkCells: page.chunk_cells, chunks,
+        planes: page.planes.map((plane, k) => ({ cells: plane.map((axis) => axis.cells), packed: text(`plane-${k}`) ?? "" })),
         motions: fixed && moving && module ? { design: JSON.stringify(design), halves: [fixed, moving], module } : null,
     });
     const first = Promise.all(slices.map((slice) => slice.update()));

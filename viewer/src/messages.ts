@@ -10,14 +10,18 @@ export interface Start {
     shape: number[];
     chunkCells: number;
     chunks: string[];
+    /** Planes through 0 by exact motions: cells along both axes, codes packed as a chunk. */
+    planes: { cells: number[]; packed: string }[];
     /** JSON of the design, the halves and the module, packed; null where no motion can be followed. */
     motions: { design: string; halves: [string, string]; module: string } | null;
 }
 /** Outcomes and motions. */
 export interface Computing {
     start: [Start, null];
-    plane: [{ axes: number[]; at: number[] }, Uint8Array];
-    border: [{ axes: number[]; at: number[]; code: number }, Mesh];
+    /** The grid at the cells `at` of the other axes, or the plane of that number; the first of `axes` fastest. */
+    plane: [{ axes: number[]; at: number[]; exact: number | null }, Uint8Array];
+    /** The border of the cells with a code, and how many cells have each code. */
+    border: [{ axes: number[]; at: number[]; code: number }, { mesh: Mesh; counts: number[] }];
     follow: [{ pose: Pose; friction: number }, { trace: Trace; json: string }];
 }
 

@@ -30,7 +30,10 @@ export interface Design {
     name: string;
     width: number;
     unit: string | null;
-    alignment: { free: AxisName[]; center_of_rotation: number; rotation_length: number; half_ranges: number[]; symmetry: number };
+    alignment: {
+        free: AxisName[]; center_of_rotation: number; rotation_length: number; half_ranges: number[]; symmetry: number;
+        docked: { depth: number; limits: (number | null)[] };
+    };
 }
 export interface Run {
     catchment: string;
@@ -81,6 +84,8 @@ export interface Page {
     served: boolean;
     chunk_cells: number;
     chunks: number;
+    /** The axes of the planes through 0. */
+    planes: Axis[][];
 }
 
 /** The text of an element that the program wrote; null where it left it out. */

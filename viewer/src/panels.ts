@@ -3,6 +3,7 @@
 import { make } from "./dom";
 import { grouped, percent, tidy, type Units } from "./format";
 import { AXES, OUTCOMES, listed, type Jam, type Page, type Pose } from "./page";
+import { reason } from "./telling";
 
 const row = (name: string, value: string, more = "") =>
     make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value, ...(more ? [make("small", {}, more)] : [])));
@@ -83,9 +84,9 @@ export function jamsCard({ jams, report }: Page, units: Units, show: (pose: Pose
         return make("li", {}, make("button", { type: "button", class: "jam", onclick: () => show(pose, jam) },
             make("b", {}, `${percent(jam.of_box.share)} of the box`),
             make("small", {}, `95 %: ${jam.of_box.ci95.map((share) => percent(share)).join(" … ")}${jam.places > 1 ? `, at ${jam.places} mirrored places` : ""}`),
-            make("span", {}, `rests ${units.size(jam.above_mated_d)} high at ${units.pose(pose)}`),
+            make("span", {}, `rests ${units.height(jam.above_mated_d)} with ${units.pose(pose)}`),
             make("span", {}, contacts.slice(0, 3).join("; ") + (contacts.length > 3 ? `; and ${contacts.length - 3} more` : "")),
-            ...(held ? [make("span", {}, held)] : [])));
+            ...[reason(pose, jam.above_mated_d, units, report.design), held].filter((said) => said).map((said) => make("span", {}, said))));
     });
     const hint = make("p", { class: "hint" }, `Of ${grouped(jams.motions)} random poses, followed exactly. Click one to see it.`);
     const { outcomes, cells } = report.acceptance;

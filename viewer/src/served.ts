@@ -4,23 +4,28 @@ import { make } from "./dom";
 
 interface Progress { state: "ready" | "running" | "failed"; share: number; stage: string; message: string }
 
-/** A button, and how far it is. */
+/** A button, and the progress of the computation. Pressed again it replaces the computation that runs. */
 export function again(): HTMLElement {
     const said = make("output", { class: "progress", "aria-live": "polite" });
     const cells = make("input", { type: "text", size: 8, placeholder: "cells", "aria-label": "cells per axis, such as 30 or x=40,yaw=24", title: "cells per axis" });
-    const button = make("button", { type: "button", id: "again", title: "reads the design file again and computes it", onclick: () => void run() }, "compute again");
+    const button = make("button", { type: "button", id: "again", title: "reads the design file again and computes it, in place of a computation that still runs", onclick: () => void run() }, "compute again");
+    let newest = 0;
     const run = async () => {
-        button.disabled = true;
-        const asked = await fetch("run", { method: "POST", body: cells.value.trim() });
-        if (!asked.ok) said.textContent = await asked.text();
-        else if (await follow(said)) location.reload();
-        button.disabled = false;
+        const own = ++newest;
+        try {
+            const asked = await fetch("run", { method: "POST", body: cells.value.trim() });
+            if (!asked.ok) said.textContent = await asked.text();
+            else if (await follow(said, () => own === newest)) location.reload();
+        } catch {
+            said.textContent = "The program does not answer: start `catchment view` again.";
+        }
     };
     return make("span", { class: "again" }, said, cells, button);
 }
 
-async function follow(said: HTMLElement): Promise<boolean> {
-    for (;;) {
+/** Shows the progress until there is a page (true), it failed, or another request is followed. */
+async function follow(said: HTMLElement, isNewest: () => boolean): Promise<boolean> {
+    while (isNewest()) {
         const { state, share, stage, message }: Progress = await (await fetch("progress")).json();
         if (state !== "running") {
             said.textContent = state === "failed" ? message : "";
@@ -29,4 +34,5 @@ async function follow(said: HTMLElement): Promise<boolean> {
         said.textContent = `${stage} ${Math.round(100 * share)} %`;
         await new Promise((done) => setTimeout(done, 300));
     }
+    return false;
 }

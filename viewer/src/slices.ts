@@ -1,5 +1,6 @@
-// Planes through the accepted set at the pose that is looked at: two errors vary, the others stay where the sliders are.
+// Planes through the accepted set at the pose that is looked at: two errors vary, the others stay where the sliders are. Each says what it draws.
 
+import { cell, type Cut } from "./cuts";
 import { colour, make } from "./dom";
 import type { Units } from "./format";
 import { tidy } from "./format";
@@ -16,16 +17,12 @@ export interface Host {
     units: Units;
     pose(): Pose;
     marks(): Marks;
-    plane(axes: number[], at: number[]): Promise<Uint8Array>;
+    cut(chosen: [number, number]): Promise<Cut>;
     choose(pose: Pose): void;
 }
 
 const MARGIN = { left: 46, right: 10, top: 8, bottom: 34 };
 const codeColours = ["--none", ...OUTCOMES.map((outcome) => `--${outcome}`)];
-
-/** The cell of an axis that holds a value. */
-export const cell = (axis: Axis, value: number) =>
-    Math.min(axis.cells - 1, Math.max(0, Math.floor(((value - axis.lo) / (axis.hi - axis.lo)) * axis.cells)));
 
 const rgb = (hex: string) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
 
@@ -34,7 +31,8 @@ export class Slice {
     private readonly canvas = make("canvas", { tabindex: 0, class: "slice" });
     private readonly note = make("output", { class: "hover" });
     private pickers: HTMLSelectElement[];
-    private codes: Uint8Array | null = null;
+    private readonly drawn = make("output", { class: "drawn" });
+    private shown: Cut | null = null;
 
     constructor(private readonly host: Host, private chosen: [number, number], number: number) {
         this.pickers = [0, 1].map((side) => {
@@ -44,7 +42,7 @@ export class Slice {
             return picker;
         });
         this.element = make("figure", { class: "slice" },
-            make("figcaption", {}, this.pickers[0], make("span", {}, "across, "), this.pickers[1], make("span", {}, "up"), this.note), this.canvas);
+            make("figcaption", {}, this.pickers[0], make("span", {}, "across, "), this.pickers[1], make("span", {}, "up"), this.note, this.drawn), this.canvas);
         this.canvas.addEventListener("click", (event) => this.at(event, (pose) => host.choose(pose)));
         this.canvas.addEventListener("pointermove", (event) => this.at(event, (pose) => this.tell(pose)));
         this.canvas.addEventListener("pointerleave", () => (this.note.textContent = ""));
@@ -62,13 +60,13 @@ export class Slice {
 
     /** Cuts and draws anew. */
     async update() {
-        const { axes } = this.host;
-        const pose = this.host.pose();
-        const at = axes.map((axis) => cell(axis, pose[AXES.indexOf(axis.axis)]));
-        const asked = [...this.chosen];
-        const codes = await this.host.plane(asked, at);
+        const asked: [number, number] = [...this.chosen];
+        const cut = await this.host.cut(asked);
         // The pickers may have moved on meanwhile.
-        if (asked[0] === this.chosen[0] && asked[1] === this.chosen[1]) this.codes = codes;
+        if (asked[0] === this.chosen[0] && asked[1] === this.chosen[1]) {
+            this.shown = cut;
+            this.drawn.textContent = cut.caption;
+        }
         this.draw();
     }
 
@@ -86,14 +84,15 @@ export class Slice {
         pen.scale(ratio, ratio);
         const [across, up] = this.pair;
         const field = { x: MARGIN.left, y: MARGIN.top, w: width - MARGIN.left - MARGIN.right, h: height - MARGIN.top - MARGIN.bottom };
-        if (this.codes?.length === across.cells * up.cells) {
-            const picture = new ImageData(across.cells, up.cells);
+        if (this.shown) {
+            const { codes, cells: [columns, rows] } = this.shown;
+            const picture = new ImageData(columns, rows);
             const paint = codeColours.map((name) => rgb(colour(name)));
-            for (let k = 0; k < this.codes.length; k++) {
-                const row = up.cells - 1 - Math.floor(k / across.cells);
-                picture.data.set([...paint[this.codes[k]], 255], 4 * (row * across.cells + (k % across.cells)));
+            for (let k = 0; k < codes.length; k++) {
+                const row = rows - 1 - Math.floor(k / columns);
+                picture.data.set([...paint[codes[k]], 255], 4 * (row * columns + (k % columns)));
             }
-            const small = new OffscreenCanvas(across.cells, up.cells);
+            const small = new OffscreenCanvas(columns, rows);
             small.getContext("2d")!.putImageData(picture, 0, 0);
             pen.imageSmoothingEnabled = false;
             pen.drawImage(small, field.x, field.y, field.w, field.h);
@@ -112,8 +111,8 @@ export class Slice {
             pen.strokeStyle = colour(name);
             pen.lineWidth = 1.8;
             // A box that the other errors have left is where it would be.
-            const other = bounds.filter((bound) => bound !== a && bound !== b);
-            const inside = other.every(({ axis, lo, hi }) => lo <= this.value(axis) && this.value(axis) <= hi);
+            const other = (axis: AxisName) => bounds.find((bound) => bound.axis === axis);
+            const inside = this.shown?.fixed.every(({ axis, value }) => (other(axis)?.lo ?? value) <= value && value <= (other(axis)?.hi ?? value));
             pen.globalAlpha = inside ? 1 : 0.3;
             pen.setLineDash(dashed ? [5, 4] : []);
             pen.strokeRect(px(a.lo), py(b.hi), px(a.hi) - px(a.lo), py(b.lo) - py(b.hi));
@@ -155,10 +154,6 @@ export class Slice {
         pen.restore();
         this.canvas.setAttribute("aria-label",
             `outcomes over ${across.axis} across and ${up.axis} up; arrows move the pose by a cell, Enter plays its motion`);
-    }
-
-    private value(axis: AxisName): number {
-        return this.host.pose()[AXES.indexOf(axis)];
     }
 
     private frame(pen: CanvasRenderingContext2D, field: { x: number; y: number; w: number; h: number }, px: (v: number) => number, py: (v: number) => number) {
@@ -208,7 +203,9 @@ export class Slice {
     private tell(pose: Pose) {
         const [across, up] = this.pair;
         const value = (axis: Axis) => pose[AXES.indexOf(axis.axis)];
-        const code = this.codes?.[cell(across, value(across)) + across.cells * cell(up, value(up))];
+        const place = ([columns, rows]: [number, number]) =>
+            cell({ ...across, cells: columns }, value(across)) + columns * cell({ ...up, cells: rows }, value(up));
+        const code = this.shown?.codes[place(this.shown.cells)];
         const told = [across, up].map((axis) => `${axis.axis} ${this.host.units.error(axis.axis, value(axis))}`).join(", ");
         this.note.textContent = code ? `${told}: ${OUTCOMES[code - 1]}` : told;
     }

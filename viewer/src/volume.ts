@@ -2,22 +2,26 @@
 
 import { Box3, Vector3 } from "three";
 import type { Helper } from "./asking";
-import type { Mesh } from "./border";
+import { values, type Fixed } from "./cuts";
 import { colour, colours, make } from "./dom";
-import { tidy } from "./format";
-import type { Label, Painting } from "./messages";
-import { AXES, type Axis, type Point, type Pose } from "./page";
-import { cell, ticks, type Host } from "./slices";
+import { grouped, tidy } from "./format";
+import type { Computing, Label, Painting } from "./messages";
+import { AXES, OUTCOMES, type Axis, type Outcome, type Point, type Pose } from "./page";
+import { ticks, type Host } from "./slices";
 import { View3d } from "./view3d";
 
 export interface VolumeHost extends Host {
-    border(axes: number[], at: number[], code: number): Promise<Mesh>;
+    /** The border of an outcome over three axes, the cells of each outcome there, and the other errors as they are drawn. */
+    border(chosen: number[], code: number): Promise<Computing["border"][1] & { fixed: Fixed[] }>;
+    /** Whether some cell of the whole result has an outcome. */
+    has(outcome: Outcome): boolean;
 }
 
 export class Volume {
     readonly element: HTMLElement;
     private view: View3d | null = null;
     private readonly canvas = make("canvas", { tabindex: 0, class: "volume", "aria-label": "the set over three errors; arrows turn it, a click chooses a pose" });
+    private readonly drawn = make("output", { class: "drawn" });
     private readonly pickers: HTMLSelectElement[];
     private readonly of: HTMLSelectElement;
 
@@ -29,7 +33,7 @@ export class Volume {
         });
         this.of = make("select", { "aria-label": "which poses the surface holds", onchange: () => void this.update() },
             make("option", { value: 1 }, "aligned"), make("option", { value: 2 }, "jammed"));
-        this.element = make("figure", { class: "volume" }, make("figcaption", {}, this.of, make("span", {}, "over"), ...this.pickers), this.canvas);
+        this.element = make("figure", { class: "volume" }, make("figcaption", {}, this.of, make("span", {}, "over"), ...this.pickers, this.drawn), this.canvas);
         let down = [0, 0];
         this.canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
         this.canvas.addEventListener("click", (event) => {
@@ -69,15 +73,24 @@ export class Volume {
 
     async update() {
         if (!this.view) return;
-        const pose = this.host.pose();
         const asked = String(this.chosen);
-        const at = this.host.axes.map((axis) => cell(axis, pose[AXES.indexOf(axis.axis)]));
-        const { positions, indices } = await this.host.border([...this.chosen], at, Number(this.of.value));
-        if (asked !== String(this.chosen)) return;
+        const code = Number(this.of.value);
+        const { mesh: { positions, indices }, counts, fixed } = await this.host.border([...this.chosen], code);
+        if (asked !== String(this.chosen) || code !== Number(this.of.value)) return;
+        this.drawn.textContent = this.caption(OUTCOMES[code - 1], counts, fixed);
         const shape = this.triple.map((axis) => axis.cells);
         for (let k = 0; k < positions.length; k++) positions[k] = (positions[k] + 0.5) / shape[k % 3] - 0.5;
         await this.painter.ask("surface", { positions, indices }, [positions.buffer, indices.buffer]);
         void this.view.draw();
+    }
+
+    /** What is drawn, and why where that is nothing. */
+    private caption(outcome: Outcome, counts: number[], fixed: Fixed[]): string {
+        const at = values(this.host.units, fixed);
+        if (counts[OUTCOMES.indexOf(outcome) + 1] > 0) return at && `cells of the grid at ${at}`;
+        if (!this.host.has(outcome)) return `empty: no cell of the result is ${outcome}`;
+        const others = OUTCOMES.flatMap((name, k) => (counts[k + 1] > 0 ? [`${grouped(counts[k + 1])} ${name}`] : []));
+        return `empty: at ${at} no cell is ${outcome} (${others.join(", ")}); move ${fixed.map(({ axis }) => axis).join(" or ")}`;
     }
 
     /** Draws anew where colours changed. */

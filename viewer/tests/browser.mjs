@@ -28,10 +28,11 @@ export const launch = (space = "--enable-unsafe-swiftshader") =>
         args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", space],
     });
 
-/** Opens a page and waits until it is drawn; `said` collects errors and everything that it asked for from elsewhere. */
-export async function open(running, path, options = {}) {
+/** Opens a page and waits until it is drawn; `said` collects errors and everything that it asked for from elsewhere. `prepare` has the page before it loads. */
+export async function open(running, path, options = {}, prepare = async () => {}) {
     const context = await running.newContext({ viewport: { width: 1400, height: 1000 }, ...options });
     const page = await context.newPage();
+    await prepare(page);
     const said = { errors: [], asked: [] };
     page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver|swiftshader|WebGL-/i.test(message.text()) && said.errors.push(message.text()));
     page.on("pageerror", (error) => said.errors.push(String(error)));

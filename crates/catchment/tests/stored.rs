@@ -87,6 +87,17 @@ fn a_newer_layout_is_refused_with_advice_whatever_its_form() {
     assert!(other.contains("it is a report of `trace?[2J`, not of `run`"), "{other}");
 }
 
+/// The version goes into pages, tables and files of other programs.
+#[test]
+fn a_version_that_is_none_is_refused() {
+    for hostile in ["0.1.0\"><script>alert(1)</script>", "", "0.1", "0.1.0\u{1b}[2J"] {
+        let mut report = old_json();
+        report["catchment"] = hostile.into();
+        let error = Report::from_json(&report.to_string()).unwrap_err().to_string();
+        assert!(error.contains("is not a version of catchment") && !error.contains('\u{1b}'), "{error}");
+    }
+}
+
 #[test]
 fn a_doubt_of_a_kind_that_is_not_known_stays_a_sentence() {
     let mut report = old_json();

@@ -66,6 +66,8 @@ pub(super) struct MadeArgs {
 /// What is computed beside a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Study {
+    /// Outcomes over every two errors, the others exactly 0, by exact motions: slices at zero show cells of the grid instead
+    Slices,
     /// Where it jams
     Jams,
     /// The largest box of errors that all dock
@@ -101,7 +103,7 @@ impl MadeArgs {
     /// What is studied beside it.
     fn studies(&self) -> Studies {
         let wanted = |study| !self.leave_out.contains(&study);
-        Studies { jams: wanted(Study::Jams), window: wanted(Study::Window) }
+        Studies { planes: wanted(Study::Slices), jams: wanted(Study::Jams), window: wanted(Study::Window) }
     }
 
     /// The parts of the page of a problem.

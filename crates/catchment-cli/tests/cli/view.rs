@@ -69,8 +69,12 @@ struct Server {
 
 impl Server {
     fn start(folder: &Path) -> Self {
+        Self::over(folder, "6")
+    }
+
+    fn over(folder: &Path, resolution: &str) -> Self {
         let mut child = catchment(folder)
-            .args(["view", "v.toml", "--resolution", "6", "--leave-out", "jams,window"])
+            .args(["view", "v.toml", "--resolution", resolution, "--leave-out", "jams,window"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -127,6 +131,8 @@ fn the_page_is_served_and_computed_again_from_the_file_as_it_is_now() {
     let page = server.ask("GET", "", "", "");
     assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("\"served\":true"), "{}", &page[..300]);
     assert!(page.contains("Cache-Control: no-store") && page.contains("frame-ancestors 'none'"));
+    assert!(page.contains("script-src 'sha256-") && page.contains("connect-src 'self'"));
+    assert!(!page.split("\r\n\r\n").next().unwrap().contains("unsafe-inline"));
     assert!(page.contains("\"cells\":6"));
     fs::write(home.path().join("v.toml"), DESIGN.replace("a </script> V", "changed")).unwrap();
     assert!(server.ask("POST", "run", "", "7").starts_with("HTTP/1.1 202"));
@@ -141,6 +147,42 @@ fn the_page_is_served_and_computed_again_from_the_file_as_it_is_now() {
     assert!(progress.contains("\"failed\"") && progress.contains("w-face"), "{progress}");
     assert!(server.ask("GET", "", "", "").contains("<title>changed ·"));
     assert!(server.ask("POST", "run", "", "many").starts_with("HTTP/1.1 400"));
+}
+
+/// Whether the older ones have ended by themselves or not: the newest request is what is served.
+#[test]
+fn a_running_computation_is_replaced_by_a_newer_one() {
+    let home = home();
+    let server = Server::over(home.path(), "2000");
+    for cells in ["1999", "7"] {
+        let told = server.ask("POST", "run", "", cells);
+        assert!(told.starts_with("HTTP/1.1 202"), "{told}");
+    }
+    server.wait();
+    let page = server.ask("GET", "", "", "");
+    assert!(page.contains("\"cells\":7"), "{}", &page[..300]);
+}
+
+/// Their requests never end, they read nothing, and they stay to the end of the test.
+#[test]
+fn two_hundred_slow_clients_hold_up_nobody() {
+    let home = home();
+    let server = Server::start(home.path());
+    server.wait();
+    let mut slow = Vec::new();
+    for k in 0..200 {
+        let mut stream = TcpStream::connect(("127.0.0.1", server.port)).unwrap();
+        // Some send nothing, some a part of a request, some ask for the page and do not read it.
+        let own = format!("GET /{}/ HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", server.token, server.port);
+        let part = ["", &own[..9], &own[..own.len() - 2], &own][k % 4];
+        let _ = stream.write_all(part.as_bytes());
+        slow.push(stream);
+    }
+    for _ in 0..20 {
+        let page = server.ask("GET", "", "", "");
+        assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.ends_with("</html>\n"), "{}", &page[..200]);
+        assert!(server.ask("GET", "progress", "", "").contains("\"ready\""));
+    }
 }
 
 #[test]

@@ -11,6 +11,7 @@
 //! reads the layouts from [`OLDEST`] on; a newer one is refused.
 
 use super::schema::{Timing, WarningReport};
+use super::version::Version;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ops::{Deref, DerefMut};
@@ -31,7 +32,7 @@ pub trait Body {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Envelope<T> {
     /// Version of the program that wrote it.
-    pub catchment: String,
+    pub catchment: Version,
     /// The fields of its kind.
     pub body: T,
     /// Doubts.
@@ -43,7 +44,7 @@ pub struct Envelope<T> {
 impl<T: Body> Envelope<T> {
     /// A report of this program.
     pub fn of(body: T, warnings: Vec<WarningReport>, timing: Option<Timing>) -> Self {
-        Self { catchment: env!("CARGO_PKG_VERSION").to_owned(), body, warnings, timing }
+        Self { catchment: Version::own(), body, warnings, timing }
     }
 }
 
@@ -103,7 +104,7 @@ impl<T: Body + Serialize> Serialize for Envelope<T> {
         #[derive(Serialize)]
         struct Written<'a, T> {
             schema: u32,
-            catchment: &'a str,
+            catchment: &'a Version,
             kind: &'static str,
             #[serde(flatten)]
             body: &'a T,
@@ -122,7 +123,7 @@ impl<'de, T: Body + Deserialize<'de>> Deserialize<'de> for Envelope<T> {
             // Refused as soon as it is met: what follows may be of any form.
             #[serde(rename = "schema")]
             _schema: Known,
-            catchment: String,
+            catchment: Version,
             kind: Option<String>,
             #[serde(flatten)]
             body: T,

@@ -63,6 +63,7 @@ pub mod text;
 mod trajectory;
 mod trials;
 mod validation;
+mod version;
 pub mod vtk;
 mod window;
 pub mod write;
@@ -121,6 +122,7 @@ pub use validation::{
     AgreedReport, CountReport, EvidenceReport, ExplainingReport, FrictionTried, LineReport, OneSidedReport,
     TriedReport, ValidationBody, ValidationReport,
 };
+pub use version::{Version, VersionError};
 pub use window::{
     CertificateReport, HalfWidths, SideReport, WindowBody, WindowFound, WindowReport, WindowSection,
     WorstReport,

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes
+//!   planes       the same through zero alone, beside a grid      one design, what pictures show at zero
 //!   agreement    every method on one grid                        one design, how each two agree
 //!   convergence  finer and finer grids until stable               one design, every method
 //!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
@@ -23,6 +24,7 @@ pub mod convergence;
 pub mod friction;
 pub mod hold;
 pub mod plan;
+pub mod planes;
 pub mod proposal;
 pub mod refinement;
 pub mod sensitivity;

@@ -1,138 +1,260 @@
-//! What is served: the newest page, and the one that is being computed.
+//! The newest page, and the computation of the next one.
+//!
+//! ```text
+//!   ask ──▶ next: the newest request alone ──▶ one thread: compute ──▶ page
+//!            │                                     ▲
+//!            └── cancels what is being computed ───┘
+//! ```
+//!
+//! At most one computation runs. A newer request cancels the one before and takes its place; requests between the two are dropped.
 
-use crate::args::DesignArgs;
-use crate::command::report::MadeArgs;
-use crate::failure::Failure;
 use catchment::exec::Exec;
 use catchment::landscape::Resolution;
-use catchment::terminal::printable;
+use catchment::report::page::policy;
 use serde_json::json;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
-/// The newest page, and how far the next one is.
+/// HTML with the policy that it is served under.
+#[derive(Debug, Clone)]
+pub(super) struct Served {
+    pub(super) html: Arc<str>,
+    pub(super) policy: Arc<str>,
+}
+
+/// Computes a page over so many cells, or the design's own; what is wrong, in words.
+type Compute = Box<dyn Fn(Option<Resolution>, &Exec) -> Result<Served, String> + Send + Sync>;
+
+/// What is served, and what is computed.
 pub(super) struct Desk {
-    design: DesignArgs,
-    made: MadeArgs,
+    compute: Compute,
     threads: usize,
     state: Mutex<State>,
-    stop: Mutex<Option<Arc<AtomicBool>>>,
 }
 
 #[derive(Default)]
 struct State {
-    page: Option<String>,
-    running: bool,
+    page: Option<Served>,
+    /// Asked for and not begun.
+    next: Option<Option<Resolution>>,
+    /// Cancels the computation that runs.
+    running: Option<Arc<AtomicBool>>,
+    is_closed: bool,
     share: f64,
     stage: String,
     failed: Option<String>,
 }
 
-/// What a browser sees until there is a page: it asks how far it is, and comes again.
-const WAITING: &str = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>catchment</title>\
-    <style>:root{color-scheme:light dark}body{font:16px system-ui,sans-serif;margin:20vh auto;max-width:40rem;padding:0 1rem;\
-    white-space:pre-wrap}</style><p id=\"said\" role=\"status\">computing …</p><script>\
-    const said=document.getElementById('said');\
+const WAITING_STYLE: &str = ":root{color-scheme:light dark}body{font:16px system-ui,sans-serif;margin:20vh auto;max-width:40rem;padding:0 1rem;\
+    white-space:pre-wrap}";
+const WAITING_SCRIPT: &str = "const said=document.getElementById('said');\
     const ask=async()=>{const p=await(await fetch('progress')).json();\
     if(p.state==='ready')location.reload();\
     else{said.textContent=p.state==='failed'?p.message+'\\n\\nChange the design file and load this page again.':\
     `computing … ${p.stage} ${Math.round(100*p.share)} %`;\
-    setTimeout(ask,300)}};ask();</script></html>";
+    setTimeout(ask,300)}};ask();";
 
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
+/// What a browser shows until there is a page: it asks for the progress, and loads the page when it is there.
+static WAITING: LazyLock<Served> = LazyLock::new(|| {
+    let html = format!(
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>catchment</title><style>{WAITING_STYLE}</style>\
+         <p id=\"said\" role=\"status\">computing …</p><script>{WAITING_SCRIPT}</script></html>"
+    );
+    Served { html: html.into(), policy: policy(&[WAITING_SCRIPT], &[WAITING_STYLE], true).into() }
+});
 
 impl Desk {
-    pub(super) fn new(design: DesignArgs, made: MadeArgs, threads: usize) -> Self {
-        Self { design, made, threads, state: Mutex::default(), stop: Mutex::default() }
+    /// Nothing is computed before it is asked for; each computation gets so many threads, 0 meaning one per core.
+    pub(super) fn new(
+        threads: usize,
+        compute: impl Fn(Option<Resolution>, &Exec) -> Result<Served, String> + Send + Sync + 'static,
+    ) -> Self {
+        Self { compute: Box::new(compute), threads, state: Mutex::default() }
     }
 
-    /// The newest page. Where the last one could not be computed, loading it asks again.
-    pub(super) fn page(self: &Arc<Self>) -> String {
-        let state = locked(&self.state);
+    fn locked(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The newest page. Where there is none because the last computation failed, loading it computes again.
+    pub(super) fn page(self: &Arc<Self>) -> Served {
+        let state = self.locked();
         if let Some(page) = &state.page {
             return page.clone();
         }
-        let again = !state.running && state.failed.is_some();
+        let again = state.running.is_none() && state.failed.is_some();
         drop(state);
         if again {
             self.start(None);
         }
-        WAITING.to_owned()
+        WAITING.clone()
     }
 
-    /// How far it is, as JSON.
+    /// State (`running`, `ready`, `failed`), share done, stage, and what failed, as JSON.
     pub(super) fn progress(&self) -> String {
-        let State { running, share, stage, failed, .. } = &*locked(&self.state);
+        let State { running, share, stage, failed, .. } = &*self.locked();
         let state = match (running, failed) {
-            (true, _) => "running",
-            (false, Some(_)) => "failed",
-            (false, None) => "ready",
+            (Some(_), _) => "running",
+            (None, Some(_)) => "failed",
+            (None, None) => "ready",
         };
         json!({ "state": state, "share": share, "stage": stage, "message": failed }).to_string()
     }
 
-    /// A page asks for another: over so many cells, or as before.
-    pub(super) fn ask(self: &Arc<Self>, cells: &str) -> Result<(), String> {
+    /// A page asks for another one: over so many cells, or as before. Whether it replaces a computation that was running.
+    ///
+    /// # Errors
+    /// The text is no number of cells.
+    pub(super) fn ask(self: &Arc<Self>, cells: &str) -> Result<bool, String> {
         let resolution = match cells.trim() {
             "" => None,
             text => Some(text.parse::<Resolution>().map_err(|error| error.to_string())?),
         };
-        if self.start(resolution) { Ok(()) } else { Err("one is being computed already".to_owned()) }
+        Ok(self.start(resolution))
     }
 
-    /// Computes another page, unless one is being computed.
+    /// Computes another page; one that is being computed is given up. Whether there was one.
     pub(super) fn start(self: &Arc<Self>, resolution: Option<Resolution>) -> bool {
-        let mut state = locked(&self.state);
-        if state.running {
+        let mut state = self.locked();
+        if state.is_closed {
             return false;
         }
-        (state.running, state.share, state.failed) = (true, 0.0, None);
+        (state.next, state.share, state.failed) = (Some(resolution), 0.0, None);
         "design".clone_into(&mut state.stage);
+        if let Some(older) = &state.running {
+            older.store(true, Ordering::Relaxed);
+            return true;
+        }
+        state.running = Some(Arc::default());
         drop(state);
         let desk = Arc::clone(self);
-        let computing =
-            std::thread::Builder::new().name("page".to_owned()).spawn(move || desk.compute(resolution));
-        if let Err(error) = computing {
-            let mut state = locked(&self.state);
-            (state.running, state.failed) = (false, Some(error.to_string()));
+        let started = std::thread::Builder::new().name("page".to_owned()).spawn(move || desk.work());
+        if let Err(error) = started {
+            let mut state = self.locked();
+            (state.running, state.next, state.failed) = (None, None, Some(error.to_string()));
         }
-        true
+        false
     }
 
-    fn compute(self: &Arc<Self>, resolution: Option<Resolution>) {
-        let made = self.made.over(resolution);
-        let told = Arc::downgrade(self);
-        let found = (|| -> Result<String, Failure> {
-            let exec =
-                Exec::new().with_threads(self.threads)?.with_progress(Arc::new(move |share, stage| {
-                    if let Some(desk) = told.upgrade() {
-                        let mut state = locked(&desk.state);
-                        state.share = share;
-                        stage.clone_into(&mut state.stage);
-                    }
-                }));
-            *locked(&self.stop) = Some(exec.cancel_flag());
-            let parts = made.parts(&self.design.problem()?, &exec)?;
-            let mut page = parts.page();
-            page.is_served = true;
-            Ok(page.html(&exec)?)
-        })();
-        let mut state = locked(&self.state);
-        state.running = false;
-        match found {
-            Ok(page) => state.page = Some(page),
-            Err(failure) => {
-                state.failed = Some(failure.text().lines().map(printable).collect::<Vec<_>>().join("\n"));
+    /// Takes the newest request, and the one after it, until there is none.
+    fn work(self: &Arc<Self>) {
+        loop {
+            let mut state = self.locked();
+            let Some(resolution) = state.next.take() else {
+                state.running = None;
+                return;
+            };
+            let exec = Exec::new();
+            state.running = Some(exec.cancel_flag());
+            drop(state);
+            let found = self.compute(resolution, exec);
+            let mut state = self.locked();
+            // What was replaced meanwhile is no page, however it ended.
+            if state.next.is_some() {
+                continue;
+            }
+            match found {
+                Ok(page) => state.page = Some(page),
+                Err(why) => state.failed = Some(why),
             }
         }
     }
 
-    /// Gives up what is being computed.
-    pub(super) fn stop(&self) {
-        if let Some(stop) = &*locked(&self.stop) {
-            stop.store(true, Ordering::Relaxed);
+    fn compute(self: &Arc<Self>, resolution: Option<Resolution>, exec: Exec) -> Result<Served, String> {
+        let desk = Arc::downgrade(self);
+        let progress = move |share: f64, stage: &str| {
+            let Some(desk) = desk.upgrade() else { return };
+            let mut state = desk.locked();
+            if state.next.is_none() {
+                state.share = share;
+                stage.clone_into(&mut state.stage);
+            }
+        };
+        let exec = exec.with_threads(self.threads).map_err(|error| error.to_string())?;
+        let exec = exec.with_progress(Arc::new(progress));
+        // The hook of the program has printed where; the server goes on.
+        catch_unwind(AssertUnwindSafe(|| (self.compute)(resolution, &exec))).unwrap_or_else(|_| {
+            Err("a bug of the program ended the computation; the terminal shows where".to_owned())
+        })
+    }
+
+    /// Cancels what is computed; nothing is computed from now on.
+    pub(super) fn close(&self) {
+        let mut state = self.locked();
+        (state.is_closed, state.next) = (true, None);
+        if let Some(running) = &state.running {
+            running.store(true, Ordering::Relaxed);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+
+    fn served(text: &str) -> Served {
+        Served { html: text.into(), policy: "".into() }
+    }
+
+    fn cells(resolution: Option<Resolution>) -> String {
+        resolution.map_or_else(|| "own".to_owned(), |resolution| resolution.to_string())
+    }
+
+    /// Waits for a state; how long it takes decides nothing.
+    fn until(desk: &Desk, state: &str) {
+        while !desk.progress().contains(&format!("\"state\":\"{state}\"")) {
+            std::thread::yield_now();
+        }
+    }
+
+    /// The first computation ends by nothing but being cancelled, the ones between never begin.
+    #[test]
+    fn a_newer_request_cancels_the_older_one_and_takes_its_place() {
+        let (begun, begins) = mpsc::channel();
+        let desk = Arc::new(Desk::new(1, move |resolution, exec: &Exec| {
+            let name = cells(resolution);
+            begun.send(name.clone()).unwrap();
+            while name == "own" && !exec.is_cancelled() {
+                std::thread::yield_now();
+            }
+            // What a cancelled computation gives is not shown.
+            Ok(served(&name))
+        }));
+        assert!(!desk.start(None));
+        assert_eq!(begins.recv().unwrap(), "own");
+        assert!(desk.progress().contains("\"running\""));
+        assert!(desk.ask("many").is_err());
+        let (older, newer) = (desk.ask("7"), desk.ask("9"));
+        assert!(older.unwrap() && newer.is_ok());
+        until(&desk, "ready");
+        assert_eq!(&*desk.page().html, "9");
+        let rest: Vec<String> = begins.try_iter().collect();
+        // 7 may have begun before 9 was asked for.
+        assert!(rest == ["9"] || rest == ["7", "9"], "{rest:?}");
+        assert!(!desk.ask("").unwrap(), "nothing ran");
+        desk.close();
+    }
+
+    #[test]
+    fn what_fails_is_told_and_the_page_before_stays() {
+        let desk = Arc::new(Desk::new(1, |resolution, _: &Exec| match cells(resolution).as_str() {
+            "own" => Err("no design".to_owned()),
+            "13" => panic!("a bug"),
+            name => Ok(served(name)),
+        }));
+        desk.start(None);
+        until(&desk, "failed");
+        assert!(desk.progress().contains("no design"));
+        desk.ask("5").unwrap();
+        until(&desk, "ready");
+        desk.ask("13").unwrap();
+        until(&desk, "failed");
+        assert!(desk.progress().contains("a bug of the program"));
+        assert_eq!(&*desk.page().html, "5");
+        desk.close();
+        desk.start(None);
+        assert!(desk.progress().contains("a bug of the program"), "nothing begins any more");
     }
 }

@@ -1,24 +1,20 @@
-//! As much of HTTP/1.1 as a page on this machine needs: one request per connection, everything bounded.
+//! As much of HTTP/1.1 as a page on this machine needs: one request per connection, everything bounded. Bytes alone: it reads and writes no socket.
 //!
 //! ```text
-//!   bytes ──read──▶ Request ──admit──▶ path below the token     or a refusal:
-//!                                                               400 no request · 403 by another name, from another page · 404 no token
-//!                                                               408 too slow · 413 too much
+//!   bytes ──parse──▶ Request ──admit──▶ path below the token     or a refusal:
+//!                                                                400 no request · 403 by another name, from another page · 404 no token
+//!                                                                408 too slow · 413 too much
 //! ```
 //!
 //! A page elsewhere cannot ask: its requests come with its own Origin, and a name that leads here (DNS rebinding) with its own Host.
 
-use catchment::report::page::POLICY;
-use std::io::{self, Read, Write};
-use std::net::TcpStream;
-use std::time::{Duration, Instant};
+use super::desk::Served;
+use std::sync::Arc;
 
 /// Most bytes of the head of a request.
 const HEAD_BYTES: usize = 16 << 10;
 /// Most bytes of its body: a resolution.
 const BODY_BYTES: usize = 256;
-/// How long a request may take to arrive.
-const SLOWEST: Duration = Duration::from_secs(5);
 
 /// What is asked.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -36,7 +32,8 @@ pub(super) struct Request {
 pub(super) struct Response {
     status: u16,
     kind: &'static str,
-    body: Vec<u8>,
+    policy: Arc<str>,
+    body: Arc<str>,
 }
 
 /// Who may ask.
@@ -74,57 +71,28 @@ fn same(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
 }
 
-/// Reads a request, or says what is wrong with it.
-pub(super) fn read(stream: &mut TcpStream) -> Result<Request, Response> {
-    let end = Instant::now() + SLOWEST;
-    // A listener that does not wait may hand that on.
-    let _ = stream.set_nonblocking(false);
-    let mut bytes = Vec::new();
-    let head = loop {
-        if let Some(head) = bytes.windows(4).position(|four| four == b"\r\n\r\n") {
-            break head + 4;
-        }
-        if bytes.len() > HEAD_BYTES {
-            return Err(Response::text(413, "the head of the request is too long"));
-        }
-        more(stream, &mut bytes, end)?;
+/// The request that the bytes hold; `None` while more of it has to come.
+///
+/// # Errors
+/// What is wrong with it, as the answer to it.
+pub(super) fn parse(bytes: &[u8]) -> Result<Option<Request>, Response> {
+    let too_long = || Response::text(413, "the head of the request is too long");
+    let searched = &bytes[..bytes.len().min(HEAD_BYTES)];
+    let Some(end) = searched.windows(4).position(|four| four == b"\r\n\r\n") else {
+        return if bytes.len() >= HEAD_BYTES { Err(too_long()) } else { Ok(None) };
     };
-    if head > HEAD_BYTES {
-        return Err(Response::text(413, "the head of the request is too long"));
-    }
+    let head = end + 4;
     let (mut request, length) = parsed(&bytes[..head])?;
     if length > BODY_BYTES {
         return Err(Response::text(413, "the request is too long"));
     }
-    while bytes.len() < head + length {
-        more(stream, &mut bytes, end)?;
-    }
-    let body = bytes[head..head + length].to_vec();
-    request.body = String::from_utf8(body).map_err(|_| bad())?;
-    Ok(request)
+    let Some(body) = bytes.get(head..head + length) else { return Ok(None) };
+    request.body = std::str::from_utf8(body).map_err(|_| bad())?.to_owned();
+    Ok(Some(request))
 }
 
 fn bad() -> Response {
     Response::text(400, "that is no request")
-}
-
-/// More bytes, while there is time.
-fn more(stream: &mut TcpStream, bytes: &mut Vec<u8>, end: Instant) -> Result<(), Response> {
-    let left = end.saturating_duration_since(Instant::now());
-    let slow = || Response::text(408, "the request took too long");
-    if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
-        return Err(slow());
-    }
-    let mut some = [0; 4096];
-    match stream.read(&mut some) {
-        Ok(0) => Err(bad()),
-        Ok(count) => {
-            bytes.extend_from_slice(&some[..count]);
-            Ok(())
-        }
-        Err(error) if error.kind() == io::ErrorKind::Interrupted => Ok(()),
-        Err(_) => Err(slow()),
-    }
 }
 
 /// What the head of a request asks for below this token, if it is let in: for the fuzzer.
@@ -165,21 +133,25 @@ fn parsed(head: &[u8]) -> Result<(Request, usize), Response> {
 }
 
 impl Response {
+    fn of(status: u16, kind: &'static str, body: &str) -> Self {
+        Self { status, kind, policy: "default-src 'none'".into(), body: body.into() }
+    }
+
     pub(super) fn text(status: u16, text: &str) -> Self {
-        Self { status, kind: "text/plain; charset=utf-8", body: text.as_bytes().to_vec() }
+        Self::of(status, "text/plain; charset=utf-8", text)
     }
 
-    pub(super) fn page(page: String) -> Self {
-        Self { status: 200, kind: "text/html; charset=utf-8", body: page.into_bytes() }
+    pub(super) fn json(json: &str) -> Self {
+        Self::of(200, "application/json", json)
     }
 
-    pub(super) fn json(json: String) -> Self {
-        Self { status: 200, kind: "application/json", body: json.into_bytes() }
+    pub(super) fn page(Served { html, policy }: Served) -> Self {
+        Self { status: 200, kind: "text/html; charset=utf-8", policy, body: html }
     }
 
-    /// Writes it; the connection ends with it.
-    pub(super) fn write(&self, stream: &mut TcpStream) -> io::Result<()> {
-        let Self { status, kind, body } = self;
+    /// The head and the body; the connection ends with them.
+    pub(super) fn into_parts(self) -> (String, Arc<str>) {
+        let Self { status, kind, policy, body } = self;
         let reason = match status {
             200 => "OK",
             202 => "Accepted",
@@ -193,13 +165,10 @@ impl Response {
         let head = format!(
             "HTTP/1.1 {status} {reason}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\nCache-Control: no-store\r\n\
              X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n\
-             Content-Security-Policy: {POLICY}; connect-src 'self'; frame-ancestors 'none'\r\n\r\n",
+             Content-Security-Policy: {policy}; frame-ancestors 'none'\r\n\r\n",
             body.len()
         );
-        stream.set_write_timeout(Some(SLOWEST))?;
-        stream.write_all(head.as_bytes())?;
-        stream.write_all(body)?;
-        stream.flush()
+        (head, body)
     }
 }
 
@@ -229,6 +198,26 @@ mod tests {
             assert_eq!(head(wrong), Err(400), "{wrong}");
         }
         assert_eq!(head("POST / HTTP/1.1\nContent-Length: 99999999999999999999999\n\n"), Err(413));
+    }
+
+    /// However a request is cut, it is the same request; what is bounded is refused as soon as it is too much.
+    #[test]
+    fn requests_arrive_in_pieces() {
+        let whole = b"POST /t/run HTTP/1.1\r\nHost: 127.0.0.1:9\r\nContent-Length: 3\r\n\r\n7,8 and more";
+        let end = whole.len() - " and more".len();
+        for cut in 0..whole.len() {
+            let found = parse(&whole[..cut]).map_err(|refusal| refusal.status).unwrap();
+            assert_eq!(found.map(|request| request.body), (cut >= end).then(|| "7,8".to_owned()), "{cut}");
+        }
+        let status = |bytes: &[u8]| parse(bytes).unwrap_err().status;
+        assert_eq!(status(&[b'x'; HEAD_BYTES]), 413);
+        assert_eq!(
+            status(format!("GET / HTTP/1.1\r\nX: {}\r\n\r\n", "x".repeat(HEAD_BYTES)).as_bytes()),
+            413
+        );
+        assert_eq!(status(b"POST / HTTP/1.1\r\nContent-Length: 257\r\n\r\n"), 413);
+        assert_eq!(status(b"POST / HTTP/1.1\r\nContent-Length: 1\r\n\r\n\xff"), 400);
+        assert_eq!(status(b"\x16\x03\x01\x00\r\n\r\n"), 400);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod desk;
 mod http;
+mod server;
 
 use super::report::MadeArgs;
 use crate::args::DesignArgs;
@@ -10,20 +11,20 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::output::to_stdout;
 use crate::signals;
+use catchment::exec::Exec;
+use catchment::landscape::Resolution;
+use catchment::terminal::printable;
 use clap::Args;
-use desk::Desk;
+use desk::{Desk, Served};
 use http::{Request, Response};
 use std::hash::{BuildHasher, RandomState};
-use std::io;
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::net::{Ipv4Addr, TcpListener};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 /// The page of a design in your browser, computed again whenever you ask for it
 ///
 /// Serves the page of `catchment report` to this machine alone, under an address that holds a random token, until Ctrl-C. "compute again" in the
-/// page reads the design file again, so that it can be changed beside it.
+/// page reads the design file again, so that it can be changed beside it; a computation that is still running is given up for the newer one.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment view design.toml                          prints the address to open\n  \
@@ -42,11 +43,6 @@ pub(crate) struct ViewArgs {
     exec: ExecArgs,
 }
 
-/// How often it is asked whether to stop.
-const PATIENCE: Duration = Duration::from_millis(30);
-/// Connections that are answered at a time; a browser opens six.
-const MOST_CONNECTIONS: usize = 32;
-
 /// What the head of a request asks for below this token, if it is let in.
 pub(crate) fn admitted(head: &[u8], port: u16, token: &str) -> Option<String> {
     http::admitted(head, port, token)
@@ -60,31 +56,38 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitStatus, Failure> {
         let help = "name another --port, or none".to_owned();
         Failure::with_help(format!("cannot listen on 127.0.0.1:{}: {error}", args.port), Some(help))
     })?;
-    listener.set_nonblocking(true)?;
     let port = listener.local_addr()?.port();
     let token = token();
-    let desk = Arc::new(Desk::new(args.design.clone(), args.made.clone(), args.exec.threads()));
+    let (design, made) = (args.design.clone(), args.made.clone());
+    let compute = move |resolution: Option<Resolution>, exec: &Exec| {
+        page(&design, &made.over(resolution), exec).map_err(|failure| told(&failure))
+    };
+    let desk = Arc::new(Desk::new(args.exec.threads(), compute));
     desk.start(None);
     to_stdout(&format!("http://127.0.0.1:{port}/{token}/\n"))?;
-    let gate = Arc::new(http::Gate { port, token });
-    let stop = running.exec.cancel_flag();
-    while !stop.load(Ordering::Relaxed) {
-        match listener.accept() {
-            // Whoever comes while so many are answered is let go.
-            Ok((stream, _)) if Arc::strong_count(&gate) <= MOST_CONNECTIONS => {
-                let (gate, desk) = (Arc::clone(&gate), Arc::clone(&desk));
-                // Where there is no thread the connection is closed, and the browser tries again.
-                let _ = std::thread::Builder::new().spawn(move || answer(stream, &gate, &desk));
-            }
-            Ok(_) => {}
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => std::thread::sleep(PATIENCE),
-            // One that was given up before it was taken.
-            Err(_) => std::thread::sleep(PATIENCE),
-        }
-    }
-    desk.stop();
+    let gate = http::Gate { port, token };
+    let respond = |request| match gate.admit(request) {
+        Ok(request) => respond(&request, &desk),
+        Err(refusal) => refusal,
+    };
+    let served = server::serve(&listener, &running.exec.cancel_flag(), &respond);
+    desk.close();
     drop(running);
+    served?;
     Ok(signals::received().unwrap_or(ExitStatus::Done))
+}
+
+/// The page of the design as the file has it now.
+fn page(design: &DesignArgs, made: &MadeArgs, exec: &Exec) -> Result<Served, Failure> {
+    let parts = made.parts(&design.problem()?, exec)?;
+    let mut page = parts.page();
+    page.is_served = true;
+    Ok(Served { policy: page.policy().into(), html: page.html(exec)?.into() })
+}
+
+/// What a page shows of a failure.
+fn told(failure: &Failure) -> String {
+    failure.text().lines().map(printable).collect::<Vec<_>>().join("\n")
 }
 
 /// 128 random bits, as the system gives them to every process for its hash tables.
@@ -93,22 +96,13 @@ fn token() -> String {
     format!("{:016x}{:016x}", bits(), bits())
 }
 
-/// One request, one answer.
-fn answer(mut stream: TcpStream, gate: &http::Gate, desk: &Arc<Desk>) {
-    let response = match http::read(&mut stream).and_then(|request| gate.admit(request)) {
-        Ok(request) => respond(&request, desk),
-        Err(refusal) => refusal,
-    };
-    // Whoever asked may be gone.
-    let _ = response.write(&mut stream);
-}
-
 fn respond(request: &Request, desk: &Arc<Desk>) -> Response {
     match (request.method.as_str(), request.path.as_str()) {
         ("GET", "") => Response::page(desk.page()),
-        ("GET", "progress") => Response::json(desk.progress()),
+        ("GET", "progress") => Response::json(&desk.progress()),
         ("POST", "run") => match desk.ask(&request.body) {
-            Ok(()) => Response::text(202, "started"),
+            Ok(true) => Response::text(202, "started in place of the one that was being computed"),
+            Ok(false) => Response::text(202, "started"),
             Err(why) => Response::text(400, &why),
         },
         (_, "" | "progress" | "run") => Response::text(405, "this address is not asked that way"),

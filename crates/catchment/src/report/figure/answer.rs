@@ -1,20 +1,14 @@
 //! The pictures of an answer.
 
 use super::{FigureError, Picture, Placement};
-use crate::acceptance::{Acceptance, Domain};
+use crate::acceptance::Acceptance;
 use crate::contact::Pair;
 use crate::exec::Exec;
-use crate::landscape::{Grid, GridAxis};
-use crate::merit::slice;
-use crate::method::{Decide, descent};
-use crate::pose::{CorPose, Dof, PoseError};
+use crate::landscape::Grid;
+use crate::pose::{CorPose, PoseError};
 use crate::report::folder::SaveError;
 use crate::run::Answer;
-
-/// Cells per axis of the slice in the overview, and of the many in the slices, where the method decides each cell
-/// by itself and the grid is coarser.
-const OVERVIEW_CELLS: usize = 71;
-const SLICE_CELLS: usize = 25;
+use crate::study::planes;
 
 /// How far the halves are drawn apart, in D, so that both faces can be seen.
 const LIFT: f64 = 0.6;
@@ -50,9 +44,9 @@ impl Answer {
         let (design, acceptance, report) = (self.problem.design(), &self.acceptance, self.report());
         let (connector, pair) = (self.problem.connector(), self.problem.pair());
         if let Some(grid) = self.grid()
-            && let Some(main) = main_pair(grid)
+            && let Some(main) = planes::main_pair(grid)
         {
-            let finer = self.finer_slices(grid, main, exec)?;
+            let finer = self.planes(grid, exec)?;
             let over = |slice: &&Acceptance| {
                 slice.grid().is_some_and(|grid| grid.axes.iter().map(|axis| axis.dof).eq(main))
             };
@@ -89,23 +83,13 @@ impl Answer {
         Ok(drawn)
     }
 
-    /// Slices through zero, finer than the grid, each pose followed exactly: where some other error is free, and the method's own
-    /// cells are not what is asked about (flooding and drop tests show themselves).
-    fn finer_slices(&self, grid: &Grid, main: [Dof; 2], exec: &Exec) -> Result<Vec<Acceptance>, SaveError> {
-        if self.run.method.info().departs || grid.axes.len() < 3 {
+    /// Planes through zero by exact motions; none where the method's own cells are to be shown (flooding and drop tests show themselves).
+    fn planes(&self, grid: &Grid, exec: &Exec) -> Result<Vec<Acceptance>, SaveError> {
+        let method = &self.run.method;
+        if method.info().departs {
             return Ok(Vec::new());
         }
-        let (pair, settings) = (self.problem.pair(), self.run.method.motions());
-        // Where descents are dear, so are their slices.
-        let affordable = settings.default_cells(pair)[1];
-        let mut slices = Vec::new();
-        for plane in slice::pairs(grid) {
-            let least = if plane == main { OVERVIEW_CELLS } else { SLICE_CELLS };
-            let finer = |axis: &GridAxis| GridAxis { cells: axis.cells.max(least.min(affordable)), ..*axis };
-            let axes = grid.axes.iter().filter(|a| plane.contains(&a.dof)).map(finer).collect();
-            slices.push(descent::run(pair, Domain::Grid(Grid { axes }), &settings, exec)?.0);
-        }
-        Ok(slices)
+        Ok(planes::through_zero(self.problem.pair(), &method.motions(), grid, exec)?)
     }
 }
 
@@ -113,11 +97,4 @@ impl Answer {
 fn height_of(pair: &Pair, error: &PoseError) -> f64 {
     let pose = CorPose::from_error(error, pair.alignment.center_of_rotation, pair.alignment.free);
     pair.height(&pose).unwrap_or(f64::NEG_INFINITY)
-}
-
-/// The two errors to show where only two can be: x with the rotation that goes with it.
-fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
-    let pairs = slice::pairs(grid);
-    let favourites = [[Dof::X, Dof::Pitch], [Dof::X, Dof::Yaw]];
-    favourites.into_iter().find(|pair| pairs.contains(pair)).or_else(|| pairs.first().copied())
 }

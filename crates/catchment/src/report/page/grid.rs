@@ -8,14 +8,38 @@
 //! nothing. Every chunk is read without the others, so that a page unpacks what it shows.
 
 use super::{PageError, deflated};
-use crate::acceptance::Acceptance;
+use crate::acceptance::{Acceptance, Outcome};
 use crate::advice::Advice;
 use crate::exec::Exec;
 use crate::merit::MeritError;
+use crate::report::schema::{Axis, axes};
 use rayon::prelude::*;
 
 /// Most cells of a chunk, unless a row has more.
 const CHUNK_CELLS: usize = 1 << 20;
+
+/// Outcomes over two axes, in one piece.
+pub(super) struct Plane {
+    /// Its axes, the first fastest.
+    pub(super) axes: Vec<Axis>,
+    /// Its outcomes.
+    pub(super) packed: Vec<u8>,
+}
+
+/// A plane through zero.
+pub(super) fn plane(acceptance: &Acceptance, exec: &Exec) -> Result<Plane, PageError> {
+    exec.check()?;
+    let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
+    let row = grid.axes.first().map_or(1, |axis| axis.cells);
+    let packed = deflated(&by_rows(&acceptance.outcomes, row))?;
+    Ok(Plane { axes: axes(acceptance), packed })
+}
+
+/// Each outcome's code ⊕ the one a row before.
+fn by_rows(outcomes: &[Outcome], row: usize) -> Vec<u8> {
+    let code = |k: usize| outcomes[k] as u8;
+    (0..outcomes.len()).map(|k| if k < row { code(k) } else { code(k) ^ code(k - row) }).collect()
+}
 
 /// A grid of outcomes in chunks.
 pub(super) struct Chunks {
@@ -34,12 +58,9 @@ pub(super) fn packed(acceptance: &Acceptance, exec: &Exec) -> Result<Chunks, Pag
     let shape = grid.shape();
     let row = shape.first().copied().unwrap_or(1);
     let cells = chunk_cells(&shape);
-    let pack = |chunk: &[crate::acceptance::Outcome]| -> Result<Vec<u8>, PageError> {
+    let pack = |chunk: &[Outcome]| -> Result<Vec<u8>, PageError> {
         exec.check()?;
-        let code = |k: usize| chunk[k] as u8;
-        let bytes: Vec<u8> =
-            (0..chunk.len()).map(|k| if k < row { code(k) } else { code(k) ^ code(k - row) }).collect();
-        Ok(deflated(&bytes)?)
+        Ok(deflated(&by_rows(chunk, row))?)
     };
     let packed =
         exec.install(|| acceptance.outcomes.par_chunks(cells).map(pack).collect::<Result<_, _>>())?;

@@ -2,9 +2,12 @@
 //!
 //! ```text
 //!   report · jams · window   JSON ──────────────────────────┐
-//!   outcomes                 u8, chunks, deflate, base64 ───┼──▶ page.html
+//!   outcomes · planes        u8, chunks, deflate, base64 ───┼──▶ page.html
 //!   halves                   Half::to_bytes, deflate ───────┤      viewer (script, style), motions (WebAssembly)
 //! ```
+//!
+//! What is read from a design or a stored result is never markup: `html` is the only way into the page, and the page's own policy names the one
+//! script that may run by its hash.
 //!
 //! The page draws what is here and computes no acceptance. A pose that is clicked is followed in the page, by the same code as
 //! [`Problem::trace`](crate::problem::Problem::trace), compiled to WebAssembly. The viewer is built from `viewer/` of the source tree and lies here
@@ -14,21 +17,21 @@
 //! design's own unit and degrees.
 
 mod grid;
+mod html;
 mod parts;
 
+pub use html::policy;
 pub use parts::{Parts, Studies};
 
 use super::{JamsReport, Report, WindowReport};
 use crate::acceptance::Acceptance;
-use crate::connector::{Connector, Half};
+use crate::connector::Connector;
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::merit::MeritError;
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use html::Html;
 use serde_json::{Value, json};
-use std::fmt::Write as _;
 use std::io::Write as _;
 
 /// The viewer, for the page itself.
@@ -42,10 +45,6 @@ const STYLE: &str = include_str!("bundle/viewer.css");
 /// The core of the library as WebAssembly, deflated (zlib).
 const MOTIONS: &[u8] = include_bytes!("bundle/motions.wasm.z");
 
-/// What a page may do: nothing but run what it holds. A page that is served asks whoever served it, and nobody else.
-pub const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
-     style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'";
-
 /// What a page shows.
 #[derive(Debug, Clone)]
 pub struct Page<'a> {
@@ -53,6 +52,8 @@ pub struct Page<'a> {
     pub report: &'a Report,
     /// The outcomes behind it, over a grid.
     pub acceptance: &'a Acceptance,
+    /// Outcomes over planes through zero ([`crate::study::planes`]); none: slices at zero show the cells of the grid.
+    pub planes: &'a [Acceptance],
     /// The halves; `None` where they cannot be had any more: nothing is drawn in space then, and no pose can be followed.
     pub halves: Option<&'a Connector>,
     /// Where it jams.
@@ -86,12 +87,19 @@ pub enum PageError {
 }
 
 impl Page<'_> {
+    /// What the page may do, for a header of whoever serves it: the same stands in the page.
+    pub fn policy(&self) -> String {
+        policy(&[VIEWER], &[STYLE], self.is_served)
+    }
+
     /// The page, HTML in UTF-8.
     ///
     /// # Errors
     /// See [`PageError`].
     pub fn html(&self, exec: &Exec) -> Result<String, PageError> {
         let chunks = grid::packed(self.acceptance, exec)?;
+        let planes =
+            self.planes.iter().map(|plane| grid::plane(plane, exec)).collect::<Result<Vec<_>, _>>()?;
         let data = json!({
             "report": told(self.report)?,
             "jams": self.jams.map(told).transpose()?,
@@ -101,34 +109,58 @@ impl Page<'_> {
             "served": self.is_served,
             "chunk_cells": chunks.cells,
             "chunks": chunks.packed.len(),
+            "planes": planes.iter().map(|plane| &plane.axes).collect::<Vec<_>>(),
         });
-        let policy = if self.is_served { format!("{POLICY}; connect-src 'self'") } else { POLICY.to_owned() };
-        let mut page = String::new();
-        let title = escaped(&self.report.design.name);
-        // Writing into a string fails nowhere.
-        let _ = write!(
-            page,
-            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
-             <meta name=\"generator\" content=\"catchment {}\">\n<title>{title} · catchment</title>\n<style>\n{STYLE}</style>\n</head>\n\
-             <body>\n<noscript>This page draws its result by a script that it holds itself; let it run.</noscript>\n",
-            self.report.catchment
-        );
-        element(&mut page, "application/json", "data", &inert(&serde_json::to_string(&data)?));
+        let mut page = Html::default()
+            .fixed(
+                "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+                 <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+                 <meta http-equiv=\"Content-Security-Policy\" content=\"",
+            )
+            .text(&self.policy())
+            .fixed("\">\n<meta name=\"generator\" content=\"catchment ")
+            .text(self.report.catchment.as_ref())
+            .fixed("\">\n<title>")
+            .text(&self.report.design.name)
+            .fixed(" · catchment</title>\n<style>")
+            .fixed(STYLE)
+            .fixed("</style>\n</head>\n<body>\n<noscript>This page needs its own script: allow scripts for it.</noscript>\n")
+            .fixed("<script type=\"application/json\" id=\"data\">")
+            .json(&data)?
+            .fixed(END);
         if let Some(Connector { fixed, moving, .. }) = self.halves {
-            element(&mut page, "text/plain", "fixed", &half(fixed)?);
-            element(&mut page, "text/plain", "moving", &half(moving)?);
-            element(&mut page, "text/plain", "motions", &STANDARD.encode(MOTIONS));
+            page = packed(page, "fixed", None, &deflated(&fixed.to_bytes())?);
+            page = packed(page, "moving", None, &deflated(&moving.to_bytes())?);
+            page = packed(page, "motions", None, MOTIONS);
         }
         for (number, chunk) in chunks.packed.iter().enumerate() {
-            element(&mut page, "text/plain", &format!("outcomes-{number}"), &STANDARD.encode(chunk));
+            page = packed(page, "outcomes", Some(number), chunk);
         }
-        element(&mut page, "text/plain", "worker", WORKER);
-        element(&mut page, "text/plain", "painter", PAINTER);
-        let _ = write!(page, "<script>\n{VIEWER}</script>\n</body>\n</html>\n");
-        Ok(page)
+        for (number, plane) in planes.iter().enumerate() {
+            page = packed(page, "plane", Some(number), &plane.packed);
+        }
+        for (id, script) in [("worker", WORKER), ("painter", PAINTER)] {
+            page = text_element(page, id, None).fixed(script).fixed(END);
+        }
+        Ok(page.fixed("<script>").fixed(VIEWER).fixed("</script>\n</body>\n</html>\n").into_string())
     }
+}
+
+const END: &str = "</script>\n";
+
+/// The beginning of an element that is text to a browser, and that the viewer finds by its name.
+fn text_element(page: Html, id: &'static str, number: Option<usize>) -> Html {
+    let page = page.fixed("<script type=\"text/plain\" id=\"").fixed(id);
+    match number {
+        Some(number) => page.fixed("-").number(number),
+        None => page,
+    }
+    .fixed("\">")
+}
+
+/// Bytes that the viewer finds by their name.
+fn packed(page: Html, id: &'static str, number: Option<usize>, bytes: &[u8]) -> Html {
+    text_element(page, id, number).bytes(bytes).fixed(END)
 }
 
 /// A report without what differs between equal runs, and without the design, which the run has.
@@ -139,25 +171,6 @@ fn told<T: serde::Serialize>(report: &T) -> Result<Value, serde_json::Error> {
         value["design"] = Value::Null;
     }
     Ok(value)
-}
-
-/// Something that the viewer finds by its name.
-fn element(page: &mut String, kind: &str, id: &str, content: &str) {
-    let _ = writeln!(page, "<script type=\"{kind}\" id=\"{id}\">{content}</script>");
-}
-
-/// JSON that cannot end the script that it stands in: in JSON `<` occurs in strings alone.
-fn inert(json: &str) -> String {
-    json.replace('<', "\\u003c")
-}
-
-/// Text for people, between tags.
-fn escaped(text: &str) -> String {
-    crate::terminal::printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-fn half(half: &Half) -> Result<String, PageError> {
-    Ok(STANDARD.encode(deflated(&half.to_bytes())?))
 }
 
 /// As browsers read it (`DecompressionStream("deflate")`).

@@ -2,14 +2,18 @@
 
 use super::Page;
 use crate::acceptance::Acceptance;
+use crate::advice::Advice;
 #[cfg(feature = "zarr")]
 use crate::design::{Design, hex};
-use crate::exec::{Cancelled, Exec};
+use crate::exec::{Cancelled, Exec, OutOfBudget};
+use crate::method::Method;
 use crate::problem::Problem;
 use crate::report::{JamsReport, Report, WindowReport};
 use crate::run::Answer;
 use crate::run::jams::{self, JamsError};
 use crate::run::window::{self, WindowError};
+use crate::study::planes;
+use serde_json::json;
 
 /// A page in parts.
 #[derive(Debug, Clone)]
@@ -18,6 +22,8 @@ pub struct Parts {
     pub report: Report,
     /// Its outcomes.
     pub acceptance: Acceptance,
+    /// Outcomes over planes through zero, once they are studied.
+    pub planes: Vec<Acceptance>,
     /// What was decided, where its halves can be had.
     pub problem: Option<Problem>,
     /// Where it jams.
@@ -31,6 +37,8 @@ pub struct Parts {
 /// What is studied beside a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Studies {
+    /// Planes through zero, of a grid of three or more errors.
+    pub planes: bool,
     /// Where it jams.
     pub jams: bool,
     /// The largest box that docks.
@@ -42,7 +50,7 @@ impl Parts {
     pub fn of(answer: &Answer) -> Self {
         let (report, acceptance) = (answer.report(), answer.acceptance.clone());
         let problem = Some(answer.problem.clone());
-        Self { report, acceptance, problem, jams: None, window: None, notes: Vec::new() }
+        Self { report, acceptance, planes: Vec::new(), problem, jams: None, window: None, notes: Vec::new() }
     }
 
     /// Of a result that was stored: its folder or its group. Halves that come from files are read again; where they cannot be, or are others by
@@ -56,13 +64,11 @@ impl Parts {
         let inner = path.join(RESULT);
         let (report, acceptance) =
             crate::report::zarr::read(if inner.is_dir() { &inner } else { path }, exec)?;
-        let mut parts =
-            Self { report, acceptance, problem: None, jams: None, window: None, notes: Vec::new() };
-        match again(&parts.report.design) {
-            Ok(problem) => parts.problem = Some(problem),
-            Err(why) => parts.notes.push(why),
-        }
-        Ok(parts)
+        let (problem, notes) = match again(&report.design) {
+            Ok(problem) => (Some(problem), Vec::new()),
+            Err(why) => (None, vec![why]),
+        };
+        Ok(Self { report, acceptance, planes: Vec::new(), problem, jams: None, window: None, notes })
     }
 
     /// Adds studies, with the friction of the run. One that finds nothing leaves a note.
@@ -72,6 +78,13 @@ impl Parts {
     pub fn study(&mut self, studies: Studies, exec: &Exec) -> Result<(), Cancelled> {
         let Some(problem) = &self.problem else { return Ok(()) };
         let (design, friction) = (problem.design(), self.report.friction());
+        if studies.planes {
+            match through_zero(problem, &self.report, &self.acceptance, exec) {
+                Ok(planes) => self.planes = planes,
+                Err(PlanesError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(why) => self.notes.push(format!("slices at zero show cells of the grid: {why}")),
+            }
+        }
         if studies.jams {
             match jams::run(problem, &jams::Settings { friction, ..jams::Settings::default() }, exec) {
                 Ok(found) => self.jams = Some(JamsReport::new(design, &found, Vec::new(), None)),
@@ -89,12 +102,13 @@ impl Parts {
         Ok(())
     }
 
-    /// The page.
+    /// The page, of a file.
     pub fn page(&self) -> Page<'_> {
-        let Self { report, acceptance, problem, jams, window, notes } = self;
+        let Self { report, acceptance, planes, problem, jams, window, notes } = self;
         Page {
             report,
             acceptance,
+            planes,
             halves: problem.as_ref().map(Problem::connector),
             jams: jams.as_ref(),
             window: window.as_ref(),
@@ -102,6 +116,33 @@ impl Parts {
             is_served: false,
         }
     }
+}
+
+/// Why a page has no planes through zero.
+#[derive(Debug, thiserror::Error)]
+enum PlanesError {
+    #[error("the settings of its method cannot be read ({0})")]
+    Method(#[from] serde_json::Error),
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// The planes that the pictures of the result show: by the motions of its method; none where the method's own cells are shown.
+fn through_zero(
+    problem: &Problem,
+    report: &Report,
+    acceptance: &Acceptance,
+    exec: &Exec,
+) -> Result<Vec<Acceptance>, PlanesError> {
+    let method = json!({ "name": report.method, "settings": report.settings });
+    let method: Method = serde_json::from_value(method)?;
+    let Some(grid) = acceptance.grid().filter(|_| !method.info().departs) else { return Ok(Vec::new()) };
+    let (pair, motions) = (problem.pair(), method.motions());
+    let needed = planes::bytes(pair, &motions, grid);
+    exec.ensure_fits("the slices at zero", needed, |_| vec![Advice::MoreMemory])?;
+    Ok(planes::through_zero(pair, &motions, grid, exec)?)
 }
 
 /// The problem of a stored design, if it still is the same; else what to say.

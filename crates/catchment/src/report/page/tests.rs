@@ -1,7 +1,10 @@
 use super::*;
+use crate::connector::Half;
 use crate::pose::Dof;
 use crate::problem::Problem;
 use crate::report::schema::testing::{blob, design};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 
 fn page(name: &str) -> String {
     let mut design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
@@ -15,6 +18,7 @@ fn page(name: &str) -> String {
     let page = Page {
         report: &report,
         acceptance: &acceptance,
+        planes: &[],
         halves,
         jams: None,
         window: None,
@@ -50,13 +54,27 @@ fn no_name_ends_the_script_that_it_stands_in() {
     let page = page(hostile);
     let data: Value = serde_json::from_str(between(&page, "data")).unwrap();
     assert_eq!(data["report"]["design"]["name"], hostile);
-    // JSON escapes control characters, and the title leaves them out.
+    // JSON escapes control characters, and the title replaces them.
     for raw in ["<script>alert", "<!-- & ", "\u{1b}"] {
         assert!(!page.contains(raw), "{raw:?}");
     }
     assert!(page.contains("&lt;/script&gt;"));
     // As many scripts end as begin.
     assert_eq!(page.matches("<script").count(), page.matches("</script>").count());
+}
+
+/// The hash in the policy is that of the text which the browser finds: from tag to tag.
+#[test]
+fn the_policy_names_the_scripts_and_styles_that_stand_in_the_page() {
+    let page = page("a page");
+    let script = page.rsplit_once("<script>").unwrap().1.split_once("</script>").unwrap().0;
+    let style = page.split_once("<style>").unwrap().1.split_once("</style>").unwrap().0;
+    let policy = policy(&[script], &[style], false).replace('\'', "&#39;");
+    assert!(page.contains(&format!("http-equiv=\"Content-Security-Policy\" content=\"{policy}\"")));
+    assert!(!page.contains("unsafe-inline"));
+    // No style and no handler stands in an attribute, which a policy of hashes forbids.
+    let head = page.split_once("id=\"data\"").unwrap().0;
+    assert!(!head.contains(" style=") && !head.contains(" on"));
 }
 
 #[test]
