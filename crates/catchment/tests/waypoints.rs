@@ -82,6 +82,8 @@ fn depth(a: &Surface, b: &Surface) -> f64 {
 
 /// Two halves of strips between the same two planes y = ±`wide`: prisms under and over a broken line.
 struct Extruded {
+    /// The strips of the fixed half, as drawn.
+    strips: Vec<Vec<[f64; 3]>>,
     /// Convex pieces of the fixed half, and of the moving half as seen from the COR.
     pieces: [Vec<Surface>; 2],
     pair: Pair,
@@ -112,12 +114,13 @@ fn extruded(heights: &[f64], play: &[f64], wide: f64, alignment: &Alignment) -> 
         };
         halves[side].iter().map(convex).collect()
     });
-    let [fixed, moving] = halves.map(HalfSpec::Pieces);
+    let [strips, facing] = halves;
+    let [fixed, moving] = [strips.clone(), facing].map(HalfSpec::Pieces);
     let connector = ConnectorSpec::Own(OwnSpec::new(FACE, fixed, moving));
     let design =
         Design { name: String::new(), connector, width: 1.0, unit: None, alignment: alignment.clone() };
     let pair = Pair::new(&Connector::build(&design).unwrap(), alignment);
-    Extruded { pieces, pair }
+    Extruded { strips, pieces, pair }
 }
 
 fn alignment(free: &[Dof], cor: f64) -> Alignment {
@@ -245,6 +248,39 @@ fn no_design_passes_through_itself() {
                 });
                 assert_eq!(shared, None, "{}: {error:?}, {pose:?}, {cor}", file.display());
             }
+        }
+    }
+}
+
+/// A tip with a flat lands on a rim that is level: as soon as both lie flush nothing leads on, and it jams there.
+#[test]
+fn a_tip_that_lands_flat_stays_where_it_lies() {
+    // A groove between x = ±¼ in a level rim at z = 0.3; the tip's flat, 0.2 D wide, lies on the rim beside it.
+    let all = alignment(&Dof::ALL, -0.3);
+    let rim = extruded(&[0.3, 0.3, 0.05, 0.3, 0.3], &[0.0, 0.0, 0.0, 0.0, 0.0], 0.4, &all);
+    let tip = |z: f64, x: f64, y: f64| [[-x, -y, z], [x, -y, z], [-x, y, z], [x, y, z]];
+    let pieces = vec![[tip(0.25, 0.1, 0.1), tip(0.0, 0.3, 0.3)].concat()];
+    let fixed = HalfSpec::Pieces(rim.strips.clone());
+    let connector = ConnectorSpec::Own(OwnSpec::new(FACE, fixed, HalfSpec::Pieces(pieces)));
+    let design = Design { name: String::new(), connector, width: 1.0, unit: None, alignment: all.clone() };
+    let pair = Pair::new(&Connector::build(&design).unwrap(), &all);
+    for k in 0..40 {
+        let part = |step: f64| (f64::from(k) * step).fract() - 0.5;
+        let error = PoseError {
+            x: 0.4 + 0.02 * part(0.83),
+            y: 0.1 * part(0.69),
+            roll: 0.2 * part(0.58),
+            pitch: 0.2 * part(0.48),
+            yaw: 0.5 * part(0.4),
+        };
+        let path = trace(&pair, &error, &Settings::default());
+        assert_eq!(path.outcome, Outcome::Jammed, "{error:?}");
+        let last = path.waypoints.last().unwrap();
+        let flush = path.waypoints.iter().filter(|w| w.height - last.height < 1e-6);
+        // Until both lie flush a tilt of 10⁻⁵ leads on, over less than 10⁻⁴ D; before, it had led on over a whole step.
+        for w in flush {
+            let drift = (w.error.x - last.error.x).hypot(w.error.y - last.error.y);
+            assert!(drift < 1e-4, "{error:?}: {drift}");
         }
     }
 }

@@ -28,14 +28,14 @@ pub(super) struct Pace {
 }
 
 /// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
-const MAX_REACH: f64 = 1e5;
+const MAX_REACH: f64 = 1e7;
 /// The same with friction, whose forces are found less exactly: rest is a slope below 10⁻⁷ beyond what friction holds.
 const MAX_REACH_OF_FRICTION: f64 = 1e4;
 /// From this reach on gaps count that a plain push closes: the turn by which they close, at least gap/ρ, changes slopes by as much, and the reach may
 /// make of that no more than the share `SETTLED` of a step. Half a step's slope is 1/reach.
 const HARD: f64 = 16.0;
 const SETTLED: f64 = 1e-3;
-/// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻⁸, which is what gaps known to 10⁻⁹ D make of a contact ρ away.
+/// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
 const REST: f64 = 1e-3;
 /// Steps are halved down to this share of the chosen one.
 const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
@@ -213,7 +213,7 @@ impl Motion<'_> {
             *reach = (*reach * (step / found.1).clamp(1.0 / 16.0, 0.5)).max(1.0);
             found = solve(*reach);
         }
-        if *reach > HARD {
+        if *reach > HARD && settings.friction == 0.0 {
             // Gaps that a plain push closes already turn the half as they close: by which slope it goes on is known afterwards.
             let first = solve(1.0);
             let most = (SETTLED * rotation_length / first.2).max(1.0);
