@@ -34,9 +34,9 @@ pub fn line(text: &mut String, content: &str) {
     text.push('\n');
 }
 
-/// A line that starts with a name.
+/// A line that starts with a name; a space stands between the two, however long the name is.
 pub fn row(text: &mut String, name: &str, value: &str) {
-    line(text, &format!("  {name:<width$}{value}", width = NAMES - 2));
+    line(text, &format!("  {name:<width$} {value}", width = NAMES - 3));
 }
 
 /// Breaks `content` between words; later lines are indented by the width of `first`.
@@ -160,6 +160,19 @@ mod tests {
         assert_eq!(with_error(31.42, [30.0, 32.0]), "31.4 ± 1.5");
         assert_eq!(with_error(2.0, [1.5, 2.1]), "2.00 ± 0.50");
         assert_eq!(with_error(0.0, [0.0, 0.000_961]), "0.00000 ± 0.00097");
+    }
+
+    #[test]
+    fn a_long_name_does_not_touch_its_value() {
+        let mut text = String::new();
+        for name in ["free errors", "largest square", "slope threshold", "remote centre of rotation"] {
+            row(&mut text, name, "0.5");
+        }
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "  free errors    0.5");
+        assert_eq!(lines[1], "  largest square 0.5");
+        assert_eq!(lines[2], "  slope threshold 0.5");
+        assert_eq!(lines[3], "  remote centre of rotation 0.5");
     }
 
     #[test]
