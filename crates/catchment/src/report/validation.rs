@@ -38,7 +38,7 @@ pub struct ValidationBody {
     pub early: OneSidedReport,
     /// Docked where it was not.
     pub late: OneSidedReport,
-    /// Every trial that fared otherwise than predicted, the farthest from the border first.
+    /// Every trial whose outcome contradicts the prediction, the farthest from the border first; none within one accuracy of it.
     pub disagreements: Vec<TriedReport>,
     /// Where the border was seen.
     pub lines: Vec<LineReport>,
@@ -111,7 +111,7 @@ pub struct TriedReport {
     pub trial: u64,
     /// What was seen; null where it was not made.
     pub observed: Option<Observed>,
-    /// Whether it fared otherwise than predicted.
+    /// Whether the outcome contradicts the prediction; never within one accuracy of the border.
     pub disagrees: bool,
     /// Its pose, and what was to be expected there.
     #[serde(flatten)]
@@ -291,5 +291,49 @@ impl ValidationReport {
             records.push(record);
         }
         records
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exec::Exec;
+    use crate::poses::Tried;
+    use crate::problem::Problem;
+    use crate::study::validate::run;
+    use std::path::Path;
+
+    /// A V-Face that slides along x alone: the border is at D/2. Trials within one accuracy of it are counted apart, and stand
+    /// neither in the list of disagreements nor in its column.
+    #[test]
+    fn disagreements_leave_out_trials_within_one_accuracy_of_the_border() {
+        let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
+        let problem = Problem::of(crate::design::read(text, Path::new("")).unwrap().design).unwrap();
+        let seen = [
+            (0.1, Observed::Aligned),
+            (0.49, Observed::Missed),
+            (0.499_999, Observed::Jammed),
+            (0.51, Observed::Aligned),
+            (0.3, Observed::Jammed),
+        ];
+        let tried = |(k, (x, observed)): (usize, &(f64, Observed))| Tried {
+            trial: k as u64 + 1,
+            line: 1,
+            error: PoseError { x: *x, ..PoseError::default() },
+            observed: Some(*observed),
+            predicted: None,
+        };
+        let tried: Vec<Tried> = seen.iter().enumerate().map(tried).collect();
+        let settings = Settings::new(PoseError { x: 0.02, ..PoseError::default() });
+        let found = run(&problem, &tried, &settings, &Exec::new()).unwrap();
+        let report = ValidationReport::new(problem.design(), &found, OffsetsAt::Face, Vec::new(), None);
+        let listed: Vec<u64> = report.disagreements.iter().map(|trial| trial.trial).collect();
+        assert_eq!(listed, [5]);
+        let records = report.records();
+        let column = |name: &str| records[0].iter().position(|head| head == name).unwrap();
+        let both = [column("either"), column("disagrees")];
+        let shown: Vec<[&str; 2]> = records[1..].iter().map(|row| both.map(|k| row[k].as_str())).collect();
+        assert_eq!(shown[1..4], [["true", "false"]; 3]);
+        assert!(!report.table().contains("0.00 accuracies"), "{}", report.table());
     }
 }

@@ -78,7 +78,7 @@ pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
             Some(Observed::AlignedElsewhere) if report.design.alignment.symmetry > 1 => Shape::Docks,
             Some(_) => Shape::Fails,
         },
-        wrong: trial.disagrees && !trial.point.either,
+        wrong: trial.disagrees,
     };
     let marks: Vec<Mark> = report.trials.iter().map(of).collect();
     let agreement = &report.agreement;
@@ -294,8 +294,7 @@ mod tests {
         let picture = validation(&report, &slices);
         look("validation", &picture);
         assert!(picture.svg().contains("inconsistent; ") && picture.svg().contains("not made"));
-        // Every disagreement that does not go either way is ringed once, and once more in the key.
-        let ringed = report.disagreements.iter().filter(|trial| !trial.point.either).count();
-        assert_eq!(picture.svg().matches(WRONG).count(), ringed + 1);
+        // Every disagreement is ringed once, and once more in the key.
+        assert_eq!(picture.svg().matches(WRONG).count(), report.disagreements.len() + 1);
     }
 }

@@ -105,9 +105,12 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Whether it fared otherwise than predicted; not where either was undecided or it was not made.
+    /// Whether the outcome contradicts the prediction. Never where the prediction was undecided, the trial was not made, or the
+    /// pose lies within one accuracy of the border: there the robot's own error decides.
     pub fn disagrees(&self) -> bool {
-        self.foretold.predicted.is_some() && self.seen.is_some_and(|seen| seen != self.foretold.docks())
+        self.foretold.predicted.is_some()
+            && !self.foretold.is_either()
+            && self.seen.is_some_and(|seen| seen != self.foretold.docks())
     }
 }
 

@@ -206,6 +206,16 @@ fn counts_margins_and_lines_are_those_of_the_table() {
     assert_eq!((found.early.trials, found.late.trials), (4, 2));
 }
 
+/// Within one accuracy of the border, and on the border itself, no outcome contradicts the prediction.
+#[test]
+fn a_trial_within_one_accuracy_of_the_border_is_no_disagreement() {
+    let rows = [(0.1, DOCKED), (0.49, MISSED), (0.499_999, JAMMED), (0.51, DOCKED), (0.3, JAMMED)];
+    let found = judged(&rows);
+    let disagrees: Vec<bool> = found.trials.iter().map(Judged::disagrees).collect();
+    assert_eq!(disagrees, [false, false, false, false, true]);
+    assert!(found.trials[2].foretold.margin() < 1e-3);
+}
+
 #[test]
 fn one_failure_far_inside_is_enough_and_one_near_the_limit_is_not() {
     let inside = |seen| {
