@@ -26,6 +26,30 @@ fn closed_forms_come_out_of_the_program() {
     assert_eq!(world["acceptance"]["bounds"], serde_json::json!([[-0.5, -0.5], [2.0, 2.0]]));
 }
 
+/// Two discs of 50 mm: they overlap most at one place, where no grid of places has a point, and they meet up to 100 mm.
+#[test]
+fn the_largest_overlap_and_the_bounds_of_two_discs_are_bounds() {
+    let home = home();
+    fs::write(home.path().join("disc.toml"), "[sweep]\nshape = \"disc\"\nradius = 50\n").unwrap();
+    let found = json(home.path(), &["compose", "disc.toml", "disc.toml", "--json"]);
+    let number = |pointer: &str| found.pointer(pointer).and_then(serde_json::Value::as_f64).unwrap();
+    let exact = std::f64::consts::PI * 2500.0;
+    let [least, most] = ["/overlap/largest", "/overlap/at_most"].map(number);
+    assert!(least <= exact && exact <= most && most - least < 2e-3 * exact, "{least} {exact} {most}");
+    for (axis, corner) in [("x", 0), ("y", 1)] {
+        for (end, sign) in [(0, -1.0), (1, 1.0)] {
+            let at = |name: &str| sign * number(&format!("/acceptance/{name}/{end}/{corner}"));
+            let (inner, outer) = (at("bounds"), at("bounds_outer"));
+            assert!(
+                inner <= 100.0 && outer >= 100.0 - 1e-6 && outer - inner < 0.05,
+                "{axis}: {inner} {outer}"
+            );
+        }
+    }
+    let told = run(home.path(), &["compose", "disc.toml", "disc.toml"]);
+    assert!(told.contains("overlap        largest 78") && !told.contains("overlap        at most"), "{told}");
+}
+
 #[test]
 fn hook_and_loop_are_told_drawn_and_read_again() {
     let home = home();

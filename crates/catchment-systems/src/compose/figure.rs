@@ -131,8 +131,8 @@ pub fn figure(found: &Composition) -> Result<Picture, FigureError> {
 }
 
 fn significant_area(found: &Composition, unit: &str) -> String {
-    let largest = found.map.values.iter().copied().fold(0.0, f64::max);
-    format!("{} {unit}²", catchment::report::text::significant(largest))
+    let [least, most] = found.peak.map_or([0.0; 2], |peak| [peak.value, peak.at_most]);
+    format!("{} {unit}²", bracket([least, most]))
 }
 
 /// The third panel.

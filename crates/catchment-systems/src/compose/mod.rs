@@ -26,7 +26,7 @@
 //! **Bodies.** Where the robots' bodies overlap there is no docking: the interior of A's body ⊕ (−B's body) is taken away.
 //!
 //! **Quality.** The area of A ∩ (B' + d) is the convolution proper: 0 on the border of the region, and its integral over all d
-//! is area(A)·area(B). See [`Overlap`].
+//! is area(A)·area(B). See [`Overlap`]; its largest value lies between two bounds ([`peak`]).
 //!
 //! # Units
 //!
@@ -45,6 +45,8 @@
 pub mod brute;
 mod figure;
 pub mod measure;
+mod overlap;
+mod peak;
 pub mod read;
 mod region;
 mod report;
@@ -54,9 +56,11 @@ pub mod sweep;
 mod tests;
 
 pub use figure::figure;
+pub use overlap::Overlap;
+pub use peak::{Peak, peak};
 pub use region::{REACH, Region, UNIT};
 pub use report::{ComposeBody, ComposeReport, outline_records, outline_svg, report};
-pub use sum::{Overlap, SumError, minkowski_sum};
+pub use sum::{SumError, minkowski_sum};
 
 use catchment::exec::{Cancelled, Exec};
 use glam::DVec2;
@@ -138,8 +142,10 @@ pub struct Composition {
     pub reach: Option<Reach>,
     /// Side of the largest square about d = 0; none where that is outside.
     pub square_about_zero: Option<f64>,
-    /// Overlap of the outer regions, at the heading shown; without the bodies.
+    /// Overlap of the outer regions, at the heading shown; bodies take nothing from it.
     pub map: Map,
+    /// The largest overlap, at the heading shown; bodies take nothing from it. None where a region is empty.
+    pub peak: Option<Peak>,
 }
 
 /// Why there is no answer.
@@ -225,7 +231,9 @@ pub fn compose(
         square.and_then(|square| reach(inner, square.center)),
         square_about(inner, DVec2::ZERO).map(|h| 2.0 * h),
     );
-    let map = map(&halves, settings, slices[shown].heading, exec)?;
+    let stands = added(&halves[1].region, settings.frames, slices[shown].heading).map(Region::reflected);
+    let map = map(&halves[0].region.outer, &stands.outer, settings, exec)?;
+    let peak = peak(&halves[0].region, &stands, exec)?;
     Ok(Composition {
         halves,
         bodies,
@@ -237,22 +245,21 @@ pub fn compose(
         reach,
         square_about_zero,
         map,
+        peak,
     })
 }
 
-/// The overlap of the outer regions over a grid around all places where they meet.
-fn map(halves: &[Read; 2], settings: &Settings, heading: f64, exec: &Exec) -> Result<Map, ComposeError> {
-    let second = added(&halves[1].region, settings.frames, heading).outer;
-    let (first, stands) = (&halves[0].region.outer, second.reflected());
+/// The overlap over a grid around all places where the first region meets the second as it stands.
+fn map(first: &Region, stands: &Region, settings: &Settings, exec: &Exec) -> Result<Map, ComposeError> {
     let empty = Map { low: DVec2::ZERO, cell: 0.0, cells: [0; 2], values: Vec::new() };
-    let (Some([la, ha]), Some([lb, hb])) = (first.bounds(), second.bounds()) else { return Ok(empty) };
-    let (low, high) = (la + lb, ha + hb);
+    let (Some([la, ha]), Some([lb, hb])) = (first.bounds(), stands.bounds()) else { return Ok(empty) };
+    let (low, high) = (la - hb, ha - lb);
     let cell = (high - low).max_element() / settings.map_cells as f64;
     if cell <= 0.0 {
         return Ok(empty);
     }
     let cells = [high.x - low.x, high.y - low.y].map(|extent| ((extent / cell).ceil() as usize).max(1));
-    let overlap = Overlap::new(first, &stands);
+    let overlap = Overlap::new(first, stands);
     let row = |j: usize| -> Result<Vec<f64>, Cancelled> {
         exec.check()?;
         let at = |i: usize| low + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * cell;

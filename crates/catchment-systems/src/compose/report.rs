@@ -60,8 +60,10 @@ pub struct HalfReport {
 pub struct RegionReport {
     /// Area, within and around.
     pub area: [f64; 2],
-    /// Lowest and highest corner of the outer region.
+    /// Lowest and highest corner of the inner region: the region reaches at least so far.
     pub bounds: Option<[[f64; 2]; 2]>,
+    /// Lowest and highest corner of the outer region: nothing of the region lies beyond.
+    pub bounds_outer: Option<[[f64; 2]; 2]>,
     /// Connected polygons of the inner region.
     pub parts: usize,
     /// Holes of the inner region.
@@ -88,12 +90,14 @@ pub struct SliceReport {
     pub area: [f64; 2],
 }
 
-/// The overlap as a grid.
+/// The overlap: its largest value, and a grid of it. Bodies that are kept apart take nothing from it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OverlapReport {
-    /// Largest value on the grid.
+    /// Largest value that was found, of the inner regions.
     pub largest: f64,
-    /// Where.
+    /// No place has a larger overlap.
+    pub at_most: f64,
+    /// Where the largest was found.
     pub at: [f64; 2],
     /// Lower left corner of the grid.
     pub low: [f64; 2],
@@ -108,9 +112,11 @@ impl Body for ComposeBody {
 }
 
 fn region(bracket: &super::sweep::Bracket) -> RegionReport {
+    let ends = |region: &super::Region| region.bounds().map(|ends| ends.map(|p| p.to_array()));
     RegionReport {
         area: bracket.area(),
-        bounds: bracket.outer.bounds().map(|ends| ends.map(|p| p.to_array())),
+        bounds: ends(&bracket.inner),
+        bounds_outer: ends(&bracket.outer),
         parts: bracket.inner.parts(),
         holes: bracket.inner.holes(),
     }
@@ -123,12 +129,6 @@ fn half(read: &Read) -> HalfReport {
 impl ComposeBody {
     fn new(found: &Composition) -> Self {
         let map = &found.map;
-        let best =
-            (0..map.values.len()).max_by(|a, b| map.values[*a].total_cmp(&map.values[*b]).then(b.cmp(a)));
-        let at = |k: usize| {
-            let [i, j] = [k % map.cells[0], k / map.cells[0]].map(|v| v as f64 + 0.5);
-            (map.low + DVec2::new(i, j) * map.cell).to_array()
-        };
         let slice = &found.slices[found.shown];
         Self {
             unit: found.halves[0].measure.symbol(),
@@ -151,8 +151,9 @@ impl ComposeBody {
                 .collect(),
             volume: found.volume,
             overlap: OverlapReport {
-                largest: best.map_or(0.0, |k| map.values[k]),
-                at: best.map_or([0.0; 2], at),
+                largest: found.peak.map_or(0.0, |peak| peak.value),
+                at_most: found.peak.map_or(0.0, |peak| peak.at_most),
+                at: found.peak.map_or([0.0; 2], |peak| peak.at.to_array()),
                 low: map.low.to_array(),
                 cell: map.cell,
                 rows: map.values.chunks(map.cells[0].max(1)).map(<[f64]>::to_vec).collect(),
@@ -215,9 +216,15 @@ impl ComposeBody {
         let degrees = |angle: f64| format!("{}°", significant(angle.to_degrees()));
         line(text, &format!("  at heading {}", degrees(self.heading_rad)));
         row(text, "acceptance", &shape(&self.acceptance));
-        if let Some([[x0, y0], [x1, y1]]) = self.acceptance.bounds {
+        let bounds = |[[x0, y0], [x1, y1]]: [[f64; 2]; 2]| {
             let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(significant);
-            row(text, "bounds", &format!("x {x0} … {x1}, y {y0} … {y1} {unit}"));
+            format!("x {x0} … {x1}, y {y0} … {y1} {unit}")
+        };
+        if let Some(inner) = self.acceptance.bounds.map(bounds) {
+            row(text, "bounds", &inner);
+            if let Some(outer) = self.acceptance.bounds_outer.map(bounds).filter(|outer| *outer != inner) {
+                row(text, "no farther than", &outer);
+            }
         }
         match (self.largest_square, self.tolerance) {
             (Some(square), Some(reach)) => {
@@ -239,7 +246,10 @@ impl ComposeBody {
         row(
             text,
             "overlap",
-            &format!("at most {} {unit}², at x {x}, y {y}", significant(self.overlap.largest)),
+            &format!(
+                "largest {} {unit}², at x {x}, y {y}",
+                bracket([self.overlap.largest, self.overlap.at_most])
+            ),
         );
         if let Some(volume) = self.volume {
             let [from, to] =

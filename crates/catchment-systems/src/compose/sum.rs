@@ -8,10 +8,8 @@
 //! exactly on the lattice; the union of all of them is the answer (`i_triangle`, which is `i_overlay`'s own room for
 //! this). [`super::brute`] is an independent judge that cuts nothing.
 
-use super::region::{Node, Region, place, turn};
-use catchment::method::zraa::{area, clip};
+use super::region::{Node, Region, turn};
 use catchment::polytope::planar_hull;
-use glam::DVec2;
 use i_triangle::i_overlay::core::fill_rule::FillRule;
 use i_triangle::int::minkowski::{IntMinkowskiOperand, IntMinkowskiSolver};
 
@@ -97,54 +95,4 @@ pub(super) fn convex_sum(a: &[Node], b: &[Node]) -> Vec<Node> {
     points.sort_unstable_by_key(|p| (p.x, p.y));
     points.dedup();
     planar_hull(&points, |a, b, c| turn(a, b, c) > 0)
-}
-
-/// The overlap of the two regions when the second is moved by d: area of A ∩ (B + d), from their convex polygons.
-///
-/// It is the convolution of the indicator functions of A and −B: 0 outside the Minkowski sum of the two, and its integral over
-/// all d is area(A)·area(B).
-#[derive(Debug, Clone)]
-pub struct Overlap {
-    first: Vec<Vec<DVec2>>,
-    second: Vec<Vec<DVec2>>,
-}
-
-impl Overlap {
-    /// Of two regions.
-    pub fn new(a: &Region, b: &Region) -> Self {
-        let places = |region: &Region| -> Vec<Vec<DVec2>> {
-            convex_parts(region).iter().map(|part| part.iter().map(|p| place(*p)).collect()).collect()
-        };
-        Self { first: places(a), second: places(b) }
-    }
-
-    /// Area of A ∩ (B + d).
-    pub fn at(&self, d: DVec2) -> f64 {
-        let mut area = 0.0;
-        for b in &self.second {
-            let moved: Vec<DVec2> = b.iter().map(|p| *p + d).collect();
-            area += self.first.iter().map(|a| common(a, &moved)).sum::<f64>();
-        }
-        area
-    }
-}
-
-/// Area of the intersection of two convex polygons, both counter-clockwise.
-fn common(a: &[DVec2], b: &[DVec2]) -> f64 {
-    let bounds = |p: &[DVec2]| {
-        p.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)))
-    };
-    let ((la, ha), (lb, hb)) = (bounds(a), bounds(b));
-    if la.cmpgt(hb).any() || lb.cmpgt(ha).any() {
-        return 0.0;
-    }
-    let mut rest = a.to_vec();
-    for (k, &from) in b.iter().enumerate() {
-        let along = b[(k + 1) % b.len()] - from;
-        rest = clip(&rest, |p| along.perp_dot(p - from));
-        if rest.len() < 3 {
-            return 0.0;
-        }
-    }
-    area(&rest)
 }

@@ -1,0 +1,200 @@
+//! The largest overlap of two regions, between two bounds.
+//!
+//! Branch and bound over places of the second region: the overlap at the middle of a square cell bounds the overlap in all of it
+//! ([`super::overlap`]), and so do the areas of the two regions. The cell with the highest bound is divided until that bound is no more than
+//! [`SLACK`] above the largest value, or the work is spent. Either way no place has a larger overlap than the bound that is returned.
+//!
+//! Of regions known between an inner and an outer polygon the bound is that of the outer pair, and the value that of the inner pair at the
+//! place found, so the true maximum lies between the two. Without area in one of them both are 0.
+//!
+//! Not promised: that the place is the only one. Where one region fits into the other with room to spare, every such place has the
+//! same overlap, and the first one found is returned.
+
+use super::overlap::Overlap;
+use super::sweep::Bracket;
+use catchment::exec::{Cancelled, Exec};
+use glam::DVec2;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// The search ends where the bound is above the largest value by no more than this share of it.
+const SLACK: f64 = 1e-4;
+/// Most places that are looked at.
+const MOST_PLACES: usize = 20_000;
+/// Most pairs of convex polygons that are looked at, over all places.
+const MOST_PAIRS: usize = 40_000_000;
+
+/// The largest overlap, in mm² or D².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Peak {
+    /// Place of the second region.
+    pub at: DVec2,
+    /// Overlap of the inner regions there: the largest overlap is at least this.
+    pub value: f64,
+    /// No place has a larger overlap.
+    pub at_most: f64,
+}
+
+/// A square of places, the one with the highest bound first; of equal bounds the one that was made last, which is the smallest.
+struct Cell {
+    center: DVec2,
+    half: f64,
+    bound: f64,
+    number: usize,
+}
+
+impl PartialEq for Cell {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Cell {}
+impl PartialOrd for Cell {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Cell {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.bound.total_cmp(&other.bound).then(self.number.cmp(&other.number))
+    }
+}
+
+/// The largest area of A ∩ (B + d) over all d; none where the regions have no place in common.
+///
+/// # Errors
+/// The run was stopped.
+pub fn peak(a: &Bracket, b: &Bracket, exec: &Exec) -> Result<Option<Peak>, Cancelled> {
+    let (Some([la, ha]), Some([lb, hb])) = (a.outer.bounds(), b.outer.bounds()) else { return Ok(None) };
+    let overlap = Overlap::new(&a.outer, &b.outer);
+    let most = a.outer.area().min(b.outer.area());
+    // Beyond these places the rectangles around the two do not meet.
+    let (low, high) = (la - hb, ha - lb);
+    let mut best = Peak { at: 0.5 * (low + high), value: 0.0, at_most: most };
+    let mut open = BinaryHeap::new();
+    let mut looked = 0;
+    let limit = (MOST_PAIRS / overlap.pairs().max(1)).clamp(1, MOST_PLACES);
+    let mut look = |best: &mut Peak, open: &mut BinaryHeap<Cell>, center: DVec2, half: f64| {
+        let found = overlap.around(center, half);
+        if found.value > best.value {
+            (best.at, best.value) = (center, found.value);
+        }
+        looked += 1;
+        open.push(Cell { center, half, bound: most.min(found.at_most), number: looked });
+        looked
+    };
+    let middle = best.at;
+    look(&mut best, &mut open, middle, 0.5 * (high - low).max_element());
+    while let Some(cell) = open.pop() {
+        exec.check()?;
+        best.at_most = cell.bound.max(best.value);
+        if cell.bound <= best.value * (1.0 + SLACK) {
+            break;
+        }
+        let half = 0.5 * cell.half;
+        let mut done = 0;
+        for (x, y) in [(-half, -half), (half, -half), (-half, half), (half, half)] {
+            done = look(&mut best, &mut open, cell.center + DVec2::new(x, y), half);
+        }
+        if done >= limit {
+            let rest = open.peek().map_or(0.0, |cell| cell.bound);
+            best.at_most = rest.max(best.value);
+            break;
+        }
+    }
+    best.value = Overlap::new(&a.inner, &b.inner).at(best.at);
+    Ok(Some(best))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::region::Region;
+    use super::super::sweep::Shape;
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    fn of(a: &Shape, b: &Shape) -> Peak {
+        let [a, b] = [a, b].map(|shape| shape.bracket(DVec2::ZERO, 0.01));
+        peak(&a, &b, &Exec::new()).unwrap().unwrap()
+    }
+
+    /// Discs of one size overlap wholly at one place only, which no grid of places hits.
+    #[test]
+    fn two_discs_overlap_by_the_area_of_the_smaller() {
+        for (first, second) in [(30.0, 30.0), (50.0, 30.0), (10.0, 70.0)] {
+            let found = of(&Shape::Disc { radius: first }, &Shape::Disc { radius: second });
+            let smaller: f64 = f64::min(first, second);
+            let exact = PI * smaller * smaller;
+            assert!(found.value <= exact && exact <= found.at_most, "{found:?} {exact}");
+            // Chords and tangents, both 0.01 mm from a circle of 2πr, and the slack of the search.
+            assert!(found.at_most - found.value < exact * SLACK + 0.04 * PI * smaller, "{found:?} {exact}");
+            assert!(found.at.length() < (first - second).abs() + 0.1, "{found:?}");
+        }
+    }
+
+    /// Bars across and along each other, which overlap alike at many places, and an L with a square, at one.
+    #[test]
+    fn bars_and_corners_overlap_as_drawn() {
+        let bar = |width, height| Shape::Box { width, height };
+        let crossed = of(&bar(10.0, 2.0), &bar(1.0, 30.0));
+        assert!(crossed.value == 2.0 && (crossed.at_most - 2.0).abs() < 1e-3, "{crossed:?}");
+        let along = of(&bar(10.0, 2.0), &bar(20.3, 2.0));
+        assert!(
+            along.value <= 20.0 && 20.0 <= along.at_most && along.at_most - along.value < 0.01,
+            "{along:?}"
+        );
+        let corner = [(0.0, 0.0), (6.0, 0.0), (6.0, 2.0), (2.0, 2.0), (2.0, 6.0), (0.0, 6.0)];
+        let corner = Shape::Polygon(corner.map(|(x, y)| DVec2::new(x, y)).to_vec());
+        // A square of 3 in the corner covers all of it but a square of 1.
+        let found = of(&corner, &bar(3.0, 3.0));
+        assert!(
+            found.value <= 8.0 && 8.0 <= found.at_most && found.at_most - found.value < 0.01,
+            "{found:?}"
+        );
+        assert!(found.at.distance(DVec2::splat(1.5)) < 0.01, "{found:?}");
+    }
+
+    #[test]
+    fn what_has_no_area_overlaps_by_nothing() {
+        let line = Bracket::exact(Region::segment(DVec2::ZERO, DVec2::X));
+        let disc = Shape::Disc { radius: 3.0 }.bracket(DVec2::ZERO, 0.01);
+        let found = peak(&line, &disc, &Exec::new()).unwrap().unwrap();
+        assert_eq!((found.value, found.at_most), (0.0, 0.0));
+        let nothing = Bracket::exact(Region::default());
+        assert_eq!(peak(&nothing, &disc, &Exec::new()), Ok(None));
+        let stopped = Exec::new();
+        stopped.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(peak(&disc, &disc, &stopped).is_err());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        /// No place that chance finds has a larger overlap than the bound.
+        #[test]
+        fn no_place_is_above_the_bound(
+            a in proptest::collection::vec((-5.0f64..5.0, -5.0f64..5.0), 3..7),
+            b in proptest::collection::vec((-5.0f64..5.0, -5.0f64..5.0), 3..7),
+            places in proptest::collection::vec((-10.0f64..10.0, -10.0f64..10.0), 40),
+        ) {
+            let region = |corners: &[(f64, f64)]| {
+                Region::of_outlines(&[corners.iter().map(|(x, y)| DVec2::new(*x, *y)).collect()])
+            };
+            let (a, b) = (region(&a), region(&b));
+            let found = peak(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &Exec::new()).unwrap();
+            if let Some(found) = found {
+                let overlap = Overlap::new(&a, &b);
+                for pair in places.windows(2) {
+                    let [d, other] = [pair[0], pair[1]].map(|(x, y)| DVec2::new(x, y));
+                    let value = overlap.at(d);
+                    prop_assert!(value <= found.at_most * (1.0 + 1e-12) + 1e-12);
+                    // And none is above what another place says of its surroundings.
+                    let around = overlap.around(other, (d - other).abs().max_element());
+                    prop_assert!(value <= around.at_most + 1e-9, "{value} {around:?}");
+                }
+                prop_assert!(found.value <= found.at_most + 1e-12 && found.at_most - found.value < 1e-3 * found.at_most + 1e-9);
+            }
+        }
+    }
+}
