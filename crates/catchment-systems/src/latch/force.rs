@@ -123,6 +123,12 @@ impl Forces {
         }
     }
 
+    /// The prototype of a latch's overhang and neck, if one was measured.
+    pub fn prototype(&self, latch: &Latch) -> Option<&Measured> {
+        let near = |a: f64, b: f64| (a - b).abs() <= SLACK;
+        self.rows.iter().find(|row| near(row.overhang_mm, latch.overhang) && near(row.neck_mm, latch.neck))
+    }
+
     /// What breaks first, by o and t alone.
     pub fn mode(o: f64, t: f64) -> Mode {
         if t <= NECK_BELOW * o {

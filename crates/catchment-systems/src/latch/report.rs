@@ -69,11 +69,15 @@ pub struct OutlineReport {
     pub cutout_mm: [f64; 2],
 }
 
-/// A press in numbers.
+/// A press in numbers: springs and friction alone, which give less than measurements do.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PressReport {
     /// Largest force, in N.
     pub peak_n: f64,
+    /// The same as a share of the force to latch, which is fitted to measurements.
+    pub peak_share_of_latching: f64,
+    /// Force to latch that was measured on a prototype of this overhang and neck, in N; null where none was made.
+    pub measured_latching_n: Option<f64>,
     /// Where, in mm above the seat.
     pub peak_above_mm: f64,
     /// Where the halves touch first.
@@ -131,14 +135,16 @@ pub fn report(
         bonding_ratio: failure.force_n / latching.force_n,
         bonding_ratio_interval: [failure.force_n / high, failure.force_n / low],
         neck_strength_mpa: forces.neck_stress(),
-        latching,
-        failure,
         press: PressReport {
             peak_n: record.peak,
+            peak_share_of_latching: record.peak / latching.force_n,
+            measured_latching_n: forces.prototype(latch).map(|row| row.latching_force_n),
             peak_above_mm: record.peak_above,
             first_contact_mm: record.first_contact,
             dips: record.dips.clone(),
         },
+        latching,
+        failure,
         rules,
         files,
     };
@@ -249,6 +255,17 @@ impl LatchBody {
         );
         let peak = format!("at most {:.2} N, {:.2} mm above it", self.press.peak_n, self.press.peak_above_mm);
         wrapped(text, &" ".repeat(17), &peak);
+        if self.press.peak_share_of_latching < 1.0 {
+            let measured = self.press.measured_latching_n;
+            let measured = measured
+                .map_or_else(String::new, |force| format!("; the prototype of these sizes took {force} N"));
+            let less = format!(
+                "that is {:.2} of the {:.1} N to latch, which are fitted to measurements{measured}. Read the shape of \
+                 this record, not its height",
+                self.press.peak_share_of_latching, latching.force_n
+            );
+            wrapped(text, &" ".repeat(17), &less);
+        }
         for dip in &self.press.dips {
             let told = format!(
                 "layer {} snaps {:.2} mm beyond the seat: {:.2} → {:.2} N",
@@ -312,6 +329,24 @@ mod tests {
         let json: serde_json::Value = serde_json::from_str(&report.to_json().unwrap()).unwrap();
         assert_eq!((&json["kind"], &json["failure"]["mode"]), (&"latch".into(), &"neck".into()));
         assert!((json["bonding_ratio"].as_f64().unwrap() - 640.88 / 13.353).abs() < 0.01);
+    }
+
+    /// The record of a press comes from springs and friction alone, and stays below what was measured: the report says by how much.
+    #[test]
+    fn a_record_below_the_measured_force_says_so() {
+        let usual = report(&Latch::default());
+        let press = &usual.press;
+        assert_eq!(press.measured_latching_n, Some(16.36));
+        assert!((press.peak_share_of_latching - press.peak_n / usual.latching.force_n).abs() < 1e-12);
+        assert!(press.peak_share_of_latching < 0.6, "{press:?}");
+        let words = usual.table().split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            words.contains("0.59 of the 13.4 N to latch, which are fitted to measurements; the prototype of these sizes took 16.36 N"),
+            "{words}"
+        );
+        let other = report(&Latch { overhang: 4.0, ..Latch::default() });
+        assert_eq!(other.press.measured_latching_n, None);
+        assert!(other.table().contains("not its height") && !other.table().contains("prototype of"));
     }
 
     #[test]

@@ -52,7 +52,7 @@ impl Drawn<'_> {
         self.title(&mut svg);
         part::outline(&mut svg, Rect { x: LEFT, y: 70.0, w: 440.0, h: 560.0 }, self.latch, self.geometry);
         chart::draw(&mut svg, Rect { x: 560.0, y: 110.0, w: 330.0, h: 215.0 }, self.forces, Some(self.latch));
-        record::draw(&mut svg, Rect { x: 560.0, y: 430.0, w: 400.0, h: 180.0 }, self.record);
+        record::draw(&mut svg, Rect { x: 560.0, y: 430.0, w: 400.0, h: 180.0 }, self.record, self.fitted());
         part::sequence(&mut svg, Rect { x: LEFT, y: 690.0, w: 940.0, h: 320.0 }, self);
         Picture::of(svg)
     }
@@ -77,8 +77,13 @@ impl Drawn<'_> {
     pub fn press(&self) -> Picture {
         let mut svg = Svg::new(640.0, 380.0);
         self.title(&mut svg);
-        record::draw(&mut svg, Rect { x: 76.0, y: 100.0, w: 530.0, h: 220.0 }, self.record);
+        record::draw(&mut svg, Rect { x: 76.0, y: 100.0, w: 530.0, h: 220.0 }, self.record, self.fitted());
         Picture::of(svg)
+    }
+
+    /// The force to latch, fitted to measurements, in N.
+    fn fitted(&self) -> f64 {
+        self.forces.latching(self.latch, self.geometry).force_n
     }
 
     fn title(&self, svg: &mut Svg) {
@@ -115,5 +120,7 @@ mod tests {
             assert!(picture.png(0.5).unwrap().len() > 2000, "{name}");
         }
         assert!(drawn.overview().svg().contains("snapped") && drawn.overview().svg().contains("79.1"));
+        // The record lies below what was measured, and the picture shows how far.
+        assert!(drawn.press().svg().contains("fitted to measurements: 13.4 N"));
     }
 }

@@ -1,12 +1,12 @@
-//! The record of a press: force over the way, with the dips where hooks pass.
+//! The record of a press: force over the way, with the dips where hooks pass, below the force to latch that is fitted to measurements.
 
 use super::super::press::Record;
 use catchment::report::figure::draw::axis::{Frame, Scale};
 use catchment::report::figure::draw::colour::{CURVES, hex};
 use catchment::report::figure::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline};
 
-/// Draws the record into a rectangle, its title above.
-pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record) {
+/// Draws the record into a rectangle, its title above; `latching` is the fitted force to latch, in N.
+pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record, latching: f64) {
     svg.bold(
         [rect.x - 46.0, rect.y - 26.0],
         LABEL,
@@ -21,7 +21,7 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record) {
     let frame = Frame {
         rect,
         x: Scale::new("way after first contact [mm]".to_owned(), first, last, false),
-        y: Scale::new("force [N]".to_owned(), 0.0, 1.15 * record.peak.max(f64::MIN_POSITIVE), false),
+        y: Scale::new("force [N]".to_owned(), 0.0, 1.15 * record.peak.max(latching), false),
     };
     let curve = |of: &dyn Fn(usize) -> f64| {
         polyline(
@@ -29,6 +29,8 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record) {
             false,
         )
     };
+    // Clear of the line of the fitted force, which lies at the top unless friction lifts the record above it.
+    let key = rect.y + 0.42 * rect.h;
     let layers = record.positions.first().map_or(0, |p| p.layers.len());
     for layer in (0..layers).filter(|_| layers > 1) {
         let style = format!(
@@ -37,8 +39,8 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record) {
         );
         svg.path(&curve(&|k| record.positions[k].layers[layer].force), &style);
         let x = rect.x + 10.0 + 92.0 * layer as f64;
-        svg.line([x, rect.y + 12.0], [x + 16.0, rect.y + 12.0], &style);
-        svg.text([x + 21.0, rect.y + 16.0], TICK, Anchor::Start, SOFT, &format!("layer {}", layer + 1));
+        svg.line([x, key], [x + 16.0, key], &style);
+        svg.text([x + 21.0, key + 4.0], TICK, Anchor::Start, SOFT, &format!("layer {}", layer + 1));
     }
     let style = format!(r#"fill="none" stroke="{}" stroke-width="2" {JOIN}"#, hex(CURVES[0]));
     svg.path(&curve(&|k| record.positions[k].force), &style);
@@ -49,6 +51,14 @@ pub(super) fn draw(svg: &mut Svg, rect: Rect, record: &Record) {
         let level = if k == 0 { y - 10.0 } else { y + 18.0 };
         svg.text([x - 24.0, level], TICK, Anchor::End, INK, &format!("layer {} snaps", dip.layer));
     }
+    let [start, level] = frame.at([first, latching]);
+    svg.line(
+        [start, level],
+        [rect.x + rect.w, level],
+        &format!(r#"stroke="{}" stroke-width="1.4" stroke-dasharray="7 4""#, hex(CURVES[3])),
+    );
+    let fitted = format!("force to latch, fitted to measurements: {latching:.1} N");
+    svg.text([rect.x + 10.0, level - 6.0], TICK, Anchor::Start, INK, &fitted);
     let seat = frame.px(way(0.0));
     svg.line(
         [seat, rect.y],
