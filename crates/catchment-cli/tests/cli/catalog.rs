@@ -124,7 +124,10 @@ fn a_design_is_classified_and_appended() {
     assert!((report["longest_d"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{report}");
     let home = home();
     let told = stdout(home.path(), &["classify", "v.toml"]);
-    assert!(told.contains("a length has no ratio") && told.contains("Gendered"), "{told}");
+    assert!(told.contains("length has no ratio") && told.contains("Gendered"), "{told}");
+    // One translation is locked: what is corrected is an interval, and no square.
+    assert!(told.contains("ONAA           1 D, length of the corrected interval\n"), "{told}");
+    assert!(!told.contains("square"), "{told}");
     let appended = json(&designs, &["catalog", "--append", "x-face-3d.toml", "--json"]);
     let rows: Vec<&serde_json::Value> =
         appended["systems"].as_array().unwrap().iter().filter(|row| row["attributes"].is_object()).collect();

@@ -19,7 +19,7 @@ pub struct Classified {
     pub name: String,
     /// Which offsets it corrects without rotation.
     pub zraa: Zraa,
-    /// The largest square among them.
+    /// The largest square among them; where one translation is locked, its edge is the length of the interval.
     pub square: Square,
     /// How far they reach through zero.
     pub extents: Extents,

@@ -76,7 +76,7 @@ pub struct ClassifyBody {
     pub gendering: &'static str,
     /// Zero-rotation area of acceptance, in D²; null where one translation is locked.
     pub zraa_d2: Option<f64>,
-    /// Edge of the largest axis-parallel square inside, in D.
+    /// Edge of the largest axis-parallel square inside, in D; the length of the corrected interval where one translation is locked.
     pub onaa_d: f64,
     /// The design beside published areas.
     pub ratios: Vec<Ratio>,
@@ -350,9 +350,14 @@ impl ClassifyBody {
         if let Some(area) = self.zraa_d2 {
             row(text, "ZRAA", &format!("{} D²", shown(area)));
         }
-        row(text, "ONAA", &format!("{} D, edge of the largest axis-parallel square", shown(self.onaa_d)));
+        let edge = match self.zraa_d2 {
+            Some(_) => "edge of the largest axis-parallel square",
+            None => "length of the corrected interval",
+        };
+        row(text, "ONAA", &format!("{} D, {edge}", shown(self.onaa_d)));
         if self.zraa_d2.is_none() {
-            line(text, "  One translation is locked: a length has no ratio to published areas.");
+            line(text, "  One translation is locked, so the region is an interval, not an area: a");
+            line(text, "  length has no ratio to published areas.");
             return std::mem::take(text);
         }
         line(text, "  beside            stated area     × area   stated ONAA    × ONAA");
