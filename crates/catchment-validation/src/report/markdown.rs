@@ -1,8 +1,8 @@
 //! All comparisons as a page of the documentation.
 
-use super::text::significant;
+use super::text::{MARKS, significant};
 use crate::study::claims::{Claim, claims};
-use crate::study::reproduce::{Entry, TableComparison};
+use crate::study::reproduce::{Entry, Places, TableComparison};
 use crate::study::resolution;
 use crate::tables::HELD;
 use std::fmt::{self, Write};
@@ -93,11 +93,15 @@ fn write_table(page: &mut String, table: &TableComparison) -> fmt::Result {
     writeln!(page, "Values in {}; columns: {}.\n", table.unit, table.column_name)?;
     writeln!(page, "| {} | {} |", table.row_name, table.columns.join(" | "))?;
     writeln!(page, "|---|{}", "---:|".repeat(table.columns.len()))?;
-    for (row, entries) in table.rows.iter().zip(&table.entries) {
-        let cells: Vec<String> = entries.iter().map(cell).collect();
+    for (j, (row, entries)) in table.rows.iter().zip(&table.entries).enumerate() {
+        let cells: Vec<String> =
+            entries.iter().enumerate().map(|(k, entry)| cell(table, entry, [j, k])).collect();
         writeln!(page, "| {row} | {} |", cells.join(" | "))?;
     }
     page.push('\n');
+    if table.extremes.is_some() {
+        writeln!(page, "- {MARKS}.")?;
+    }
     for note in &table.notes {
         writeln!(page, "- {note}")?;
     }
@@ -107,16 +111,23 @@ fn write_table(page: &mut String, table: &TableComparison) -> fmt::Result {
     Ok(())
 }
 
-fn cell(entry: &Entry) -> String {
+fn cell(table: &TableComparison, entry: &Entry, place: [usize; 2]) -> String {
+    let mark = |places: Option<&Places>| {
+        places.and_then(|places| places.mark(place)).map_or_else(String::new, String::from)
+    };
+    let extremes = table.extremes.as_ref();
     let ours = match (entry.ours, entry.ratio) {
         (Some(ours), Some(ratio)) => {
             let star = if entry.matches == Some(false) { "\\*" } else { "" };
-            format!("{} ({ratio:.2}{star})", significant(ours))
+            let marked = mark(extremes.and_then(|extremes| extremes.ours.as_ref()));
+            format!("{}{marked} ({ratio:.2}{star})", significant(ours))
         }
         _ => "–".to_owned(),
     };
+    let marked = mark(extremes.and_then(|extremes| extremes.exact.as_ref()));
     let exact = entry.exact.map_or_else(|| "–".to_owned(), |exact| significant(exact.value));
-    format!("{} / {ours} / {exact}", significant(entry.published))
+    let printed = mark(extremes.map(|extremes| &extremes.published));
+    format!("{}{printed} / {ours} / {exact}{marked}", significant(entry.published))
 }
 
 fn write_figure(page: &mut String, figure: &resolution::Found) -> fmt::Result {

@@ -23,3 +23,21 @@ fn the_page_has_every_table_and_what_is_left_out() {
         assert!(page.contains(words), "{words}: {page}");
     }
 }
+
+/// Tables 5.8 to 5.11: the largest and the smallest value of each block have a mark, and the columns stay under their heads.
+#[test]
+fn the_largest_and_the_smallest_value_are_marked() {
+    let table = comparison("5.9");
+    let text = table.to_string();
+    assert!(text.contains("6.650▲") && text.matches("0.003980▼").count() == 2, "{text}");
+    // Published and ours have their own: one largest each, and the legend.
+    assert_eq!(text.matches('▲').count(), 3, "{text}");
+    let end = |word: &str| {
+        let line = text.lines().find(|line| line.contains(word)).unwrap();
+        line[..line.find(word).unwrap()].chars().count() + word.chars().count()
+    };
+    assert_eq!(end("6.650"), end("5.190"), "{text}");
+    let page = page(&[table], None, "It took no time.").unwrap();
+    assert!(page.contains("6.650▲ / ") && page.contains("- ▲ largest, ▼ smallest"), "{page}");
+    assert!(!comparison("5.6").to_string().contains('▲'));
+}

@@ -1,37 +1,53 @@
 //! A comparison as aligned text.
 
-use crate::study::reproduce::{Entry, TableComparison};
+use crate::study::reproduce::{Entry, Places, TableComparison};
 use std::fmt;
 
 /// How a block shows an entry.
-type Show = Box<dyn Fn(&Entry) -> String>;
+type Show<'a> = Box<dyn Fn(&Entry) -> String + 'a>;
+
+/// What the marks of the largest and the smallest value mean.
+pub(super) const MARKS: &str = "▲ largest, ▼ smallest: the source highlights those of the printed values; ours and the exact ones have their own";
+
+/// A block of a table: its name, how it shows an entry, the places that it marks.
+struct Block<'a> {
+    name: String,
+    show: Show<'a>,
+    marked: Option<&'a Places>,
+}
 
 impl fmt::Display for TableComparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "Table {}: {}", self.table, self.title)?;
         writeln!(f, "rows: {}; columns: {}; values in {}", self.row_name, self.column_name, self.unit)?;
         let unmarked = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
-        let mut blocks: Vec<(String, Show)> =
-            vec![("published".to_owned(), Box::new(|e: &Entry| significant(e.published)))];
+        let extremes = self.extremes.as_ref();
+        let mut blocks = vec![Block {
+            name: "published".to_owned(),
+            show: Box::new(|e: &Entry| significant(e.published)),
+            marked: extremes.map(|extremes| &extremes.published),
+        }];
         if self.summary.computed > 0 {
             let name = format!("ours, by the same method ({})", self.method);
-            blocks.push((name, Box::new(move |e: &Entry| unmarked(e.ours))));
+            let marked = extremes.and_then(|extremes| extremes.ours.as_ref());
+            blocks.push(Block { name, show: Box::new(move |e: &Entry| unmarked(e.ours)), marked });
             let ratio = |e: &Entry| {
                 let star = if e.matches == Some(false) { "*" } else { " " };
                 e.ratio.map_or_else(|| "– ".to_owned(), |ratio| format!("{ratio:.3}{star}"))
             };
-            blocks.push(("ours / published".to_owned(), Box::new(ratio)));
+            blocks.push(Block { name: "ours / published".to_owned(), show: Box::new(ratio), marked: None });
         }
         if self.summary.exact_mean_log_ratio.is_some() {
             let exact = move |e: &Entry| unmarked(e.exact.map(|exact| exact.value));
-            blocks.push(("exact".to_owned(), Box::new(exact)));
+            let marked = extremes.and_then(|extremes| extremes.exact.as_ref());
+            blocks.push(Block { name: "exact".to_owned(), show: Box::new(exact), marked });
             let ratio =
                 |e: &Entry| e.exact_ratio.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.3}"));
-            blocks.push(("exact / published".to_owned(), Box::new(ratio)));
+            blocks.push(Block { name: "exact / published".to_owned(), show: Box::new(ratio), marked: None });
         }
-        for (name, show) in blocks {
-            writeln!(f, "\n{name}")?;
-            block(f, self, &*show)?;
+        for block in blocks {
+            writeln!(f, "\n{}", block.name)?;
+            write_block(f, self, &block)?;
         }
         writeln!(f)?;
         self.write_summary(f)
@@ -58,6 +74,9 @@ impl TableComparison {
         for note in &self.notes {
             writeln!(f, "note: {note}")?;
         }
+        if self.extremes.is_some() {
+            writeln!(f, "{MARKS}")?;
+        }
         for (reason, places) in self.reasons() {
             writeln!(f, "* {}: {reason}", places.join(" "))?;
         }
@@ -81,16 +100,17 @@ impl TableComparison {
     }
 }
 
-/// One matrix, right-aligned under its column heads.
-fn block(
-    f: &mut fmt::Formatter<'_>,
-    table: &TableComparison,
-    show: &dyn Fn(&Entry) -> String,
-) -> fmt::Result {
-    let mut lines =
-        vec![std::iter::once(String::new()).chain(table.columns.iter().cloned()).collect::<Vec<_>>()];
-    for (row, entries) in table.rows.iter().zip(&table.entries) {
-        lines.push(std::iter::once(row.clone()).chain(entries.iter().map(show)).collect());
+/// One matrix, right-aligned under its column heads; where places are marked, every number has room for a mark behind it.
+fn write_block(f: &mut fmt::Formatter<'_>, table: &TableComparison, block: &Block<'_>) -> fmt::Result {
+    let room = if block.marked.is_some() { " " } else { "" };
+    let head = table.columns.iter().map(|column| format!("{column}{room}"));
+    let mut lines = vec![std::iter::once(String::new()).chain(head).collect::<Vec<_>>()];
+    for (j, (row, entries)) in table.rows.iter().zip(&table.entries).enumerate() {
+        let shown = entries.iter().enumerate().map(|(k, entry)| {
+            let mark = block.marked.map(|places| places.mark([j, k]).unwrap_or(' '));
+            format!("{}{}", (block.show)(entry), mark.map_or_else(String::new, String::from))
+        });
+        lines.push(std::iter::once(row.clone()).chain(shown).collect());
     }
     let widths: Vec<usize> = (0..=table.columns.len())
         .map(|c| lines.iter().map(|l| l[c].chars().count()).max().unwrap_or(0))

@@ -66,8 +66,24 @@ struct Asked {
     of_docking: bool,
 }
 
-/// Aspect ratios rise from row to row, centres of rotation from column to column: −1, −½, 0, ½, 1.
+/// Of chapter 5: aspect ratios rise from row to row, centres of rotation from column to column: −1, −½, 0, ½, 1.
 const ASKED: &[Asked] = &[
+    Asked {
+        section: "3.1.3",
+        says: "the X-Face accepts more than the V-Face in almost every case, but near r_p = 0 and H/D = 1",
+        counted: "entries of 3.2 above those of 3.3",
+        tables: &["3.3", "3.2"],
+        ask: |t| each(t, |v, x| x > v),
+        of_docking: true,
+    },
+    Asked {
+        section: "3.1.3",
+        says: "and more than the S-Face",
+        counted: "entries of 3.2 above those of 3.4",
+        tables: &["3.4", "3.2"],
+        ask: |t| each(t, |s, x| x > s),
+        of_docking: true,
+    },
     Asked {
         section: "5.2",
         says: "most areas are larger for the X-Face than for the V-Face, four are not",
@@ -289,6 +305,19 @@ mod tests {
         assert_eq!(right.printed, Verdict::Count { holds: 9, of: 10 });
         assert_eq!(right.ours, Some(right.printed));
         assert_eq!(right.exact, None);
+    }
+
+    /// Counted by hand in the printed tables: five entries of 3.2 are below 3.3; of 3.4 four are above, and one is the same.
+    #[test]
+    fn what_the_text_says_of_the_kinematic_tables() {
+        let claims = claims(&tables(&["3.2", "3.3", "3.4"]));
+        let [v, s] = ["than the V-Face in almost every", "than the S-Face"].map(|says| found(&claims, says));
+        assert_eq!(v.printed, Verdict::Count { holds: 116, of: 121 });
+        assert_eq!(s.printed, Verdict::Count { holds: 116, of: 121 });
+        // Stepped by one contact the X-Face is behind the bounds of the other two far more often.
+        assert_eq!(v.ours, Some(Verdict::Count { holds: 55, of: 121 }));
+        assert_eq!(s.ours, Some(Verdict::Count { holds: 80, of: 121 }));
+        assert_eq!((v.exact, s.exact), (None, None));
     }
 
     #[test]

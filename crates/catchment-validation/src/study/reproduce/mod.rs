@@ -21,6 +21,10 @@ use catchment::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 use serde::Serialize;
 
+mod extremes;
+
+pub use extremes::{Extremes, Places};
+
 /// What to compute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Settings {
@@ -92,6 +96,8 @@ pub struct TableComparison {
     pub columns: Vec<String>,
     /// The entries, row by row.
     pub entries: Vec<Vec<Entry>>,
+    /// The largest and the smallest values, in the tables in which the source highlights them (5.8 to 5.11); null elsewhere.
+    pub extremes: Option<Extremes>,
     /// How well they agree.
     pub summary: Summary,
     /// What a reader must know.
@@ -151,6 +157,7 @@ pub fn reproduce(table: &str, settings: &Settings, exec: &Exec) -> Result<TableC
         }
     };
     let flat: Vec<Entry> = found.iter().enumerate().map(entry).collect();
+    let entries: Vec<Vec<Entry>> = flat.chunks(columns).map(<[Entry]>::to_vec).collect();
     let mut notes: Vec<String> = table.notes.iter().map(|note| (*note).to_owned()).collect();
     if table.name == "3.2" {
         notes.extend(mean_ratios(&flat)?);
@@ -171,7 +178,8 @@ pub fn reproduce(table: &str, settings: &Settings, exec: &Exec) -> Result<TableC
         column_name: table.column_name,
         columns: published.columns,
         summary: summarise(&flat),
-        entries: flat.chunks(columns).map(<[Entry]>::to_vec).collect(),
+        extremes: table.highlights.then(|| Extremes::of(&entries)),
+        entries,
         notes,
     })
 }
