@@ -1,12 +1,12 @@
 """What the guides show of the console, from the program itself.
 
-    python3 site/transcripts.py target/debug/catchment            writes the blocks of docs/first-dock.md and docs/budget-to-window.md again
+    python3 site/transcripts.py target/debug/catchment            writes the blocks of the guides again (PAGES)
     python3 site/transcripts.py target/debug/catchment --check    says which of them the program would print otherwise; without those that take long
     python3 site/transcripts.py target/debug/catchment --check all    with those, too
 
 A block ```console that begins with `$ catchment` holds a command and what it prints, stderr among it. The commands run one after another, page after page,
-in a folder that holds the two STL files of the repository. A line that is only … stands for lines that are left out: as many as it takes that the block
-keeps its lines above it and below.
+in a folder that holds the two STL files of the repository and, in designs/, its design files. A line that is only … stands for lines that are left out: as many as
+it takes that the block keeps its lines above it and below.
 """
 
 import difflib
@@ -20,7 +20,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md"]
+PAGES = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md", ROOT / "docs/source-and-findings.md"]
 PARTS = [ROOT / "designs/meshes/socket.stl", ROOT / "designs/meshes/plug.stl"]
 #: 300 000 motions.
 LONG = ("window",)
@@ -57,6 +57,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as home:
         for part in PARTS:
             shutil.copy(part, home)
+        (Path(home) / "designs").mkdir()
+        for design in sorted((ROOT / "designs").glob("*.toml")):
+            shutil.copy(design, Path(home) / "designs")
         for page in PAGES:
             def again(block: re.Match) -> str:
                 nonlocal left_out
