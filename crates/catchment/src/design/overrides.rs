@@ -1,7 +1,9 @@
-//! A design with one setting changed: what sweeps and command-line options do. The rules are those of the file.
+//! A design with one setting changed: what sweeps and command-line options do. The rules are those of the file, and the name states the new value
+//! ([`super::name`]).
 
 use super::complaint::Complaint;
 use super::keys;
+use super::name::Parameter;
 use super::quantity::{Quantity, Unit, shortened};
 use super::reader::unknown_name;
 use super::{ConnectorSpec, Design, Family, FamilySpec};
@@ -71,10 +73,10 @@ impl Design {
     /// # Errors
     /// Out of the range of the design file, or not a length.
     pub fn with_center_of_rotation(mut self, cor: Quantity) -> Result<Self, Complaint> {
-        if let Some(cor) = keys::CENTER_OF_ROTATION.checked(cor, Some(&self.scale()))? {
-            self.alignment.center_of_rotation = cor;
-        }
-        Ok(self)
+        let was = self.alignment.center_of_rotation;
+        let Some(now) = keys::CENTER_OF_ROTATION.checked(cor, Some(&self.scale()))? else { return Ok(self) };
+        self.alignment.center_of_rotation = now;
+        Ok(if now == was { self } else { self.titled(Parameter::CenterOfRotation, &cor.to_string()) })
     }
 
     /// This design with another ρ; bare numbers are in D.
@@ -82,10 +84,10 @@ impl Design {
     /// # Errors
     /// Out of the range of the design file, or not a length.
     pub fn with_rotation_length(mut self, length: Quantity) -> Result<Self, Complaint> {
-        if let Some(length) = keys::ROTATION_LENGTH.checked(length, Some(&self.scale()))? {
-            self.alignment.rotation_length = length;
-        }
-        Ok(self)
+        let was = self.alignment.rotation_length;
+        let Some(now) = keys::ROTATION_LENGTH.checked(length, Some(&self.scale()))? else { return Ok(self) };
+        self.alignment.rotation_length = now;
+        Ok(if now == was { self } else { self.titled(Parameter::RotationLength, &length.to_string()) })
     }
 
     /// This design with another H/D.
@@ -101,11 +103,10 @@ impl Design {
                 belongs_to: keys::ASPECT_RATIO.applies.to_string(),
             });
         };
-        if let Some(ratio) =
-            keys::ASPECT_RATIO.checked(Quantity { value: ratio, unit: Unit::Bare }, Some(&scale))?
-        {
-            *spec = spec.with_aspect_ratio(ratio);
-        }
-        Ok(self)
+        let was = spec.aspect_ratio();
+        let quantity = Quantity { value: ratio, unit: Unit::Bare };
+        let Some(now) = keys::ASPECT_RATIO.checked(quantity, Some(&scale))? else { return Ok(self) };
+        *spec = spec.with_aspect_ratio(now);
+        Ok(if now == was { self } else { self.titled(Parameter::AspectRatio, &quantity.to_string()) })
     }
 }

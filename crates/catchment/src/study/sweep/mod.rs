@@ -20,7 +20,7 @@ mod axis;
 pub use axis::{Axis, AxisError};
 
 use crate::acceptance::Outcome;
-use crate::design::{Complaint, Design, Finding, SourceText, with_key};
+use crate::design::{Complaint, Design, Finding, Parameter, SourceText, with_key};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::merit::slice::Slice;
 use crate::method::NotApplicable;
@@ -255,6 +255,8 @@ impl Plan {
         }
         // The file itself must be a design, or messages would be about values that nobody doubts.
         let base = change(Draft::read(source.clone())?)?.design().clone();
+        let swept = axes.iter().filter_map(|axis| Parameter::of_key(&axis.key));
+        let base = swept.fold(base, Design::untitled);
         let drafts = (0..designs).map(|number| {
             let mut text = source.text.clone();
             for (axis, value) in axes.iter().zip(combination(axes, number)) {
@@ -286,7 +288,7 @@ impl Plan {
         self.drafts.is_empty()
     }
 
-    /// The design as its file has it.
+    /// The design as its file has it, without what is swept in its name.
     pub const fn base(&self) -> &Design {
         &self.base
     }
