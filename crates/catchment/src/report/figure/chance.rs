@@ -1,7 +1,7 @@
 //! How likely drop tests dock: over two errors, beside the border of exact motions; and against speed.
 
 use super::draw::axis::{Frame, Units, short};
-use super::draw::chart::{Chart, Line, Point, Spacing, legend};
+use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex, sequential};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use super::{FigureError, Picture};
@@ -182,7 +182,7 @@ fn curve(svg: &mut Svg, report: &ChanceReport, rect: Rect) {
     }
     let x_label =
         if has_speed { format!("mean approach speed [{unit}]") } else { "all speeds times".to_owned() };
-    let mark = declared.map(|x| (x, "as declared"));
+    let mark = declared.map(|x| Mark { x, y: None, words: "as declared" });
     Chart {
         rect,
         x_label: &x_label,

@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::draw::axis::short;
-use super::draw::chart::{Chart, Line, Point, Spacing};
+use super::draw::chart::{Chart, Line, Mark, Point, Spacing};
 use super::draw::colour::CURVES;
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
 use crate::design::Design;
@@ -34,7 +34,7 @@ pub fn sensitivity(design: &Design, found: &Sensitivity) -> Picture {
         spacing: Spacing::Logarithmic,
         y_label: &format!("Sum [{}]", found.unit),
         lines: &[line],
-        mark: Some((design.alignment.rotation_length, "this design")),
+        mark: Some(Mark { x: design.alignment.rotation_length, y: None, words: "this design" }),
     };
     chart.draw(&mut svg);
     Picture::of(svg)

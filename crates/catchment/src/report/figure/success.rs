@@ -2,7 +2,7 @@
 
 use super::Picture;
 use super::draw::axis::{Units, short};
-use super::draw::chart::{Chart, Line, Point, Spacing, legend};
+use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
 use crate::report::success::chance;
@@ -38,7 +38,7 @@ pub fn success(report: &SuccessesReport) -> Picture {
         spacing: Spacing::Logarithmic,
         y_label: "success [%]",
         lines: &lines,
-        mark: Some((1.0, "as they are")),
+        mark: Some(Mark { x: 1.0, y: None, words: "as they are" }),
     }
     .draw(&mut svg);
     legend(&mut svg, &lines, [left, top - 34.0]);

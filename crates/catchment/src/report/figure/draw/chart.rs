@@ -65,8 +65,19 @@ pub struct Chart<'a> {
     pub y_label: &'a str,
     /// The lines.
     pub lines: &'a [Line],
-    /// A value to mark on the x scale, and what it is.
-    pub mark: Option<(f64, &'a str)>,
+    /// A value to mark on the x scale.
+    pub mark: Option<Mark<'a>>,
+}
+
+/// A value of the x scale with its name.
+#[derive(Debug, Clone, Copy)]
+pub struct Mark<'a> {
+    /// The value.
+    pub x: f64,
+    /// Where a curve has this value there, the y that it is read off at.
+    pub y: Option<f64>,
+    /// What it is.
+    pub words: &'a str,
 }
 
 impl Chart<'_> {
@@ -90,11 +101,17 @@ impl Chart<'_> {
         }
         svg.text([r.x + 0.5 * r.w, r.y + r.h + 32.0], LABEL, Anchor::Middle, INK, self.x_label);
         svg.begin_clip(r);
-        if let Some((x, words)) = self.mark {
+        if let Some(Mark { x, y, words }) = self.mark {
             let px = frame.px(self.spacing.at(x));
+            let top = y.map_or(r.y, |y| frame.py(y));
             let dashed = format!(r#"stroke="{INK}" stroke-width="1" stroke-dasharray="4 3""#);
-            svg.line([px, r.y], [px, r.y + r.h], &dashed);
-            svg.text([px + 5.0, r.y + 14.0], TICK, Anchor::Start, INK, words);
+            svg.line([px, top], [px, r.y + r.h], &dashed);
+            if y.is_some() {
+                svg.line([r.x, top], [px, top], &dashed);
+            }
+            let fits = px + 5.0 + width_of(words, TICK) < r.x + r.w;
+            let (x, anchor) = if fits { (px + 5.0, Anchor::Start) } else { (px - 5.0, Anchor::End) };
+            svg.text([x, r.y + 14.0], TICK, anchor, INK, words);
         }
         for line in self.lines {
             line.band(svg, &frame, self.spacing);
@@ -107,7 +124,7 @@ impl Chart<'_> {
         frame.outline(svg);
     }
 
-    /// The frame around all points, and the interval of each line's last one or, evenly spaced, of all; `None` without points.
+    /// The frame around all points, their intervals and the mark; `None` without points.
     fn frame(&self) -> Option<Frame> {
         /// Room beside the outermost points, as a share of the extent.
         const MARGIN: f64 = 0.06;
@@ -116,18 +133,10 @@ impl Chart<'_> {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
         };
         let (left, right) =
-            range(&mut points().map(|p| p.x).chain(self.mark.map(|(x, _)| x)).map(|x| self.spacing.at(x)));
-        // Wide intervals of coarse beginnings would leave no room for the values: on scales of refinement they run out of the frame.
-        let from = |line: &Line| match self.spacing {
-            Spacing::Logarithmic => line.shown(self.spacing).count().saturating_sub(1),
-            Spacing::Even => 0,
-        };
-        let ends = self
-            .lines
-            .iter()
-            .flat_map(|line| line.shown(self.spacing).skip(from(line)))
-            .filter_map(|p| p.interval);
-        let (low, high) = range(&mut points().map(|p| p.y).chain(ends.flatten()));
+            range(&mut points().map(|p| p.x).chain(self.mark.map(|mark| mark.x)).map(|x| self.spacing.at(x)));
+        let heights = points().flat_map(|p| p.interval.into_iter().flatten().chain([p.y]));
+        let marked = self.mark.and_then(|mark| mark.y);
+        let (low, high) = range(&mut heights.chain(marked).filter(|y| y.is_finite()));
         if !(left <= right && low <= high) {
             return None;
         }
@@ -215,6 +224,46 @@ fn decades(lo: f64, hi: f64, width: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Scales that ended at the interval of the last point cut off the wider ones before it.
+    #[test]
+    fn every_interval_lies_within_the_frame() {
+        let rect = Rect { x: 50.0, y: 20.0, w: 300.0, h: 200.0 };
+        let point = |x: f64, half: f64| Point { x, y: 2.0, interval: Some([2.0 - half, 2.0 + half]) };
+        for spacing in [Spacing::Logarithmic, Spacing::Even] {
+            let lines = [Line {
+                name: String::new(),
+                colour: [0; 3],
+                points: vec![point(0.1, 1.5), point(1.0, 0.4), point(10.0, 0.1)],
+            }];
+            let chart = Chart { rect, x_label: "x", spacing, y_label: "y", lines: &lines, mark: None };
+            let mut svg = Svg::new(400.0, 260.0);
+            chart.draw(&mut svg);
+            let text = svg.finish();
+            let document = resvg::usvg::roxmltree::Document::parse(&text).unwrap();
+            let whiskers = document.descendants().filter(|d| d.attribute("stroke-opacity") == Some("0.7"));
+            let ends: Vec<f64> = whiskers
+                .flat_map(|d| ["y1", "y2"].map(|end| d.attribute(end).unwrap().parse().unwrap()))
+                .collect();
+            assert_eq!(ends.len(), 6);
+            assert!(ends.iter().all(|y| (rect.y..=rect.y + rect.h).contains(y)), "{spacing:?}: {ends:?}");
+        }
+    }
+
+    #[test]
+    fn a_mark_is_read_off_at_its_height() {
+        let points = [[0.0, 100.0], [1.0, 90.0]].map(|[x, y]| Point { x, y, interval: None }).to_vec();
+        let lines = [Line { name: String::new(), colour: [0; 3], points }];
+        let rect = Rect { x: 50.0, y: 20.0, w: 300.0, h: 200.0 };
+        let mark = Some(Mark { x: 0.5, y: Some(95.0), words: "95 %" });
+        let chart = Chart { rect, x_label: "x", spacing: Spacing::Even, y_label: "y", lines: &lines, mark };
+        let mut svg = Svg::new(400.0, 260.0);
+        chart.draw(&mut svg);
+        // The middle of the frame, left and below.
+        let text = svg.finish();
+        assert!(text.contains(r#"<line x1="200" y1="120" x2="200" y2="220" "#), "{text}");
+        assert!(text.contains(r#"<line x1="50" y1="120" x2="200" y2="120" "#), "{text}");
+    }
 
     #[test]
     fn ticks_are_round_and_lie_on_the_scale() {
