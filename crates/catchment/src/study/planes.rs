@@ -5,8 +5,9 @@
 //!   plane, yaw = 0 exactly:    each (x, pitch) is followed ──▶  symmetric halves give a symmetric plane
 //! ```
 //!
-//! For every pair of axes of the grid the two errors vary and the others start at exactly 0; all free errors take part in the motion. A plane has
-//! at least [`CELLS`] cells per axis ([`MAIN_CELLS`] for the main pair), or fewer where motions of the pair are slow, and never fewer than the grid.
+//! For every pair of axes of the grid the two errors vary and the others start at exactly 0; all free errors take part in the motion. All planes have
+//! one resolution, at least [`CELLS`] cells per axis and together about as many as one plane of [`MAIN_CELLS`], or fewer where motions of the pair are
+//! slow, and never fewer than the grid.
 //!
 //! Not promised: that a plane is part of the grid. It is computed by exact motions, whatever method decided the grid. Lengths in D, angles in
 //! radians.
@@ -20,10 +21,16 @@ use crate::merit::slice;
 use crate::method::{Decide, descent};
 use crate::pose::Dof;
 
-/// Cells per axis of the main pair.
-pub const MAIN_CELLS: usize = 71;
-/// Cells per axis of every other pair.
-pub const CELLS: usize = 25;
+/// Cells per axis of a plane that is shown alone.
+const MAIN_CELLS: usize = 71;
+/// Cells per axis of one plane among many, at least.
+const CELLS: usize = 25;
+
+/// Cells per axis where so many planes are shown beside each other: odd, so that one cell is centred on zero.
+fn cells_of(planes: usize) -> usize {
+    let each = (MAIN_CELLS as f64 / (planes.max(1) as f64).sqrt()) as usize;
+    (each | 1).max(CELLS)
+}
 
 /// The pair to show where only one can be: x with the rotation that goes with it; the first pair where the grid has neither.
 pub fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
@@ -32,25 +39,23 @@ pub fn main_pair(grid: &Grid) -> Option<[Dof; 2]> {
     favourites.into_iter().find(|pair| pairs.contains(pair)).or_else(|| pairs.first().copied())
 }
 
-/// The grids of the planes, one per pair of axes in the order of [`slice::pairs`]; none for a grid of fewer than three axes, which is a plane itself.
-fn grids(pair: &Pair, motions: &descent::Settings, grid: &Grid) -> Vec<Grid> {
+/// The grids of planes over these pairs of axes; none for a grid of fewer than three axes, which is a plane itself.
+fn grids(pair: &Pair, motions: &descent::Settings, grid: &Grid, planes: &[[Dof; 2]]) -> Vec<Grid> {
     if grid.axes.len() < 3 {
         return Vec::new();
     }
-    let main = main_pair(grid);
-    let affordable = motions.default_cells(pair)[1];
-    let plane = |axes: [Dof; 2]| {
-        let least = if Some(axes) == main { MAIN_CELLS } else { CELLS };
-        let finer = |axis: &GridAxis| GridAxis { cells: axis.cells.max(least.min(affordable)), ..*axis };
-        Grid { axes: grid.axes.iter().filter(|axis| axes.contains(&axis.dof)).map(finer).collect() }
+    let least = cells_of(planes.len()).min(motions.default_cells(pair)[1]);
+    let finer = |axis: &GridAxis| GridAxis { cells: axis.cells.max(least), ..*axis };
+    let plane = |axes: &[Dof; 2]| Grid {
+        axes: grid.axes.iter().filter(|axis| axes.contains(&axis.dof)).map(finer).collect(),
     };
-    slice::pairs(grid).into_iter().map(plane).collect()
+    planes.iter().map(plane).collect()
 }
 
 /// Bytes that [`through_zero`] takes at its peak.
 pub fn bytes(pair: &Pair, motions: &descent::Settings, grid: &Grid) -> u64 {
     let cells = |grid: &Grid| grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
-    let planes = grids(pair, motions, grid);
+    let planes = grids(pair, motions, grid, &slice::pairs(grid));
     let largest = planes.iter().map(cells).max().unwrap_or(0);
     planes.iter().map(cells).fold(largest.saturating_mul(pose_bytes()), u64::saturating_add)
 }
@@ -65,8 +70,32 @@ pub fn through_zero(
     grid: &Grid,
     exec: &Exec,
 ) -> Result<Vec<Acceptance>, Cancelled> {
+    follow(pair, motions, grid, &slice::pairs(grid), exec)
+}
+
+/// The plane of the [`main_pair`] alone, finer than beside others; `None` for a grid of fewer than three axes.
+///
+/// # Errors
+/// [`Cancelled`] when asked to stop.
+pub fn main_through_zero(
+    pair: &Pair,
+    motions: &descent::Settings,
+    grid: &Grid,
+    exec: &Exec,
+) -> Result<Option<Acceptance>, Cancelled> {
+    let main: Vec<_> = main_pair(grid).into_iter().collect();
+    Ok(follow(pair, motions, grid, &main, exec)?.pop())
+}
+
+fn follow(
+    pair: &Pair,
+    motions: &descent::Settings,
+    grid: &Grid,
+    planes: &[[Dof; 2]],
+    exec: &Exec,
+) -> Result<Vec<Acceptance>, Cancelled> {
     let follow = |plane| Ok(descent::run(pair, Domain::Grid(plane), motions, exec)?.0);
-    grids(pair, motions, grid).into_iter().map(follow).collect()
+    grids(pair, motions, grid, planes).into_iter().map(follow).collect()
 }
 
 #[cfg(test)]
@@ -98,6 +127,11 @@ mod tests {
                 (0..wide * high).filter(|k| plane.outcomes[*k] != plane.outcomes[mirrored(*k)]).count();
             assert!(differing * 200 <= wide * high, "{differing} of {}", wide * high);
         }
+    }
+
+    #[test]
+    fn planes_beside_each_other_have_one_resolution() {
+        assert_eq!([1, 3, 6, 10].map(cells_of), [71, 41, 29, 25]);
     }
 
     #[test]

@@ -4,7 +4,6 @@ use super::{FigureError, Picture, Placement};
 use crate::acceptance::Acceptance;
 use crate::contact::Pair;
 use crate::exec::Exec;
-use crate::landscape::Grid;
 use crate::pose::{CorPose, PoseError};
 use crate::report::folder::SaveError;
 use crate::run::Answer;
@@ -46,11 +45,16 @@ impl Answer {
         if let Some(grid) = self.grid()
             && let Some(main) = planes::main_pair(grid)
         {
-            let finer = self.planes(grid, exec)?;
-            let over = |slice: &&Acceptance| {
-                slice.grid().is_some_and(|grid| grid.axes.iter().map(|axis| axis.dof).eq(main))
+            let departs = self.run.method.info().departs;
+            let motions = self.run.method.motions();
+            // Flooding and drop tests show their own cells.
+            let (finest, finer) = if departs {
+                (None, Vec::new())
+            } else {
+                let finest = planes::main_through_zero(pair, &motions, grid, exec)?;
+                (finest, planes::through_zero(pair, &motions, grid, exec)?)
             };
-            let map = finer.iter().find(over).unwrap_or(acceptance);
+            let map = finest.as_ref().unwrap_or(acceptance);
             let map_grid = map.grid().unwrap_or(grid);
             let landscape = self.by_products.landscape.as_ref().filter(|l| l.grid == *map_grid);
             let height = |cell: usize| match landscape {
@@ -82,19 +86,40 @@ impl Answer {
         exec.check()?;
         Ok(drawn)
     }
-
-    /// Planes through zero by exact motions; none where the method's own cells are to be shown (flooding and drop tests show themselves).
-    fn planes(&self, grid: &Grid, exec: &Exec) -> Result<Vec<Acceptance>, SaveError> {
-        let method = &self.run.method;
-        if method.info().departs {
-            return Ok(Vec::new());
-        }
-        Ok(planes::through_zero(self.problem.pair(), &method.motions(), grid, exec)?)
-    }
 }
 
 /// z of the COR at first contact, in D; −∞ without contact.
 fn height_of(pair: &Pair, error: &PoseError) -> f64 {
     let pose = CorPose::from_error(error, pair.alignment.center_of_rotation, pair.alignment.free);
     pair.height(&pose).unwrap_or(f64::NEG_INFINITY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Problem;
+    use crate::report::schema::testing::design;
+    use crate::run::{Over, Run, Sample};
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
+
+    /// One slice had 71 cells a side, those beside it 25.
+    #[test]
+    fn slices_have_one_resolution() {
+        let problem = Problem::of(design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect())).unwrap();
+        let run = Run { over: Over::Grid("6".parse().unwrap()), sample: Sample::None, ..Run::default() };
+        let drawn = run.on(&problem, &Exec::new()).unwrap().draw(&Exec::new()).unwrap();
+        let (_, picture) = drawn.pictures.iter().find(|(name, _)| *name == "slices").unwrap();
+        let document = resvg::usvg::roxmltree::Document::parse(picture.svg()).unwrap();
+        let sizes: Vec<(u32, u32)> = document
+            .descendants()
+            .filter_map(|node| node.attribute("href")?.strip_prefix("data:image/png;base64,"))
+            .map(|data| {
+                let bytes = std::io::Cursor::new(STANDARD.decode(data).unwrap());
+                let reader = png::Decoder::new(bytes).read_info().unwrap();
+                (reader.info().width, reader.info().height)
+            })
+            .collect();
+        assert_eq!(sizes, [(41, 41); 3]);
+    }
 }

@@ -49,12 +49,16 @@ pub fn difference(
         ((LEFT + extent(GAP[0]) + 28.0).max(legend_width + 26.0), TOP + extent(GAP[1]) + BELOW);
     let mut svg = Svg::new(width, height);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &format!("{} (first) and {} (second)", names[0], names[1]));
-    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story(comparison, rows.len() > 1));
+    let maps = pairs.iter().map(|pair| Map::of(&paired.first, *pair, &PoseError::default()));
+    let maps = maps.collect::<Result<Vec<Map>, FigureError>>()?;
+    let is_central = maps.iter().all(Map::is_central);
+    let sliced = (rows.len() > 1).then_some(if is_central { "through zero" } else { "beside zero" });
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story(comparison, sliced));
     // A single map sits in the middle over its legend.
     let left = if rows.len() == 1 { LEFT + 0.5 * (width - LEFT - side - 28.0) } else { LEFT };
     let units = Units::of(design);
     let at = |axes: &[Dof], dof: Dof| axes.iter().position(|axis| *axis == dof).unwrap_or(0);
-    for pair in pairs {
+    for (pair, map) in pairs.iter().zip(&maps) {
         let (column, row) = (at(columns, pair[0]), at(rows, pair[1]));
         let rect = Rect {
             x: left + column as f64 * (side + GAP[0]),
@@ -62,7 +66,6 @@ pub fn difference(
             w: side,
             h: side,
         };
-        let map = Map::of(&paired.first, pair, &PoseError::default())?;
         let second = map.slice.pick(&paired.second.outcomes);
         let colours: Vec<Rgb> =
             map.outcomes.iter().zip(&second).map(|(a, b)| COLOURS[kind(*a, *b)]).collect();
@@ -102,11 +105,12 @@ fn kind(first: Outcome, second: Outcome) -> usize {
     }
 }
 
-fn story(c: &Comparison, sliced: bool) -> String {
+fn story(c: &Comparison, sliced: Option<&str>) -> String {
     let [agreement, jaccard] = [100.0 * c.agreement, c.jaccard].map(short);
     let ratio =
         c.sum_ratio.map_or_else(String::new, |ratio| format!("  ·  Sum second / first {}", short(ratio)));
-    let slices = if sliced { "  ·  slices through zero" } else { "" };
+    let slices =
+        sliced.map_or_else(String::new, |place| format!("  ·  slices {place}, shares of the whole grid"));
     format!("they agree on {agreement} % of the cells  ·  Jaccard {jaccard}{ratio}{slices}")
 }
 
@@ -157,6 +161,7 @@ mod tests {
             look(name, &picture);
             assert_eq!(picture.svg().matches("<image").count(), maps);
             assert!(picture.svg().contains("only the first") && picture.svg().contains("x [mm]"));
+            assert_eq!(picture.svg().contains("slices through zero, shares of the whole grid"), maps > 1);
         }
         let one = drawn([Dof::X].into_iter().collect(), 61);
         assert!(matches!(one, Err(FigureError::Empty { .. })));

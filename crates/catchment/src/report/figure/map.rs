@@ -2,7 +2,7 @@
 
 use super::draw::axis::{Frame, Units, short};
 use super::draw::colour::{self, Rgb, hex};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, Svg, TICK, polyline, width_of};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
 use super::{FigureError, raster};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::landscape::Grid;
@@ -42,6 +42,29 @@ impl Map {
     pub(super) fn fixed(&self, units: &Units) -> String {
         let values: Vec<String> = self.slice.at.iter().map(|(dof, v)| units.value(*dof, *v)).collect();
         values.join(", ")
+    }
+
+    /// What it shows, and where it lies among the errors that are fixed, in at most this width: `…, slice through zero`, `…, slice at yaw = 1.5°`.
+    pub(super) fn heading(&self, shows: &str, units: &Units, width: f64) -> String {
+        if self.slice.at.is_empty() {
+            return shows.to_owned();
+        }
+        if self.is_central() {
+            return format!("{shows}, slice through zero");
+        }
+        let exact = format!("{shows}, slice at {}", self.fixed(units));
+        if width_of(&exact, LABEL) < width { exact } else { format!("{shows}, slice beside zero") }
+    }
+
+    /// Whether every fixed error is zero: cells of an even grid are centred beside it.
+    pub(super) fn is_central(&self) -> bool {
+        self.slice.at.iter().all(|(_, value)| value.abs() < 1e-9)
+    }
+
+    /// The share of its cells with an outcome.
+    pub(super) fn share(&self, outcome: Outcome) -> f64 {
+        let count = self.outcomes.iter().filter(|found| **found == outcome).count();
+        count as f64 / self.outcomes.len().max(1) as f64
     }
 
     /// One pixel per cell, first axis to the right, second upwards.
@@ -144,47 +167,74 @@ fn cube(svg: &mut Svg, map: &Map, frame: &Frame, units: &Units, onaa: &[Interval
     svg.rect(rect, &format!(r#"fill="none" stroke="{INK}" stroke-width="1.7"{dash}"#));
 }
 
-/// What a legend names: a fill (none for the cube) and the words.
-fn entries(acceptance: &Acceptance, onaa: bool) -> Vec<(Option<Rgb>, String)> {
-    let total = acceptance.outcomes.len().max(1) as f64;
-    let mut entries: Vec<(Option<Rgb>, String)> = Outcome::ALL
-        .into_iter()
-        .zip(acceptance.counts())
-        .filter(|(_, count)| *count > 0)
-        .map(|(o, count)| {
-            (Some(colour::outcome(o)), format!("{} {} %", o.name(), short(100.0 * count as f64 / total)))
+/// The outcomes and the cube that maps show, in words from left to right.
+pub(super) struct Legend {
+    /// What the shares are of; empty where there are none.
+    of: &'static str,
+    /// A fill (none for the cube) and the words.
+    entries: Vec<(Option<Rgb>, String)>,
+}
+
+impl Legend {
+    /// Of a single map, with the share that each outcome has of what it shows.
+    pub(super) fn of(map: &Map, onaa: bool) -> Self {
+        let of = if map.slice.at.is_empty() { "of the error box:" } else { "of this slice:" };
+        Self::new(of, std::slice::from_ref(map), onaa, |outcome| {
+            format!("{} {} %", outcome.name(), short(100.0 * map.share(outcome)))
         })
-        .collect();
-    if onaa {
-        entries.push((None, "largest cube (ONAA)".to_owned()));
     }
-    entries
+
+    /// Of several maps, each of which has its own shares.
+    pub(super) fn of_all(maps: &[Map], onaa: bool) -> Self {
+        Self::new("", maps, onaa, |outcome| outcome.name().to_owned())
+    }
+
+    fn new(of: &'static str, maps: &[Map], onaa: bool, words: impl Fn(Outcome) -> String) -> Self {
+        let occurs = |outcome: &Outcome| maps.iter().any(|map| map.outcomes.contains(outcome));
+        let mut entries: Vec<(Option<Rgb>, String)> = Outcome::ALL
+            .into_iter()
+            .filter(occurs)
+            .map(|outcome| (Some(colour::outcome(outcome)), words(outcome)))
+            .collect();
+        if onaa {
+            entries.push((None, "largest cube (ONAA)".to_owned()));
+        }
+        Self { of, entries }
+    }
+
+    fn indent(&self) -> f64 {
+        if self.of.is_empty() { 0.0 } else { width_of(self.of, LABEL) + 0.5 * BETWEEN }
+    }
+
+    /// Its width.
+    pub(super) fn width(&self) -> f64 {
+        let entry = |(_, words): &(Option<Rgb>, String)| SWATCH + width_of(words, LABEL) + BETWEEN;
+        self.indent() + self.entries.iter().map(entry).sum::<f64>() - BETWEEN
+    }
+
+    /// Draws it.
+    pub(super) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2]) {
+        svg.text([x, y + 0.5], LABEL, Anchor::Start, SOFT, self.of);
+        let mut place = x + self.indent();
+        for (fill, words) in &self.entries {
+            let swatch = Rect { x: place, y: y - 10.0, w: 13.0, h: 13.0 };
+            let style = fill.map_or_else(
+                || format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#),
+                |fill| {
+                    let fill = hex(fill);
+                    format!(r#"fill="{fill}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#)
+                },
+            );
+            svg.rect(swatch, &style);
+            svg.text([place + SWATCH, y + 0.5], LABEL, Anchor::Start, INK, words);
+            place += SWATCH + width_of(words, LABEL) + BETWEEN;
+        }
+    }
 }
 
 /// From a swatch to its words, and from words to the next swatch.
 const SWATCH: f64 = 19.0;
 const BETWEEN: f64 = 22.0;
-
-/// Width of the legend.
-pub(super) fn legend_width(acceptance: &Acceptance, onaa: bool) -> f64 {
-    entries(acceptance, onaa).iter().map(|(_, words)| SWATCH + width_of(words, LABEL) + BETWEEN).sum::<f64>()
-        - BETWEEN
-}
-
-/// The outcomes that occur, with their share of the whole grid, from left to right.
-pub(super) fn legend(svg: &mut Svg, acceptance: &Acceptance, onaa: bool, [x, y]: [f64; 2]) {
-    let mut place = x;
-    for (fill, words) in entries(acceptance, onaa) {
-        let swatch = Rect { x: place, y: y - 10.0, w: 13.0, h: 13.0 };
-        let style = fill.map_or_else(
-            || format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#),
-            |fill| format!(r#"fill="{}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#, hex(fill)),
-        );
-        svg.rect(swatch, &style);
-        svg.text([place + SWATCH, y + 0.5], LABEL, Anchor::Start, INK, &words);
-        place += SWATCH + width_of(&words, LABEL) + BETWEEN;
-    }
-}
 
 /// A colour bar with ticks, to the right of a map.
 pub(super) fn colour_bar(
@@ -205,7 +255,7 @@ pub(super) fn colour_bar(
             [rect.x + rect.w + 7.0, y + 3.8],
             TICK,
             Anchor::Start,
-            super::draw::svg::SOFT,
+            SOFT,
             &super::draw::axis::tick_label(z),
         );
     }

@@ -2,17 +2,19 @@
 
 use super::draw::axis::Units;
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE};
-use super::map::{self, Map};
+use super::map::{self, Legend, Map};
 use super::section::Placement;
 use super::{FigureError, Picture, cube, headline, heights, solid};
 use crate::acceptance::Acceptance;
 use crate::connector::Connector;
-use crate::merit::MeritError;
 use crate::pose::{Dof, PoseError};
 use crate::report::Report;
 
+/// From one map to the next, in SVG units.
+const BETWEEN: f64 = 370.0;
+
 /// Draws an overview over a pair of errors, the others zero. The numbers are those of the `report`; the shares of the
-/// outcomes those of its `acceptance`. The maps show `slice`, which may be the same, or a finer grid over the pair
+/// outcomes those of the map. The maps show `slice`, which may be the same, or a finer grid over the pair
 /// alone. `height` as in [`super::heights()`], for a cell of `slice`.
 ///
 /// # Errors
@@ -25,7 +27,6 @@ pub fn overview(
     height: &dyn Fn(usize) -> f64,
     pair: [Dof; 2],
 ) -> Result<Picture, FigureError> {
-    let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
     let design = &report.design;
     let units = Units::of(design);
     let map = Map::of(slice, pair, &PoseError::default())?.within(acceptance, pair)?;
@@ -47,13 +48,12 @@ pub fn overview(
     let picture = Rect { x: 14.0, y: top, w: side + 10.0, h: side + 30.0 };
     solid::panel(&mut svg, picture, design, connector, &apart)?;
 
-    let sliced = if grid.axes.len() > 2 { ", slice through zero" } else { "" };
     let middle = Rect { x: 392.0, y: top, w: side, h: side };
-    heading(&mut svg, middle.x, &format!("area of acceptance{sliced}"));
+    heading(&mut svg, middle.x, &map.heading("area of acceptance", &units, BETWEEN));
     map::outcomes(&mut svg, &map, &map.frame(middle, &units), &units, cube)?;
-    map::legend(&mut svg, acceptance, !cube.is_empty(), [middle.x, total_height - 22.0]);
+    Legend::of(&map, !cube.is_empty()).draw(&mut svg, [middle.x, total_height - 22.0]);
 
-    let right = Rect { x: 762.0, y: top, w: side, h: side };
+    let right = Rect { x: middle.x + BETWEEN, y: top, w: side, h: side };
     heading(&mut svg, right.x, "height of first contact");
     heights::panel(&mut svg, &map, right, &units, height)?;
     Ok(Picture::of(svg))
@@ -100,6 +100,8 @@ mod tests {
         look("overview-5", &picture);
         let told = "Sum 10.5 ± 3.9 D²·rad³  ·  12.50 % of the error box  ·  ONAA edge 0.0000  ·  by flood";
         assert!(picture.svg().contains(told), "{}", picture.svg());
+        assert!(picture.svg().contains("of this slice:") && picture.svg().contains("jammed 100 %"));
+        assert!(picture.svg().contains("slice beside zero"));
         assert!(table(&report).contains("Sum            10.5 ± 3.9 D²·rad³   (12.50 % of the error box)"));
     }
 }

@@ -4,10 +4,11 @@
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
-use super::map::{legend, zero_lines};
+use super::map::{Legend, Map, zero_lines};
 use super::{FigureError, Picture, headline};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::method::partition::Partition;
+use crate::pose::PoseError;
 use crate::report::Report;
 use crate::report::text::percent;
 
@@ -67,6 +68,7 @@ pub fn partition(
     svg.end();
     zero_lines(&mut svg, &frame);
     frame.draw(&mut svg);
-    legend(&mut svg, acceptance, false, [rect.x, rect.y + rect.h + 62.0]);
+    let map = Map::of(acceptance, [first, second], &PoseError::default())?;
+    Legend::of(&map, false).draw(&mut svg, [rect.x, rect.y + rect.h + 62.0]);
     Ok(Picture::of(svg))
 }

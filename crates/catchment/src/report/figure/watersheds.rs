@@ -7,12 +7,11 @@
 use super::draw::axis::Units;
 use super::draw::colour::{self, Rgb, mix};
 use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE};
-use super::map::{self, Map};
+use super::map::{Legend, Map};
 use super::section::Placement;
 use super::{FigureError, Picture, headline, heights, solid};
 use crate::acceptance::Acceptance;
 use crate::connector::Connector;
-use crate::merit::MeritError;
 use crate::method::flood::{DAM, Watersheds};
 use crate::pose::{Dof, PoseError};
 use crate::report::Report;
@@ -34,7 +33,6 @@ pub fn watersheds(
     height: &dyn Fn(usize) -> f64,
     pair: [Dof; 2],
 ) -> Result<Picture, FigureError> {
-    let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
     let design = &report.design;
     let units = Units::of(design);
     let map = Map::of(acceptance, pair, &PoseError::default())?;
@@ -49,9 +47,9 @@ pub fn watersheds(
     let apart = Placement::mated(design, LIFT);
     solid::panel(&mut svg, Rect { x: 14.0, y: top, w: 260.0, h: side + 30.0 }, design, connector, &apart)?;
 
-    let sliced = if grid.axes.len() > 2 { ", slice" } else { "" };
+    let whole = if map.slice.at.is_empty() { "" } else { " in the whole grid" };
     let rect = |x: f64| Rect { x, y: top, w: side, h: side };
-    heading(&mut svg, 340.0, &format!("height of first contact{sliced}"));
+    heading(&mut svg, 340.0, &map.heading("height of first contact", &units, 370.0));
     heights::panel(&mut svg, &map, rect(340.0), &units, height)?;
 
     let WatershedsReport { counts, moved_share } = WatershedsReport::new(watersheds);
@@ -63,7 +61,7 @@ pub fn watersheds(
     let dams =
         if counts.dams > 0 { format!(", {} dam cells (dark)", grouped(counts.dams)) } else { String::new() };
     let below = top + side + 58.0;
-    let told = format!("{} watersheds{dams}", grouped(counts.first));
+    let told = format!("{} watersheds{dams}{whole}", grouped(counts.first));
     svg.text([720.0, below], LABEL, Anchor::Start, INK, &told);
 
     heading(&mut svg, 1040.0, "after merging");
@@ -73,9 +71,9 @@ pub fn watersheds(
     svg.path(&map.border(&frame), &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
     frame.draw(&mut svg);
     let told =
-        format!("{} left; {} of the cells joined another", grouped(counts.merged), percent(moved_share));
+        format!("{} left; {} of all cells joined another", grouped(counts.merged), percent(moved_share));
     svg.text([1040.0, below], LABEL, Anchor::Start, INK, &told);
-    map::legend(&mut svg, acceptance, false, [720.0, below + 26.0]);
+    Legend::of(&map, false).draw(&mut svg, [720.0, below + 26.0]);
     Ok(Picture::of(svg))
 }
 
