@@ -145,7 +145,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
     let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
         let motions = descent::Settings::with_friction(settings.friction)?;
-        Some(panels(&problem, &poses, &motions, &running.exec)?)
+        Some(panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?)
     } else {
         None
     };

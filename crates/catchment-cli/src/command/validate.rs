@@ -99,7 +99,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<ExitStatus, Failure> {
     let drawn = if drawing.is_some() || matches!(kind, Some("png" | "svg")) {
         let poses: Vec<PoseError> = found.trials.iter().map(|trial| trial.tried.error).collect();
         let motions = descent::Settings::with_friction(settings.friction)?;
-        Some(panels(&problem, &poses, &motions, &running.exec)?)
+        Some(panels(&problem, &poses, &settings.accuracy, &motions, &running.exec)?)
     } else {
         None
     };

@@ -4,9 +4,9 @@ use super::super::plan::PlanPointReport;
 use super::super::text::percent;
 use super::super::{PlanReport, TriedReport, ValidationReport};
 use super::Picture;
-use super::draw::axis::{Frame, Scale, Units};
+use super::draw::axis::{Frame, Scale, Units, short};
 use super::draw::colour::{self, Rgb, hex, mix};
-use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline, width_of};
 use crate::acceptance::Outcome;
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
@@ -119,13 +119,14 @@ fn draw(
             marks.iter().any(|mark| if *wrong { mark.wrong } else { mark.shape == *shape })
         })
         .collect();
-    let inexact = panels.iter().any(|panel| !panel.exact);
+    let note = note(panels);
     let legend = 150.0 + met.iter().map(|(.., words)| 40.0 + width_of(words, LABEL)).sum::<f64>();
-    let width = wide.max(width_of(story, LABEL) + 48.0).max(legend);
+    let width =
+        [story, note].map(|words| width_of(words, LABEL) + 48.0).into_iter().fold(wide.max(legend), f64::max);
     let mut svg = Svg::new(width, top + rows as f64 * (height + BELOW) - 22.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, story);
-    key(&mut svg, &met, inexact);
+    key(&mut svg, &met, panels.iter().any(|panel| !panel.is_projection()), note);
     for (number, panel) in panels.iter().enumerate() {
         let rect = Rect {
             x: left + (number % PER_ROW) as f64 * (SIDE + BESIDE),
@@ -138,23 +139,51 @@ fn draw(
     Picture::of(svg)
 }
 
-fn key(svg: &mut Svg, met: &[&(Shape, bool, &str)], inexact: bool) {
+/// How the poses lie to what is drawn under them, where that is not plain to see.
+fn note(panels: &[Panel]) -> &'static str {
+    let is_near = |panel: &Panel| panel.others.iter().any(|(_, ends)| Panel::middle(*ends).1.is_some());
+    if panels.iter().any(Panel::is_projection) {
+        "projections: the errors that a panel does not show differ from pose to pose, and no region belongs to all of them"
+    } else if panels.iter().any(is_near) {
+        "a slice lies at the middle of its poses, which are within the robot's accuracy of it"
+    } else {
+        ""
+    }
+}
+
+fn key(svg: &mut Svg, met: &[&(Shape, bool, &str)], has_region: bool, note: &str) {
     let (mut x, y) = (24.0, 74.0);
-    let shade = hex(region());
-    svg.rect(
-        Rect { x, y: y - 10.0, w: 14.0, h: 12.0 },
-        &format!(r#"fill="{shade}" stroke="{SOFT}" stroke-width="0.5""#),
-    );
-    svg.text([x + 20.0, y], LABEL, Anchor::Start, INK, "docks, exactly");
-    x += 40.0 + width_of("docks, exactly", LABEL);
+    if has_region {
+        let shade = hex(region());
+        svg.rect(
+            Rect { x, y: y - 10.0, w: 14.0, h: 12.0 },
+            &format!(r#"fill="{shade}" stroke="{SOFT}" stroke-width="0.5""#),
+        );
+        svg.text([x + 20.0, y], LABEL, Anchor::Start, INK, "docks, exactly");
+        x += 40.0 + width_of("docks, exactly", LABEL);
+    }
     for (shape, wrong, words) in met {
         mark(svg, [x + 5.0, y - 4.0], *shape, *wrong);
         svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, words);
         x += 36.0 + width_of(words, LABEL);
     }
-    if inexact {
-        svg.text([24.0, y + 18.0], LABEL, Anchor::Start, SOFT, "poses are drawn in the nearest slice");
-    }
+    svg.text([24.0, y + 18.0], LABEL, Anchor::Start, SOFT, note);
+}
+
+/// The errors that a panel does not show: `yaw = 20°`, `yaw = 20° ± 0.3°`, and of a projection `yaw −5 … 12 deg`.
+fn beside(panel: &Panel, units: &Units) -> String {
+    let words = |(axis, ends): &(Dof, [f64; 2])| {
+        let shown = |value: f64| short(value * units.factor(*axis));
+        if panel.is_projection() {
+            let unit = if axis.is_rotation() { "deg" } else { units.symbol() };
+            return format!("{} {} … {} {unit}", axis.name(), shown(ends[0]), shown(ends[1]));
+        }
+        let (middle, off) = Panel::middle(*ends);
+        let unit = if axis.is_rotation() { "°".to_owned() } else { format!(" {}", units.symbol()) };
+        let off = off.map_or_else(String::new, |off| format!(" ± {}{unit}", shown(off)));
+        units.value(*axis, middle) + &off
+    };
+    panel.others.iter().map(words).collect::<Vec<_>>().join(", ")
 }
 
 /// The shade of what docks: light, so that marks show.
@@ -173,9 +202,11 @@ fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &Units, rect: Rect) 
     };
     let planar = panel.across.len() > 1;
     let frame = Frame { rect, x: scale(0), y: scale(1) };
-    let values: Vec<String> = panel.at.iter().map(|(axis, value)| units.value(*axis, *value)).collect();
-    svg.text([rect.x, rect.y - 8.0], LABEL, Anchor::Start, INK, &values.join(", "));
-    svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
+    let (others, size) = (beside(panel, units), if panel.is_projection() { TICK } else { LABEL });
+    svg.text([rect.x, rect.y - 8.0], size, Anchor::Start, INK, &others);
+    if !panel.is_projection() {
+        svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
+    }
     svg.begin_clip(rect);
     cells(svg, panel, rect);
     let value = |error: &PoseError, axis: Dof| error.to_array()[axis.index()] * units.factor(axis);
@@ -273,7 +304,8 @@ mod tests {
         let pattern = Pattern::Grid { steps: [Some(7), None, None, Some(5), None], max: [None; 5] };
         let found = run(&problem, &Settings::new(pattern, accuracy), &Exec::new()).unwrap();
         let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
-        let slices = panels(&problem, &poses, &descent::Settings::default(), &Exec::new()).unwrap();
+        let motions = descent::Settings::default();
+        let slices = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
         assert_eq!((slices.len(), slices[0].poses.len(), slices[0].cells.len()), (1, 35, CELLS * CELLS));
         let report = PlanReport::new(problem.design(), &found, OffsetsAt::Face, Vec::new(), None);
         let picture = plan(&report, &slices);
@@ -296,5 +328,50 @@ mod tests {
         assert!(picture.svg().contains("inconsistent; ") && picture.svg().contains("not made"));
         // Every disagreement is ringed once, and once more in the key.
         assert_eq!(picture.svg().matches(WRONG).count(), report.disagreements.len() + 1);
+    }
+
+    /// Poses of many yaws were drawn over the slice of the nearest of four: blue under crosses, grey under dots.
+    #[test]
+    fn poses_are_drawn_over_their_own_slice_or_over_none() {
+        let free = [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect();
+        let problem = Problem::of(design(free)).unwrap();
+        let accuracy = PoseError { x: 0.03, y: 0.03, yaw: 0.02, ..PoseError::default() };
+        let drawn = |yaws: &[f64]| {
+            let pose = |(k, yaw): (usize, &f64)| PoseError {
+                x: 0.1 * (k % 5) as f64,
+                y: 0.07 * (k % 7) as f64,
+                yaw: *yaw,
+                ..PoseError::default()
+            };
+            let poses: Vec<PoseError> = yaws.iter().enumerate().map(pose).collect();
+            let motions = descent::Settings::default();
+            let found = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
+            let marks: Vec<Mark> =
+                poses.iter().map(|error| Mark { error: *error, shape: Shape::Docks, wrong: false }).collect();
+            let words = [(Shape::Docks, false, "should dock")];
+            (draw(problem.design(), "a story", &marks, &found, &words), found)
+        };
+        let region = format!(r#"fill="{}""#, hex(region()));
+        let dots = |picture: &Picture| picture.svg().matches(&format!(r#"fill="{DOCKED}""#)).count();
+        // As recorded: about three angles, each within the accuracy of its slice.
+        let yaws: Vec<f64> = (0..30).map(|k| 0.3 * f64::from(k % 3) + 0.0005 * f64::from(k)).collect();
+        let (picture, found) = drawn(&yaws);
+        look("plan-near", &picture);
+        assert_eq!(found.iter().map(|panel| panel.poses.len()).collect::<Vec<_>>(), [10, 10, 10]);
+        for panel in &found {
+            let (middle, off) = Panel::middle(panel.others[0].1);
+            let far = |k: &usize| (yaws[*k] - middle).abs() > accuracy.yaw;
+            assert!(off.is_some_and(|off| off <= accuracy.yaw) && !panel.poses.iter().any(far));
+        }
+        assert!(picture.svg().contains("yaw = 0.39° ± 0.39°") && picture.svg().contains(&region));
+        assert_eq!(dots(&picture), 30 + 1);
+        // Thirty angles: all poses over each pair of errors, and no region.
+        let yaws: Vec<f64> = (0..30).map(|k| 0.05 * f64::from(k)).collect();
+        let (picture, found) = drawn(&yaws);
+        look("plan-projected", &picture);
+        assert!(found.len() == 3 && found.iter().all(Panel::is_projection));
+        assert!(picture.svg().contains("yaw 0 … 83.1 deg") && picture.svg().contains("projections: "));
+        assert!(!picture.svg().contains(&region) && !picture.svg().contains("docks, exactly"));
+        assert_eq!(dots(&picture), 3 * 30 + 1);
     }
 }

@@ -6,8 +6,9 @@
 //!                                                                  ·•·│o       ·•·│o       ·•│o
 //! ```
 //!
-//! The errors across are the first two that vary. Of the others every combination that occurs has its panel; where there are too many of
-//! them, panels stand at some values, and a pose is seen in the nearest.
+//! The errors across are the first two that vary. Poses whose other errors agree within the accuracy of the robot share a slice, which lies at the
+//! middle of them. Where that takes too many slices, the poses are projected along their other errors, over every pair of errors that vary, and
+//! no region is drawn under them: that of any slice would be the wrong one for most of them.
 
 use super::border::Judge;
 use super::foretold::for_each;
@@ -16,16 +17,14 @@ use crate::method::descent;
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
 
-/// A slice.
+/// A slice, or a projection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
     /// The errors across and up, and their ranges in D or radians; a planar panel has one of them.
     pub across: Vec<(Dof, [f64; 2])>,
-    /// The others that vary, at these values.
-    pub at: Vec<(Dof, f64)>,
-    /// Whether the poses in it are at these values, or only nearer to them than to those of other panels.
-    pub exact: bool,
-    /// Whether the centres of its cells dock, row by row from below.
+    /// The others that are not zero in all poses, from the least to the largest value that a pose in it has.
+    pub others: Vec<(Dof, [f64; 2])>,
+    /// Whether the centres of its cells dock, row by row from below, the others at the middle of their ranges; empty of a projection.
     pub cells: Vec<bool>,
     /// Numbers of the poses that are seen in it.
     pub poses: Vec<usize>,
@@ -33,22 +32,52 @@ pub struct Panel {
 
 /// Cells along an error of a panel.
 pub const CELLS: usize = 96;
-/// Most panels.
-const MOST: usize = 6;
-/// Panels where poses do not lie in planes.
-const SOME: usize = 4;
+/// Most slices.
+const MOST: usize = 9;
+/// Most projections.
+const MOST_PROJECTIONS: usize = 6;
 /// Values nearer than this are the same, in D or radians.
 const SAME: f64 = 1e-6;
 /// Room around the poses of a panel, as a share of their extent.
 const ROOM: f64 = 0.25;
 
-/// Slices that show these poses.
+impl Panel {
+    /// Whether its poses are projected: they have any values of the others, and no region belongs to all of them.
+    pub fn is_projection(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// The value of another error at which a slice lies, and how far at most the poses in it are from that; `None` where they are not.
+    pub fn middle([lo, hi]: [f64; 2]) -> (f64, Option<f64>) {
+        (f64::midpoint(lo, hi), (hi - lo > SAME).then_some(0.5 * (hi - lo)))
+    }
+
+    /// With the poses of these numbers in it.
+    fn of(problem: &Problem, across: &[Dof], numbers: Vec<usize>, poses: &[PoseError]) -> Self {
+        let others = problem.alignment().free.iter().filter(|axis| !across.contains(axis));
+        let others = others.map(|axis| {
+            let values = numbers.iter().map(|k| poses[*k].to_array()[axis.index()]);
+            let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], v| [lo.min(v), hi.max(v)]);
+            (axis, ends)
+        });
+        let is_zero = |axis: Dof| poses.iter().all(|pose| pose.to_array()[axis.index()].abs() <= SAME);
+        Self {
+            across: across.iter().map(|axis| (*axis, range(problem, *axis, poses))).collect(),
+            others: others.filter(|(axis, _)| !is_zero(*axis)).collect(),
+            cells: Vec::new(),
+            poses: numbers,
+        }
+    }
+}
+
+/// Slices that show these poses, of a robot of this `accuracy` (D and radians); projections where there would be too many.
 ///
 /// # Errors
 /// [`Cancelled`] when asked to stop.
 pub fn panels(
     problem: &Problem,
     poses: &[PoseError],
+    accuracy: &PoseError,
     motions: &descent::Settings,
     exec: &Exec,
 ) -> Result<Vec<Panel>, Cancelled> {
@@ -60,47 +89,25 @@ pub fn panels(
     if axes.is_empty() {
         axes = problem.alignment().free.iter().collect();
     }
-    let beside = axes.split_off(axes.len().min(2));
-    let across: Vec<(Dof, [f64; 2])> =
-        axes.iter().map(|axis| (*axis, range(problem, *axis, poses))).collect();
-    let fixed: Vec<Dof> = problem.alignment().free.iter().filter(|axis| !axes.contains(axis)).collect();
-    let (values, exact) = values(poses, &beside);
-    let mut panels: Vec<Panel> = values
-        .into_iter()
-        .map(|at| Panel {
-            across: across.clone(),
-            at: beside.iter().copied().zip(at).collect(),
-            exact,
-            cells: Vec::new(),
-            poses: Vec::new(),
-        })
-        .collect();
-    for (number, pose) in poses.iter().enumerate() {
-        let off = |panel: &Panel| {
-            panel.at.iter().map(|(axis, value)| (pose.to_array()[axis.index()] - value).abs()).sum::<f64>()
-        };
-        let nearest = panels.iter_mut().min_by(|a, b| off(a).total_cmp(&off(b)));
-        if let Some(panel) = nearest {
-            panel.poses.push(number);
-        }
-    }
-    panels.retain(|panel| !panel.poses.is_empty());
+    let (across, beside) = axes.split_at(axes.len().min(2));
+    let Some(groups) = grouped(poses, beside, accuracy) else {
+        let pairs = (0..axes.len()).flat_map(|j| (j + 1..axes.len()).map(move |k| [j, k]));
+        let all = || (0..poses.len()).collect();
+        let projection = |[j, k]: [usize; 2]| Panel::of(problem, &[axes[j], axes[k]], all(), poses);
+        return Ok(pairs.take(MOST_PROJECTIONS).map(projection).collect());
+    };
+    let mut panels: Vec<Panel> =
+        groups.into_iter().map(|numbers| Panel::of(problem, across, numbers, poses)).collect();
     let rows = if across.len() > 1 { CELLS } else { 1 };
-    let count = panels.len();
     let cells = for_each(
-        rows * count,
+        rows * panels.len(),
         exec,
         || Judge::new(problem, motions),
         |judge, job| {
             let (panel, row) = (&panels[job / rows], job % rows);
-            // What neither varies nor lies across is as the first pose has it.
-            let first = panel.poses.first().map_or([0.0; 5], |k| poses[*k].to_array());
             let mut pose = [0.0; 5];
-            for axis in &fixed {
-                pose[axis.index()] = first[axis.index()];
-            }
-            for (axis, value) in &panel.at {
-                pose[axis.index()] = *value;
+            for (axis, ends) in &panel.others {
+                pose[axis.index()] = Panel::middle(*ends).0;
             }
             let center = |range: &[f64; 2], k: usize| {
                 range[0] + (range[1] - range[0]) * (k as f64 + 0.5) / CELLS as f64
@@ -136,35 +143,24 @@ fn range(problem: &Problem, axis: Dof, poses: &[PoseError]) -> [f64; 2] {
     [lo - below, hi + above]
 }
 
-/// The values of the other errors at which panels stand, and whether all poses have one of them.
-fn values(poses: &[PoseError], axes: &[Dof]) -> (Vec<Vec<f64>>, bool) {
-    let of =
-        |pose: &PoseError| -> Vec<f64> { axes.iter().map(|axis| pose.to_array()[axis.index()]).collect() };
-    let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
-    let mut met: Vec<Vec<f64>> = Vec::new();
-    for pose in poses {
-        let at = of(pose);
-        if !met.iter().any(|known| same(known, &at)) {
-            met.push(at);
-        }
-        if met.len() > MOST {
-            break;
-        }
-    }
-    met.sort_by(|a, b| {
-        a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
-    });
-    if met.len() <= MOST {
-        return (met, true);
-    }
-    // Along the first of them, the others at 0.
-    let mut along: Vec<f64> = poses.iter().map(|pose| pose.to_array()[axes[0].index()]).collect();
-    along.sort_by(f64::total_cmp);
-    let middle = |k: usize| {
-        let at = along[(2 * k + 1) * along.len() / (2 * SOME)];
-        std::iter::once(at).chain(std::iter::repeat_n(0.0, axes.len() - 1)).collect::<Vec<f64>>()
+/// The numbers of the poses whose errors along `axes` agree within the accuracy, ordered by these errors; `None` for too many groups.
+fn grouped(poses: &[PoseError], axes: &[Dof], accuracy: &PoseError) -> Option<Vec<Vec<usize>>> {
+    let of = |pose: &PoseError, axis: &Dof| pose.to_array()[axis.index()];
+    let near = |a: &PoseError, b: &PoseError| {
+        axes.iter().all(|axis| (of(a, axis) - of(b, axis)).abs() <= of(accuracy, axis).max(SAME))
     };
-    let mut found: Vec<Vec<f64>> = (0..SOME).map(middle).collect();
-    found.dedup_by(|a, b| same(a, b));
-    (found, false)
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (number, pose) in poses.iter().enumerate() {
+        match groups.iter().position(|group| near(&poses[group[0]], pose)) {
+            Some(k) => groups[k].push(number),
+            None if groups.len() == MOST => return None,
+            None => groups.push(vec![number]),
+        }
+    }
+    groups.sort_by(|a, b| {
+        let [a, b] = [a, b].map(|group| &poses[group[0]]);
+        let order = axes.iter().map(|axis| of(a, axis).total_cmp(&of(b, axis)));
+        order.into_iter().find(|order| order.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
+    });
+    Some(groups)
 }
