@@ -1,29 +1,35 @@
 //! The basins of a landscape: how deep and how large every minimum is, and what a depth tolerance would accept.
 //!
 //! ```text
-//!   accepted │      ┌─────────┐           both over the same depths, on a logarithmic scale: the staircase of
-//!            │ ┌────┘ │ gap │ │           the accepted share, and below it one dot per minimum. What lies
-//!            └─┴──────┴──▲──┴─┴──── τ     left of the tolerance is merged.
-//!   share    │ ◦ ◦◦        ●    ●  ∞
+//!   accepted │   ┌─────────┐               both frames have one scale of depths, logarithmic between a place for 0 and one for ∞: above, the
+//!            │ ┌─┘   │ gap │ └───          staircase of the accepted share; below, one dot per minimum. What lies left of the tolerance
+//!            └─┴─────┴──▲──┴───── τ        is merged.
+//!   share    │ ◦  ◦◦        ●   ●
+//!             ≈0   …            ∞
 //! ```
 
 use super::draw::axis::{Frame, Scale, Units, short, tick_label};
 use super::draw::colour::{self, hex};
-use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, n, width_of};
 use super::{FigureError, Picture, headline};
 use crate::acceptance::{Acceptance, Outcome};
-use crate::method::flood::{Hierarchy, Reason};
+use crate::method::flood::{Hierarchy, Minimum, Reason};
 use crate::report::Report;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Depths this much shallower than the deepest are drawn at the left border.
+/// Depths this much shallower than the deepest are as good as 0.
 const DECADES: f64 = 5.0;
 /// Room beyond the shallowest and the deepest, as a factor.
 const MARGIN: f64 = 1.6;
 /// Smallest minima are drawn first, and at most so many: more dots than this are a blot.
 const DOTS: usize = 2000;
+/// Up to so many dots that stand for several minima have their number beside them.
+const COUNTED: usize = 60;
+/// Width of the places for 0 and for ∞, in SVG units.
+const PLACE: f64 = 34.0;
 
-/// The scale of depths, in D: logarithmic, with a place for ∞ at the right.
+/// The scale of depths, in D, of everything that is drawn over them: logarithmic, with a place for 0 at the left and one for ∞ at the right.
 struct Depths {
     left: f64,
     width: f64,
@@ -33,8 +39,18 @@ struct Depths {
 
 impl Depths {
     fn px(&self, depth: f64) -> f64 {
-        let share = (depth.max(self.lo) / self.lo).ln() / (self.hi / self.lo).ln();
-        self.left + self.width * share.min(1.0)
+        let share = (depth / self.lo).ln() / (self.hi / self.lo).ln();
+        if depth < self.lo {
+            self.left + 0.5 * PLACE
+        } else if share <= 1.0 {
+            self.left + PLACE + (self.width - 2.0 * PLACE) * share
+        } else {
+            self.right() - 0.5 * PLACE
+        }
+    }
+
+    fn right(&self) -> f64 {
+        self.left + self.width
     }
 
     /// Ticks at 1, 2 and 5 times powers of ten of the shown unit, fewer if there are many decades.
@@ -69,10 +85,10 @@ pub fn basins(
     }
     let design = &report.design;
     let units = Units::of(design);
-    let (left, width) = (78.0, 500.0);
+    let (left, width) = (78.0, 548.0);
     let scale = Depths { left, width, lo: (lo / MARGIN).max(hi * 10f64.powf(-DECADES)), hi: hi * MARGIN };
     let top = Rect { x: left, y: 101.0, w: width, h: 210.0 };
-    let bottom = Rect { x: left, y: top.y + top.h + 22.0, w: width + 34.0, h: 170.0 };
+    let bottom = Rect { y: top.y + top.h + 22.0, h: 170.0, ..top };
     let mut svg = Svg::new(bottom.x + bottom.w + 28.0, bottom.y + bottom.h + 84.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &headline(report));
@@ -89,8 +105,10 @@ pub fn basins(
         format!("{} % accepted at a depth tolerance of {} {unit}{why}", short(accepted), shown(tolerance));
     svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &story);
     let (minima, merged) = (hierarchy.tree.minima.len(), hierarchy.basins.len());
-    let story =
-        format!("{minima} minima, {merged} basins after merging; what lies left of the line is merged");
+    let drawn = if minima > DOTS { format!(" (the {DOTS} largest are drawn)") } else { String::new() };
+    let story = format!(
+        "{minima} minima{drawn}, {merged} basins after merging; what lies left of the line is merged"
+    );
     svg.text([24.0, 83.0], LABEL, Anchor::Start, SOFT, &story);
 
     if let Reason::WidestGap { between: [a, b], .. } = hierarchy.tolerance.reason {
@@ -119,7 +137,9 @@ pub fn basins(
         }
         svg.text([x, bottom.y + bottom.h + 15.5], TICK, Anchor::Middle, SOFT, &tick_label(value));
     }
-    svg.text([left + width + 17.0, bottom.y + bottom.h + 15.5], TICK, Anchor::Middle, SOFT, "∞");
+    for (depth, words) in [(0.0, "≈0"), (f64::INFINITY, "∞")] {
+        svg.text([scale.px(depth), bottom.y + bottom.h + 15.5], TICK, Anchor::Middle, SOFT, words);
+    }
     let label = format!("depth, depth tolerance [{unit}]");
     svg.text([left + 0.5 * width, bottom.y + bottom.h + 33.0], LABEL, Anchor::Middle, INK, &label);
     if tolerance > 0.0 {
@@ -127,7 +147,7 @@ pub fn basins(
         let style = format!(r#"stroke="{INK}" stroke-width="1.2" stroke-dasharray="5 3""#);
         svg.line([x, top.y], [x, bottom.y + bottom.h], &style);
     }
-    legend(&mut svg, [left, bottom.y + bottom.h + 62.0]);
+    legend(&mut svg, acceptance, hierarchy, [left, bottom.y + bottom.h + 62.0]);
     Ok(Picture::of(svg))
 }
 
@@ -148,7 +168,7 @@ fn highest(hierarchy: &Hierarchy, total: f64) -> f64 {
 
 fn staircase(svg: &mut Svg, hierarchy: &Hierarchy, total: f64, scale: &Depths, frame: &Frame) {
     let steps = &hierarchy.staircase;
-    let right = scale.left + scale.width;
+    let right = scale.right();
     let mut path = String::new();
     let mut area = format!("M{} {}", n(scale.left), n(frame.py(0.0)));
     for (k, step) in steps.iter().enumerate() {
@@ -188,15 +208,29 @@ fn dots(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, scale: &D
     }
     svg.rect(rect, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="1""#));
     svg.text_up([rect.x - 46.0, rect.y + 0.5 * rect.h], LABEL, "share of the box [%]");
-    let mut minima: Vec<_> = hierarchy.tree.minima.iter().filter(|m| m.depth > 0.0).collect();
+    let mut minima: Vec<_> = hierarchy.tree.minima.iter().collect();
     minima.sort_by_key(|m| m.cells);
+    // Minima that are images of each other have one place: a dot with their number.
+    let mut dots: BTreeMap<(usize, u64, u8), (Outcome, bool, usize)> = BTreeMap::new();
     for minimum in &minima[minima.len().saturating_sub(DOTS)..] {
-        let x =
-            if minimum.depth.is_finite() { scale.px(minimum.depth) } else { scale.left + scale.width + 17.0 };
-        let fill = acceptance.outcomes.get(minimum.cell).copied().unwrap_or(Outcome::Undecided);
-        let kept = minimum.depth >= hierarchy.tolerance.depth;
-        svg.circle([x, py(minimum.cells as f64 / total)], if kept { 5.0 } else { 3.5 }, &dot(fill, kept));
+        let (outcome, kept) = kind(minimum, acceptance, hierarchy);
+        let key = (minimum.cells, scale.px(minimum.depth).to_bits(), outcome as u8);
+        dots.entry(key).or_insert((outcome, kept, 0)).2 += 1;
     }
+    let is_counted = dots.values().filter(|(.., count)| *count > 1).count() <= COUNTED;
+    for ((cells, x, _), (outcome, kept, count)) in dots {
+        let place = [f64::from_bits(x), py(cells as f64 / total)];
+        svg.circle(place, if kept { 5.0 } else { 3.5 }, &dot(outcome, kept));
+        if is_counted && count > 1 {
+            svg.text([place[0] + 7.0, place[1] - 4.0], TICK, Anchor::Start, INK, &format!("×{count}"));
+        }
+    }
+}
+
+/// The outcome of a minimum, and whether it is a basin after merging.
+fn kind(minimum: &Minimum, acceptance: &Acceptance, hierarchy: &Hierarchy) -> (Outcome, bool) {
+    let outcome = acceptance.outcomes.get(minimum.cell).copied().unwrap_or(Outcome::Undecided);
+    (outcome, minimum.depth >= hierarchy.tolerance.depth)
 }
 
 /// A minimum that is merged is hollow.
@@ -207,17 +241,20 @@ fn dot(outcome: Outcome, kept: bool) -> String {
     format!(r#"fill="{fill}" stroke="{edge}" stroke-width="1.1""#)
 }
 
-fn legend(svg: &mut Svg, [mut x, y]: [f64; 2]) {
-    let entries = [
-        (dot(Outcome::Aligned, true), "aligned"),
-        (dot(Outcome::Jammed, true), "jammed"),
-        (dot(Outcome::Missed, true), "missed"),
-        (dot(Outcome::Jammed, false), "merged into another"),
-    ];
+/// The kinds of dots that are drawn.
+fn legend(svg: &mut Svg, acceptance: &Acceptance, hierarchy: &Hierarchy, [mut x, y]: [f64; 2]) {
+    let has = |wanted: &dyn Fn((Outcome, bool)) -> bool| {
+        hierarchy.tree.minima.iter().any(|minimum| wanted(kind(minimum, acceptance, hierarchy)))
+    };
+    let kept = Outcome::ALL.into_iter().filter(|outcome| has(&|found| found == (*outcome, true)));
+    let mut entries: Vec<(String, &str)> = kept.map(|outcome| (dot(outcome, true), outcome.name())).collect();
+    if has(&|(_, kept)| !kept) {
+        entries.push((dot(Outcome::Jammed, false), "merged into another"));
+    }
     for (style, words) in entries {
         svg.circle([x + 5.0, y - 4.0], 5.0, &style);
         svg.text([x + 15.0, y], LABEL, Anchor::Start, INK, words);
-        x += 42.0 + 7.0 * words.len() as f64;
+        x += 42.0 + width_of(words, LABEL);
     }
 }
 
@@ -237,6 +274,45 @@ mod tests {
         look("basins", &picture);
         assert!(picture.svg().contains("accepted at a depth tolerance of") && !picture.svg().contains("NaN"));
         assert_eq!(picture, basins(&report, &acceptance, &hierarchy).unwrap());
+    }
+
+    /// The frames ended at different places, and minima of depth 0 were counted and not drawn.
+    #[test]
+    fn the_frames_are_aligned_and_every_minimum_has_its_dot() {
+        let (design, flooding) = flooded();
+        let Flooding { acceptance, mut hierarchy, .. } = flooding;
+        let level = Minimum { depth: 0.0, ..hierarchy.tree.minima[0] };
+        hierarchy.tree.minima.extend([level; 2]);
+        let picture = basins(&report_of(&design, &acceptance), &acceptance, &hierarchy).unwrap();
+        look("basins-level", &picture);
+        let document = resvg::usvg::roxmltree::Document::parse(picture.svg()).unwrap();
+        let number = |node: &resvg::usvg::roxmltree::Node, name| -> f64 {
+            node.attribute(name).unwrap().parse().unwrap()
+        };
+        let frames: Vec<[f64; 4]> = document
+            .descendants()
+            .filter(|node| node.has_tag_name("rect") && node.attribute("fill") == Some("none"))
+            .map(|node| ["x", "y", "width", "height"].map(|name| number(&node, name)))
+            .collect();
+        let [top, bottom] = frames[..] else { panic!("{frames:?}") };
+        assert_eq!([top[0], top[2]], [bottom[0], bottom[2]]);
+        let dots: Vec<[f64; 2]> = document
+            .descendants()
+            .filter(|node| node.has_tag_name("circle"))
+            .map(|node| [number(&node, "cx"), number(&node, "cy")])
+            .filter(|[x, y]| {
+                (bottom[0]..=bottom[0] + bottom[2]).contains(x)
+                    && (bottom[1]..=bottom[1] + bottom[3]).contains(y)
+            })
+            .collect();
+        // A dot with a number stands for as many minima, of which the others lie on it.
+        let texts = document.descendants().filter(|node| node.has_tag_name("text"));
+        let others = texts.filter_map(|node| node.text()?.strip_prefix('×'));
+        let others: usize = others.map(|count| count.parse::<usize>().unwrap() - 1).sum();
+        let minima = hierarchy.tree.minima.len();
+        assert_eq!(dots.len() + others, minima);
+        assert!(others > 0 && picture.svg().contains(&format!("{minima} minima, ")));
+        assert_eq!(dots.iter().filter(|[x, _]| *x < bottom[0] + PLACE).count(), 1);
     }
 
     #[test]

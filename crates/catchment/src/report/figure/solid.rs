@@ -1,7 +1,8 @@
 //! Both halves in space: parallel projection, shaded facets, a depth buffer.
 //!
 //! A depth buffer shows halves that touch or overlap as they are, which sorting facets by distance cannot. The image
-//! is drawn three times larger than shown and averaged down; lines mark edges where the surface bends.
+//! is drawn three times larger than shown and averaged down; lines mark edges where the surface bends. Of an edge those places are drawn beside
+//! which a facet that it borders is seen: a depth alone would show edges that lie in a facet of another body, and ends of edges that go backwards.
 
 use super::draw::colour::{self, Rgb, mix};
 use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
@@ -143,8 +144,8 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Edges where two facets meet at more than [`BEND`].
-    fn bends(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+    /// Edges where two facets meet at more than [`BEND`], with the numbers of the facets that they border.
+    fn bends(&self) -> impl Iterator<Item = ([DVec3; 2], Vec<usize>)> + '_ {
         /// Cosine of 20°: the facets of a tessellated cone meet at less, those of a designed edge at more.
         const BEND: f64 = 0.94;
         let mut sides: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
@@ -157,7 +158,7 @@ impl<'a> Body<'a> {
         }
         sides.into_iter().filter_map(|((a, b), facets)| {
             let bent = facets.len() != 2 || self.normals[facets[0]].dot(self.normals[facets[1]]) < BEND;
-            bent.then(|| [self.corners[a as usize], self.corners[b as usize]])
+            bent.then(|| ([self.corners[a as usize], self.corners[b as usize]], facets))
         })
     }
 }
@@ -220,11 +221,18 @@ fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, Canvas), FigureErr
         width: fine[0],
         height: fine[1],
         depth: vec![f64::NEG_INFINITY; fine[0] * fine[1]],
-        colour: Vec::new(),
+        colour: vec![[255; 3]; fine[0] * fine[1]],
+        facet: vec![u32::MAX; fine[0] * fine[1]],
     };
-    canvas.colour = vec![[255; 3]; canvas.depth.len()];
-    for body in bodies {
-        for (facet, normal) in body.surface.facets.iter().zip(&body.normals) {
+    // Facets are numbered through all bodies.
+    let counts = bodies.iter().scan(0, |next, body| {
+        let first = *next;
+        *next += body.surface.facets.len();
+        Some(first)
+    });
+    let numbered: Vec<(usize, &Body)> = counts.zip(bodies).collect();
+    for (first, body) in &numbered {
+        for (number, (facet, normal)) in body.surface.facets.iter().zip(&body.normals).enumerate() {
             if normal.dot(camera.towards) <= 0.0 {
                 continue;
             }
@@ -232,13 +240,15 @@ fn draw(bodies: &[Body], size: [usize; 2]) -> Result<(Camera, Canvas), FigureErr
             let corners: Vec<DVec3> =
                 facet.corners.iter().map(|i| camera.project(body.corners[*i as usize])).collect();
             for k in 1..corners.len() - 1 {
-                canvas.triangle([corners[0], corners[k], corners[k + 1]], shade);
+                let number = (first + number) as u32;
+                canvas.triangle([corners[0], corners[k], corners[k + 1]], shade, number);
             }
         }
     }
-    for body in bodies {
-        for ends in body.bends() {
-            canvas.edge(ends.map(|p| camera.project(p)), body.edge);
+    for (first, body) in &numbered {
+        for (ends, facets) in body.bends() {
+            let facets: Vec<u32> = facets.into_iter().map(|number| (first + number) as u32).collect();
+            canvas.edge(ends.map(|p| camera.project(p)), body.edge, &facets);
         }
     }
     Ok((camera, canvas))
@@ -260,13 +270,18 @@ struct Canvas {
     height: usize,
     depth: Vec<f64>,
     colour: Vec<Rgb>,
+    /// Number of the facet that is seen.
+    facet: Vec<u32>,
 }
+
+/// Half-width of a line, in fine pixels.
+const HALF: i32 = 2;
 
 /// Facets this near to each other, in fine pixels, lie in one plane: the one drawn first stays, and no pattern of rounding shows.
 const COINCIDENT: f64 = 1e-6;
 
 impl Canvas {
-    fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb) {
+    fn triangle(&mut self, [a, b, c]: [DVec3; 3], colour: Rgb, facet: u32) {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         if area.abs() < 1e-9 {
             return;
@@ -289,32 +304,39 @@ impl Canvas {
                 if z > self.depth[index] + COINCIDENT {
                     self.depth[index] = z;
                     self.colour[index] = colour;
+                    self.facet[index] = facet;
                 }
             }
         }
     }
 
-    /// A line a little in front of the facets it borders.
-    fn edge(&mut self, [a, b]: [DVec3; 2], colour: Rgb) {
-        /// Half-width of the line, and how far it stands out, in fine pixels.
-        const HALF: i32 = 2;
+    /// The pixels no farther than [`HALF`] from a place.
+    fn around(&self, p: DVec3) -> impl Iterator<Item = usize> + use<> {
+        let (width, height) = (self.width, self.height);
+        (-HALF..=HALF).flat_map(move |dy| (-HALF..=HALF).map(move |dx| [dx, dy])).filter_map(
+            move |[dx, dy]| {
+                let (x, y) = (p.x + f64::from(dx), p.y + f64::from(dy));
+                let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+                (inside && dx * dx + dy * dy <= HALF * HALF).then(|| x as usize + y as usize * width)
+            },
+        )
+    }
+
+    /// A line a little in front of the facets it borders, where one of them is seen.
+    fn edge(&mut self, [a, b]: [DVec3; 2], colour: Rgb, facets: &[u32]) {
+        /// How far it stands out, in fine pixels.
         const PROUD: f64 = 9.0;
         let steps = (b - a).truncate().length().ceil().max(1.0);
         for k in 0..=steps as usize {
             let p = a + (b - a) * (k as f64 / steps);
-            for dy in -HALF..=HALF {
-                for dx in -HALF..=HALF {
-                    let (x, y) = (p.x + f64::from(dx), p.y + f64::from(dy));
-                    let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
-                    if !inside || dx * dx + dy * dy > HALF * HALF {
-                        continue;
-                    }
-                    let index = x as usize + y as usize * self.width;
-                    if p.z + PROUD > self.depth[index] {
-                        self.colour[index] = colour;
-                        // Covered from now on, but no nearer than the facet: a later line may cross it.
-                        self.depth[index] = self.depth[index].max(p.z);
-                    }
+            if !self.around(p).any(|index| facets.contains(&self.facet[index])) {
+                continue;
+            }
+            for index in self.around(p) {
+                if p.z + PROUD > self.depth[index] {
+                    self.colour[index] = colour;
+                    // Covered from now on, but no nearer than the facet: a later line may cross it.
+                    self.depth[index] = self.depth[index].max(p.z);
                 }
             }
         }
@@ -379,6 +401,39 @@ mod tests {
         shades.sort_unstable();
         let most = shades.chunk_by(|a, b| a == b).map(<[_]>::len).max().unwrap();
         assert!(most * 10 > shades.len() * 8, "one facet, one shade: {most} of {}", shades.len());
+    }
+
+    /// Of two boxes whose fronts lie in one plane, the second showed through the first; so did the ends of edges that go backwards.
+    #[test]
+    fn edges_are_seen_where_their_facets_are() {
+        let block = |lo: [f64; 3], hi: [f64; 3]| {
+            let [[x0, y0, z0], [x1, y1, z1]] = [lo, hi];
+            let below = [[x0, y0, z0], [x1, y0, z0], [x1, y1, z0], [x0, y1, z0]];
+            let corners = below.into_iter().chain(below.map(|[x, y, _]| [x, y, z1]));
+            let mut sides = vec![vec![3, 2, 1, 0], vec![4, 5, 6, 7]];
+            sides.extend((0..4u32).map(|k| vec![k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4]));
+            Surface::from_polygons(corners.map(DVec3::from_array).collect(), &sides).unwrap()
+        };
+        let surfaces = [block([0.0, 0.0, 0.0], [1.0, 1.0, 1.0]), block([0.5, 0.0, 0.2], [1.6, 1.0, 0.8])];
+        let edges = [[1, 2, 3], [200, 0, 0]];
+        let bodies: Vec<Body> = surfaces
+            .iter()
+            .zip(edges)
+            .map(|(s, edge)| Body::new(s, DMat3::IDENTITY, DVec3::ZERO, [[255; 3], edge]))
+            .collect();
+        let (camera, canvas) = draw(&bodies, [300, 240]).unwrap();
+        let near = |point: [f64; 3], colour: Rgb| {
+            let at = camera.project(DVec3::from_array(point));
+            canvas.around(at).filter(|index| canvas.colour[*index] == colour).count()
+        };
+        // In front, within the first box and beyond it; its own front edge; the back of the second.
+        assert_eq!(near([0.5, 0.0, 0.5], edges[1]), 0);
+        assert_eq!(near([0.75, 0.0, 0.8], edges[1]), 0);
+        assert!(near([1.3, 0.0, 0.8], edges[1]) > 5 && near([1.6, 0.0, 0.5], edges[1]) > 5);
+        assert!(near([0.3, 0.0, 0.0], edges[0]) > 5);
+        assert_eq!(near([1.4, 1.0, 0.2], edges[1]), 0);
+        // A little behind the lower left corner of the first.
+        assert_eq!(near([0.0, 0.06, 0.0], edges[0]), 0);
     }
 
     #[test]
