@@ -10,10 +10,10 @@ use crate::setting::number;
 use crate::source::read_table;
 use catchment::design::{Design, Quantity};
 use catchment::problem::Problem;
-use catchment::report::figure::{FigureError, Picture, Placement, ensure_fits, section};
+use catchment::report::figure::ensure_fits;
 use catchment::terminal::shown;
 use catchment_systems::invert::{
-    Heights, Inverse, Limits, MAX_PIECES, Settings, design_file, heights_of, invert, list_of_angles, report,
+    Heights, Limits, MAX_PIECES, Settings, design_file, figure, heights_of, invert, list_of_angles, report,
     wanted_from_table,
 };
 use clap::Args;
@@ -32,7 +32,8 @@ use std::path::{Path, PathBuf};
     catchment invert design.toml --heights wanted.csv  a grid: x,y,height, in D\n  \
     catchment invert design.toml --pitch \"-10..10 deg/21\" --yaw 0,\"20 deg\"\n  \
     catchment run new.toml                             what the result accepts\n\n\
-    -o writes the pair as a design file (.toml), its halves as convex pieces, or a picture of it (.svg, .png).")]
+    -o writes the pair as a design file (.toml), its halves as convex pieces, or a picture of it with\n\
+    the wanted heights (.svg, .png).")]
 pub(crate) struct InvertArgs {
     #[command(flatten)]
     design: DesignArgs,
@@ -65,9 +66,6 @@ pub(crate) struct InvertArgs {
     #[command(flatten)]
     exec: ExecArgs,
 }
-
-/// How far apart the halves are drawn, in D.
-const APART: f64 = 0.25;
 
 pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["toml", "svg", "png"])?;
@@ -111,17 +109,12 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
     }
     match kind {
         Some("toml") => args.file.write(design_file(design, &found).as_bytes())?,
-        Some(kind) => args.file.draw(kind, &drawn(design, &found)?)?,
+        Some(kind) => args.file.draw(kind, &figure(design, &found)?)?,
         None => {}
     }
     let notes: Vec<String> =
         report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
     tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
-}
-
-/// Both halves cut along the approach axis, apart.
-fn drawn(design: &Design, found: &Inverse) -> Result<Picture, FigureError> {
-    section(design, &found.connector, &Placement::mated(design, APART))
 }
 
 /// What a file wants: heights without rotation, or the design whose heights are wanted at every rotation.

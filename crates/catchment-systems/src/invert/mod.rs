@@ -37,6 +37,7 @@
 //! Source: the dissertation, section 7.2 (p. 108–109), which wishes for this and gives no formula: the adjunction, and all that
 //! follows from it, is ours.
 
+mod figure;
 mod file;
 mod heights;
 mod measure;
@@ -47,6 +48,7 @@ mod tests;
 mod tidy;
 mod turns;
 
+pub use figure::figure;
 pub use file::{MAX_PIECES, design_file};
 pub use heights::Heights;
 pub use measure::Shortfall;

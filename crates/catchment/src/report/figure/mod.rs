@@ -97,7 +97,7 @@ pub use overview::overview;
 pub use pair::pair;
 pub use partition::partition;
 pub use region::region;
-pub use section::{Placement, section};
+pub use section::{Placement, panel as section_panel, section};
 pub use sensitivity::sensitivity;
 pub use slices::slices;
 pub use solid::{panel as solid_panel, solids};

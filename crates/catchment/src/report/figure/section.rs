@@ -74,10 +74,26 @@ pub fn section(
     let mut svg = Svg::new(width + 110.0, height + 126.0);
     svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
     svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &describe(design, placement));
-    let frame = view.frame(Rect { x: 72.0, y: 68.0, w: width, h: height });
-    view.halves(&mut svg, &frame, placement);
-    frame.draw(&mut svg);
+    panel(&mut svg, Rect { x: 72.0, y: 68.0, w: width, h: height }, design, connector, placement)?;
     Ok(Picture::of(svg))
+}
+
+/// The same in a rectangle of another picture, with its axes around it.
+///
+/// # Errors
+/// If the cut meets neither half.
+pub fn panel(
+    svg: &mut Svg,
+    rect: Rect,
+    design: &Design,
+    connector: &Connector,
+    placement: &Placement,
+) -> Result<(), FigureError> {
+    let view = View::new(design, connector, std::slice::from_ref(placement))?;
+    let frame = view.frame(rect);
+    view.halves(svg, &frame, placement);
+    frame.draw(svg);
+    Ok(())
 }
 
 /// The errors that are not zero, in words.
