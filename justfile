@@ -42,6 +42,11 @@ gallery *designs:
     cargo build --locked --release
     python3 site/gallery.py target/release/catchment {{ designs }}
 
+# draws the pictures of docs/ again, all or those whose names begin so: just pictures friction
+pictures *names:
+    cargo build --locked --release
+    python3 site/pictures.py target/release/catchment {{ names }}
+
 # the archive of a release, made and tried
 archive:
     release/build
