@@ -76,10 +76,11 @@
 //! Data walks through them in one direction; imports run against it.
 //!
 //! ```text
-//! design ─▶ poses ─▶ connector ─▶ contact ─▶ problem ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ run ─▶ study ─▶ report
+//! design ─▶ xml ─▶ poses ─▶ connector ─▶ contact ─▶ problem ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ run ─▶ study ─▶ report
 //! ```
 //!
 //! - [`design`]: the design file, typed; all its problems at once, each with line, column and advice.
+//! - [`xml`]: XML piece by piece within limits, and what an SVG picture hides.
 //! - [`poses`]: pose errors as people write them: one, tables of them, and how they are distributed.
 //! - [`connector`]: the two halves as closed solids, from a family, convex pieces, mesh files or triangles in memory.
 //! - [`contact`]: the height of first contact, exactly, and what touches there.
@@ -94,8 +95,9 @@
 //! - [`report`]: JSON, text, tables, pictures, Zarr: the one place that tells results.
 //!
 //! [`pose`] owns frames, signs, the order of angles and the metric; [`exec`] owns threads, the clock, cancelling, progress and the
-//! memory budget, none of which changes a bit of a result; [`suggest`] knows what a misspelt word meant, [`advice`] what helps
-//! where something is refused, [`terminal`] what may be shown of foreign names. [`polytope`] is the geometry of convex sets in up to six dimensions. [`prelude`] is one `use` for
+//! memory budget, none of which changes a bit of a result; [`budget`] limits what a reader may spend on one input; [`suggest`] knows what a
+//! misspelt word meant, [`advice`] what helps where something is refused, [`terminal`] what may be shown of foreign names. [`polytope`] is the
+//! geometry of convex sets in up to six dimensions. [`prelude`] is one `use` for
 //! all that a program needs.
 //!
 //! Lengths are in D, the connector's width; angles are in radians.
@@ -108,6 +110,7 @@
 
 pub mod acceptance;
 pub mod advice;
+pub mod budget;
 pub mod connector;
 pub mod contact;
 pub mod design;
@@ -125,3 +128,4 @@ pub mod run;
 pub mod study;
 pub mod suggest;
 pub mod terminal;
+pub mod xml;

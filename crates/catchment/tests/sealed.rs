@@ -7,14 +7,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms that must build where there is no system, such as a page in a browser.
-const CORE: [&str; 16] = [
+const CORE: [&str; 18] = [
     "pose",
     "exec",
+    "budget",
     "suggest",
     "terminal",
     "advice",
     "polytope",
     "design",
+    "xml",
     "poses",
     "connector",
     "contact",
@@ -52,7 +54,8 @@ const ALLOWED: [(&str, &str, &str); 9] = [
     ("connector/source/disk.rs", "a file", "reading a mesh"),
     ("connector/step/child.rs", "a process", "a STEP file becomes triangles in a Python of the person's own"),
     ("connector/step/child.rs", "a thread", "what the process reads and writes"),
-    ("connector/step/child.rs", "the environment", "which Python"),
+    ("connector/step/child.rs", "the environment", "which Python, and where it looks for packages"),
+    ("connector/step/child.rs", "a file", "an empty folder in which the process starts"),
 ];
 
 /// Lines of code that ask for something they may not, as `place:line: what`. What follows the unit tests of a file is not

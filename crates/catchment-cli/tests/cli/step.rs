@@ -5,6 +5,8 @@
 use super::{catchment, designs, run};
 use std::fs;
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::process::Command;
 
 /// A real part, which `tests/step/make.py` drew.
 fn peg() -> PathBuf {
@@ -93,7 +95,8 @@ fn what_another_program_meshes_is_a_half_like_any_other() {
         fs::write(dir.path().join(name), answer(&meshes.join(stl))).unwrap();
     }
     // The one that a deflection is written for is the socket: 0 is the size of the part.
-    let script = "cat > /dev/null\nif [ \"$3\" = 0 ]; then cat plug; else cat socket; fi";
+    let script =
+        "cat > /dev/null\ncd \"$(dirname \"$0\")\"\nif [ \"$4\" = 0 ]; then cat plug; else cat socket; fi";
     let path = python(dir.path(), script);
     let output =
         catchment(dir.path()).env("CATCHMENT_PYTHON", &path).args(["check", "design.toml"]).output().unwrap();
@@ -173,10 +176,10 @@ fn whatever_the_program_does_it_is_a_message() {
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_the_one_who_waits_and_the_one_who_meshes() {
-    use std::process::{Command, Stdio};
+    use std::process::Stdio;
     use std::time::{Duration, Instant};
     let dir = folder();
-    let path = python(dir.path(), "echo $$ > started\nexec sleep 60");
+    let path = python(dir.path(), "echo $$ > \"$(dirname \"$0\")/started\"\nexec sleep 60");
     let commands: [(&[&str], &str, i32); 3] = [
         (&["check", "design.toml", "-o", "pair.svg"], "-INT", 130),
         (&["check", "design.toml"], "-TERM", 143),
@@ -208,4 +211,109 @@ fn a_signal_ends_the_one_who_waits_and_the_one_who_meshes() {
         fs::remove_file(started).unwrap();
     }
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 4);
+}
+
+/// A real Python, if there is one; what follows is about how it starts.
+#[cfg(unix)]
+fn real_python() -> Option<PathBuf> {
+    let folders = std::env::var_os("PATH")?;
+    std::env::split_paths(&folders).map(|folder| folder.join("python3")).find(|path| path.is_file())
+}
+
+/// Code that a folder of someone else's brings along is not run: not by the folder at hand, not by relative entries of `PYTHONPATH`, which an empty
+/// entry is too.
+#[cfg(unix)]
+#[test]
+fn what_lies_beside_a_design_is_never_run() {
+    let Some(python) = real_python() else { return };
+    let dir = folder();
+    let ran = dir.path().join("ran");
+    let code = format!("open({:?}, 'w').write('x')\n", ran.to_str().unwrap());
+    fs::create_dir_all(dir.path().join("lib/OCP")).unwrap();
+    for place in [
+        "sitecustomize.py",
+        "usercustomize.py",
+        "json.py",
+        "signal.py",
+        "lib/sitecustomize.py",
+        "lib/OCP/__init__.py",
+        "site.py",
+    ] {
+        fs::write(dir.path().join(place), &code).unwrap();
+    }
+    fs::create_dir(dir.path().join("OCP")).unwrap();
+    fs::write(dir.path().join("OCP/__init__.py"), &code).unwrap();
+    for paths in ["/opt/mine:", ":", ".", "lib", "./lib:/opt/mine", "../x:lib"] {
+        let output = catchment(dir.path())
+            .env("CATCHMENT_PYTHON", &python)
+            .env("PYTHONPATH", paths)
+            .args(["check", "design.toml"])
+            .output()
+            .unwrap();
+        assert!(output.status.code().is_some());
+        assert!(!ran.exists(), "PYTHONPATH={paths}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+/// What the person has put where Python finds it in every folder is found: an absolute entry of `PYTHONPATH`, and packages of the user.
+#[cfg(unix)]
+#[test]
+fn packages_of_the_person_are_found() {
+    let Some(python) = real_python() else { return };
+    let dir = folder();
+    // Stands for OpenCASCADE: says that it was imported.
+    let package = |folder: &Path, says: &str| {
+        fs::create_dir_all(folder.join("OCP")).unwrap();
+        fs::write(folder.join("OCP/__init__.py"), format!("raise ImportError('{says}')\n")).unwrap();
+    };
+    package(&dir.path().join("mine"), "seen by PYTHONPATH");
+    let asked = Command::new(&python)
+        .args([
+            "-c",
+            "import site, sys; print(site.getusersitepackages() if sys.prefix == sys.base_prefix else '')",
+        ])
+        .env("HOME", dir.path())
+        .env_remove("PYTHONUSERBASE")
+        .output()
+        .unwrap();
+    let of_user = String::from_utf8(asked.stdout).unwrap();
+    let says = |home: &str, paths: &str| {
+        let output = catchment(dir.path())
+            .env("CATCHMENT_PYTHON", &python)
+            .env("HOME", home)
+            .env("PYTHONPATH", paths)
+            .args(["check", "design.toml"])
+            .output()
+            .unwrap();
+        words(&String::from_utf8_lossy(&output.stderr))
+    };
+    let mine = dir.path().join("mine");
+    // Where OpenCASCADE itself is installed, that comes first.
+    let is_installed =
+        Command::new(&python).args(["-I", "-c", "import OCP"]).output().unwrap().status.success();
+    if is_installed {
+        return;
+    }
+    let said = says("/nowhere", &format!("relative:{}", mine.display()));
+    assert!(said.contains("has none (seen by PYTHONPATH)"), "{said}");
+    if !of_user.trim().is_empty() {
+        package(Path::new(of_user.trim()), "seen for the user");
+        let said = says(dir.path().to_str().unwrap(), "");
+        assert!(said.contains("has none (seen for the user)"), "{said}");
+    }
+}
+
+/// A path of an interpreter is relative to the folder of the person, although it starts in another.
+#[cfg(unix)]
+#[test]
+fn an_interpreter_may_have_a_relative_path() {
+    let dir = folder();
+    python(dir.path(), r#"echo '{"error": "empty", "message": "pwd is '"$(ls -A | wc -l)"' files"}'"#);
+    let output = catchment(dir.path())
+        .env("CATCHMENT_PYTHON", "./python")
+        .args(["check", "design.toml"])
+        .output()
+        .unwrap();
+    let said = words(&String::from_utf8_lossy(&output.stderr));
+    assert!(said.contains("the file holds no solid (pwd is 0 files)"), "{said}");
 }

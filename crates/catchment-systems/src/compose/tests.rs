@@ -394,7 +394,7 @@ fn what_is_wrong_with_a_file_is_said_in_its_place() {
         ("<svg><path d=\"M0 0Lx\"/></svg>", "the path cannot be read"),
         ("<svg><rect width=\"3\"/></svg>", "a.svg:1:6: <rect> is not read"),
         ("<svg><g transform=\"rotate(3)\"><path d=\"M0 0L1 0L0 1Z\"/></g></svg>", "a transform is not read"),
-        ("<svg>", "the picture is no XML"),
+        ("<svg>", "this is no SVG picture: it was cut off"),
         ("<svg/>", "the picture has no path"),
         ("<svg><path d=\"M0 0A1e300 1e300 0 0 1 9 9Z\"/></svg>", "far too large"),
         ("<svg><path d=\"M0 0L12345678901 0L0 1Z\"/></svg>", "far too large"),

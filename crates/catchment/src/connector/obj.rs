@@ -1,13 +1,18 @@
 //! Wavefront OBJ files: the faces of all objects of a file together, colours and textures left out.
 //!
-//! Read by `tobj`; faces of more than three corners are cut into triangles, which keep every corner. The unit stands beside the file, as for STL.
+//! ```text
+//! v 0 0 1          a corner
+//! f 1 2/5 -1//3    a face: numbers of corners from 1, or back from the last; textures and normals behind slashes
+//! ```
+//!
+//! Faces of more than three corners are cut into triangles, which keep every corner; points and lines bound nothing. The unit stands beside the file, as for
+//! STL. The reader is our own because it says in which line a file is broken and keeps nothing but corners and triangles.
 
 use super::mesh::{self, MeshProblem, Triangle};
 use super::source::{FileBytes, Held};
+use crate::budget::Budget;
 use crate::design::Treatment;
 use glam::DVec3;
-use std::io::{self, BufRead, Read};
-use tobj::{LoadError, LoadOptions};
 
 /// As the table of formats wants it.
 pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<MeshProblem>> {
@@ -15,30 +20,38 @@ pub(super) fn read(file: &FileBytes, treatment: Treatment) -> Result<Held, Vec<M
 }
 
 fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshProblem>> {
-    let refused =
-        |line: usize, expected| vec![MeshProblem::Syntax { line, expected, found: shown(bytes, line) }];
-    let text = plain(bytes).map_err(|line| refused(line, CORNERS))?;
-    let mut lines = Lines { rest: text.as_bytes(), line: 0 };
-    let no_materials = |_: &std::path::Path| Err(LoadError::OpenFileFailed);
-    // Points and lines bound nothing.
-    let options = LoadOptions { ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
-    let (models, _) = tobj::load_obj_buf(&mut lines, &options, no_materials)
-        .map_err(|error| refused(lines.line, expected(error)))?;
+    let mut vertices: Vec<DVec3> = Vec::new();
+    let mut budget = Budget::new(mesh::vertex_limit(treatment));
     let mut triangles = mesh::Triangles::new(treatment);
-    for mesh in models.iter().map(|model| &model.mesh) {
-        let corner = |k: &u32| {
-            let at = 3 * *k as usize;
-            DVec3::from_slice(&mesh.positions[at..at + 3])
-        };
-        let mut rest = mesh.indices.as_slice();
-        let faces = mesh.indices.len() / 3;
-        // Without arities all faces are triangles.
-        let arities = (0..faces).map(|_| 3).take(if mesh.face_arities.is_empty() { faces } else { 0 });
-        for arity in arities.chain(mesh.face_arities.iter().map(|arity| *arity as usize)) {
-            let (face, others) = rest.split_at(arity);
-            rest = others;
-            let corners: Vec<DVec3> = face.iter().map(corner).collect();
-            triangles.push(&corners)?;
+    let mut corners: Vec<DVec3> = Vec::new();
+    for (line, text) in (1..).zip(bytes.split(|byte| *byte == b'\n')) {
+        let mut words = text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let refused = |expected| vec![MeshProblem::Syntax { line, expected, found: shown(text) }];
+        match words.next() {
+            Some(b"v") => {
+                let mut number = || std::str::from_utf8(words.next()?).ok()?.parse::<f64>().ok();
+                let (Some(x), Some(y), Some(z)) = (number(), number(), number()) else {
+                    return Err(refused("`v` and three numbers"));
+                };
+                budget.spend(1).map_err(|over| mesh::overspent(format!("line {line}"), over))?;
+                vertices.push(DVec3::new(x, y, z));
+            }
+            Some(b"f") => {
+                corners.clear();
+                for word in words {
+                    let written = word.split(|byte| *byte == b'/').next().unwrap_or_default();
+                    let number: Option<i64> =
+                        std::str::from_utf8(written).ok().and_then(|word| word.parse().ok());
+                    let Some(number) = number else { return Err(refused("`f` and at least three corners")) };
+                    let corner = corner(number, vertices.len()).ok_or_else(|| refused(CORNERS))?;
+                    corners.push(vertices[corner]);
+                }
+                // A point or a line bounds nothing.
+                if corners.len() > 2 {
+                    triangles.push(&corners, || format!("line {line}"))?;
+                }
+            }
+            _ => {}
         }
     }
     Ok(triangles.list)
@@ -47,80 +60,17 @@ fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshPr
 /// What a face needs.
 const CORNERS: &str = "corners of a face that were defined before it";
 
-/// What the format wants where `tobj` gave up.
-const fn expected(error: LoadError) -> &'static str {
-    match error {
-        LoadError::PositionParseError => "`v` and three numbers",
-        LoadError::FaceParseError | LoadError::InvalidPolygon => "`f` and at least three corners",
-        LoadError::FaceVertexOutOfBounds => CORNERS,
-        _ => "a line of an OBJ file",
-    }
-}
-
-/// The corners and faces of a file, line by line, without the normals, textures and names that `tobj` would follow to places that are none; or
-/// the line of the first face with a corner that was not defined before it.
-fn plain(bytes: &[u8]) -> Result<String, usize> {
-    let mut corners = 0u64;
-    let mut text = String::with_capacity(bytes.len());
-    for (number, line) in bytes.split(|b| *b == b'\n').enumerate() {
-        let line = String::from_utf8_lossy(line);
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                corners += 1;
-                text.push_str(line.trim_end());
-            }
-            Some("f") => {
-                text.push('f');
-                for word in words {
-                    let corner = word.split('/').next().unwrap_or_default();
-                    if corner.parse::<i64>().is_ok_and(|k| k == 0 || k.unsigned_abs() > corners) {
-                        return Err(number + 1);
-                    }
-                    text.push(' ');
-                    text.push_str(corner);
-                }
-            }
-            _ => {}
-        }
-        text.push('\n');
-    }
-    Ok(text)
+/// The place of a corner among as many as there are, from its number.
+fn corner(number: i64, count: usize) -> Option<usize> {
+    let place = if number > 0 { number - 1 } else { number.checked_add(i64::try_from(count).ok()?)? };
+    usize::try_from(place).ok().filter(|place| number != 0 && *place < count)
 }
 
 /// A line of a file, shortened.
-fn shown(bytes: &[u8], line: usize) -> String {
+fn shown(line: &[u8]) -> String {
     const MOST: usize = 24;
-    let text = bytes.split(|b| *b == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
-    let text = String::from_utf8_lossy(&text[..text.len().min(MOST)]).trim().to_owned();
+    let text = String::from_utf8_lossy(&line[..line.len().min(MOST)]).trim().to_owned();
     if text.is_empty() { "an empty line".to_owned() } else { format!("`{text}`") }
-}
-
-/// Bytes that count their lines as they are read: `tobj` does not say where it gave up.
-struct Lines<'a> {
-    rest: &'a [u8],
-    line: usize,
-}
-
-impl Read for Lines<'_> {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let read = self.rest.len().min(into.len());
-        into[..read].copy_from_slice(&self.rest[..read]);
-        self.consume(read);
-        Ok(read)
-    }
-}
-
-impl BufRead for Lines<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        Ok(self.rest)
-    }
-
-    fn consume(&mut self, count: usize) {
-        // Whoever reads lines takes one at a time, because all of them are offered.
-        self.line += usize::from(count > 0);
-        self.rest = &self.rest[count..];
-    }
 }
 
 #[cfg(test)]
@@ -185,5 +135,40 @@ mod tests {
         let problems = read(&text.replace("f 2 3 7 6\n", "")).unwrap_err();
         assert!(problems.iter().all(|p| matches!(p, MeshProblem::Open { .. })), "{problems:?}");
         assert_eq!(problems.len(), 5);
+    }
+
+    /// A face is cut by about half the square of its corners in steps, which are charged before they are taken.
+    #[test]
+    fn a_face_of_too_many_corners_is_refused_before_it_is_cut() {
+        let n = 60_000;
+        let corner = |k: usize| {
+            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / n as f64).sin_cos();
+            let radius = if k.is_multiple_of(2) { 0.3 } else { 1.0 };
+            format!("v {:.9} {:.9} 0\n", radius * cosine, radius * sine)
+        };
+        let vertices: String = (0..n).map(corner).collect();
+        let numbers: Vec<String> = (1..=n).map(|k| k.to_string()).collect();
+        let message = "line 60001: more than 200000000 steps of cutting faces into triangles: triangulate the mesh when it is exported";
+        assert_eq!(
+            read(&format!("{vertices}f {}\n", numbers.join(" "))).unwrap_err()[0].to_string(),
+            message
+        );
+        let same = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf {}\n", "1 2 3 ".repeat(300_000));
+        assert!(read(&same).unwrap_err()[0].to_string().starts_with("line 4: more than 200000000 steps"));
+        let vertices = "v 0 0 0\n".repeat(600_001);
+        assert!(
+            read(&vertices).unwrap_err()[0].to_string().starts_with("line 600001: more than 600000 vertices")
+        );
+    }
+
+    #[test]
+    fn points_and_lines_bound_nothing_and_ends_of_lines_may_be_those_of_windows() {
+        let text = format!("{CUBE}p 1\nf 1\nl 1 2\nf 1 2\n").replace('\n', "\r\n");
+        assert_eq!(read(&text).unwrap(), read(CUBE).unwrap());
+        assert!(
+            read(&CUBE.replace("-8 -4", "-9 -4")).unwrap_err()[0]
+                .to_string()
+                .contains("line 20: expected corners")
+        );
     }
 }

@@ -18,6 +18,9 @@ pub struct MeshContent {
     /// How many closed bodies it is the union of; shells that are apart count as one unless the file tells them apart.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub bodies: usize,
+    /// Of a drawing, how many entities or elements are hidden in it and left out, each with all that is in it.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub hidden: usize,
     /// What was done to them.
     #[serde(default, skip_serializing_if = "Repairs::is_none")]
     pub repairs: Repairs,
@@ -48,11 +51,16 @@ const fn is_one(count: &usize) -> bool {
     *count == 1
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+const fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
 impl MeshContent {
     /// Of these bytes, which make so many triangles.
     pub fn of(bytes: &[u8], triangles: usize) -> Self {
         let (sha256, repairs) = (hex(&Sha256::digest(bytes)), Repairs::default());
-        Self { sha256, bytes: bytes.len() as u64, triangles, bodies: 1, repairs, meshed: None }
+        Self { sha256, bytes: bytes.len() as u64, triangles, bodies: 1, hidden: 0, repairs, meshed: None }
     }
 }
 

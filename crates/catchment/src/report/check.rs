@@ -319,7 +319,12 @@ fn parts_of(parts: &[PartSpec]) -> String {
             ShapeSpec::Box { .. } => "box".to_owned(),
             ShapeSpec::Profile { outline: OutlineSpec::Corners(_), .. } => "profile".to_owned(),
             ShapeSpec::Profile { outline: OutlineSpec::File(file), .. } => {
-                format!("profile {}", crate::terminal::shown(&file.path))
+                let left_out = match file.content.as_ref().map_or(0, |content| content.hidden) {
+                    0 => String::new(),
+                    1 => " (1 hidden entity left out)".to_owned(),
+                    hidden => format!(" ({hidden} hidden entities left out)"),
+                };
+                format!("profile {}{left_out}", crate::terminal::shown(&file.path))
             }
         };
         match kinds.iter_mut().find(|(known, _)| *known == kind) {

@@ -3,12 +3,19 @@
 use super::super::region::{REACH, Region, node, turn};
 use super::super::sweep::Bracket;
 use super::{Measure, Read, ReadError};
+use catchment::budget::Limit;
 use catchment::design::{Finding, Found, SourceText};
 use glam::DVec2;
 use std::ops::Range;
 
 /// Most corners of a file: every two sides are compared.
 pub(super) const MOST_CORNERS: usize = 10_000;
+/// The same as a limit of what is read.
+pub(super) const CORNERS: Limit = Limit {
+    most: MOST_CORNERS as u64,
+    of: "corners of the outline",
+    remedy: "leave corners out that a tenth of a mm does not need",
+};
 
 /// A ring as written: its corners, each with its place in the text.
 #[derive(Debug, Default, Clone)]
@@ -60,7 +67,7 @@ fn shown(p: DVec2) -> String {
 /// What is said of a file with more corners than are taken.
 pub(super) fn too_many() -> Finding {
     let message = format!("the outline has more than {MOST_CORNERS} corners");
-    Finding::new(message, Some("leave corners out that a tenth of a mm does not need".to_owned()))
+    Finding::new(message, Some(CORNERS.remedy.to_owned()))
 }
 
 fn wrong(rings: &[Ring], measure: Measure) -> Found {

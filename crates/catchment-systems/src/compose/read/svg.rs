@@ -1,137 +1,133 @@
 //! The paths of a picture.
 
 use super::super::region::REACH;
-use super::rings::{MOST_CORNERS, Ring, region};
+use super::rings::{CORNERS, Ring, region};
 use super::{Measure, Read, ReadError};
+use catchment::budget::{Budget, Overspent};
 use catchment::design::{Finding, Found, LengthUnit, Quantity, SourceText, Unit};
+use catchment::xml::svg::{self, Refusal, Shape};
 use glam::DVec2;
 use kurbo::{BezPath, PathEl};
-use roxmltree::{Document, Node, ParsingOptions};
-use std::ops::Range;
+use std::collections::BTreeMap;
+use std::ops::{ControlFlow, Range};
 
 /// Curves of a path are replaced by chords that leave them by at most this, in mm.
 const CHORD_ERROR: f64 = 0.01;
-/// Most elements of a picture.
-const MOST_NODES: u32 = 100_000;
-/// Most elements within each other.
-const DEEPEST: usize = 256;
-/// Elements that hold others and move none of them.
-const HOLDERS: [&str; 2] = ["svg", "g"];
-/// Elements that draw something that is not read.
-const OTHER_SHAPES: [&str; 7] = ["rect", "circle", "ellipse", "polygon", "polyline", "line", "use"];
 
 pub(super) fn read(source: SourceText, stem: String) -> Result<Read, ReadError> {
-    let (mut found, mut rings, mut curved) = (Found::default(), Vec::new(), false);
+    let (mut found, mut rings, mut curved, mut hidden) = (Found::default(), Vec::new(), false, 0);
     let mut measure = Measure::Millimetres;
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    match Document::parse_with_options(&source.text, options) {
-        Err(error) => {
-            let at = error.pos();
-            let line = source
-                .text
-                .split_inclusive('\n')
-                .take(at.row.saturating_sub(1) as usize)
-                .map(str::len)
-                .sum::<usize>();
-            let start = (line + at.col.saturating_sub(1) as usize).min(source.text.len());
-            let start = (0..=start).rev().find(|k| source.text.is_char_boundary(*k)).unwrap_or(0);
-            let end = source.text[start..].find('\n').map_or(source.text.len(), |length| start + length);
-            found.push(Finding::new(format!("the picture is no XML: {error}"), None).at(Some(start..end)));
-        }
-        Ok(document) => {
-            let root = document.root_element();
-            if root.attribute("data-unit") == Some("D") {
+    let mut corners = Budget::new(CORNERS);
+    match svg::head(&source.text) {
+        Err(refusal) => found.push(finding(&source.text, refusal)),
+        Ok(head) => {
+            if head.get("data-unit").is_some_and(|(unit, _)| unit == "D") {
                 measure = Measure::Widths;
             }
-            let factor = scale(root, &mut found);
-            // Not by recursion: a hostile picture is deep.
-            let mut open = vec![(root, 1)];
-            while let Some((node, depth)) = open.pop() {
-                element(node, factor, &mut rings, &mut curved, &mut found);
-                if depth == DEEPEST && node.has_children() {
-                    let help = "ungroup in the drawing program".to_owned();
-                    let start = node.range().start;
-                    let message = format!("more than {DEEPEST} elements within each other");
-                    found.push(Finding::new(message, Some(help)).at(Some(start..start + 1)));
-                    continue;
+            let factor = scale(&head, &mut found);
+            hidden = svg::shapes(&source.text, |drawn| {
+                match drawn {
+                    Err(refusal) => found.push(finding(&source.text, refusal)),
+                    Ok(shape) => {
+                        let read = element(&shape, factor, &mut corners, &mut rings, &mut found);
+                        match read {
+                            Ok(is_curved) => curved |= is_curved,
+                            Err(over) => {
+                                found.push(Finding::new(over.to_string(), None).at(Some(shape.tag.head())));
+                                return ControlFlow::Break(());
+                            }
+                        }
+                    }
                 }
-                // The last is taken first.
-                open.extend(node.children().filter(Node::is_element).rev().map(|child| (child, depth + 1)));
-            }
+                ControlFlow::Continue(())
+            });
             if found.is_empty() && rings.is_empty() {
-                let help = "it needs at least one <path d=\"…\">".to_owned();
+                let help = "it needs at least one <path d=\"…\"> that is shown".to_owned();
                 found.push(Finding::new("the picture has no path", Some(help)));
             }
         }
     }
-    let notes = if curved {
-        vec![format!(
-            "curves are replaced by chords that leave them by at most {CHORD_ERROR} {}",
-            measure.symbol()
-        )]
-    } else {
-        Vec::new()
-    };
+    let mut notes = Vec::new();
+    if curved {
+        let unit = measure.symbol();
+        notes.push(format!("curves are replaced by chords that leave them by at most {CHORD_ERROR} {unit}"));
+    }
+    if hidden > 0 {
+        notes.push(format!("{hidden} hidden elements of the picture are left out"));
+    }
     region(source, stem, measure, rings, found, notes)
 }
 
+/// What is said of a part of a picture.
+fn finding(text: &str, refusal: Refusal) -> Finding {
+    let Refusal { at, message, help } = refusal;
+    // A broken document has a place, but nothing there that is to be shown as a whole.
+    let inside = |at: usize| (0..=at.min(text.len())).rev().find(|k| text.is_char_boundary(*k)).unwrap_or(0);
+    Finding::new(message, Some(help.to_owned())).at(Some(inside(at.start)..inside(at.end.max(at.start))))
+}
+
 /// Lengths of one user unit: a mm, unless the picture says its width.
-fn scale(root: Node<'_, '_>, found: &mut Found) -> f64 {
-    let (Some(width), Some(view)) = (root.attribute_node("width"), root.attribute("viewBox")) else {
+fn scale(head: &BTreeMap<&'static str, (String, Range<usize>)>, found: &mut Found) -> f64 {
+    let (Some((width, at)), Some((view, _))) = (head.get("width"), head.get("viewBox")) else {
         return 1.0;
     };
     let across: Option<f64> =
         view.split([' ', ',']).filter(|t| !t.is_empty()).nth(2).and_then(|t| t.parse().ok());
-    match (width.value().parse::<Quantity>(), across) {
+    match (width.parse::<Quantity>(), across) {
         (Ok(Quantity { value, unit: Unit::Length(unit) }), Some(across)) if value > 0.0 && across > 0.0 => {
             value * (unit.metres() / LengthUnit::Mm.metres()) / across
         }
         (Ok(Quantity { unit: Unit::Bare, .. }), _) => 1.0,
-        _ if width.value().ends_with("px") || width.value().ends_with('%') => 1.0,
+        _ if width.ends_with("px") || width.ends_with('%') => 1.0,
         _ => {
-            let message = format!("the width of the picture, `{}`, has no meaning here", width.value());
+            let message = format!("the width of the picture, `{width}`, has no meaning here");
             let help = "write it in mm, with a viewBox".to_owned();
-            found.push(Finding::new(message, Some(help)).at(Some(width.range_value())));
+            found.push(Finding::new(message, Some(help)).at(Some(at.clone())));
             1.0
         }
     }
 }
 
-fn element(node: Node<'_, '_>, factor: f64, rings: &mut Vec<Ring>, curved: &mut bool, found: &mut Found) {
-    let name = node.tag_name().name();
-    if let Some(transform) =
-        node.attribute_node("transform").filter(|_| HOLDERS.contains(&name) || name == "path")
-    {
-        let help = "apply the transforms to the paths in the drawing program".to_owned();
-        let message = "a transform is not read";
-        found.push(Finding::new(message, Some(help)).at(Some(transform.range())));
-    }
-    if OTHER_SHAPES.contains(&name) {
-        let message = format!("<{name}> is not read");
+/// Reads a shape that is drawn; whether it has curves.
+fn element(
+    shape: &Shape<'_>,
+    factor: f64,
+    corners: &mut Budget,
+    rings: &mut Vec<Ring>,
+    found: &mut Found,
+) -> Result<bool, Overspent> {
+    let name = shape.tag.name();
+    if name != "path" {
         let help = "turn shapes into paths in the drawing program".to_owned();
-        let start = node.range().start;
-        found.push(Finding::new(message, Some(help)).at(Some(start..start + 1 + name.len())));
+        found.push(Finding::new(format!("<{name}> is not read"), Some(help)).at(Some(shape.tag.head())));
+        return Ok(false);
     }
-    let Some(data) = node.attribute_node("d").filter(|_| name == "path") else { return };
-    if has_huge_numbers(data.value()) {
+    if let Some(at) = shape.moved.clone() {
+        let help = "apply the transforms to the paths in the drawing program".to_owned();
+        found.push(Finding::new("a transform is not read", Some(help)).at(Some(at)));
+    }
+    let Some(data) = shape.tag.attribute("d") else { return Ok(false) };
+    if has_huge_numbers(&data.value) {
         let message = "the path has a number that is far too large";
         let help = "check the unit of the picture".to_owned();
-        found.push(Finding::new(message, Some(help)).at(Some(data.range_value())));
-        return;
+        found.push(Finding::new(message, Some(help)).at(Some(data.span)));
+        return Ok(false);
     }
-    match BezPath::from_svg(data.value()) {
+    match BezPath::from_svg(&data.value) {
         Ok(path) if !within_reach(&path, factor) => {
             let message = format!("the path goes farther from the origin than {REACH} mm");
             let help = "check the width and the viewBox of the picture".to_owned();
-            found.push(Finding::new(message, Some(help)).at(Some(data.range_value())));
+            found.push(Finding::new(message, Some(help)).at(Some(data.span)));
+            Ok(false)
         }
         Ok(path) => {
-            *curved |= path.elements().iter().any(|e| matches!(e, PathEl::QuadTo(..) | PathEl::CurveTo(..)));
-            path_rings(&path, factor, &data.range_value(), rings, found);
+            path_rings(&path, factor, &data.span, corners, rings, found)?;
+            Ok(path.elements().iter().any(|e| matches!(e, PathEl::QuadTo(..) | PathEl::CurveTo(..))))
         }
         Err(error) => {
             let message = format!("the path cannot be read: {error}");
-            found.push(Finding::new(message, None).at(Some(data.range_value())));
+            found.push(Finding::new(message, None).at(Some(data.span)));
+            Ok(false)
         }
     }
 }
@@ -162,7 +158,14 @@ fn within_reach(path: &BezPath, factor: f64) -> bool {
     })
 }
 
-fn path_rings(path: &BezPath, factor: f64, span: &Range<usize>, rings: &mut Vec<Ring>, found: &mut Found) {
+fn path_rings(
+    path: &BezPath,
+    factor: f64,
+    span: &Range<usize>,
+    corners: &mut Budget,
+    rings: &mut Vec<Ring>,
+    found: &mut Found,
+) -> Result<(), Overspent> {
     let mut ring = Ring::default();
     let mut ended = |ring: &mut Ring, closed: bool| {
         let ring = std::mem::take(ring);
@@ -177,16 +180,28 @@ fn path_rings(path: &BezPath, factor: f64, span: &Range<usize>, rings: &mut Vec<
     };
     // Up is +y, and down the picture is not.
     let corner = |p: kurbo::Point| (DVec2::new(p.x, 0.0 - p.y) * factor, span.clone());
-    kurbo::flatten(path, CHORD_ERROR / factor, |element| match element {
-        PathEl::MoveTo(p) => {
-            ended(&mut ring, false);
-            ring.corners.push(corner(p));
+    let mut spent = Ok(());
+    kurbo::flatten(path, CHORD_ERROR / factor, |element| {
+        match element {
+            PathEl::MoveTo(p) => {
+                ended(&mut ring, false);
+                spent = spent.and_then(|()| corners.spend(1));
+                if spent.is_ok() {
+                    ring.corners.push(corner(p));
+                }
+            }
+            PathEl::LineTo(p) => {
+                spent = spent.and_then(|()| corners.spend(1));
+                // What is refused is not kept.
+                if spent.is_ok() {
+                    ring.corners.push(corner(p));
+                }
+            }
+            PathEl::ClosePath => ended(&mut ring, true),
+            // Flattened paths have no curves.
+            PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
         }
-        // One too many is refused, and more need not be held.
-        PathEl::LineTo(p) if ring.corners.len() <= MOST_CORNERS => ring.corners.push(corner(p)),
-        PathEl::ClosePath => ended(&mut ring, true),
-        // Flattened paths have no curves.
-        PathEl::LineTo(_) | PathEl::QuadTo(..) | PathEl::CurveTo(..) => {}
     });
     ended(&mut ring, false);
+    spent
 }

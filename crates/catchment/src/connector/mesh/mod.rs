@@ -33,6 +33,7 @@ pub(super) use problem::MAX_REPORTED;
 pub use problem::{MeshProblem, Place, Start};
 
 use super::{Half, Surface};
+use crate::budget::{Budget, Limit, Overspent};
 use crate::design::{Repairs, Treatment};
 use crate::exec::{Bytes, Exec};
 use glam::DVec3;
@@ -44,6 +45,9 @@ use problem::Reported;
 pub const MAX_TRIANGLES: usize = 200_000;
 /// Most triangles of a file that is simplified: measured to take a minute and a half and 3.3 GiB.
 pub const MOST_READ: usize = 5_000_000;
+/// Bodies of a file: their surfaces are compared with each other wherever they may touch.
+pub(super) const BODIES: Limit =
+    Limit { most: 256, of: "bodies", remedy: "unite the solids before exporting" };
 /// Bytes that reading, repairing and simplifying take for each triangle, as measured.
 const BYTES_PER_TRIANGLE: u64 = 900;
 /// Corners closer than this, relative to the largest coordinate, are one: ten times the rounding of single
@@ -73,6 +77,17 @@ pub(super) const fn too_many(treatment: Treatment, count: u64) -> MeshProblem {
     }
 }
 
+/// Most vertices of a file: three for every triangle, where none are shared.
+pub(super) const fn vertex_limit(treatment: Treatment) -> Limit {
+    let most = 3 * most_read(treatment) as u64;
+    Limit { most, of: "vertices", remedy: "export the mesh with a coarser tolerance" }
+}
+
+/// What there is to say of a file that asks for too much at a place.
+pub(super) fn overspent(place: impl Into<String>, over: Overspent) -> Vec<MeshProblem> {
+    vec![MeshProblem::Overspent { place: place.into(), over }]
+}
+
 /// A half, or a part of one, and what was done to its meshes.
 #[derive(Debug)]
 pub(super) struct Ready {
@@ -87,21 +102,27 @@ pub(super) struct Ready {
 pub(super) struct Triangles {
     pub(super) list: Vec<Triangle>,
     treatment: Treatment,
+    /// For cutting faces.
+    steps: Budget,
 }
 
 impl Triangles {
     /// None yet.
     pub(super) const fn new(treatment: Treatment) -> Self {
-        Self { list: Vec::new(), treatment }
+        Self { list: Vec::new(), treatment, steps: Budget::new(cut::STEPS) }
     }
 
-    /// Appends a face, cut into triangles.
-    pub(super) fn push(&mut self, corners: &[DVec3]) -> Result<(), Vec<MeshProblem>> {
+    /// Appends a face, cut into triangles; `place` says where it stands in the file.
+    pub(super) fn push(
+        &mut self,
+        corners: &[DVec3],
+        place: impl Fn() -> String,
+    ) -> Result<(), Vec<MeshProblem>> {
         // A triangle is what it is; whether it has an area, and whether all are numbers, is asked of all of them together.
         let cut = if corners.len() == 3 || !corners.iter().all(|corner| corner.is_finite()) {
             Some(vec![[0, 1, 2]])
         } else {
-            cut::triangles(corners)
+            cut::triangles(corners, &mut self.steps).map_err(|over| overspent(place(), over))?
         };
         let first = self.list.len();
         let at = corners.first().copied().unwrap_or_default().into();
@@ -160,6 +181,7 @@ pub(super) fn part(
     if count > most_read(treatment) {
         return Err(vec![too_many(treatment, count as u64)]);
     }
+    BODIES.allows(bodies.len() as u64).map_err(|over| overspent("the file", over))?;
     sound_numbers(&bodies)?;
     let mut ready = Ready { half: Half::default(), triangles: 0, repairs: Repairs::default() };
     let mut problems = Vec::new();

@@ -1,6 +1,7 @@
 //! Why a mesh is no half of a connector, and where: the triangle and its line or byte in the file, and a point in the file's own coordinates.
 
 use super::{MAX_TRIANGLES, MOST_READ, Point};
+use crate::budget::Overspent;
 use crate::connector::source::UnitProblem;
 use crate::connector::step::StepProblem;
 use crate::design::LengthUnit;
@@ -151,6 +152,14 @@ pub enum MeshProblem {
     NotThreeMf {
         /// Where and why.
         message: String,
+    },
+    /// More of something than a file may have.
+    #[error("{place}: {over}")]
+    Overspent {
+        /// Where in the file.
+        place: String,
+        /// What, and the remedy.
+        over: Overspent,
     },
     /// The unit of its coordinates is not known.
     #[error(transparent)]

@@ -1,4 +1,4 @@
-//! The closed outlines of a DXF drawing: lines, arcs, circles and polylines of its entities, on all layers.
+//! The closed outlines of a DXF drawing: lines, arcs, circles and polylines of its entities, as far as they are shown.
 //!
 //! ```text
 //!   0            a group code and a value, a line each
@@ -7,12 +7,14 @@
 //! 0.0
 //! ```
 //!
+//! Entities on layers that are off or frozen, those that are invisible (group 60), and those of paper space (group 67) are counted and left out.
 //! Lines, arcs and open polylines are joined where their ends meet. Text, dimensions, points and hatches are no outlines and are left out;
 //! blocks, splines and ellipses are refused. The reader is our own because it says in which line something is wrong and takes no
 //! more memory than the text.
 
 use super::{NEAR, OutlineProblem, Stroke, Within};
 use glam::DVec2;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Entities that are no outlines.
@@ -33,6 +35,11 @@ const LEFT_OUT: [&str; 15] = [
     "TOLERANCE",
     "SEQEND",
 ];
+/// Flags of polylines and their vertices (group 70).
+const CLOSED: i64 = 1;
+const MESH: i64 = 16;
+const CONTROL_POINT: i64 = 16;
+const POLYFACE: i64 = 64;
 /// Metres in the units of `$INSUNITS`, by their numbers.
 const UNITS: [(i64, f64); 6] = [(1, 0.0254), (2, 0.3048), (4, 1e-3), (5, 1e-2), (6, 1.0), (13, 1e-6)];
 
@@ -91,16 +98,43 @@ pub(super) fn metres(text: &str) -> Result<Option<f64>, OutlineProblem> {
     Ok(None)
 }
 
-/// The closed outlines of a drawing.
-pub(super) fn read(text: &str, within: Within) -> Result<Vec<Stroke>, OutlineProblem> {
-    let (mut loops, mut open) = (Vec::new(), Vec::new());
-    let mut section = "";
+/// Layers that are off or frozen, by their names in capitals: case does not count.
+fn hidden_layers(text: &str) -> Result<BTreeSet<String>, OutlineProblem> {
+    let (mut hidden, mut section, mut entity, mut name) = (BTreeSet::new(), "", "", String::new());
+    for group in groups(text) {
+        let group = group?;
+        match (group.code, entity) {
+            (0, _) if group.value == "ENDSEC" => (section, entity) = ("", ""),
+            (0, _) => entity = group.value,
+            (2, "SECTION") => section = group.value,
+            (2, "LAYER") => name = group.value.to_uppercase(),
+            _ => {}
+        }
+        if section == "ENTITIES" {
+            break;
+        }
+        let is_layer = section == "TABLES" && entity == "LAYER";
+        let is_off = group.code == 62 && is_layer && group.number()? < 0.0;
+        let is_frozen = group.code == 70 && is_layer && group.number()? as i64 & 1 == 1;
+        if is_off || is_frozen {
+            hidden.insert(name.clone());
+        }
+    }
+    Ok(hidden)
+}
+
+/// The closed outlines of a drawing, and how many of its entities are hidden.
+pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), OutlineProblem> {
+    let layers = hidden_layers(text)?;
+    let (mut loops, mut open, mut hidden) = (Vec::new(), Vec::new(), 0);
+    let (mut section, mut last_line) = ("", 1);
     let mut entity: Vec<Group<'_>> = Vec::new();
-    let mut polyline: Option<Entity> = None;
+    let mut polyline: Option<Entity<'_>> = None;
     let mut corners = 0;
     let mut groups = groups(text).peekable();
     while let Some(group) = groups.next() {
         let group = group?;
+        last_line = group.line;
         if group.code == 2 && entity.len() == 1 && entity[0].value == "SECTION" {
             section = group.value;
         }
@@ -114,6 +148,9 @@ pub(super) fn read(text: &str, within: Within) -> Result<Vec<Stroke>, OutlinePro
         }
         let own = std::mem::take(&mut entity);
         let name = own[0].value;
+        if let Some(polyline) = polyline.as_ref().filter(|_| !["VERTEX", "SEQEND"].contains(&name)) {
+            return Err(broken(polyline.line, "the POLYLINE has no SEQEND"));
+        }
         if name == "ENDSEC" {
             section = "";
         }
@@ -121,31 +158,34 @@ pub(super) fn read(text: &str, within: Within) -> Result<Vec<Stroke>, OutlinePro
             continue;
         }
         let read = Entity::of(&own)?;
+        let is_hidden = read.is_hidden || layers.contains(&read.layer.to_uppercase());
         let done = match name {
+            // Whether it is drawn, the head of a polyline says.
             "POLYLINE" => {
-                polyline = Some(read);
+                polyline = Some(Entity { is_hidden, ..read });
                 None
             }
             "VERTEX" => {
-                if let Some(polyline) = &mut polyline {
+                let Some(polyline) = &mut polyline else {
+                    return Err(broken(own[0].line, "a VERTEX belongs to no POLYLINE"));
+                };
+                // Control points of a curve are not on it.
+                if !read.has_flag(CONTROL_POINT) {
                     polyline.points.extend(read.points);
                 }
                 None
             }
-            "SEQEND" => polyline.take().map(|polyline| polyline.polyline(within)),
-            "LWPOLYLINE" => Some(read.polyline(within)),
-            "LINE" => Some(Ok((vec![read.start, read.end], false))),
-            "ARC" => Some(Ok((read.arc(within), false))),
-            "CIRCLE" => Some(Ok((read.circle(within), true))),
+            "SEQEND" => polyline.take().map(|polyline| (polyline.is_hidden, polyline)),
             name if LEFT_OUT.contains(&name) => None,
-            name => {
-                let what = crate::design::shortened(name);
-                let advice = "explode blocks and turn curves into polylines or arcs before exporting";
-                return Err(OutlineProblem::Unsupported { line: own[0].line, what, advice });
-            }
+            _ => Some((is_hidden, read)),
         };
-        let Some(done) = done else { continue };
-        let (points, is_closed) = done?;
+        let Some((is_hidden, done)) = done else { continue };
+        if is_hidden {
+            hidden += 1;
+            continue;
+        }
+        let line = done.line;
+        let (points, is_closed) = done.drawn(within)?;
         corners += points.len();
         within.holds(&points)?;
         if corners > super::MOST_CORNERS {
@@ -154,39 +194,62 @@ pub(super) fn read(text: &str, within: Within) -> Result<Vec<Stroke>, OutlinePro
         if points.len() < 2 {
             continue;
         }
-        let stroke = Stroke { corners: points, line: own[0].line };
+        let stroke = Stroke { corners: points, line };
         if is_closed { loops.push(stroke) } else { open.push(stroke) }
     }
+    if section == "ENTITIES" {
+        return Err(broken(last_line, "the DXF file was cut off among its entities"));
+    }
     loops.extend(joined(open)?);
-    Ok(loops)
+    Ok((loops, hidden))
+}
+
+fn broken(line: usize, what: &str) -> OutlineProblem {
+    OutlineProblem::Syntax { line, message: format!("{what}: the DXF file is broken, export it again") }
 }
 
 /// What the groups of an entity say.
 #[derive(Default)]
-struct Entity {
+struct Entity<'t> {
+    name: &'t str,
+    layer: &'t str,
+    line: usize,
     start: DVec2,
     end: DVec2,
     radius: f64,
     /// In degrees.
     angles: [f64; 2],
-    is_closed: bool,
+    flags: i64,
+    /// Invisible, or on a sheet of paper.
+    is_hidden: bool,
     /// Seen from below: x is mirrored.
     is_mirrored: bool,
     /// Corners with their bulges: the tangent of a quarter of the arc that follows.
     points: Vec<(DVec2, f64)>,
 }
 
-impl Entity {
-    fn of(groups: &[Group<'_>]) -> Result<Self, OutlineProblem> {
-        let mut entity = Self::default();
-        let name = groups[0].value;
+impl<'t> Entity<'t> {
+    fn of(groups: &[Group<'t>]) -> Result<Self, OutlineProblem> {
+        let (name, line) = (groups[0].value, groups[0].line);
+        let mut entity = Self { name, line, ..Self::default() };
         let has_points = ["LWPOLYLINE", "VERTEX"].contains(&name);
-        let mut tilt = 0.0f64;
+        let (mut tilt, mut count, mut ys) = (0.0f64, None, 0);
         for group in &groups[1..] {
             match (group.code, entity.points.last_mut()) {
-                (10, _) if has_points => entity.points.push((DVec2::new(group.number()?, 0.0), 0.0)),
-                (20, Some((point, _))) => point.y = group.number()?,
+                (8, _) => entity.layer = group.value,
+                (60 | 67, _) => entity.is_hidden |= group.number()? != 0.0,
+                (10, _) if has_points => {
+                    if ys < entity.points.len() {
+                        return Err(broken(group.line, "a corner has no y (group 20)"));
+                    }
+                    entity.points.push((DVec2::new(group.number()?, 0.0), 0.0));
+                }
+                (20, Some((point, _))) => {
+                    point.y = group.number()?;
+                    ys += 1;
+                }
                 (42, Some((_, bulge))) => *bulge = group.number()?,
+                (90, _) if name == "LWPOLYLINE" => count = Some(group.number()?),
                 (10, _) => entity.start.x = group.number()?,
                 (20, _) => entity.start.y = group.number()?,
                 (11, _) => entity.end.x = group.number()?,
@@ -194,20 +257,61 @@ impl Entity {
                 (40, _) => entity.radius = group.number()?,
                 (50, _) => entity.angles[0] = group.number()?,
                 (51, _) => entity.angles[1] = group.number()?,
-                (70, _) => entity.is_closed = group.number()? as i64 & 1 == 1,
+                (70, _) => entity.flags = group.number()? as i64,
                 (210 | 220, _) => tilt = tilt.max(group.number()?.abs()),
                 (230, _) => entity.is_mirrored = group.number()? < 0.0,
                 _ => {}
             }
         }
-        if tilt > NEAR.sqrt() {
+        let needed: &[i64] = match name {
+            "LINE" => &[10, 20, 11, 21],
+            "CIRCLE" => &[10, 20, 40],
+            "ARC" => &[10, 20, 40, 50, 51],
+            "VERTEX" => &[10, 20],
+            _ => &[],
+        };
+        let missing = needed.iter().find(|code| !groups.iter().any(|group| group.code == **code));
+        if let Some(code) = missing {
+            return Err(broken(line, &format!("{name} has no group {code}")));
+        }
+        if ys != entity.points.len() {
+            return Err(broken(line, &format!("{name} has {} x and {ys} y of corners", entity.points.len())));
+        }
+        if let Some(count) = count.filter(|count| *count != entity.points.len() as f64) {
+            let what = format!("{name} announces {count} corners and has {}", entity.points.len());
+            return Err(broken(line, &what));
+        }
+        if ["CIRCLE", "ARC"].contains(&name) && entity.radius <= 0.0 {
+            return Err(broken(line, &format!("{name} has the radius {}", entity.radius)));
+        }
+        if tilt > NEAR.sqrt() && !entity.is_hidden {
             let advice = "draw all outlines in the x-y plane";
             let what = "an outline in a tilted plane".to_owned();
-            return Err(OutlineProblem::Unsupported { line: groups[0].line, what, advice });
+            return Err(OutlineProblem::Unsupported { line, what, advice });
         }
         // Lines alone are in the coordinates of the drawing, whichever way they face.
         entity.is_mirrored &= name != "LINE";
         Ok(entity)
+    }
+
+    const fn has_flag(&self, flag: i64) -> bool {
+        self.flags & flag != 0
+    }
+
+    /// Its corners, and whether they close.
+    fn drawn(self, within: Within) -> Result<(Vec<DVec2>, bool), OutlineProblem> {
+        let is_mesh = self.name == "POLYLINE" && self.has_flag(MESH | POLYFACE);
+        match self.name {
+            "POLYLINE" | "LWPOLYLINE" if !is_mesh => self.polyline(within),
+            "LINE" => Ok((vec![self.start, self.end], false)),
+            "ARC" => Ok((self.arc(within), false)),
+            "CIRCLE" => Ok((self.circle(within), true)),
+            name => {
+                let what = crate::design::shortened(if is_mesh { "a mesh of polylines" } else { name });
+                let advice = "explode blocks and turn curves into polylines or arcs before exporting";
+                Err(OutlineProblem::Unsupported { line: self.line, what, advice })
+            }
+        }
     }
 
     fn placed(&self, points: Vec<DVec2>) -> Vec<DVec2> {
@@ -241,7 +345,7 @@ impl Entity {
         for k in 0..n {
             let ((from, bulge), (to, _)) = (self.points[k], self.points[(k + 1) % n]);
             corners.push(from);
-            if bulge == 0.0 || (k + 1 == n && !self.is_closed) || from == to {
+            if bulge == 0.0 || (k + 1 == n && !self.has_flag(CLOSED)) || from == to {
                 continue;
             }
             // The centre lies on the bisector of the chord, the arc turns by four times the angle whose tangent the bulge is.
@@ -257,7 +361,7 @@ impl Entity {
                 return Err(OutlineProblem::TooMany);
             }
         }
-        let is_closed = self.is_closed;
+        let is_closed = self.has_flag(CLOSED);
         Ok((self.placed(corners), is_closed))
     }
 }

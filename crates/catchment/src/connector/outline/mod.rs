@@ -10,6 +10,7 @@ mod dxf;
 mod svg;
 
 use super::source::{FileBytes, UnitProblem, unit};
+use crate::budget::Overspent;
 use crate::design::FileSpec;
 use glam::DVec2;
 
@@ -61,8 +62,14 @@ pub enum OutlineProblem {
         at: DVec2,
     },
     /// Nothing closed in it.
-    #[error("there is no closed outline in the drawing")]
-    Empty,
+    #[error(
+        "there is no closed outline in the drawing{}",
+        if *hidden > 0 { format!(", of which {hidden} hidden entities are left out: show those that are meant") } else { String::new() }
+    )]
+    Empty {
+        /// How many entities or elements are hidden.
+        hidden: usize,
+    },
     /// A number that is none, or too large for a length.
     #[error("a coordinate is no number, or more than {REACH} D: check the unit")]
     TooFar,
@@ -84,6 +91,9 @@ pub enum OutlineProblem {
     /// Corners so close to each other that nothing can be told apart.
     #[error("the outline is too intricate to be cut into triangles: leave out its smallest details")]
     TooIntricate,
+    /// More work than a drawing may take.
+    #[error(transparent)]
+    Overspent(#[from] Overspent),
     /// The unit of its coordinates is not known.
     #[error(transparent)]
     UnitOf(#[from] UnitProblem),
@@ -137,25 +147,37 @@ impl Within {
     }
 }
 
-/// The closed loops of a drawing, in D; curves are left by their chords by at most `chord_error`, in D.
-pub(super) fn read(
-    spec: &FileSpec,
-    file: &FileBytes,
-    chord_error: f64,
-) -> Result<Vec<Vec<DVec2>>, OutlineProblem> {
+/// What is drawn in a drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Drawn {
+    /// Closed loops, in D.
+    pub(super) loops: Vec<Vec<DVec2>>,
+    /// Entities or elements, with all that is in them, that are hidden and left out.
+    pub(super) hidden: usize,
+}
+
+/// The line that holds a byte of a text, from 1.
+fn line_of(text: &str, at: usize) -> usize {
+    1 + text.as_bytes()[..at.min(text.len())].iter().filter(|byte| **byte == b'\n').count()
+}
+
+/// The closed loops of a drawing; curves are left by their chords by at most `chord_error`, in D.
+pub(super) fn read(spec: &FileSpec, file: &FileBytes, chord_error: f64) -> Result<Drawn, OutlineProblem> {
     if file.size > MOST_BYTES {
         return Err(OutlineProblem::TooLarge { bytes: file.size });
     }
     let text = String::from_utf8_lossy(&file.bytes);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let is_dxf = spec.ending() == "dxf";
-    let metres = if is_dxf { dxf::metres(&text)? } else { svg::metres(&text)? };
+    let metres = if is_dxf { dxf::metres(text)? } else { svg::metres(text)? };
     let scale = unit::scale(spec, metres)?;
     let within = Within { chord_error: chord_error / scale, reach: REACH / scale };
-    let loops = if is_dxf { dxf::read(&text, within)? } else { svg::read(&text, within)? };
-    if loops.is_empty() {
-        return Err(OutlineProblem::Empty);
+    let (strokes, hidden) = if is_dxf { dxf::read(text, within)? } else { svg::read(text, within)? };
+    if strokes.is_empty() {
+        return Err(OutlineProblem::Empty { hidden });
     }
-    Ok(loops.into_iter().map(|stroke| stroke.corners.into_iter().map(|p| p * scale).collect()).collect())
+    let loops = strokes.into_iter().map(|stroke| stroke.corners.into_iter().map(|p| p * scale).collect());
+    Ok(Drawn { loops: loops.collect(), hidden })
 }
 
 /// The regions that loops bound.

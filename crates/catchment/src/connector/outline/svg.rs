@@ -1,147 +1,116 @@
 //! The closed shapes of an SVG picture; y points up here, and down in the picture.
 //!
-//! Paths, rectangles, circles, ellipses, polygons and polylines, with the transforms of their groups; text, references and pictures are
-//! refused, and what is only defined is left out. A picture says its unit by a width such as `50mm` beside its `viewBox`.
+//! Paths, rectangles, circles, ellipses, polygons and polylines, with the transforms of their groups; [`svg`] says which of them are drawn. A picture
+//! says its unit by a width such as `50mm` beside its `viewBox`.
 
-use super::{OutlineProblem, Stroke, Within};
+use super::{OutlineProblem, Stroke, Within, line_of};
 use crate::design::{LengthUnit, Quantity, Unit};
+use crate::xml::svg::{self, Refusal};
+use crate::xml::{Attribute, Tag};
 use glam::DVec2;
 use kurbo::{Affine, Arc, BezPath, Circle, Ellipse, PathEl, Point, Rect, RoundedRect, Shape, SvgArc, Vec2};
-use roxmltree::{Document, Node, ParsingOptions};
-use std::str::FromStr;
-use svgtypes::{PathParser, PathSegment, PointsParser, Transform};
+use std::ops::{ControlFlow, Range};
+use svgtypes::{PathParser, PathSegment};
 
-/// Elements whose members are not drawn where they stand.
-const NOT_DRAWN: [&str; 10] =
-    ["defs", "clipPath", "mask", "marker", "pattern", "symbol", "metadata", "style", "title", "desc"];
-/// Elements that draw something that is no outline.
-const NOT_READ: [&str; 6] = ["text", "use", "image", "foreignObject", "svg", "switch"];
-/// Most elements of a picture.
-const MOST_NODES: u32 = 100_000;
-/// Most elements within each other.
-const DEEPEST: usize = 256;
-/// Most attributes of an element.
-const MOST_ATTRIBUTES: usize = 200;
 /// Most curves of a path: each has a corner at least.
 const MOST_CURVES: usize = 2 * super::MOST_CORNERS;
 /// Share of the chord error that replacing arcs by cubic curves may take.
 const OF_ARCS: f64 = 0.1;
 /// Numbers above this are no lengths, whatever the unit: arcs take longer the larger they are.
 const LARGEST: f64 = 1e9;
+/// How far apart the lengths of a unit across and down a picture may be, as a share.
+const SAME_SCALE: f64 = 1e-3;
 
-fn parse(text: &str) -> Result<Document<'_>, OutlineProblem> {
-    if let Some(at) = crowded_tag(text) {
-        let line = text[..at].lines().count();
-        return Err(OutlineProblem::Syntax {
-            line,
-            message: format!("more than {MOST_ATTRIBUTES} attributes"),
-        });
-    }
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|error| OutlineProblem::Syntax {
-        line: error.pos().row as usize,
-        message: format!("this is no SVG picture: {error}"),
-    })
-}
-
-/// Where a tag has more attributes than any has: each is compared with all before it.
-fn crowded_tag(text: &str) -> Option<usize> {
-    let (mut quote, mut count) = (None, 0);
-    text.bytes().position(|byte| {
-        match (quote, byte) {
-            (Some(open), byte) if open == byte => quote = None,
-            (None, b'"' | b'\'') if count > 0 => quote = Some(byte),
-            (None, b'<' | b'>') => count = 0,
-            (None, b'=') => count += 1,
-            _ => {}
-        }
-        count > MOST_ATTRIBUTES
-    })
+/// What is said of a part of a picture, with its line.
+fn refused(text: &str, refusal: &Refusal) -> OutlineProblem {
+    let message = format!("{}: {}", refusal.message, refusal.help);
+    OutlineProblem::Syntax { line: line_of(text, refusal.at.start), message }
 }
 
 /// Metres in one of the picture's coordinates, where it says so.
 pub(super) fn metres(text: &str) -> Result<Option<f64>, OutlineProblem> {
-    let document = parse(text)?;
-    let root = document.root_element();
-    let (Some(width), Some(view)) = (root.attribute("width"), root.attribute("viewBox")) else {
-        return Ok(None);
+    let head = svg::head(text).map_err(|refusal| refused(text, &refusal))?;
+    let view: Vec<f64> = head.get("viewBox").map_or_else(Vec::new, |(view, _)| {
+        view.split([' ', ',', '\t', '\n']).filter_map(|number| number.parse().ok()).collect()
+    });
+    let of = |name: &str, across: Option<&f64>| {
+        let (written, at) = head.get(name)?;
+        match (written.parse::<Quantity>(), across) {
+            (Ok(Quantity { value, unit: Unit::Length(unit) }), Some(&across))
+                if value > 0.0 && across > 0.0 =>
+            {
+                Some((value * LengthUnit::metres(unit) / across, at.clone()))
+            }
+            _ => None,
+        }
     };
-    let across: Option<f64> =
-        view.split([' ', ',']).filter(|t| !t.is_empty()).nth(2).and_then(|t| t.parse().ok());
-    match (width.parse::<Quantity>(), across) {
-        (Ok(Quantity { value, unit: Unit::Length(unit) }), Some(across)) if value > 0.0 && across > 0.0 => {
-            Ok(Some(value * LengthUnit::metres(unit) / across))
+    match (of("width", view.get(2)), of("height", view.get(3))) {
+        (Some((across, _)), Some((down, at))) if (across / down - 1.0).abs() > SAME_SCALE => {
+            let message = format!(
+                "the height of the picture makes a unit {} times as long as its width does",
+                down / across
+            );
+            Err(refused(
+                text,
+                &Refusal { at, message, help: "let width and height have the proportions of the viewBox" },
+            ))
         }
-        _ => Ok(None),
+        (across, _) => Ok(across.map(|(metres, _)| metres)),
     }
 }
 
-/// The closed shapes of a picture.
-pub(super) fn read(text: &str, within: Within) -> Result<Vec<Stroke>, OutlineProblem> {
-    let document = parse(text)?;
-    let mut loops = Vec::new();
-    // Lines are not counted from the start for every element.
+/// The closed shapes of a picture, and how many of its elements are hidden.
+pub(super) fn read(text: &str, within: Within) -> Result<(Vec<Stroke>, usize), OutlineProblem> {
+    let (mut loops, mut problem, mut corners) = (Vec::new(), None, 0);
+    // Lines are not counted from the start for every shape.
     let breaks: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
-    // Not by recursion: a hostile picture is deep.
-    let mut open = vec![(document.root_element(), Affine::FLIP_Y, 1)];
-    let mut corners = 0;
-    while let Some((node, outer, depth)) = open.pop() {
-        let name = node.tag_name().name();
-        let line = 1 + breaks.partition_point(|at| *at < node.range().start);
-        let syntax = |message: String| OutlineProblem::Syntax { line, message };
-        let is_root = node == document.root_element();
-        let is_hidden = node.attribute("display") == Some("none");
-        if NOT_DRAWN.contains(&name) || is_hidden {
-            continue;
-        }
-        if NOT_READ.contains(&name) && !is_root {
-            let advice = "turn everything into paths in the drawing program";
-            return Err(OutlineProblem::Unsupported { line, what: format!("<{name}>"), advice });
-        }
-        let own = match node.attribute("transform") {
-            Some(written) => {
-                let t = Transform::from_str(written)
-                    .map_err(|error| syntax(format!("its transform cannot be read: {error}")))?;
-                Affine::new([t.a, t.b, t.c, t.d, t.e, t.f])
+    let hidden = svg::shapes(text, |drawn| {
+        let read =
+            drawn.map_err(|refusal| refused(text, &refusal)).and_then(|svg::Shape { tag, frame, .. }| {
+                let frame = Affine::FLIP_Y * frame;
+                let path = shape(tag, frame, within).map_err(|wrong| refused(text, &wrong))?;
+                let line = 1 + breaks.partition_point(|at| *at < tag.head().start);
+                let strokes = flattened(&(frame * path), within, line)?;
+                corners += strokes.iter().map(|stroke| stroke.corners.len()).sum::<usize>();
+                if corners > super::MOST_CORNERS { Err(OutlineProblem::TooMany) } else { Ok(strokes) }
+            });
+        match read {
+            Ok(strokes) => loops.extend(strokes),
+            Err(found) => {
+                problem = Some(found);
+                return ControlFlow::Break(());
             }
-            None => Affine::IDENTITY,
-        };
-        let frame = outer * own;
-        if !frame.as_coeffs().iter().all(|c| c.abs() <= LARGEST) {
-            return Err(syntax("its transform moves it far too far".to_owned()));
         }
-        if let Some(path) = shape(node, frame, within).map_err(syntax)? {
-            let strokes = flattened(&(frame * path), within, line)?;
-            corners += strokes.iter().map(|stroke| stroke.corners.len()).sum::<usize>();
-            if corners > super::MOST_CORNERS {
-                return Err(OutlineProblem::TooMany);
-            }
-            loops.extend(strokes);
-        }
-        if depth == DEEPEST && node.has_children() {
-            return Err(syntax(format!("more than {DEEPEST} elements within each other: ungroup them")));
-        }
-        // The last is taken first.
-        open.extend(node.children().filter(Node::is_element).rev().map(|child| (child, frame, depth + 1)));
-    }
-    Ok(loops)
+        ControlFlow::Continue(())
+    });
+    problem.map_or(Ok((loops, hidden)), Err)
 }
 
-/// What an element draws, in its own coordinates; `None` where it draws nothing.
-fn shape(node: Node<'_, '_>, frame: Affine, within: Within) -> Result<Option<BezPath>, String> {
-    let number = |name: &str| -> Result<Option<f64>, String> {
-        let Some(written) = node.attribute(name) else { return Ok(None) };
-        let read = written.trim().trim_end_matches("px").parse::<f64>().ok();
+/// What an element draws, in its own coordinates.
+fn shape(tag: &Tag<'_>, frame: Affine, within: Within) -> Result<BezPath, Refusal> {
+    let number = |name: &str| -> Result<Option<f64>, Refusal> {
+        let Some(Attribute { value, span }) = tag.attribute(name) else { return Ok(None) };
+        let read = value.trim().trim_end_matches("px").parse::<f64>().ok();
         let read = read.filter(|number| number.abs() <= LARGEST);
-        read.map(Some).ok_or_else(|| format!("`{name}` should be a plain number, not `{written}`"))
+        let is_size = ["width", "height", "r", "rx", "ry"].contains(&name);
+        match read {
+            Some(number) if number < 0.0 && is_size => {
+                Err(wrong(span, format!("`{name}` is below 0: `{value}`"), "draw it again"))
+            }
+            Some(number) => Ok(Some(number)),
+            None => {
+                let message =
+                    format!("`{name}` should be a plain number, not `{}`", crate::design::shortened(&value));
+                Err(wrong(span, message, "save the picture in plain user units"))
+            }
+        }
     };
     let or_zero = |name: &str| number(name).map(Option::unwrap_or_default);
     // What a length is stretched by at most.
     let [a, b, c, d, ..] = frame.as_coeffs();
     let stretch = (a * a + b * b + c * c + d * d).sqrt().max(f64::MIN_POSITIVE);
     let tolerance = within.chord_error * OF_ARCS / stretch;
-    let path = match node.tag_name().name() {
-        "path" => node.attribute("d").map(|data| path(data, tolerance)).transpose()?.unwrap_or_default(),
+    let path = match tag.name() {
         "rect" => {
             let (x, y) = (or_zero("x")?, or_zero("y")?);
             let (width, height) = (or_zero("width")?, or_zero("height")?);
@@ -150,7 +119,10 @@ fn shape(node: Node<'_, '_>, frame: Affine, within: Within) -> Result<Option<Bez
             match (rx.or(ry).unwrap_or_default(), ry.or(rx).unwrap_or_default()) {
                 (rx, ry) if rx <= 0.0 || ry <= 0.0 => rect.to_path(tolerance),
                 (rx, ry) if rx == ry => RoundedRect::from_rect(rect, rx).to_path(tolerance),
-                _ => return Err("corners with two radii are not read: turn it into a path".to_owned()),
+                _ => {
+                    let message = "corners with two radii are not read".to_owned();
+                    return Err(wrong(tag.head(), message, "turn it into a path"));
+                }
             }
         }
         "circle" => Circle::new((or_zero("cx")?, or_zero("cy")?), or_zero("r")?).to_path(tolerance),
@@ -158,26 +130,58 @@ fn shape(node: Node<'_, '_>, frame: Affine, within: Within) -> Result<Option<Bez
             let radii = (or_zero("rx")?, or_zero("ry")?);
             Ellipse::new((or_zero("cx")?, or_zero("cy")?), radii, 0.0).to_path(tolerance)
         }
-        name @ ("polygon" | "polyline") => {
-            let mut path = BezPath::new();
-            let points = PointsParser::from(node.attribute("points").unwrap_or_default());
-            for (k, (x, y)) in points.take(MOST_CURVES).enumerate() {
-                if k == 0 { path.move_to((x, y)) } else { path.line_to((x, y)) }
-            }
-            if name == "polygon" && !path.is_empty() {
-                path.close_path();
-            }
-            path
-        }
         "line" => {
             let mut path = BezPath::new();
             path.move_to((or_zero("x1")?, or_zero("y1")?));
             path.line_to((or_zero("x2")?, or_zero("y2")?));
             path
         }
-        _ => return Ok(None),
+        name @ ("polygon" | "polyline") => match tag.attribute("points") {
+            Some(points) => polygon(&points, name == "polygon")?,
+            None => BezPath::new(),
+        },
+        _ => match tag.attribute("d") {
+            Some(Attribute { value, span }) => path(&value, tolerance)
+                .map_err(|message| wrong(span, message, "save the picture again from the drawing program"))?,
+            None => BezPath::new(),
+        },
     };
-    Ok(Some(path))
+    Ok(path)
+}
+
+const fn wrong(at: Range<usize>, message: String, help: &'static str) -> Refusal {
+    Refusal { at, message, help }
+}
+
+/// The corners of a polygon: pairs of numbers, all of which count.
+fn polygon(points: &Attribute<'_>, is_closed: bool) -> Result<BezPath, Refusal> {
+    const HELP: &str = "repair the list of points, or save the picture again from the drawing program";
+    let mut numbers = svgtypes::NumberListParser::from(points.value.as_ref());
+    let mut path = BezPath::new();
+    let mut count = 0;
+    while let Some(x) = numbers.next() {
+        let broken = |error| wrong(points.span.clone(), format!("its points cannot be read: {error}"), HELP);
+        let x = x.map_err(broken)?;
+        let y = numbers.next().ok_or_else(|| {
+            let message = "its points are an odd count of numbers, so that the last has no y".to_owned();
+            wrong(points.span.clone(), message, HELP)
+        })?;
+        let at = (x, y.map_err(broken)?);
+        if count == MOST_CURVES {
+            let message = format!("it has more than {MOST_CURVES} points");
+            return Err(wrong(points.span.clone(), message, "simplify the drawing"));
+        }
+        if count == 0 {
+            path.move_to(at)
+        } else {
+            path.line_to(at)
+        }
+        count += 1;
+    }
+    if is_closed && count > 0 {
+        path.close_path();
+    }
+    Ok(path)
 }
 
 /// Whether a segment is straight.

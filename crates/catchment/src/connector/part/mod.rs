@@ -23,6 +23,8 @@ use glam::DVec2;
 use std::path::PathBuf;
 
 pub(super) use outline::MOST_BYTES as MOST_BYTES_OF_A_DRAWING;
+#[cfg(test)]
+pub(super) use prism::extruded;
 
 /// Why a part is none.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -155,9 +157,9 @@ fn profile(
         }
         OutlineSpec::File(spec) => {
             let file = file.ok_or_else(|| refused(OutlineProblem::NoFile))?;
-            let loops = outline::read(spec, file, chord_error).map_err(refused)?;
+            let outline::Drawn { loops, hidden } = outline::read(spec, file, chord_error).map_err(refused)?;
             let corners = loops.iter().map(Vec::len).sum();
-            (loops, Some(MeshContent::of(&file.bytes, corners)))
+            (loops, Some(MeshContent { hidden, ..MeshContent::of(&file.bytes, corners) }))
         }
     };
     let regions = outline::regions(loops).map_err(refused)?;

@@ -9,10 +9,20 @@
 //! ```
 
 use super::PartError;
+use crate::budget::{Budget, Limit, Overspent};
 use crate::connector::Surface;
 use crate::connector::mesh::cut;
 use crate::connector::outline::{OutlineProblem, Region, crossing};
 use glam::{DVec2, DVec3};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Comparisons of bridges with walls: for hundreds of holes there are some ten thousand bridges, each compared with all walls.
+const STEPS: Limit = Limit {
+    most: 100_000_000,
+    of: "steps of joining holes to the outline around them",
+    remedy: "draw fewer holes, or divide the part",
+};
 
 /// A box that stands on the origin, the middle of its floor.
 pub(super) fn cuboid([x, y, z]: [f64; 3]) -> Result<Surface, PartError> {
@@ -27,7 +37,7 @@ pub(super) fn cuboid([x, y, z]: [f64; 3]) -> Result<Surface, PartError> {
 }
 
 /// A region extruded from z = 0.
-pub(super) fn extruded(region: &Region, height: f64) -> Result<Surface, OutlineProblem> {
+pub(in crate::connector) fn extruded(region: &Region, height: f64) -> Result<Surface, OutlineProblem> {
     let flat: Vec<DVec2> = region.loops().flatten().copied().collect();
     let n = flat.len() as u32;
     let mut polygons = Vec::new();
@@ -40,9 +50,9 @@ pub(super) fn extruded(region: &Region, height: f64) -> Result<Surface, OutlineP
         }
         first += count;
     }
-    let border = bridged(region, &flat).ok_or(OutlineProblem::TooIntricate)?;
+    let border = bridged(region, &flat, &mut Budget::new(STEPS))?.ok_or(OutlineProblem::TooIntricate)?;
     let corners: Vec<DVec3> = border.iter().map(|k| flat[*k].extend(0.0)).collect();
-    let cap = cut::triangles(&corners).ok_or(OutlineProblem::TooIntricate)?;
+    let cap = cut::triangles(&corners, &mut Budget::new(cut::STEPS))?.ok_or(OutlineProblem::TooIntricate)?;
     for triangle in cap {
         let [a, b, c] = triangle.map(|k| border[k] as u32);
         polygons.push(vec![n + a, n + b, n + c]);
@@ -53,50 +63,111 @@ pub(super) fn extruded(region: &Region, height: f64) -> Result<Surface, OutlineP
     Surface::from_polygons(vertices, &polygons).map_err(|_| OutlineProblem::TooIntricate)
 }
 
+/// A line from a hole to the border, by the numbers of its ends.
+struct Bridge {
+    squared: f64,
+    /// On the border.
+    outer: usize,
+    /// On the hole.
+    inner: usize,
+}
+
+impl Ord for Bridge {
+    /// The shortest last; of equally short ones any, but always the same.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let ends = |own: &Self| (own.outer, own.inner);
+        other.squared.total_cmp(&self.squared).then_with(|| ends(other).cmp(&ends(self)))
+    }
+}
+
+impl PartialOrd for Bridge {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Bridge {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Bridge {}
+
 /// One border of the region, by the numbers of its corners: every hole is cut open to the rest along the shortest bridge that crosses
-/// nothing, which no other bridge touches.
-fn bridged(region: &Region, flat: &[DVec2]) -> Option<Vec<usize>> {
+/// nothing, which no other bridge touches. Of equally short ones the first along the border as it is then, and of its own the first of the first hole.
+///
+/// What crosses a wall does so for good: every bridge is compared with the walls once.
+fn bridged(region: &Region, flat: &[DVec2], steps: &mut Budget) -> Result<Option<Vec<usize>>, Overspent> {
     let mut rings: Vec<Vec<usize>> = Vec::new();
-    let mut first = 0;
-    for ring in region.loops() {
-        rings.push((first..first + ring.len()).collect());
-        first += ring.len();
+    // Of every corner its ring, and its place in it.
+    let mut place: Vec<(usize, usize)> = Vec::with_capacity(flat.len());
+    for (ring, corners) in region.loops().enumerate() {
+        let first = place.len();
+        rings.push((first..first + corners.len()).collect());
+        place.extend((0..corners.len()).map(|k| (ring, k)));
     }
     let mut walls: Vec<[usize; 2]> = rings
         .iter()
         .flat_map(|ring| (0..ring.len()).map(|k| [ring[k], ring[(k + 1) % ring.len()]]))
         .collect();
-    let mut border = rings.remove(0);
+    let mut is_joined = vec![false; rings.len()];
     let mut used = vec![false; flat.len()];
-    while !rings.is_empty() {
-        let mut bridges: Vec<(f64, usize, usize, usize)> = Vec::new();
-        for (ring, corners) in rings.iter().enumerate() {
-            for (inner, p) in corners.iter().enumerate() {
-                let nearest = border.iter().enumerate().filter(|(_, q)| !used[**q]);
-                bridges.extend(
-                    nearest.map(|(outer, q)| (flat[*p].distance_squared(flat[*q]), outer, ring, inner)),
-                );
-            }
+    let mut border = rings[0].clone();
+    is_joined[0] = true;
+    let mut bridges = BinaryHeap::new();
+    let reach = |from: &[usize], is_joined: &[bool], bridges: &mut BinaryHeap<Bridge>| {
+        for inner in (0..flat.len()).filter(|k| !is_joined[place[*k].0]) {
+            let squared = |outer: usize| flat[inner].distance_squared(flat[outer]);
+            bridges.extend(from.iter().map(|outer| Bridge {
+                squared: squared(*outer),
+                outer: *outer,
+                inner,
+            }));
         }
-        bridges.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2, a.3).cmp(&(b.1, b.2, b.3))));
-        let is_clear = |(_, outer, ring, inner): &(f64, usize, usize, usize)| {
-            let (p, q) = (border[*outer], rings[*ring][*inner]);
-            walls.iter().all(|[a, b]| {
-                [a, b].iter().any(|k| **k == p || **k == q)
-                    || crossing([flat[p], flat[q]], [flat[*a], flat[*b]], 0.0).is_none()
-            })
-        };
-        let (_, outer, ring, inner) = bridges.into_iter().find(is_clear)?;
-        let ring = rings.remove(ring);
-        let (p, q) = (border[outer], ring[inner]);
+    };
+    reach(&border, &is_joined, &mut bridges);
+    for _ in 1..rings.len() {
+        let mut position = vec![0; flat.len()];
+        for (k, corner) in border.iter().enumerate() {
+            position[*corner] = k;
+        }
+        let mut taken = None;
+        while taken.is_none() {
+            let Some(first) = bridges.pop() else { return Ok(None) };
+            let squared = first.squared;
+            let mut equal = vec![first];
+            while bridges.peek().is_some_and(|next| next.squared == squared) {
+                equal.extend(bridges.pop());
+            }
+            equal.retain(|bridge| !used[bridge.outer] && !is_joined[place[bridge.inner].0]);
+            equal.sort_by_key(|bridge| std::cmp::Reverse((position[bridge.outer], bridge.inner)));
+            while taken.is_none() {
+                let Some(bridge) = equal.pop() else { break };
+                let (p, q) = (bridge.outer, bridge.inner);
+                steps.spend(walls.len() as u64)?;
+                let is_clear = walls.iter().all(|[a, b]| {
+                    [a, b].iter().any(|k| **k == p || **k == q)
+                        || crossing([flat[p], flat[q]], [flat[*a], flat[*b]], 0.0).is_none()
+                });
+                taken = is_clear.then_some((p, q));
+            }
+            bridges.extend(equal);
+        }
+        let Some((p, q)) = taken else { return Ok(None) };
+        let (ring, inner) = place[q];
+        let ring_corners = &rings[ring];
         walls.push([p, q]);
         (used[p], used[q]) = (true, true);
         // In along the bridge, around the hole, and out again.
-        let around = (0..=ring.len()).map(|k| ring[(inner + k) % ring.len()]);
+        let around = (0..=ring_corners.len()).map(|k| ring_corners[(inner + k) % ring_corners.len()]);
         let inserted: Vec<usize> = around.chain([p]).collect();
+        let outer = position[p];
         border.splice(outer + 1..=outer, inserted);
+        is_joined[ring] = true;
+        reach(ring_corners, &is_joined, &mut bridges);
     }
-    Some(border)
+    Ok(Some(border))
 }
 
 #[cfg(test)]

@@ -1,10 +1,15 @@
 //! The one place where a process is started: an interpreter that reads its input, writes its answer, and is ended when nobody waits any more.
+//!
+//! It starts in an empty folder of its own, and no relative entry of `PYTHONPATH` reaches it: files that lie beside a design or a part are never run.
 
 use super::StepProblem;
 use crate::exec::{Exec, Stopwatch};
 use std::ffi::OsString;
+use std::fs::DirBuilder;
 use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf, absolute};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -34,6 +39,51 @@ pub(super) struct Job<'a> {
     pub(super) most_time: Duration,
 }
 
+/// Folders that a Python searches for packages.
+const SEARCHED: &str = "PYTHONPATH";
+/// Names of folders that are tried: those of processes that were killed may be there.
+const TRIES: usize = 1000;
+/// Folders that this process has made.
+static FOLDERS: AtomicU64 = AtomicU64::new(0);
+
+/// An empty folder that only this user may enter, and that goes when it is no longer needed.
+struct Nowhere(PathBuf);
+
+impl Nowhere {
+    fn make() -> io::Result<Self> {
+        let home = absolute(std::env::temp_dir())?;
+        let mut builder = DirBuilder::new();
+        #[cfg(unix)]
+        std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+        let mut last = io::Error::from(io::ErrorKind::AlreadyExists);
+        for _ in 0..TRIES {
+            let number = FOLDERS.fetch_add(1, Ordering::Relaxed);
+            let folder = home.join(format!("catchment-{}-{number}", std::process::id()));
+            match builder.create(&folder) {
+                Ok(()) => return Ok(Self(folder)),
+                // Never a folder that is there already: it may hold anything.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => last = error,
+                Err(error) => return Err(error),
+            }
+        }
+        Err(last)
+    }
+}
+
+impl Drop for Nowhere {
+    fn drop(&mut self) {
+        // What the child may have left in it is no concern of ours.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The entries of a search path that mean the same in every folder; `None` where there are none.
+fn absolute_entries(paths: Option<OsString>) -> Option<OsString> {
+    let paths = paths?;
+    let kept = std::env::split_paths(&paths).filter(|path| path.is_absolute());
+    std::env::join_paths(kept).ok().filter(|kept| !kept.is_empty())
+}
+
 /// A child that does not outlive whoever waits for it.
 struct Started(Child);
 
@@ -56,7 +106,16 @@ pub(super) fn run(
     let name = program.to_string_lossy().into_owned();
     let failed =
         |error: io::Error| StepProblem::NoPython { program: name.clone(), message: error.to_string() };
+    let nowhere = Nowhere::make().map_err(failed)?;
+    // A path is relative to the folder of the person, a bare name is looked up.
+    let is_path = Path::new(&program).components().count() > 1;
+    let program = if is_path { absolute(&program).map_err(failed)?.into_os_string() } else { program };
     let mut command = Command::new(&program);
+    match absolute_entries(std::env::var_os(SEARCHED)) {
+        Some(paths) => command.env(SEARCHED, paths),
+        None => command.env_remove(SEARCHED),
+    };
+    command.current_dir(&nowhere.0);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = Started(command.spawn().map_err(failed)?);
     if let Some(mut stdin) = child.0.stdin.take() {
@@ -104,4 +163,30 @@ fn listen(from: Option<impl Read + Send + 'static>, most: u64) -> io::Result<Rec
         })?;
     }
     Ok(received)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_that_depend_on_the_folder_are_left_out() {
+        let kept = |paths: &str| absolute_entries(Some(paths.into())).map(|kept| kept.into_string().unwrap());
+        assert_eq!(kept("/a:b:/c").as_deref(), Some("/a:/c"));
+        assert_eq!(kept("/opt/mine:").as_deref(), Some("/opt/mine"));
+        assert_eq!((kept(""), kept(":"), kept(".:./x:../y")), (None, None, None));
+        assert_eq!(absolute_entries(None), None);
+    }
+
+    #[test]
+    fn a_child_starts_in_a_folder_of_its_own_which_goes() {
+        let arguments = ["-c".to_owned(), "pwd; ls -A; ls -ld . | cut -c 1-10".to_owned()];
+        let most_time = Duration::from_mins(1);
+        let job = Job { program: "sh".into(), arguments: &arguments, most_reply: 1 << 10, most_time };
+        let answer = run(job, Vec::new(), &Stopwatch::start(), &Exec::new()).unwrap();
+        let answer = String::from_utf8(answer).unwrap();
+        let lines: Vec<&str> = answer.lines().collect();
+        assert!(lines.len() == 2 && lines[0].contains("catchment-") && lines[1] == "drwx------", "{answer}");
+        assert!(!Path::new(lines[0]).exists());
+    }
 }

@@ -1,6 +1,6 @@
 """A STEP file on stdin becomes the triangles of its solids on stdout, in mm.
 
-    python3 -c "$(cat mesh.py)" DEFLECTION MOST_TRIANGLES MOST_BYTES MOST_SECONDS < part.step
+    python3 -I -c "$(cat mesh.py)" DEFLECTION MOST_TRIANGLES MOST_BYTES MOST_SECONDS < part.step
 
 DEFLECTION is in mm, or 0 for a share of the part's size. Asks for nothing but its input, and writes no file.
 
@@ -9,15 +9,18 @@ little-endian unsigned 32-bit numbers of corners each). Corners that faces share
 the tolerances of the file: a closed shell becomes a closed mesh.
 """
 
-import sys
-
-# What lies in the working directory is no package.
-sys.path = [path for path in sys.path if path]
-
 import array
 import json
 import os
 import signal
+import site
+import sys
+
+# An isolated interpreter (-I) knows nothing of the folder at hand and of variables. Packages that were installed for the person alone, and those in
+# absolute entries of PYTHONPATH, are searched last.
+sys.path += [path for path in os.environ.get("PYTHONPATH", "").split(os.pathsep) if os.path.isabs(path)]
+if sys.prefix == sys.base_prefix and os.path.isabs(site.getusersitepackages()):
+    site.addsitedir(site.getusersitepackages())
 
 # The least share of its largest side by which the facets of a part are off where nothing is said.
 SHARE = 2e-4

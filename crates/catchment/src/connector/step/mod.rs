@@ -1,11 +1,12 @@
 //! STEP files: curved faces, which `OpenCASCADE` turns into triangles in a Python of the person's own.
 //!
 //! ```text
-//!   bytes of part.step ──stdin──▶ python3 -c mesh.py ──stdout──▶ corners and triangles of every solid, in mm
+//!   bytes of part.step ──stdin──▶ python3 -I -c mesh.py ──stdout──▶ corners and triangles of every solid, in mm
 //!                                 (OCP: cadquery-ocp-novtk)
 //! ```
 //!
-//! Nothing heavy is linked in, nothing is fetched and no file is written. Every solid is a body of its own; where there is none, every closed
+//! Nothing heavy is linked in, nothing is fetched and no file is written. The interpreter is isolated and starts in an empty folder; packages are those
+//! that it has, those of the person, and those in the absolute entries of `PYTHONPATH`. Every solid is a body of its own; where there is none, every closed
 //! shell. Corners are joined as the topology has them, so that a closed shell is a closed mesh. Facets are off from the faces by at most the
 //! `deflection` that the design says, or 0.0002 of the part's largest side, as `OpenCASCADE` measures it: a corner lies on the part, a facet
 //! inside of what bulges and outside of what is hollow. Neighbouring facets of one face turn by at most 0.5 rad.
@@ -184,6 +185,8 @@ pub(super) fn read(file: &FileBytes, spec: &FileSpec, exec: &Exec) -> Result<Hel
 fn meshed(bytes: &[u8], asked: &Asked, spec: &FileSpec, exec: &Exec) -> Result<Held, Vec<MeshProblem>> {
     let most_bytes = exec.memory_budget();
     let arguments = [
+        // Isolated: no variable and no folder at hand says what is imported. The script adds what the person has installed.
+        "-I".to_owned(),
         "-c".to_owned(),
         SCRIPT.to_owned(),
         asked.deflection.to_string(),

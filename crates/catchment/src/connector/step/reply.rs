@@ -1,7 +1,7 @@
 //! The answer of the child: a line of JSON, then of every body its corners and triangles, little-endian.
 
 use super::{FromCurves, StepProblem};
-use crate::connector::mesh::{MeshProblem, Place, Start, Triangle, most_read};
+use crate::connector::mesh::{self, MeshProblem, Place, Start, Triangle, most_read};
 use crate::connector::source::Held;
 use crate::design::{LengthUnit, Treatment, hex};
 use glam::DVec3;
@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 const CORNER: usize = 24;
 const TRIANGLE: usize = 12;
 /// Bytes of the line of JSON, far more than the numbers of thousands of bodies take.
-const MOST_HEAD: u64 = 1 << 20;
+const MOST_HEAD: usize = 1 << 20;
 /// Characters of the name of what meshed it.
 const LONGEST_NAME: usize = 100;
 
@@ -35,7 +35,7 @@ struct Head {
 
 /// Bytes of an answer of so many triangles: a body has no more than three corners for each.
 pub(super) const fn most_bytes(triangles: usize) -> u64 {
-    MOST_HEAD + (triangles * (TRIANGLE + 3 * CORNER)) as u64
+    (MOST_HEAD + triangles * (TRIANGLE + 3 * CORNER)) as u64
 }
 
 /// The bodies of an answer, or what it refuses.
@@ -44,12 +44,14 @@ pub(super) fn read(answer: &[u8], program: &str, treatment: Treatment) -> Result
         let message = "its answer is broken".to_owned();
         vec![StepProblem::Died { program: program.to_owned(), message }.into()]
     };
-    let end = answer.iter().position(|byte| *byte == b'\n').ok_or_else(broken)?;
+    let head = &answer[..answer.len().min(MOST_HEAD)];
+    let end = head.iter().position(|byte| *byte == b'\n').ok_or_else(broken)?;
     let head: Head = serde_json::from_slice(&answer[..end]).map_err(|_| broken())?;
     let Head { error, message, bodies: sizes, deflection, reached, by } = head;
     if let Some(kind) = error {
         return Err(vec![refusal(&kind, &message, program, treatment)]);
     }
+    mesh::BODIES.allows(sizes.len() as u64).map_err(|over| mesh::overspent("the file", over))?;
     let rest = &answer[end + 1..];
     let mut bodies = Vec::with_capacity(sizes.len());
     let (mut at, mut number) = (0_usize, 0);

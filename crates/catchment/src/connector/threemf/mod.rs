@@ -14,11 +14,12 @@
 
 mod model;
 
-use super::mesh::{MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
+use super::mesh::{self, MAX_TRIANGLES, MeshProblem, Place, Start, Triangle};
 use super::source::{FileBytes, Held, ZIP};
+use crate::budget::{Budget, Limit};
 use glam::{DAffine3, DVec3};
 use model::{Geometry, Model};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
@@ -28,9 +29,15 @@ pub(super) const MAX_BYTES: u64 = super::stl::MAX_BYTES;
 const MOST_UNPACKED: u64 = 64 << 20;
 /// Most model parts of a file: a program that splits them makes one per object.
 const MOST_MODELS: usize = 64;
-/// Most items and components that are followed, and how deep: two that hold two each, and so on, are soon more than any file has bytes.
-const MOST_COMPONENTS: usize = 10_000;
-const DEEPEST: usize = 16;
+/// Items and components that are followed, and how deep: two that hold two each, and so on, are soon more than any file has bytes.
+const COMPONENTS: Limit =
+    Limit { most: 10_000, of: "items and components", remedy: "unite the solids before exporting" };
+const DEPTH: Limit =
+    Limit { most: 16, of: "components nested in each other", remedy: "unite the solids before exporting" };
+/// How an entry of the directory of an archive begins.
+const ENTRY: &[u8] = b"PK\x01\x02";
+/// Entries of an archive, which are pictures and settings but for the models.
+const ENTRIES: Limit = Limit { most: 10_000, of: "entries", remedy: "export the part alone" };
 /// The part with the model where no relationship names it.
 const USUAL_MODEL: &str = "3D/3dmodel.model";
 /// How the relationship to it ends.
@@ -48,6 +55,9 @@ pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
     if file.size > MAX_BYTES {
         return Err(refused(format!("{} bytes, more than the {MAX_BYTES} that are read", file.size)));
     }
+    // Opening it takes memory for every entry.
+    let entries = file.bytes.windows(ENTRY.len()).filter(|window| *window == ENTRY).count();
+    ENTRIES.allows(entries as u64).map_err(|over| mesh::overspent("the archive", over))?;
     let archive = ZipArchive::new(Cursor::new(file.bytes.as_slice())).map_err(|error| {
         refused(format!("it is no ZIP archive, or was cut off ({error}): export it again"))
     })?;
@@ -55,7 +65,8 @@ pub(super) fn read(file: &FileBytes) -> Result<Held, Vec<MeshProblem>> {
         Package { archive, left: MOST_UNPACKED, models: BTreeMap::new(), vertices: 0, triangles: 0 };
     let root = package.root()?;
     package.load(&root)?;
-    let mut build = Build { package, bodies: Vec::new(), components: 0, triangles: 0 };
+    let components = Budget::new(COMPONENTS);
+    let mut build = Build { package, bodies: Vec::new(), placed: BTreeSet::new(), components, triangles: 0 };
     let metres = build.package.models[&root].metres;
     for item in build.package.models[&root].items.clone() {
         let path = item.path.map_or_else(|| root.clone(), |path| part_name(&path));
@@ -142,19 +153,18 @@ impl Package<'_> {
 struct Build<'a> {
     package: Package<'a>,
     bodies: Vec<Vec<Triangle>>,
-    components: usize,
+    /// Meshes that are there, each with its part and where it stands: the same one in the same place once more is the same solid.
+    placed: BTreeSet<(String, u32, [u64; 12])>,
+    components: Budget,
     triangles: usize,
 }
 
 impl Build<'_> {
     /// Adds an object, or all that it is composed of.
     fn add(&mut self, path: &str, id: u32, placed: DAffine3, depth: usize) -> Result<(), Vec<MeshProblem>> {
-        self.components += 1;
-        if self.components > MOST_COMPONENTS || depth > DEEPEST {
-            return Err(refused(format!(
-                "its components are nested more than {DEEPEST} deep, or are more than {MOST_COMPONENTS}"
-            )));
-        }
+        let over = |over| mesh::overspent(format!("{path}, object {id}"), over);
+        self.components.spend(1).map_err(over)?;
+        DEPTH.allows(depth as u64).map_err(over)?;
         self.package.load(path)?;
         let Some(object) = self.package.models[path].objects.get(&id) else {
             return Err(refused(format!("{path}: there is no object {id}")));
@@ -162,18 +172,30 @@ impl Build<'_> {
         match object {
             Geometry::LeftOut => Ok(()),
             Geometry::Components(components) => {
-                for component in components.clone() {
+                let count = components.len();
+                for k in 0..count {
+                    // One at a time: a copy of all would be held at every depth.
+                    let Some(Geometry::Components(components)) = self.package.models[path].objects.get(&id)
+                    else {
+                        break;
+                    };
+                    let component = components[k].clone();
                     let path = component.path.map_or_else(|| path.to_owned(), |path| part_name(&path));
                     self.add(&path, component.object, placed * component.transform, depth + 1)?;
                 }
                 Ok(())
             }
             Geometry::Mesh { vertices, triangles } => {
+                let place = placed.to_cols_array().map(|number| (number + 0.0).to_bits());
+                if !self.placed.insert((path.to_owned(), id, place)) {
+                    return Ok(());
+                }
                 self.triangles += triangles.len();
                 if self.triangles > MAX_TRIANGLES {
                     return Err(vec![MeshProblem::TooMany { count: self.triangles as u64 }]);
                 }
                 let mirrored = placed.matrix3.determinant() < 0.0;
+                mesh::BODIES.allows(self.bodies.len() as u64 + 1).map_err(over)?;
                 let first: usize = self.bodies.iter().map(Vec::len).sum();
                 let mut body = Vec::with_capacity(triangles.len());
                 for (k, corners) in triangles.iter().enumerate() {

@@ -1,19 +1,25 @@
 //! A model part of a 3MF file: its unit, its objects and its build, read piece by piece.
 
+use crate::budget::Limit;
 use crate::connector::mesh::MAX_TRIANGLES;
 use crate::design::shortened;
+use crate::xml::{Limits, Piece, Tag, Walk, XmlError};
 use glam::{DAffine3, DMat3, DVec3};
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::Read;
 
 /// Most vertices of a file: three for every triangle, where none are shared.
 pub(super) const MOST_VERTICES: usize = 3 * MAX_TRIANGLES;
-/// Most bytes of one piece of XML, a tag or a text.
-const LONGEST_PIECE: usize = 1 << 20;
-/// Deepest nesting of elements.
-const DEEPEST: usize = 64;
+/// What the XML of a part may have. Elements of extensions come to those of the solids.
+const LIMITS: Limits = Limits {
+    elements: Limit { most: 8_000_000, of: "elements", remedy: "export the solids alone" },
+    depth: Limit { most: 64, of: "elements within each other", remedy: "export the part again" },
+    attributes: Limit { most: 64, of: "attributes of an element", remedy: "export the part again" },
+    piece: Limit { most: 1 << 20, of: "bytes in a tag or a text", remedy: "export the part again" },
+};
+/// Bytes of the path of a part: archives have names of dozens.
+const PATH: Limit = Limit { most: 1024, of: "bytes in the path of a part", remedy: "export the part again" };
 /// Most objects, items and components of a part.
 const MOST_OBJECTS: usize = 100_000;
 /// Metres in the units of the format.
@@ -57,96 +63,37 @@ pub(super) struct Model {
     pub(super) items: Vec<Use>,
 }
 
-/// Ends where one piece is too long.
-struct Metered<R> {
-    inner: R,
-    piece: usize,
-}
-
-impl<R: BufRead> Read for Metered<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.fill_buf()?.read(buffer)?;
-        self.consume(count);
-        Ok(count)
-    }
-}
-
-impl<R: BufRead> BufRead for Metered<R> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.piece > LONGEST_PIECE {
-            return Err(io::Error::other(format!("a tag or a text of more than {LONGEST_PIECE} bytes")));
-        }
-        self.inner.fill_buf()
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.piece += count;
-        self.inner.consume(count);
-    }
-}
-
-/// Every element that begins, with the names of those around it.
-fn walk(
-    part: impl Read,
-    mut each: impl FnMut(&BytesStart<'_>, &[Vec<u8>]) -> Result<(), String>,
-) -> Result<(), String> {
-    let metered = Metered { inner: BufReader::new(part), piece: 0 };
-    let mut reader = Reader::from_reader(metered);
-    let mut buffer = Vec::new();
-    let mut open: Vec<Vec<u8>> = Vec::new();
-    let mut any = false;
+/// The elements that begin, one after the other.
+fn walk(part: impl Read, mut each: impl FnMut(&Tag<'_>) -> Result<(), String>) -> Result<(), String> {
+    let mut walk = Walk::new(part, LIMITS);
     loop {
-        reader.get_mut().piece = 0;
-        buffer.clear();
-        let at = reader.buffer_position();
-        let located = |message: String| format!("byte {at}: {message}");
-        match reader.read_event_into(&mut buffer).map_err(|error| located(error.to_string()))? {
-            Event::Start(tag) => {
-                each(&tag, &open).map_err(located)?;
-                if open.len() == DEEPEST {
-                    return Err(located(format!("elements are nested more than {DEEPEST} deep")));
-                }
-                open.push(tag.local_name().as_ref().to_vec());
-                any = true;
+        let piece = walk.next().map_err(|XmlError { at, message, .. }| format!("byte {at}: {message}"))?;
+        match piece {
+            Some(Piece::Start(tag)) => {
+                each(&tag).map_err(|message| format!("byte {}: {message}", tag.head().start))?;
             }
-            Event::Empty(tag) => {
-                each(&tag, &open).map_err(located)?;
-                any = true;
-            }
-            Event::End(_) => drop(open.pop()),
-            Event::DocType(_) => return Err(located("a document type has no place in it".to_owned())),
-            Event::Eof if !open.is_empty() => return Err(located("it was cut off".to_owned())),
-            Event::Eof if !any => return Err("there is no XML in it".to_owned()),
-            Event::Eof => return Ok(()),
-            _ => {}
+            Some(_) => {}
+            None => return Ok(()),
         }
     }
 }
 
 /// The value of an attribute by its local name.
-fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, String> {
-    for attribute in tag.attributes() {
-        let attribute = attribute.map_err(|error| error.to_string())?;
-        if attribute.key.local_name().as_ref() == name.as_bytes() {
-            let text = String::from_utf8_lossy(&attribute.value);
-            let plain = quick_xml::escape::unescape(&text).map_err(|error| error.to_string())?;
-            return Ok(Some(plain.into_owned()));
-        }
-    }
-    Ok(None)
+fn attribute<'t>(tag: &'t Tag<'_>, name: &str) -> Option<Cow<'t, str>> {
+    tag.local_attribute(name).map(|own| own.value)
 }
 
-fn number<T: std::str::FromStr>(tag: &BytesStart<'_>, name: &str) -> Result<T, String> {
-    let element = || shortened(&String::from_utf8_lossy(tag.local_name().as_ref()));
-    let written = attribute(tag, name)?.ok_or_else(|| format!("<{}> has no {name}", element()))?;
+fn number<T: std::str::FromStr>(tag: &Tag<'_>, name: &str) -> Result<T, String> {
+    let element = || shortened(tag.name());
+    let written = attribute(tag, name).ok_or_else(|| format!("<{}> has no {name}", element()))?;
     written.trim().parse().map_err(|_| {
         format!("{name} of <{}> is `{}`, which is no number here", element(), shortened(&written))
     })
 }
 
 /// Twelve numbers: where the axes go, and the origin.
-fn transform(tag: &BytesStart<'_>) -> Result<DAffine3, String> {
-    let Some(written) = attribute(tag, "transform")? else { return Ok(DAffine3::IDENTITY) };
+fn transform(tag: &Tag<'_>) -> Result<DAffine3, String> {
+    let Some(written) = attribute(tag, "transform") else { return Ok(DAffine3::IDENTITY) };
     let numbers: Vec<f64> = written.split_whitespace().filter_map(|number| number.parse().ok()).collect();
     let whole = numbers.len() == 12 && numbers.iter().all(|number: &f64| number.is_finite());
     if !whole || written.split_whitespace().count() != 12 {
@@ -160,19 +107,21 @@ fn transform(tag: &BytesStart<'_>) -> Result<DAffine3, String> {
     Ok(DAffine3 { matrix3, translation: axis(3) })
 }
 
-fn used(tag: &BytesStart<'_>) -> Result<Use, String> {
-    Ok(Use { object: number(tag, "objectid")?, path: attribute(tag, "path")?, transform: transform(tag)? })
+fn used(tag: &Tag<'_>) -> Result<Use, String> {
+    let path = attribute(tag, "path");
+    PATH.allows(path.as_ref().map_or(0, |path| path.len() as u64)).map_err(|over| over.to_string())?;
+    Ok(Use { object: number(tag, "objectid")?, path: path.map(Cow::into_owned), transform: transform(tag)? })
 }
 
 /// The target of the first relationship whose type ends in `kind`.
 pub(super) fn target(part: impl Read, kind: &str) -> Result<Option<String>, String> {
     let mut target = None;
-    walk(part, |tag, _| {
-        if tag.local_name().as_ref() == b"Relationship"
+    walk(part, |tag| {
+        if tag.name() == "Relationship"
             && target.is_none()
-            && attribute(tag, "Type")?.is_some_and(|own| own.ends_with(kind))
+            && attribute(tag, "Type").is_some_and(|own| own.ends_with(kind))
         {
-            target = attribute(tag, "Target")?;
+            target = attribute(tag, "Target").map(Cow::into_owned);
         }
         Ok(())
     })?;
@@ -185,15 +134,14 @@ impl Model {
         let mut model = Self { metres: 1e-3, ..Self::default() };
         let mut current = None;
         let (mut vertices, mut triangles, mut uses) = (0, 0, 0);
-        walk(part, |tag, open| {
-            let name = tag.local_name();
-            let within = |parent: &str| open.last().is_some_and(|own| own == parent.as_bytes());
-            match name.as_ref() {
-                b"model" if open.is_empty() => model.head(tag)?,
-                _ if open.is_empty() => return Err("it is no model of a 3MF file".to_owned()),
-                b"object" if within("resources") => {
+        walk(part, |tag| {
+            let within = |parent: &str| tag.is_within(parent);
+            match tag.name() {
+                "model" if tag.is_root() => model.head(tag)?,
+                _ if tag.is_root() => return Err("it is no model of a 3MF file".to_owned()),
+                "object" if within("resources") => {
                     let id = number(tag, "id")?;
-                    let kind = attribute(tag, "type")?;
+                    let kind = attribute(tag, "type");
                     let is_model = kind.is_none_or(|kind| kind == "model");
                     let left_out = (!is_model).then_some(Geometry::LeftOut);
                     let nothing = || Geometry::Components(Vec::new());
@@ -201,32 +149,32 @@ impl Model {
                     uses += 1;
                     current = is_model.then_some(id);
                 }
-                b"mesh" if within("object") => {
+                "mesh" if within("object") => {
                     if let Some(id) = current {
                         model
                             .objects
                             .insert(id, Geometry::Mesh { vertices: Vec::new(), triangles: Vec::new() });
                     }
                 }
-                b"vertex" if within("vertices") => {
+                "vertex" if within("vertices") => {
                     if let Some(Geometry::Mesh { vertices: own, .. }) = model.current(current) {
                         own.push(DVec3::new(number(tag, "x")?, number(tag, "y")?, number(tag, "z")?));
                         vertices += 1;
                     }
                 }
-                b"triangle" if within("triangles") => {
+                "triangle" if within("triangles") => {
                     if let Some(Geometry::Mesh { triangles: own, .. }) = model.current(current) {
                         own.push([number(tag, "v1")?, number(tag, "v2")?, number(tag, "v3")?]);
                         triangles += 1;
                     }
                 }
-                b"component" if within("components") => {
+                "component" if within("components") => {
                     if let Some(Geometry::Components(own)) = model.current(current) {
                         own.push(used(tag)?);
                         uses += 1;
                     }
                 }
-                b"item" if within("build") => {
+                "item" if within("build") => {
                     model.items.push(used(tag)?);
                     uses += 1;
                 }
@@ -248,13 +196,13 @@ impl Model {
     }
 
     /// The unit, and what the file requires of its reader.
-    fn head(&mut self, tag: &BytesStart<'_>) -> Result<(), String> {
-        if let Some(unit) = attribute(tag, "unit")? {
+    fn head(&mut self, tag: &Tag<'_>) -> Result<(), String> {
+        if let Some(unit) = attribute(tag, "unit") {
             let known = UNITS.iter().find(|(name, _)| *name == unit);
             self.metres = known.ok_or_else(|| format!("unknown unit `{}`", shortened(&unit)))?.1;
         }
-        for prefix in attribute(tag, "requiredextensions")?.unwrap_or_default().split_whitespace() {
-            let space = attribute(tag, prefix)?.unwrap_or_default();
+        for prefix in attribute(tag, "requiredextensions").unwrap_or_default().split_whitespace() {
+            let space = attribute(tag, prefix).unwrap_or_default();
             if !KNOWN_EXTENSIONS.iter().any(|known| space.contains(known)) {
                 return Err(format!(
                     "it requires the extension `{}`, which is not read: export it without, or as STL",

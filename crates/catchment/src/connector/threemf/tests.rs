@@ -116,15 +116,63 @@ fn bombs_do_not_go_off() {
     };
     let doubled: String = (0..14).map(twice).collect();
     let last = "<item objectid=\"14\"/>";
-    assert!(refused(&model("", &format!("<object id=\"0\"/>{doubled}"), last)).contains("nested more than"));
+    assert!(
+        refused(&model("", &format!("<object id=\"0\"/>{doubled}"), last))
+            .contains("more than 10000 items and components")
+    );
     let itself = "<object id=\"1\"><components><component objectid=\"1\"/></components></object>";
-    assert!(refused(&model("", itself, "<item objectid=\"1\"/>")).contains("nested more than"));
+    assert!(
+        refused(&model("", itself, "<item objectid=\"1\"/>"))
+            .contains("more than 16 components nested in each other")
+    );
     let vertices = "<vertex x=\"0\" y=\"0\" z=\"0\"/>".repeat(model::MOST_VERTICES + 1);
     let mesh = format!("<object id=\"1\"><mesh><vertices>{vertices}</vertices></mesh></object>");
     assert!(refused(&model("", &mesh, "")).contains("export a coarser mesh"));
     assert!(refused(&format!("<model a=\"{}\"/>", " ".repeat(3 << 20))).contains("more than 1048576 bytes"));
     assert!(refused(&"<a>".repeat(100)).contains("no model of a 3MF file"));
-    assert!(refused(&format!("<model>{}", "<a>".repeat(100))).contains("nested more than"));
-    let long = format!("<model>{}</model>", "<a/>".repeat(MOST_UNPACKED as usize / 4));
+    assert!(
+        refused(&format!("<model>{}", "<a>".repeat(100))).contains("more than 64 elements within each other")
+    );
+    let comment = format!("<!--{}-->", " ".repeat(1000));
+    let long = format!("<model>{}</model>", comment.repeat(MOST_UNPACKED as usize / 1000));
     assert!(refused(&long).contains("unpacks to more than"));
+    let many = format!("<model>{}</model>", "<a/>".repeat(8_000_000));
+    assert!(refused(&many).contains("more than 8000000 elements: export the solids alone"));
+    let crowd: String = (0..65).map(|k| format!(" a{k}=\"\"")).collect();
+    assert!(refused(&model(&crowd, "", "")).contains("byte 22: more than 64 attributes of an element"));
+    // A path that is as long as a tag may be, in every component of an object that holds itself.
+    let path = format!("<component objectid=\"1\" path=\"{}3D/3dmodel.model\"/>", "/".repeat(1_000_000));
+    let itself = format!("<object id=\"1\"><components>{path}</components></object>");
+    assert!(
+        refused(&model("", &itself, "<item objectid=\"1\"/>"))
+            .contains("more than 1024 bytes in the path of a part")
+    );
+    let names: Vec<String> = (0..10_001).map(|k| format!("{k}")).collect();
+    let entries: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
+    assert!(held(package(&entries)).err().unwrap().contains("the archive: more than 10000 entries"));
+}
+
+/// The same mesh in the same place any number of times is one solid; in too many places it is refused.
+#[test]
+fn bodies_that_fall_together_are_one() {
+    let one = format!("<object id=\"1\">{MESH}</object>");
+    let twenty = "<component objectid=\"1\"/>".repeat(20);
+    let group = format!("<object id=\"2\"><components>{twenty}</components></object>");
+    let items = "<item objectid=\"2\"/>".repeat(20);
+    let found = of_model(&model("", &format!("{one}{group}"), &items)).unwrap();
+    assert_eq!(volumes(&found), [1.0]);
+    // What is mirrored, or moved, is another.
+    let moved = "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 0.5\"/><item objectid=\"1\"/>";
+    assert_eq!(of_model(&model("", &one, moved)).unwrap().bodies.len(), 2);
+    let row = |count: usize| -> String {
+        (0..count)
+            .map(|k| format!("<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 {k} 0 0\"/>"))
+            .collect()
+    };
+    assert_eq!(of_model(&model("", &one, &row(256))).unwrap().bodies.len(), 256);
+    let refused = of_model(&model("", &one, &row(257))).err().unwrap();
+    assert_eq!(
+        refused,
+        "3D/3dmodel.model, object 1: more than 256 bodies: unite the solids before exporting"
+    );
 }
