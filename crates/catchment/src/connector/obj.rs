@@ -8,7 +8,7 @@
 //! Faces of more than three corners are cut into triangles, which keep every corner; points and lines bound nothing. The unit stands beside the file, as for
 //! STL. The reader is our own because it says in which line a file is broken and keeps nothing but corners and triangles.
 
-use super::mesh::{self, MeshProblem, Triangle};
+use super::mesh::{self, MeshProblem, Triangle, cut};
 use super::source::{FileBytes, Held};
 use crate::budget::Budget;
 use crate::design::Treatment;
@@ -44,6 +44,10 @@ fn parse(bytes: &[u8], treatment: Treatment) -> Result<Vec<Triangle>, Vec<MeshPr
                         std::str::from_utf8(written).ok().and_then(|word| word.parse().ok());
                     let Some(number) = number else { return Err(refused("`f` and at least three corners")) };
                     let corner = corner(number, vertices.len()).ok_or_else(|| refused(CORNERS))?;
+                    // Before they are kept.
+                    cut::CORNERS
+                        .allows(corners.len() as u64 + 1)
+                        .map_err(|over| mesh::overspent(format!("line {line}"), over))?;
                     corners.push(vertices[corner]);
                 }
                 // A point or a line bounds nothing.
@@ -148,13 +152,14 @@ mod tests {
         };
         let vertices: String = (0..n).map(corner).collect();
         let numbers: Vec<String> = (1..=n).map(|k| k.to_string()).collect();
-        let message = "line 60001: more than 200000000 steps of cutting faces into triangles: triangulate the mesh when it is exported";
+        let message =
+            "line 60001: more than 20000 corners of a face: triangulate the mesh when it is exported";
         assert_eq!(
             read(&format!("{vertices}f {}\n", numbers.join(" "))).unwrap_err()[0].to_string(),
             message
         );
         let same = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf {}\n", "1 2 3 ".repeat(300_000));
-        assert!(read(&same).unwrap_err()[0].to_string().starts_with("line 4: more than 200000000 steps"));
+        assert!(read(&same).unwrap_err()[0].to_string().starts_with("line 4: more than 20000 corners"));
         let vertices = "v 0 0 0\n".repeat(600_001);
         assert!(
             read(&vertices).unwrap_err()[0].to_string().starts_with("line 600001: more than 600000 vertices")

@@ -46,6 +46,16 @@ pub struct XmlError {
     pub over: Option<Overspent>,
 }
 
+impl XmlError {
+    fn broken(at: usize, message: &impl ToString) -> Self {
+        Self { at, message: message.to_string(), over: None }
+    }
+
+    fn overspent(at: usize, over: Overspent) -> Self {
+        Self { at, message: over.to_string(), over: Some(over) }
+    }
+}
+
 /// A piece of a document.
 #[derive(Debug)]
 pub enum Piece<'b> {
@@ -76,11 +86,20 @@ pub struct Attribute<'t> {
 }
 
 impl<'b> Tag<'b> {
-    fn of(start: BytesStart<'static>, parent: Option<&'b [u8]>, span: Range<usize>) -> Result<Self, String> {
-        for attribute in start.attributes() {
-            let attribute = attribute.map_err(|error| error.to_string())?;
+    fn of(
+        start: BytesStart<'static>,
+        parent: Option<&'b [u8]>,
+        span: Range<usize>,
+        most: Limit,
+    ) -> Result<Self, XmlError> {
+        let at = span.start;
+        // Each is compared with those before it, of which there are no more than the limit.
+        for (attribute, count) in start.attributes().zip(1..) {
+            most.allows(count).map_err(|over| XmlError::overspent(at, over))?;
+            let attribute = attribute.map_err(|error| XmlError::broken(at, &error))?;
             if attribute.value.contains(&b'&') {
-                unescape(&String::from_utf8_lossy(&attribute.value)).map_err(|error| error.to_string())?;
+                unescape(&String::from_utf8_lossy(&attribute.value))
+                    .map_err(|error| XmlError::broken(at, &error))?;
             }
         }
         Ok(Self { start, parent, span })
@@ -198,17 +217,17 @@ impl<R: Read> Walk<R> {
             self.reader.get_mut().piece = 0;
             self.buffer.clear();
             let at = self.reader.buffer_position() as usize;
-            let located = |message: String| XmlError { at, message, over: None };
-            let over = |over: Overspent| XmlError { at, message: over.to_string(), over: Some(over) };
+            let located = |message: &str| XmlError::broken(at, &message);
+            let over = |over: Overspent| XmlError::overspent(at, over);
             let event = self.reader.read_event_into(&mut self.buffer);
             if let Err(too_long) = self.limits.piece.allows(self.reader.get_ref().piece) {
                 return Err(over(too_long));
             }
-            match event.map_err(|error| located(error.to_string()))? {
+            match event.map_err(|error| XmlError::broken(at, &error))? {
                 Event::Start(start) => {
                     let is_second = self.open.is_empty() && self.elements.left() < self.limits.elements.most;
                     if is_second {
-                        return Err(located("something follows the end of the document".to_owned()));
+                        return Err(located("something follows the end of the document"));
                     }
                     self.elements.spend(1).map_err(over)?;
                     self.limits.depth.allows(self.open.len() as u64 + 1).map_err(over)?;
@@ -216,10 +235,7 @@ impl<R: Read> Walk<R> {
                     let start = start.into_owned();
                     let span = at..self.reader.buffer_position() as usize;
                     let parent = self.open.len().checked_sub(2).map(|k| self.open[k].as_slice());
-                    // All of them are counted before any is compared with others.
-                    let attributes = start.attributes().with_checks(false).count() as u64;
-                    self.limits.attributes.allows(attributes).map_err(over)?;
-                    let tag = Tag::of(start, parent, span).map_err(located)?;
+                    let tag = Tag::of(start, parent, span, self.limits.attributes)?;
                     return Ok(Some(Piece::Start(tag)));
                 }
                 Event::End(_) => {
@@ -234,13 +250,11 @@ impl<R: Read> Walk<R> {
                     return Ok(Some(Piece::Text(text, at + "<![CDATA[".len())));
                 }
                 Event::DocType(_) => {
-                    return Err(located(
-                        "a document type has no place in it: delete <!DOCTYPE …>".to_owned(),
-                    ));
+                    return Err(located("a document type has no place in it: delete <!DOCTYPE …>"));
                 }
-                Event::Eof if !self.open.is_empty() => return Err(located("it was cut off".to_owned())),
+                Event::Eof if !self.open.is_empty() => return Err(located("it was cut off")),
                 Event::Eof if self.elements.left() == self.limits.elements.most => {
-                    return Err(located("there is no XML in it".to_owned()));
+                    return Err(located("there is no XML in it"));
                 }
                 Event::Eof => return Ok(None),
                 _ => {}

@@ -22,7 +22,10 @@ use std::collections::BinaryHeap;
 /// A corner counts as inside an ear from here on, relative to the face's size; nearer it is on its border.
 const ON: f64 = 1e-9;
 
-/// Comparisons of ears with corners, for all faces of a file: a face of 12 000 corners, or two million of a dozen.
+/// Corners of a face: as many as the steps below suffice for.
+pub(in crate::connector) const CORNERS: Limit =
+    Limit { most: 20_000, of: "corners of a face", remedy: "triangulate the mesh when it is exported" };
+/// Comparisons of ears with corners, for all faces of a file: a face of 20 000 corners, or two million of a dozen.
 pub(in crate::connector) const STEPS: Limit = Limit {
     most: 200_000_000,
     of: "steps of cutting faces into triangles",
@@ -129,10 +132,10 @@ pub(in crate::connector) fn triangles(
     steps: &mut Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Overspent> {
     let count = corners.len();
-    let normal: DVec3 = (0..count).map(|k| corners[k].cross(corners[(k + 1) % count])).sum();
-    let Some(normal) = normal.try_normalize() else { return Ok(None) };
     // Every corner is compared with those that are left when it goes, at least.
     steps.spend((count as u64).saturating_mul(count as u64) / 2)?;
+    let normal: DVec3 = (0..count).map(|k| corners[k].cross(corners[(k + 1) % count])).sum();
+    let Some(normal) = normal.try_normalize() else { return Ok(None) };
     let side = normal.any_orthonormal_vector();
     let up = normal.cross(side);
     let flat: Vec<DVec2> = corners.iter().map(|p| DVec2::new(side.dot(*p), up.dot(*p))).collect();

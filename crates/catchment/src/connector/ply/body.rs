@@ -29,18 +29,25 @@ impl<'t> Body<'t> {
             let all = usize::try_from(element.count).ok().and_then(|count| count.checked_mul(one));
             return self.take(all.unwrap_or(usize::MAX)).map(drop);
         }
+        if self.dialect == Dialect::Text {
+            return (0..element.count).try_for_each(|_| self.take_line().map(drop));
+        }
         (0..element.count).try_for_each(|_| self.next(element, |_, _| {}))
     }
 
-    fn line(&mut self, element: &Element, mut each: impl FnMut(usize, f64)) -> Result<(), String> {
+    fn take_line(&mut self) -> Result<&'t [u8], String> {
         let rest = &self.bytes[self.at..];
         if rest.is_empty() {
             return Err(format!("line {}: the file was cut off", self.lines + 1));
         }
         let end = rest.iter().position(|byte| *byte == b'\n');
-        let line = &rest[..end.unwrap_or(rest.len())];
         self.at += end.map_or(rest.len(), |end| end + 1);
         self.lines += 1;
+        Ok(&rest[..end.unwrap_or(rest.len())])
+    }
+
+    fn line(&mut self, element: &Element, mut each: impl FnMut(usize, f64)) -> Result<(), String> {
+        let line = self.take_line()?;
         let number = self.lines;
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         let mut word = |kind: Kind, name: &str| {

@@ -13,7 +13,7 @@ use std::io::Read;
 pub(super) const MOST_VERTICES: usize = 3 * MAX_TRIANGLES;
 /// What the XML of a part may have. Elements of extensions come to those of the solids.
 const LIMITS: Limits = Limits {
-    elements: Limit { most: 8_000_000, of: "elements", remedy: "export the solids alone" },
+    elements: Limit { most: 4_000_000, of: "elements", remedy: "export the solids alone" },
     depth: Limit { most: 64, of: "elements within each other", remedy: "export the part again" },
     attributes: Limit { most: 64, of: "attributes of an element", remedy: "export the part again" },
     piece: Limit { most: 1 << 20, of: "bytes in a tag or a text", remedy: "export the part again" },
