@@ -19,10 +19,18 @@
 //! Rounds begin with the slip that there would be without friction, and end at the slip they come to: where a force that makes the half
 //! stick exists as well ([`Coulomb::may_stick`]), rigid bodies under Coulomb's law do not say which of the two happens, and slip it is.
 //!
+//! Near the friction at which slip ends, rounds say little: a slip that fades loses next to nothing in each, and one that a round hardly changes may be far from where it
+//! comes to. What has become slow is decided by its direction d instead, which is known long before its speed ([`Coulomb::slow`]): with friction of all pressed contacts along
+//! −bᵢ·d the forces balance the push up to a multiple of d, and its sign says whether it goes on.
+//!
+//! ```text
+//!   p + Σ λᵢ (aᵢ − μ bᵢ·d/|bᵢ·d|) = σ d,   λᵢ ≥ 0        σ > 0 it slips, at this speed       σ ≤ 0 it sticks
+//! ```
+//!
 //! Not promised: that there is only one such slip, nor that the rounds find it where there is. What they have not found after [`ROUNDS`] is taken as
 //! it is then.
 
-use super::projection::{Projection, Vector, dot};
+use super::projection::{MAX_COORDINATES, Projection, Vector, dot};
 
 /// How a contact slips: rows of both tangents.
 pub(super) type Tangents = [Vector; 2];
@@ -41,6 +49,10 @@ const SHYEST: f64 = 0.05;
 const LEFT: f64 = 0.5;
 /// What moves less than this share of what the push alone would make stays.
 const STILL: f64 = 1e-7;
+/// What moves less than this share of it is slow: whether it goes on is asked.
+const SLOW: f64 = 1e-2;
+/// Contacts that such a slip opens or closes by less than this share of itself stay closed.
+const CLOSED: f64 = 0.5;
 
 /// The solver: owns its buffers.
 #[derive(Debug, Clone)]
@@ -232,7 +244,54 @@ impl Coulomb {
                 *slip = (*slip + boldness * missing).max(LEFT * (*slip + missing));
             }
         }
-        Some(u)
+        Some(if free { self.slow(projection, push, contacts, &u, gap, scale).unwrap_or(u) } else { u })
+    }
+
+    /// Where a slow slip comes to, by the balance of forces along its direction; `None` where it is not slow, or where no forces balance the push along it.
+    fn slow(
+        &mut self,
+        projection: &mut Projection,
+        push: &Vector,
+        contacts: Contacts<'_>,
+        u: &Vector,
+        gap: impl Fn(usize) -> f64,
+        scale: f64,
+    ) -> Option<Vector> {
+        let speed = norm(u);
+        if speed <= STILL * scale || speed > SLOW * scale {
+            return None;
+        }
+        // All that touches and stays closed, not what the last round happened to press against.
+        self.owners.clear();
+        self.owners.extend(
+            (0..contacts.rows.len())
+                .filter(|&k| gap(k) <= EXACT * scale && dot(&contacts.rows[k], u).abs() <= CLOSED * speed),
+        );
+        let closed = self.owners.iter().flat_map(|k| [contacts.rows[*k], contacts.rows[*k].map(|x| -x)]);
+        self.planes.clear();
+        self.planes.extend(closed);
+        let along = projection.closest_allowed(u, &self.planes, self.planes.iter().map(|_| 0.0), speed)?;
+        let length = norm(&along);
+        if length <= LEFT * speed {
+            return None;
+        }
+        let along = along.map(|x| x / length);
+        self.planes.clear();
+        self.planes.extend(self.owners.iter().map(|k| contacts.plane(*k, contacts.slip(*k, &along))));
+        // What of the push is left by those forces and one along the slip, or against it.
+        let mut left = |way: f64| {
+            self.planes.push(along.map(|x| way * x));
+            let left = projection.closest_allowed(push, &self.planes, self.planes.iter().map(|_| 0.0), scale);
+            self.planes.pop();
+            left.map(|left| norm(&left) / scale)
+        };
+        let [ahead, against] = [left(1.0)?, left(-1.0)?];
+        if against <= EXACT {
+            let last = self.planes.len();
+            let speed = projection.forces().find(|(row, _)| *row == last).map_or(0.0, |(_, force)| force);
+            return Some(along.map(|x| x * speed * scale));
+        }
+        (ahead <= EXACT).then_some([0.0; MAX_COORDINATES])
     }
 
     /// Keeps the planes that the last projection pressed against, and says of which contacts they are.
@@ -262,6 +321,10 @@ pub(super) fn is_still(u: &Vector) -> bool {
 
 fn size([a, b]: [f64; 2]) -> f64 {
     a.hypot(b)
+}
+
+fn norm(u: &Vector) -> f64 {
+    dot(u, u).sqrt()
 }
 
 #[cfg(test)]
