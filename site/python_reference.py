@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "crates/catchment-py/python/c
 #: What the page shows, in the order of a person who starts; a test of completeness holds it to `__all__`.
 CHAPTERS = {
     "Problems": ["load", "Problem"],
-    "Answers": ["Result", "Report", "Picture", "End", "Ends", "OUTCOMES"],
+    "Answers": ["Result", "Report", "Picture", "End", "Ends", "Touching", "OUTCOMES"],
     "Studies": ["sweep", "compare", "methods"],
     "Errors": [
         "Error", "DesignError", "GeometryError", "ArgumentError", "MemoryLimitError", "ComputeError", "Finding",

@@ -11,12 +11,15 @@ use catchment::method::descent::{self, Rows};
 use catchment::pose::PoseError;
 use catchment::poses::{check_rows, parse_pose};
 use catchment::report::schema::WarningReport;
-use catchment::report::{TraceReport, figure};
+use catchment::report::{Endings, TraceReport, figure};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Outcome codes, and last pose errors.
-type Ends<'py> = (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray2<f64>>);
+/// Outcome codes, last pose errors, and z of the COR there.
+type Ends<'py> = (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
+/// Two features in contact, of the fixed and of the moving half, and where they touch.
+type Touching = (String, String, [f64; 3]);
 
 #[pymethods]
 impl Problem {
@@ -26,7 +29,7 @@ impl Problem {
         read.map(PoseError::to_array).map_err(|findings| Refusal::of_argument("pose", findings).raise(py))
     }
 
-    /// Where one pose ends: its outcome and the last pose error.
+    /// Where one pose ends: its outcome, the last pose error, z of the COR there, and what touches.
     fn follow(
         &self,
         py: Python<'_>,
@@ -34,17 +37,19 @@ impl Problem {
         name: &str,
         settings: &str,
         how: How,
-    ) -> PyResult<(&'static str, [f64; 5])> {
+    ) -> PyResult<(&'static str, [f64; 5], Option<f64>, Vec<Touching>)> {
         work(py, &how, |exec| {
             check_rows(&[pose], self.inner.design())?;
             let by = method(name, settings)?;
             let (_, ends) = self.inner.follow_by(&by, &[PoseError::from_array(pose)], exec)?;
             let end = ends.first().ok_or_else(|| Refusal::Compute("the pose has no end".to_owned()))?;
-            Ok((end.outcome.name(), end.error.to_array()))
+            let touching = Endings::new(&self.inner, &by).contacts(end);
+            let touching = touching.into_iter().map(|c| (c.fixed, c.moving, c.point_d)).collect();
+            Ok((end.outcome.name(), end.error.to_array(), end.height, touching))
         })
     }
 
-    /// Where every row of an array ends. Nothing is copied: poses are read where they lie, and the two arrays that come back
+    /// Where every row of an array ends. Nothing is copied: poses are read where they lie, and the three arrays that come back
     /// are those that were written into.
     fn follow_many<'py>(
         &self,
@@ -60,15 +65,17 @@ impl Problem {
         };
         let numbers = poses.as_slice().map_err(|_| refused("the array is not contiguous"))?;
         let (rows, _) = numbers.as_chunks::<5>();
-        let (mut ends, mut outcomes) = (vec![0.0; numbers.len()], vec![0; count]);
+        let (mut ends, mut heights, mut outcomes) =
+            (vec![0.0; numbers.len()], vec![0.0; count], vec![0; count]);
         work(py, &how, |exec| {
             check_rows(rows, self.inner.design())?;
             let by = method(name, settings)?;
             let (into, _) = ends.as_chunks_mut::<5>();
-            self.rows(&by, Rows { poses: rows, ends: into, outcomes: &mut outcomes }, exec)
+            let into = Rows { poses: rows, ends: into, heights: &mut heights, outcomes: &mut outcomes };
+            self.rows(&by, into, exec)
         })?;
         let ends = PyArray1::from_vec(py, ends).reshape([count, 5])?;
-        Ok((PyArray1::from_vec(py, outcomes), ends))
+        Ok((PyArray1::from_vec(py, outcomes), ends, PyArray1::from_vec(py, heights)))
     }
 
     /// The way of one pose, from first contact to where it rests.
@@ -98,8 +105,11 @@ impl Problem {
         }
         let poses: Vec<PoseError> = rows.poses.iter().map(|row| PoseError::from_array(*row)).collect();
         let (_, found) = self.inner.follow_by(by, &poses, exec)?;
-        for ((end, code), found) in rows.ends.iter_mut().zip(rows.outcomes).zip(found) {
+        for (((end, height), code), found) in
+            rows.ends.iter_mut().zip(rows.heights).zip(rows.outcomes).zip(found)
+        {
             (*end, *code) = (found.error.to_array(), found.outcome as u8);
+            *height = found.height.unwrap_or(f64::NAN);
         }
         Ok(())
     }

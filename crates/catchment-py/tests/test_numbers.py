@@ -86,9 +86,13 @@ def test_poses_end_where_the_program_says(method: str, count: int, tmp_path: obj
     finals = [[pose["final"][axis] for axis in ("x", "y", "roll", "pitch", "yaw")] for pose in told["poses"]]
     assert np.array_equal(ends.errors, np.array(finals))
     assert len(set(ends.outcomes)) > 1
+    heights = [np.nan if pose["final_height_d"] is None else pose["final_height_d"] for pose in told["poses"]]
+    assert np.array_equal(ends.heights, np.array(heights), equal_nan=True)
     one = problem.follow(poses[7], method=method)
     assert one.outcome == catchment.OUTCOMES[ends.outcomes[7]] and np.array_equal(one.error, ends.errors[7])
-    assert one.docks == ends.docks[7]
+    assert one.docks == ends.docks[7] and one.height == told["poses"][7]["final_height_d"]
+    touching = [{"fixed": c.fixed, "moving": c.moving, "point_d": list(c.point)} for c in one.contacts]
+    assert touching == told["poses"][7]["contacts"]
 
 
 def test_poses_are_read_where_they_lie() -> None:

@@ -10,6 +10,7 @@ use crate::signals;
 use crate::source::read_table;
 use catchment::advice::Advice;
 use catchment::design::Findings;
+use catchment::method::Method;
 use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
 use catchment::problem::Problem;
@@ -88,7 +89,7 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
         .exec
         .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
     let doubts = Doubts::of(&problem, &method, table.errors());
-    let printed = Printed::new(&problem, &table, doubts.as_ref());
+    let printed = Printed::new(&problem, &table, &method, doubts.as_ref());
     let streams = args.output.is_printed() && !args.json;
     let stop = running.exec.cancel_flag();
     let tell = |number, end| {
@@ -133,8 +134,13 @@ struct Printing<'a> {
 }
 
 impl<'a> Printed<'a> {
-    fn new(problem: &'a Problem, table: &'a PoseTable<'a>, doubts: Option<&'a Doubts<'a>>) -> Self {
-        let rows = OutcomeRows::new(problem, table, doubts);
+    fn new(
+        problem: &'a Problem,
+        table: &'a PoseTable<'a>,
+        method: &Method,
+        doubts: Option<&'a Doubts<'a>>,
+    ) -> Self {
+        let rows = OutcomeRows::new(problem, table, method, doubts);
         Self(Mutex::new(Printing { rows, has_begun: false, failed: None }))
     }
 

@@ -23,7 +23,7 @@ from ._errors import (
     MemoryLimitError,
 )
 from ._problem import Problem, compare, load
-from ._results import OUTCOMES, End, Ends, Picture, Report, Result
+from ._results import OUTCOMES, End, Ends, Picture, Report, Result, Touching
 from ._sweep import sweep
 
 
@@ -47,6 +47,7 @@ __all__ = [
     "Problem",
     "Report",
     "Result",
+    "Touching",
     "__version__",
     "compare",
     "load",

@@ -70,13 +70,15 @@ class Problem:
     def pose(self, text: str) -> list[float]:
         """A pose error as a person writes it: x, y, roll, pitch, yaw in D and radians."""
 
-    def follow(self, pose: list[float], name: str, settings: str, how: How) -> tuple[str, list[float]]:
-        """Where one pose ends: its outcome and the last pose error, in D and radians."""
+    def follow(
+        self, pose: list[float], name: str, settings: str, how: How
+    ) -> tuple[str, list[float], float | None, list[tuple[str, str, list[float]]]]:
+        """Where one pose ends: its outcome, the last pose error, z of the centre of rotation there, and what touches; in D and radians."""
 
     def follow_many(
         self, poses: NDArray[np.float64], name: str, settings: str, how: How
-    ) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
-        """Where every row ends: (n, 5) in D and radians → codes (n,) and last errors (n, 5)."""
+    ) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.float64]]:
+        """Where every row ends: (n, 5) in D and radians → codes (n,), last errors (n, 5) and heights (n,)."""
 
     def trace(self, pose: list[float], friction: float, how: How) -> Told:
         """The way of one pose, from first contact to where it rests."""

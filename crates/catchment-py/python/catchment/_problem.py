@@ -38,7 +38,7 @@ from ._arguments import (
     whole,
 )
 from ._errors import ArgumentError
-from ._results import End, Ends, Picture, Report, Result
+from ._results import End, Ends, Picture, Report, Result, Touching
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -329,8 +329,9 @@ class Problem:
         pose: "x=5 mm,pitch=10 deg", {"x": "5 mm", "pitch": 0.2}, or x, y, roll, pitch, yaw in D and radians.
         settings: of the method, such as {"friction": 0.2}.
         """
-        outcome, end = self._native.follow(self._pose(pose), method, as_json(settings), how())
-        return End(outcome, np.asarray(end))
+        outcome, end, height, contacts = self._native.follow(self._pose(pose), method, as_json(settings), how())
+        touching = tuple(Touching(fixed, moving, np.asarray(point)) for fixed, moving, point in contacts)
+        return End(outcome, np.asarray(end), height, touching)
 
     def follow_many(
         self,
@@ -346,7 +347,7 @@ class Problem:
 
         poses: (n, 5): x, y in D, roll, pitch, yaw in radians; 0 where the design locks. A contiguous array of float64 is read where
         it lies; it must not be written to meanwhile.
-        Returns outcomes (n,) and errors (n, 5).
+        Returns outcomes (n,), errors (n, 5) and heights (n,).
         """
         rows = array(poses, "poses")
         if rows.ndim != 2 or rows.shape[1] != 5:

@@ -274,13 +274,28 @@ def _about(axis: dict[str, Any]) -> dict[str, Any]:
     return {"long_name": told, "units": axis["unit"], "lower_border": axis["lo"], "upper_border": axis["hi"]}
 
 
+class Touching(NamedTuple):
+    """Two features in contact."""
+
+    #: The feature of the fixed half, in words.
+    fixed: str
+    #: The feature of the moving half, in words.
+    moving: str
+    #: Where they touch, in the world frame, in D; (3,).
+    point: NDArray[np.float64]
+
+
 class End(NamedTuple):
-    """Where a pose error ends."""
+    """The state that a motion ends in."""
 
     #: "aligned", "jammed", "missed" or "undecided".
     outcome: str
     #: The last pose error: x, y in D, roll, pitch, yaw in radians; (5,).
     error: NDArray[np.float64]
+    #: z of the centre of rotation in that state, in D; None where the moving half missed.
+    height: float | None
+    #: What touches there.
+    contacts: tuple[Touching, ...]
 
     @property
     def docks(self) -> bool:
@@ -295,6 +310,8 @@ class Ends(NamedTuple):
     outcomes: NDArray[np.uint8]
     #: The last pose errors, x, y in D, roll, pitch, yaw in radians; (n, 5), float64.
     errors: NDArray[np.float64]
+    #: z of the centre of rotation in those states, in D, NaN where the moving half missed; (n,), float64.
+    heights: NDArray[np.float64]
 
     @property
     def docks(self) -> NDArray[np.bool_]:

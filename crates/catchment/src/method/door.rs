@@ -167,6 +167,11 @@ pub trait Follow: Decide {
         Ok(found)
     }
 
+    /// How deep the halves overlap where they press on each other in the ends that it finds, in D: contacts of an engine are springs.
+    fn give(&self) -> f64 {
+        0.0
+    }
+
     /// What the method itself doubts about its motions on this problem, tried on random poses.
     ///
     /// # Errors

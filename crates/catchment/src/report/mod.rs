@@ -85,6 +85,7 @@ pub use comparison::{
 };
 pub use convergence::{ConvergenceBody, ConvergenceReport};
 pub use doubting::Doubts;
+pub use ending::{EndContact, Endings};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};

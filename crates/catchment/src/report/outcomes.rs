@@ -24,6 +24,7 @@ pub struct OutcomesReport<'a> {
     pub design: &'a Design,
     /// The poses.
     pub table: &'a PoseTable<'a>,
+    method: &'a Method,
     /// Settings of the method.
     pub settings: serde_json::Value,
     /// What the method found, for the poses of the table.
@@ -55,13 +56,18 @@ pub struct OutcomeRows<'a> {
 
 impl<'a> OutcomeRows<'a> {
     /// Of a table whose poses are decided for a problem; with friction, what Coulomb's law leaves open of them.
-    pub fn new(problem: &'a Problem, table: &'a PoseTable<'a>, doubts: Option<&'a Doubts<'a>>) -> Self {
+    pub fn new(
+        problem: &'a Problem,
+        table: &'a PoseTable<'a>,
+        method: &Method,
+        doubts: Option<&'a Doubts<'a>>,
+    ) -> Self {
         let rows = Box::new(table.rows().enumerate());
-        let (endings, waiting) = (Endings::new(problem), BTreeMap::new());
+        let (endings, waiting) = (Endings::new(problem, method), BTreeMap::new());
         Self { problem, table, rows, endings, doubts, next: 0, waiting }
     }
 
-    /// The names of the columns: those of the table, `outcome`, the final errors, the height of the COR there in D, what touches there in
+    /// The names of the columns: those of the table, `outcome`, the final errors, z of the COR in the final state in D, what touches there in
     /// words, `may_stick` with friction, and `reason` where there is something to tell.
     ///
     /// # Errors
@@ -108,9 +114,8 @@ impl<'a> OutcomeRows<'a> {
         let Some((_, mut row)) = self.rows.find(|(k, _)| *k == number) else { return Ok(String::new()) };
         row.push(end.outcome.name().to_owned());
         row.extend(self.table.in_units(&end.error).map(number_in_table));
-        let (height, contacts) = self.endings.of(end).unzip();
-        row.push(height.map_or_else(String::new, number_in_table));
-        row.push(contacts.map_or_else(String::new, |contacts| words(&contacts)));
+        row.push(end.height.map_or_else(String::new, number_in_table));
+        row.push(words(&self.endings.contacts(end)));
         if let Some(doubts) = self.doubts {
             row.push(if doubts.may_stick(number) { "yes" } else { "no" }.to_owned());
         }
@@ -165,7 +170,7 @@ struct Row {
     reason: Option<Reason>,
     #[serde(rename = "final")]
     last: PoseError,
-    /// z of the COR at first contact there, in D; null where nothing carries the half.
+    /// z of the COR in that state, in D; null where the moving half missed.
     final_height_d: Option<f64>,
     /// What touches there.
     contacts: Vec<EndContact>,
@@ -182,7 +187,7 @@ impl<'a> OutcomesReport<'a> {
     pub fn new(
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
-        method: &Method,
+        method: &'a Method,
         followed: &'a Followed,
         doubts: Option<&'a Doubts<'a>>,
     ) -> Self {
@@ -194,8 +199,19 @@ impl<'a> OutcomesReport<'a> {
         let reasons = problem.may_cross().then(|| ends.iter().map(reason).collect());
         let (design, settings) = (problem.design(), method.settings());
         let finished = finished.as_deref();
-        let mut report =
-            Self { problem, design, table, settings, acceptance, ends, reasons, doubts, warnings, finished };
+        let mut report = Self {
+            problem,
+            design,
+            table,
+            method,
+            settings,
+            acceptance,
+            ends,
+            reasons,
+            doubts,
+            warnings,
+            finished,
+        };
         let partial = report.partial().map(|partial| WarningReport::note(&partial));
         report.warnings.extend(partial);
         report
@@ -249,7 +265,7 @@ impl<'a> OutcomesReport<'a> {
     /// # Errors
     /// If a row cannot be written, which text in memory gives no reason for.
     pub fn to_csv(&self) -> Result<String, csv::Error> {
-        let mut rows = OutcomeRows::new(self.problem, self.table, self.doubts);
+        let mut rows = OutcomeRows::new(self.problem, self.table, self.method, self.doubts);
         let mut text = rows.header()?;
         for (number, end) in self.told().zip(self.ends) {
             text.push_str(&rows.push(number, *end)?);
@@ -267,19 +283,19 @@ impl<'a> OutcomesReport<'a> {
         let at = self.table.offsets_at();
         let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
         let mut told = self.told().peekable();
-        let mut endings = Endings::new(self.problem);
+        let mut endings = Endings::new(self.problem, self.method);
         let poses = self.table.rows().zip(self.table.errors()).enumerate();
         let poses = poses.filter(|(number, _)| told.next_if_eq(number).is_some()).zip(self.ends);
         let poses = poses.enumerate().map(|(k, ((number, (row, error)), end))| {
-            let (height, contacts) = endings.of(end).unzip();
+            let contacts = endings.contacts(end);
             Row {
                 number: self.finished.map(|_| number),
                 error: measured(error),
                 outcome: end.outcome,
                 reason: self.reason(k),
                 last: measured(&end.error),
-                final_height_d: height,
-                contacts: contacts.unwrap_or_default(),
+                final_height_d: end.height,
+                contacts,
                 may_stick: self.doubts.map(|doubts| doubts.may_stick(number)),
                 carried: carried.iter().map(|(k, name)| (name.clone(), row[*k].clone())).collect(),
             }

@@ -11,10 +11,11 @@ use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem};
 use crate::contact::told::Told;
 use crate::contact::{Pair, Play, Seat, play};
+use crate::design::{ConnectorSpec, Findings};
 use crate::exec::{Cancelled, Exec};
 use crate::method::Decide;
 use crate::method::descent::{self, End, Follower};
-use crate::pose::{Dof, PoseError};
+use crate::pose::{Dof, PoseError, rotation, rotation_angle};
 use crate::problem::{Problem, ProblemError};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -87,9 +88,8 @@ impl Seating {
             poses.par_iter().map_init(|| Follower::new(pair, settings), follow).collect::<Result<_, _>>()
         })?;
         let seat = Seat::new(pair);
-        let docked: Vec<PoseError> =
-            ends.iter().filter(|end| end.outcome == Outcome::Aligned).map(|end| end.error).collect();
-        let offs: Vec<[f64; 5]> = docked.iter().map(|error| seat.off(error).to_array()).collect();
+        let docked: Vec<End> = ends.into_iter().filter(|end| end.outcome == Outcome::Aligned).collect();
+        let offs: Vec<[f64; 5]> = docked.iter().map(|end| seat.off(&end.error).to_array()).collect();
         let mut play = play(pair);
         // What rests there is play, wherever it was looked for.
         for play in &mut play {
@@ -145,12 +145,10 @@ impl Seating {
 
 impl Deeper {
     /// The deepest of these places of rest, if it is below the mated pose by more than drawings are rounded.
-    fn of(pair: &Pair, rests: &[PoseError]) -> Option<Self> {
-        let mut nearby = pair.about(0.01);
-        let sinks = |error: &PoseError| pair.mated_height() - nearby.height(error).unwrap_or(f64::INFINITY);
-        let sinks: Vec<f64> = rests.iter().map(sinks).collect();
-        let (k, most) = sinks.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (most > CONTACT_TOLERANCE).then_some(Self { sinks: most, error: rests[k] })
+    fn of(pair: &Pair, rests: &[End]) -> Option<Self> {
+        let sinks = |end: &End| Some((pair.mated_height() - end.height?, end.error));
+        let (sinks, error) = rests.iter().filter_map(sinks).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (sinks > CONTACT_TOLERANCE).then_some(Self { sinks, error })
     }
 }
 
@@ -190,20 +188,28 @@ impl Problem {
         Follower::new(self.pair(), &descent::Settings::default()).rest(&PoseError::default())
     }
 
-    /// This problem, unless its mated pose does not hold: what a check of a design asks.
+    /// This problem, unless its mated pose does not hold.
     ///
     /// # Errors
-    /// It does not hold, with where the half would settle.
+    /// As [`Problem::ensure_held`].
     pub fn checked(self) -> Result<Self, ProblemError> {
-        let found = self.doubts().iter().zip(self.said()).find(|(doubt, _)| is_unstable(doubt));
-        let (message, advice) = match found {
-            Some((doubt, message)) => (message, self.advice(doubt)),
+        self.ensure_held()?;
+        Ok(self)
+    }
+
+    /// Refuses a mated pose that does not hold: no motion ends in it, so that an area of acceptance around it says nothing.
+    ///
+    /// # Errors
+    /// It does not hold, with how far away the half comes to rest.
+    pub fn ensure_held(&self) -> Result<(), Findings> {
+        let (message, advice) = match self.doubts().iter().find(|doubt| is_unstable(doubt)) {
+            Some(doubt) => (self.sentence(doubt), self.advice(doubt)),
             None => match self.fallen() {
                 Some(message) => (message, None),
-                None => return Ok(self),
+                None => return Ok(()),
             },
         };
-        Err(self.refused("alignment.free", message, advice).into())
+        Err(self.refused("alignment.free", message, advice))
     }
 
     /// What speaks against the mated pose, as sentences: with where the half settles instead, if it does not hold.
@@ -217,30 +223,43 @@ impl Problem {
 
     /// The doubts, in the unit of the design.
     fn said(&self) -> Vec<String> {
+        self.doubts().iter().map(|doubt| self.sentence(doubt)).collect()
+    }
+
+    /// A doubt as a sentence; where the mated pose does not hold, with the distance to where the half comes to rest and the remedy.
+    fn sentence(&self, doubt: &MatedProblem) -> String {
         let told = Told::of(self.design());
-        let sentence = |doubt: &MatedProblem| {
-            if !is_unstable(doubt) {
-                return doubt.told(told);
+        let said = doubt.told(told);
+        if !is_unstable(doubt) {
+            return said;
+        }
+        let End { outcome, error, height } = self.settled();
+        if outcome == Outcome::Missed {
+            return format!(
+                "{said}. Released without an error the half runs off: draw the halves so that they hold each other where they are mated"
+            );
+        }
+        if error.to_array().into_iter().all(|part| part.abs() <= CONTACT_TOLERANCE) {
+            return format!(
+                "{said}. Released without an error the half balances, and any push lets it fall: draw the halves so that they are mated where they rest"
+            );
+        }
+        let turn = rotation_angle(&rotation(error.roll, error.pitch, error.yaw));
+        let sinks = height.map_or(0.0, |height| self.pair().mated_height() - height);
+        let takes = match &self.design().connector {
+            ConnectorSpec::Own(own) if !own.settle => {
+                "draw the halves in that pose, or take it as mated: settle = true in [connector]"
             }
-            let End { outcome, error } = self.settled();
-            let doubt = doubt.told(told);
-            let moved = error.to_array().into_iter().any(|part| part.abs() > CONTACT_TOLERANCE);
-            match outcome {
-                Outcome::Missed => format!(
-                    "{doubt}. Let go without any error it runs off: draw the halves so that they hold each other where they are mated"
-                ),
-                _ if !moved => format!(
-                    "{doubt}. Let go without any error it balances, and any push lets it fall: draw the halves so that they are mated where they rest"
-                ),
-                _ => format!(
-                    "{doubt}. Let go without any error it settles at {} ({}): draw the halves so that this is the mated pose, or say settle = true of \
-                     halves of your own",
-                    told.error(&error),
-                    outcome.name()
-                ),
-            }
+            ConnectorSpec::Own(_) => "draw the halves in that pose",
+            ConnectorSpec::Family(_) => "lock what moves there, or move the centre of rotation",
         };
-        self.doubts().iter().map(sentence).collect()
+        format!(
+            "{said}. Released without an error the half comes to rest {} and {} away, {} deeper, at {}: {takes}",
+            told.length(error.x.hypot(error.y)),
+            told.amount(Dof::Yaw, turn),
+            told.length(sinks),
+            told.error(&error),
+        )
     }
 
     /// That halves which are a little off come to rest below the seat, if they do.

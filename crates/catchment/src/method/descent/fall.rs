@@ -14,9 +14,9 @@
 //!
 //! Not promised: a fall that needs a larger error, or one in a direction that none of these leads into.
 
-use super::Settings;
 use super::motion::{Motion, Until};
 use super::rest::TOUCHING;
+use super::{End, Settings};
 use crate::acceptance::Outcome;
 use crate::contact::mated::{About, CONTACT_TOLERANCE, Fall};
 use crate::contact::{Pair, Seat};
@@ -50,7 +50,6 @@ fn about(pair: &Pair) -> About {
         let settings = Settings::default();
         let mut motion = Motion::new(pair, &settings).trusting();
         let mut seat = Seat::new(pair);
-        let mut nearby = pair.about(OFF[0]);
         // Where all facets nearly touch, to know that all that is near comes home saves motions the longest part of their way.
         let mut within = if pair.asks_trees() && !pair.is_tight() { TAKEN } else { 0.0 };
         let mut falls = |from: PoseError| {
@@ -60,7 +59,7 @@ fn about(pair: &Pair) -> About {
                 is_home = !ends && from != PoseError::default() && pair.alignment.length(at) <= HOME;
                 is_home.then_some(Outcome::Aligned)
             };
-            let (outcome, rest) = motion.follow(&from, Until::AtRest, &mut home);
+            let End { outcome, error: rest, height } = motion.follow(&from, Until::AtRest, &mut home);
             if pair.alignment.length(&rest) > TOUCHING {
                 within = 0.0;
             } else if from != PoseError::default() {
@@ -69,7 +68,6 @@ fn about(pair: &Pair) -> About {
             if is_home || outcome == Outcome::Undecided {
                 return None;
             }
-            let height = (outcome != Outcome::Missed).then(|| nearby.height(&rest)).flatten();
             let height = height.unwrap_or(f64::NEG_INFINITY);
             let sinks = pair.mated_height() - height;
             let is_seated = height >= seat.floor() && seat.holds(&rest, height);

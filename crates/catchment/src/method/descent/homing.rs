@@ -52,7 +52,8 @@ pub(super) fn all_dock(pair: &Pair) -> bool {
                 let number = stream.uniform(Dof::ALL.len() as u64 * k + dof.index() as u64);
                 error[dof.index()] = most * (2.0 * number - 1.0);
             }
-            motion.follow(&PoseError::from_array(error), Until::Known, &mut Unwatched).0 == Outcome::Aligned
+            motion.follow(&PoseError::from_array(error), Until::Known, &mut Unwatched).outcome
+                == Outcome::Aligned
         })
     })
 }

@@ -143,6 +143,16 @@ pub struct End {
     pub outcome: Outcome,
     /// The last pose error.
     pub error: PoseError,
+    /// z of the COR in the world frame in that state, in D. Under an overhang it lies below first contact at the same error; `None` where the
+    /// moving half missed.
+    pub height: Option<f64>,
+}
+
+impl End {
+    /// A moving half that ends in contact with nothing.
+    pub const fn missed(error: PoseError) -> Self {
+        Self { outcome: Outcome::Missed, error, height: None }
+    }
 }
 
 /// Follows one pose after another, keeping its buffers.
@@ -157,16 +167,15 @@ impl<'a> Follower<'a> {
     /// Follows one pose until it is known what becomes of it: a half in a seat all of which counts is docked before it has come
     /// to rest.
     pub fn follow(&mut self, error: &PoseError) -> End {
-        let (outcome, error) = self.0.follow(error, Until::Known, &mut Unwatched);
-        End { outcome, error }
+        self.0.follow(error, Until::Known, &mut Unwatched)
     }
 
     /// The same; and what Coulomb's law leaves open of it: whether it came by a place where it slips and some force could hold it as well, and whether it
     /// wedges where it jams. See [`sticking()`].
     pub fn follow_doubting(&mut self, error: &PoseError) -> (End, Doubt) {
         let mut doubting = Doubting::default();
-        let (outcome, last) = self.0.follow(error, Until::Known, &mut doubting);
-        (End { outcome, error: last }, doubting.doubt(outcome, self.0.settings.friction))
+        let end = self.0.follow(error, Until::Known, &mut doubting);
+        (end, doubting.doubt(end.outcome, self.0.settings.friction))
     }
 
     /// The same; and the least friction, up to `most`, at which some force would hold it somewhere on this way: `most` where none would.
@@ -176,9 +185,9 @@ impl<'a> Follower<'a> {
         let mut holding = OnTheWay::up_to(most);
         // All the way, also where it is known before that it docks.
         let homing = std::mem::take(&mut self.0.homing);
-        let (outcome, last) = self.0.follow(error, Until::Known, &mut holding);
+        let end = self.0.follow(error, Until::Known, &mut holding);
         self.0.homing = homing;
-        (End { outcome, error: last }, holding.least())
+        (end, holding.least())
     }
 
     /// The same, but no further than to where `known` tells what becomes of a pose error on the way.
@@ -187,13 +196,12 @@ impl<'a> Follower<'a> {
         error: &PoseError,
         mut known: impl FnMut(&PoseError) -> Option<Outcome>,
     ) -> Outcome {
-        self.0.follow(error, Until::Known, &mut known).0
+        self.0.follow(error, Until::Known, &mut known).outcome
     }
 
     /// Follows one pose until it has come to rest, also in the seat.
     pub fn rest(&mut self, error: &PoseError) -> End {
-        let (outcome, error) = self.0.follow(error, Until::AtRest, &mut Unwatched);
-        End { outcome, error }
+        self.0.follow(error, Until::AtRest, &mut Unwatched)
     }
 }
 
@@ -205,7 +213,7 @@ pub fn outcome(pair: &Pair, error: &PoseError, settings: &Settings) -> End {
 /// Follows one pose until it has come to rest, and keeps its path.
 pub fn trace(pair: &Pair, error: &PoseError, settings: &Settings) -> Trajectory {
     let mut waypoints = Vec::new();
-    let (outcome, _) = Motion::new(pair, settings).follow(error, Until::AtRest, &mut waypoints);
+    let End { outcome, .. } = Motion::new(pair, settings).follow(error, Until::AtRest, &mut waypoints);
     Trajectory { waypoints, outcome }
 }
 
@@ -250,34 +258,37 @@ pub(super) fn rests_told(
     each(pair, domain, Until::AtRest, settings, exec, finished)
 }
 
-/// Poses that lie in an array, and where what becomes of them goes: row k of all three is of pose k. Nothing is copied.
+/// Poses that lie in an array, and where what becomes of them goes: row k of all four is of pose k. Nothing is copied.
 #[derive(Debug)]
 pub struct Rows<'a> {
     /// The pose errors, in the order of [`Dof::ALL`](crate::pose::Dof::ALL), in D and radians.
     pub poses: &'a [[f64; 5]],
     /// Receives the last pose errors, likewise.
     pub ends: &'a mut [[f64; 5]],
+    /// Receives [`End::height`], NaN where the moving half missed.
+    pub heights: &'a mut [f64],
     /// Receives the codes of the outcomes.
     pub outcomes: &'a mut [u8],
 }
 
-/// The same as [`rests`] for poses that lie in an array. Where the three have unlike lengths, the shortest counts.
+/// The same as [`rests`] for poses that lie in an array. Where the four have unlike lengths, the shortest counts.
 ///
 /// # Errors
 /// [`Cancelled`] when asked to stop; checked before every pose. What was written until then means nothing.
 pub fn rests_of_rows(pair: &Pair, rows: Rows<'_>, settings: &Settings, exec: &Exec) -> Result<(), Cancelled> {
-    let Rows { poses, ends, outcomes } = rows;
+    let Rows { poses, ends, heights, outcomes } = rows;
     let count = poses.len();
     let done = AtomicUsize::new(0);
     let between = count.div_ceil(REPORTS).min(MOST_BETWEEN);
     exec.install(|| {
-        (poses, ends, outcomes).into_par_iter().try_for_each_init(
+        (poses, ends, heights, outcomes).into_par_iter().try_for_each_init(
             || Motion::new(pair, settings).homing(),
-            |motion, (pose, end, code)| {
+            |motion, (pose, end, height, code)| {
                 exec.check()?;
                 let pose = PoseError::from_array(*pose);
-                let (outcome, error) = motion.follow(&pose, Until::AtRest, &mut Unwatched);
-                (*end, *code) = (error.to_array(), outcome as u8);
+                let found = motion.follow(&pose, Until::AtRest, &mut Unwatched);
+                (*end, *code) = (found.error.to_array(), found.outcome as u8);
+                *height = found.height.unwrap_or(f64::NAN);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 if done.is_multiple_of(between) {
                     exec.report(done as f64 / count as f64, "descents");
@@ -307,13 +318,13 @@ fn each(
                 || Motion::new(pair, settings).homing(),
                 |motion, k| {
                     exec.check()?;
-                    let (outcome, error) = motion.follow(&domain.pose(k), until, &mut Unwatched);
-                    finished(k, End { outcome, error });
+                    let end = motion.follow(&domain.pose(k), until, &mut Unwatched);
+                    finished(k, end);
                     let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                     if done.is_multiple_of(between) {
                         exec.report(done as f64 / count as f64, "descents");
                     }
-                    Ok(End { outcome, error })
+                    Ok(end)
                 },
             )
             .collect::<Result<_, Cancelled>>()

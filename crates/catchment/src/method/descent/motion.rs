@@ -8,7 +8,7 @@ use super::rest::TOUCHING;
 use super::rows::{OVERLAP, Rows, horizon};
 use super::sliding::Sliding;
 use super::step::{Advance, Pace};
-use super::{Settings, Touch, Waypoint};
+use super::{End, Settings, Touch, Waypoint};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting, Nearby, Pair, Seat};
 use crate::pose::{CorPose, PoseError, rotation};
@@ -145,16 +145,10 @@ impl<'a> Motion<'a> {
         self
     }
 
-    /// Lowers the moving half at `error` and follows it to its end, or until `watch` calls it; returns the outcome and the last pose
-    /// error.
-    pub(super) fn follow(
-        &mut self,
-        error: &PoseError,
-        until: Until,
-        watch: &mut impl Watch,
-    ) -> (Outcome, PoseError) {
+    /// Lowers the moving half at `error` and follows it to its end, or until `watch` calls it.
+    pub(super) fn follow(&mut self, error: &PoseError, until: Until, watch: &mut impl Watch) -> End {
         let mut pace = Pace::new(self.settings.step);
-        let Some(mut state) = self.touch_down(error) else { return (Outcome::Missed, *error) };
+        let Some(mut state) = self.touch_down(error) else { return End::missed(*error) };
         let mut travelled = 0.0;
         let mut mark = (0, travelled, state.cor.z);
         // A half that is seated stays so; whether it is docked then is known before it has come to rest, unless some rests do not count.
@@ -195,10 +189,10 @@ impl<'a> Motion<'a> {
                 self.gather(&state, pace.step);
             }
             if let Some(outcome) = watch.see(self, &state, travelled) {
-                return (outcome, self.error_of(&state));
+                return self.ended(outcome, &state);
             }
             if is_known {
-                return (Outcome::Aligned, self.error_of(&state));
+                return self.ended(Outcome::Aligned, &state);
             }
             if is_home {
                 return self.end(Outcome::Jammed, &state, [seated, docked]);
@@ -253,7 +247,7 @@ impl<'a> Motion<'a> {
     }
 
     /// What an end is called: rest in the seat, within what the design allows, is docked.
-    fn end(&mut self, outcome: Outcome, last: &State, [seated, docked]: [bool; 2]) -> (Outcome, PoseError) {
+    fn end(&mut self, outcome: Outcome, last: &State, [seated, docked]: [bool; 2]) -> End {
         let error = self.error_of(last);
         let rests_well = |motion: &mut Self| {
             outcome == Outcome::Jammed
@@ -262,7 +256,14 @@ impl<'a> Motion<'a> {
         };
         // What runs off has left whatever it was in.
         let docked = docked && outcome != Outcome::Missed || rests_well(self);
-        (if docked { Outcome::Aligned } else { outcome }, error)
+        self.ended(if docked { Outcome::Aligned } else { outcome }, last)
+    }
+
+    /// A motion that ends in a state.
+    fn ended(&self, outcome: Outcome, last: &State) -> End {
+        let error = self.error_of(last);
+        let height = (outcome != Outcome::Missed).then_some(last.cor.z);
+        End { outcome, error, height }
     }
 
     /// Whether a displacement whose lateral part has this length falls too little to go on.

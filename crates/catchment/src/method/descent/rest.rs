@@ -5,7 +5,7 @@ use super::holding::BORDER;
 use super::motion::{Motion, State, Until, Watch};
 use super::projection::{Vector, dot};
 use super::sticking::DOWN;
-use super::{Follower, Pair, Settings};
+use super::{End, Follower, Pair, Settings};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting};
 use crate::pose::PoseError;
@@ -71,7 +71,7 @@ impl Follower<'_> {
 
     fn end_of(&mut self, error: &PoseError, until: Until) -> Rest {
         let mut last = Last::default();
-        let (outcome, error) = self.0.follow(error, until, &mut last);
+        let End { outcome, error, .. } = self.0.follow(error, until, &mut last);
         let rests = outcome == Outcome::Jammed || outcome == Outcome::Aligned && until == Until::AtRest;
         let down = last.state.filter(|_| rests).and_then(|state| self.0.set_down(&state));
         match down {

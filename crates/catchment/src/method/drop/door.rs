@@ -1,5 +1,6 @@
 //! Drop tests as a method: every pose by itself.
 
+use super::engine::SUNK;
 use super::{DropError, Settings, run, run_told};
 use crate::acceptance::{Acceptance, Domain};
 use crate::contact::Pair;
@@ -75,6 +76,10 @@ impl Follow for Settings {
         finished: Finished<'_>,
     ) -> Result<(Acceptance, Vec<End>), DecideError> {
         Ok(run_told(problem.pair(), domain, self, exec, finished)?)
+    }
+
+    fn give(&self) -> f64 {
+        SUNK
     }
 }
 

@@ -57,7 +57,7 @@ const WINDOWS: u32 = 2;
 /// Steps in a row for which an aligned half stays aligned.
 const SETTLED: u32 = 10;
 /// Springs give way by so much, in D, as they do in the seat.
-const SUNK: f64 = 2e-3;
+pub(super) const SUNK: f64 = 2e-3;
 
 /// How contacts are solved. They are springs that take away a part of an overlap per step: this one, in steps per cycle and
 /// critically damped, leaves 10⁻³ D where the half pushes by 0.005 D per step, and does not ring.
@@ -104,7 +104,7 @@ impl<'a> Engine<'a> {
         let start = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
         let Some(height) = self.pair.height(&start) else {
             // Nothing below it: it falls past.
-            return Ok(End { outcome: Outcome::Missed, error: *error });
+            return Ok(End::missed(*error));
         };
         // What hangs over beside the fixed half may meet the ground first.
         let on_ground = self.ground.map(|ground| ground - lowest(&self.pair.moving, &start.rotation));
@@ -123,7 +123,7 @@ impl<'a> Engine<'a> {
             fall.step();
             let (cor, rotation) = fall.place();
             if !(cor.is_finite() && rotation.is_finite()) {
-                return Ok(End { outcome: Outcome::Undecided, error: *error });
+                return Ok(End { outcome: Outcome::Undecided, error: *error, height: None });
             }
             seen(step, &fall);
             let apart = self.apart(cor, &rotation);
@@ -174,7 +174,8 @@ impl<'a> Engine<'a> {
         let pose = CorPose { lateral: DVec2::new(cor.x, cor.y), rotation: *rotation };
         let mut error = pose.to_error(self.pair.alignment.center_of_rotation);
         [error.roll, error.pitch, error.yaw] = self.turning.angles(rotation);
-        End { outcome, error }
+        let height = (outcome != Outcome::Missed).then_some(cor.z);
+        End { outcome, error, height }
     }
 }
 

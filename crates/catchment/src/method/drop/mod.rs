@@ -27,6 +27,7 @@
 pub(super) mod door;
 mod engine;
 pub mod export;
+mod faces;
 mod mass;
 mod path;
 mod pieces;
@@ -166,7 +167,7 @@ fn verdict(ends: &[End]) -> End {
     let votes = |outcome: Outcome| ends.iter().filter(|e| e.outcome == outcome).count();
     let majority = ends.iter().find(|e| 2 * votes(e.outcome) > ends.len());
     let most = ends.iter().rev().filter(|e| e.outcome != Outcome::Aligned).max_by_key(|e| votes(e.outcome));
-    let missing = End { outcome: Outcome::Undecided, error: PoseError::default() };
+    let missing = End { outcome: Outcome::Undecided, error: PoseError::default(), height: None };
     majority.or(most).copied().unwrap_or(missing)
 }
 

@@ -8,8 +8,10 @@
 //!
 //! A surface is one convex piece if it is convex; else its columns, where every facet turned away from the face lies in the
 //! back plane (then their volumes add up to the whole's, and no two overlap). All families are one or the other.
-//! What is left, a mesh with undercuts, stays one mesh of triangles. Nothing is ever approximated by a decomposition.
+//! What is left, a mesh with undercuts, stays one mesh of triangles. Nothing is ever approximated by a decomposition. Coplanar facets are joined first
+//! ([`super::faces`]): columns side by side under one face have edges inside it, on which an engine jams.
 
+use super::faces::{joined, merged};
 use crate::connector::{Half, Surface};
 use glam::DVec3;
 
@@ -47,7 +49,7 @@ pub(super) fn parts(half: &Half) -> Vec<Part> {
         .iter()
         .flat_map(|surface| {
             if surface.convex {
-                return vec![Part::Convex(surface.clone())];
+                return vec![Part::Convex(joined(surface))];
             }
             let turn = |p: DVec3| DVec3::new(p.x, -p.y, -p.z);
             columns(surface)
@@ -68,16 +70,17 @@ fn columns(surface: &Surface) -> Option<Vec<Surface>> {
     let floor = surface.bounds().0.z;
     let rounding = rounding(surface);
     let stands = |corners: &[DVec3]| corners.iter().all(|p| p.z - floor <= rounding);
-    let facets = surface.facets.iter().map(|f| {
-        let corners = f.corners.iter().map(|k| surface.vertices[*k as usize]).collect::<Vec<_>>();
-        (f.normal.z, corners)
-    });
-    let (up, down): (Vec<_>, Vec<_>) =
-        facets.filter(|(_, corners)| !is_wall(corners, rounding)).partition(|(up, _)| *up > 0.0);
-    if down.iter().any(|(_, corners)| !stands(corners)) {
+    let points = |corners: &[u32]| corners.iter().map(|k| surface.vertices[*k as usize]).collect::<Vec<_>>();
+    let (up, down): (Vec<_>, Vec<_>) = surface
+        .facets
+        .iter()
+        .filter(|facet| !is_wall(&points(&facet.corners), rounding))
+        .partition(|facet| facet.normal.z > 0.0);
+    if down.iter().any(|facet| !stands(&points(&facet.corners))) {
         return None;
     }
-    up.iter().map(|(_, corners)| column(corners, floor, rounding)).collect()
+    let up = up.into_iter().map(|facet| facet.corners.clone()).collect();
+    merged(&surface.vertices, up).iter().map(|corners| column(&points(corners), floor, rounding)).collect()
 }
 
 /// The solid between a polygon, counter-clockwise from above, and the floor.

@@ -141,8 +141,11 @@ fn a_bouncing_half_is_undecided_when_the_time_is_up() {
 #[test]
 fn the_majority_decides() {
     let of = |outcomes: &[Outcome]| {
-        let ends: Vec<End> =
-            outcomes.iter().enumerate().map(|(k, o)| End { outcome: *o, error: x(k as f64) }).collect();
+        let ends: Vec<End> = outcomes
+            .iter()
+            .enumerate()
+            .map(|(k, o)| End { outcome: *o, error: x(k as f64), height: None })
+            .collect();
         let end = verdict(&ends);
         (end.outcome, end.error.x)
     };
