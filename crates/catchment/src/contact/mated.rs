@@ -15,10 +15,12 @@
 
 use super::Pair;
 use super::play::{Play, directions, play_on, unit};
-use super::told::Told;
+use super::side_by_side::{self, SideBySide};
+use super::told::{Told, number};
 use crate::design::Alignment;
 use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
+use glam::DVec2;
 use std::fmt;
 
 /// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
@@ -60,6 +62,8 @@ pub enum MatedProblem {
     },
     /// No vertical line meets both halves.
     Apart,
+    /// The halves share a vertical plane, and no area in plan view.
+    SideBySide(SideBySide),
     /// The aligned pose is no local minimum of the height.
     NotMinimum {
         /// The error that lets them sink deepest among those tried.
@@ -125,6 +129,11 @@ impl MatedProblem {
                 told.length(*overlap)
             ),
             Self::Apart => "in the aligned pose the halves pass each other by: check that both are drawn around the approach axis".to_owned(),
+            Self::SideBySide(SideBySide { across, .. }) => format!(
+                "in the aligned pose the halves share nothing but a plane across {}: they lie side by side, pushed together nothing carries, and the least \
+                 offset apart they pass each other by",
+                direction(*across)
+            ),
             Self::NotMinimum { error, sinks } => {
                 let sink = if sinks.is_finite() {
                     format!("sink {} deeper", told.length(*sinks))
@@ -175,9 +184,23 @@ impl MatedProblem {
                     .to_owned(),
             ),
             Self::LimitCutsPlay { .. } => Some("allow more, or draw a tighter seat".to_owned()),
+            Self::SideBySide(SideBySide { across, apart }) => Some(format!(
+                "move the moving half by {} along {}, so that the middles of both lie on each other: translate of a half, at of a part",
+                told.length(*apart),
+                direction(-*across)
+            )),
             _ => None,
         }
     }
+}
+
+/// A direction in plan view: `+y`, or its parts.
+fn direction(way: DVec2) -> String {
+    let named = [("+x", DVec2::X), ("-x", DVec2::NEG_X), ("+y", DVec2::Y), ("-y", DVec2::NEG_Y)];
+    named
+        .into_iter()
+        .find(|(_, axis)| axis.distance(way) < 1e-9)
+        .map_or_else(|| format!("({}, {})", number(way.x), number(way.y)), |(name, _)| name.to_owned())
 }
 
 /// A rest below the seat, to which a half comes that is a little off: the aligned pose is level about it, or falls off close by.
@@ -229,6 +252,9 @@ pub fn problems(pair: &Pair) -> Vec<MatedProblem> {
 /// The same, with its progress.
 pub(crate) fn problems_on(pair: &Pair, exec: &Exec) -> Vec<MatedProblem> {
     let height = pair.mated_height();
+    if let Some(found) = side_by_side::of(pair) {
+        return vec![MatedProblem::SideBySide(found)];
+    }
     if height == f64::NEG_INFINITY {
         return vec![MatedProblem::Apart];
     }
@@ -401,6 +427,31 @@ mod tests {
         let own = OwnSpec::new(0.5, tip(), tip());
         let found = problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, DofSet::ALL, 0.0)));
         assert!(matches!(found[..], [MatedProblem::NotMinimum { .. }]), "{found:?}");
+    }
+
+    /// Two blocks that end in the plane y = 0, one on either side of it, and the same overlapping.
+    #[test]
+    fn halves_that_share_a_plane_alone_are_not_mated() {
+        let block = |y: [f64; 2]| {
+            let corner =
+                |i: u8| [f64::from(i & 1) - 0.5, y[usize::from(i >> 1 & 1)], 0.3 * f64::from(i >> 2)];
+            HalfSpec::Pieces(vec![(0..8).map(corner).collect()])
+        };
+        // Mounted by half a turn about x, the moving half lies at −y.
+        let found = |moving: [f64; 2]| {
+            let own = OwnSpec::new(0.3, block([0.0, 0.4]), block(moving));
+            problems(&pair(&design(ConnectorSpec::Own(own), Mount::X, DofSet::EMPTY.with(Dof::Yaw), 0.0)))
+        };
+        let [MatedProblem::SideBySide(SideBySide { across, apart })] = found([0.0, 0.4])[..] else {
+            panic!("{:?}", found([0.0, 0.4]))
+        };
+        assert_eq!(across, DVec2::NEG_Y);
+        assert!((apart - 0.4).abs() < 1e-15);
+        let help = found([0.0, 0.4])[0].help(Told::IN_D).unwrap();
+        assert!(help.contains("by 0.4 D along +y"), "{help}");
+        assert!(!found([-0.4, 0.0]).iter().any(|problem| matches!(problem, MatedProblem::SideBySide(_))));
+        // A hundredth of a millimetre of 50 is an area.
+        assert!(!found([-2e-4, 0.4]).iter().any(|problem| matches!(problem, MatedProblem::SideBySide(_))));
     }
 
     #[test]

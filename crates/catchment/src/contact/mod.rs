@@ -36,6 +36,7 @@ mod search;
 mod seat;
 pub(crate) mod settle;
 mod shape;
+mod side_by_side;
 #[cfg(test)]
 mod tests;
 pub(crate) mod told;
@@ -56,6 +57,7 @@ pub(crate) use play::play_on;
 pub use play::{Play, play};
 pub(crate) use seat::CORE as SEAT_CORE;
 pub use seat::Seat;
+pub use side_by_side::SideBySide;
 
 use crate::connector::{Connector, Half};
 use crate::design::Alignment;

@@ -15,12 +15,15 @@ use crate::connector::{Connector, Half, Side};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem, sinking};
 use crate::contact::relief::{self, Relief};
 use crate::contact::told::{Told, number};
-use crate::contact::{Pair, face};
+use crate::contact::{Pair, face, settle};
 use crate::design::{ConnectorSpec, Design};
 use glam::{DMat3, DVec2, DVec3};
 
 /// A mirror image has to lie deeper than the halves as drawn by so much to be worth a word, in D.
 const DEEPER: f64 = 0.01;
+
+/// Halves drawn no farther than this from touching, in D, may be meant to rest there.
+const NEAR: f64 = 0.01;
 
 /// Cells across either half, at most, of the lattice on which something narrow is looked for.
 const MOST_CELLS: f64 = 400.0;
@@ -53,7 +56,23 @@ pub(super) fn advice(
     } else {
         ""
     };
-    Some(format!("{told}{mirrored}"))
+    let settles = settles(pair, design, problem).unwrap_or_default();
+    Some(format!("{told}{mirrored}{settles}"))
+}
+
+/// Where halves come to rest that are drawn a little too deep, or not deep enough, as a remedy.
+fn settles(pair: &Pair, design: &Design, problem: &MatedProblem) -> Option<String> {
+    let (MatedProblem::Collision { overlap: off } | MatedProblem::Gap { gap: off }) = problem else {
+        return None;
+    };
+    let ConnectorSpec::Own(own) = &design.connector else { return None };
+    if own.settle || *off > NEAR {
+        return None;
+    }
+    let rest = Told::of(design).error(&settle::rest(pair)?);
+    Some(format!(
+        "; released there they come to rest at {rest}: settle = true in [connector] takes that pose as mated"
+    ))
 }
 
 /// Whether something narrow of one part keeps the other from a seat.

@@ -21,7 +21,7 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
     match problem {
         MatedProblem::Collision { .. } | MatedProblem::Gap { .. } => "connector.face_height",
         MatedProblem::DrawnApart { .. } | MatedProblem::DrawnDeeper { .. } => "connector.drawn",
-        MatedProblem::Apart => "connector",
+        MatedProblem::Apart | MatedProblem::SideBySide(_) => "connector",
         MatedProblem::RunsOff => "connector.settle",
         MatedProblem::NotMinimum { .. } | MatedProblem::Free { .. } | MatedProblem::Round { .. } => {
             "alignment.free"

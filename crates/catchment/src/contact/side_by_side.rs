@@ -1,0 +1,66 @@
+//! Halves that lie side by side where they are mated: they share a vertical plane and no area in plan view.
+//!
+//! ```text
+//!   plan view    ┌─────────┬─────────┐       first contact at no error is along the plane between them: pushed together
+//!                │  fixed  │  moving │       nothing carries, and the least offset apart they pass each other by
+//!                └─────────┴─────────┘
+//! ```
+//!
+//! Asked of the halves as they are, not of what touches: whether points of one plane touch is a matter of rounding. The planes that are tried are the
+//! vertical facets of the fixed half, and those across x and y; halves that interlock without an area in common lie on no side of one plane and are not seen.
+
+use super::Pair;
+use crate::pose::CorPose;
+use glam::{DMat3, DVec2, DVec3};
+use std::collections::BTreeSet;
+
+/// Halves that reach over the plane by no more than this lie beside each other, in D.
+const OVER: f64 = 1e-6;
+/// Facets steeper than this (z of their normal) are vertical.
+const VERTICAL: f64 = 1e-6;
+/// Directions nearer than this are one.
+const ONE_WAY: f64 = 1e-6;
+
+/// How halves lie beside each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SideBySide {
+    /// Unit normal of the plane that they share, in plan view, from the fixed half to the moving one.
+    pub across: DVec2,
+    /// How far the moving half has to go against it until the middles of both lie on each other, in D.
+    pub apart: f64,
+}
+
+/// How the halves of a pair lie beside each other in the aligned pose; `None` where they do not.
+pub(super) fn of(pair: &Pair) -> Option<SideBySide> {
+    let passes = |lateral: DVec2| pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY }).is_none();
+    let off = 2.0 * OVER;
+    let may_pass = pair.mated_height() == f64::NEG_INFINITY
+        || [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].into_iter().any(|way| passes(off * way));
+    if !may_pass {
+        return None;
+    }
+    let whole = |x: f64| (x / ONE_WAY).round() as i64;
+    let mut known = BTreeSet::new();
+    let axes = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y];
+    let walls = pair
+        .fixed
+        .surfaces
+        .iter()
+        .flat_map(|surface| &surface.facets)
+        .filter(|facet| facet.normal.z.abs() <= VERTICAL)
+        .map(|facet| facet.normal.truncate().normalize_or_zero());
+    axes.into_iter().chain(walls).filter(|way| known.insert([whole(way.x), whole(way.y)])).find_map(|way| {
+        let reach = |points: &mut dyn Iterator<Item = DVec3>| {
+            points.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
+                let at = point.truncate().dot(way);
+                [low.min(at), high.max(at)]
+            })
+        };
+        let [fixed, moving] = [&pair.fixed, &pair.moving].map(|half| {
+            reach(&mut half.surfaces.iter().flat_map(|surface| surface.vertices.iter().copied()))
+        });
+        let middle = |[low, high]: [f64; 2]| f64::midpoint(low, high);
+        ((moving[0] - fixed[1]).abs() <= OVER)
+            .then(|| SideBySide { across: way, apart: middle(moving) - middle(fixed) })
+    })
+}
