@@ -57,8 +57,22 @@ impl Resolution {
     pub const MOST: usize = 1_000_000;
 
     /// Cells per axis when nothing was said, for one to five axes, where a cell costs microseconds. Odd, so that a
-    /// cell is centred on the mated pose.
-    pub const DEFAULT_CELLS: [usize; 5] = [1001, 101, 41, 21, 13];
+    /// cell is centred on the mated pose; see [`Resolution::is_centred_on`] for which odd numbers.
+    pub const DEFAULT_CELLS: [usize; 5] = [1001, 101, 41, 23, 13];
+
+    /// Whether an axis of so many cells has a centre at a fraction of its half range whose denominator is `denominator`, in lowest terms.
+    ///
+    /// Acceptance often ends at such a fraction (½ D, 45° of 90°). Where the outermost accepted centres lie exactly there, rounding decides about them, and the set comes out a
+    /// whole cell too wide or too narrow: with 30 cells over ±1 D, which have centres at ±½, a cube of ±½ D is 14 % off. Defaults keep clear of fractions with small
+    /// denominators. Centres are at j/cells of the half range, j even for an odd number of cells and odd for an even one.
+    pub fn is_centred_on(cells: usize, denominator: usize) -> bool {
+        let is_center = |j: usize| j % 2 != cells % 2;
+        let in_lowest_terms = |numerator: usize| {
+            (2..=numerator).all(|d| !numerator.is_multiple_of(d) || !denominator.is_multiple_of(d))
+        };
+        cells.is_multiple_of(denominator)
+            && (1..denominator).any(|k| in_lowest_terms(k) && is_center(k * (cells / denominator)))
+    }
 
     /// The same number of cells on every axis.
     pub fn uniform(cells: usize) -> Result<Self, ResolutionError> {
@@ -220,6 +234,27 @@ mod tests {
                 assert!(bytes(edge) <= budget && bytes(edge + 1) > budget);
             }
         }
+    }
+
+    /// Against the definition, and the numbers of the note.
+    #[test]
+    fn centres_lie_on_fractions_or_do_not() {
+        for cells in 2..=64usize {
+            for denominator in 2..=8usize {
+                // Centres are at (2 k + 1 − cells)/cells; in lowest terms where nothing but 1 divides both.
+                let centers = (0..cells).map(|k| (2 * k + 1).abs_diff(cells));
+                let divides = |d: usize, j: usize| (j * denominator).is_multiple_of(d);
+                let found =
+                    centers.filter(|j| divides(cells, *j)).map(|j| j * denominator / cells).any(|k| {
+                        (2..=denominator).all(|d| !(k.is_multiple_of(d) && denominator.is_multiple_of(d)))
+                            && k > 0
+                            && k < denominator
+                    });
+                assert_eq!(Resolution::is_centred_on(cells, denominator), found, "{cells} {denominator}");
+            }
+        }
+        assert!(Resolution::is_centred_on(30, 2) && !Resolution::is_centred_on(32, 2));
+        assert!(Resolution::is_centred_on(21, 3) && !Resolution::is_centred_on(23, 3));
     }
 
     #[test]

@@ -29,7 +29,7 @@ impl Decide for Settings {
     /// Odd, so that a cell is centred on the mated pose; fewer where halves have many facets, but in all about as many as random poses are followed beside
     /// them.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
-        const SIMPLE: [usize; 5] = [1001, 101, 25, 11, 7];
+        const SIMPLE: [usize; 5] = [1001, 101, 23, 11, 7];
         let cells = affordable_cells(pair, SIMPLE, default_samples(pair));
         cells.map(|cells| (cells.saturating_sub(1) / 2 * 2 + 1).max(3))
     }
