@@ -140,8 +140,13 @@ impl DesignArgs {
         Ok(draft)
     }
 
-    /// The problem to decide.
+    /// The problem to decide: its mated pose holds.
     pub(crate) fn problem(&self) -> Result<Problem, ProblemError> {
+        self.halves()?.checked()
+    }
+
+    /// The same, also where its mated pose does not hold: for what follows no motions.
+    pub(crate) fn halves(&self) -> Result<Problem, ProblemError> {
         self.draft()?.build()
     }
 

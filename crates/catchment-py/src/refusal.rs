@@ -113,6 +113,7 @@ impl<E: Error + 'static> From<E> for Refusal {
         }
         if let Some(error) = taken::<_, RunError>(&mut error) {
             return match error {
+                RunError::NotHeld(findings) => Self::Geometry(findings),
                 RunError::NotApplicable(error) => Self::argument("method", error),
                 RunError::Resolution(error) => Self::argument("resolution", error),
                 RunError::Cancelled(_) => Self::Cancelled,

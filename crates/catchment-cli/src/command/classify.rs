@@ -30,7 +30,7 @@ pub(crate) struct ClassifyArgs {
 
 pub(crate) fn run(args: &ClassifyArgs) -> Result<ExitStatus, Failure> {
     let catalog = Catalog::published()?;
-    let problem = args.design.problem()?;
+    let problem = args.design.halves()?;
     let running = args.exec.start()?;
     let found = classified(&problem, &running.exec)?;
     drop(running);

@@ -102,7 +102,7 @@ fn subjects(args: &CompareArgs) -> Result<[Subject; 2], Failure> {
         if stored[k] {
             return Ok(Subject::Stored(path));
         }
-        let problem = Problem::open(&path)?;
+        let problem = Problem::open(&path)?.checked()?;
         let method = methods.next().unwrap_or_else(|| all.clone());
         method.applies_to(problem.design())?;
         let run = Box::new(Run::by(method));

@@ -95,7 +95,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitStatus, Failure> {
         ));
     };
     write::check_folder(&args.output, KIND, &exec)?;
-    let problem = args.design.problem()?;
+    let problem = args.design.halves()?;
     let (design, pair) = (problem.design(), problem.pair());
     let error = parse_pose(pose, design).map_err(|findings| Failure::of_option("--pose", pose, findings))?;
     let settings = args.drop.settings()?;

@@ -73,7 +73,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
         let help = "a half needs material: give a number above 0".to_owned();
         return Err(Failure::with_help(format!("--backing {} is no thickness", args.backing), Some(help)));
     }
-    let problem = args.design.problem()?;
+    let problem = args.design.halves()?;
     let (design, connector) = (problem.design(), problem.connector());
     let feature_d = args
         .min_feature

@@ -65,7 +65,7 @@ fn shape_parser() -> ValueParser {
 
 pub(crate) fn run(args: &SolidsArgs) -> Result<ExitStatus, Failure> {
     let kind = args.file.kind(&["vtp", "obj", "svg", "png"])?;
-    let problem = args.design.problem()?;
+    let problem = args.design.halves()?;
     let running = args.exec.start()?;
     if matches!(kind, Some("svg" | "png")) {
         figure::ensure_fits(0, &running.exec)?;

@@ -92,7 +92,7 @@ pub(crate) fn run(args: &ZraaArgs) -> Result<ExitStatus, Failure> {
         }
     }
     // Rotations play no part, so whether the mated pose holds against them is of no interest here.
-    let mut problems = vec![args.design.problem()?];
+    let mut problems = vec![args.design.halves()?];
     for path in &args.more {
         problems.push(args.design.change(Draft::open(path)?)?.build()?);
     }

@@ -38,6 +38,7 @@ pub use plan::Plan;
 pub use requirement::{Requirement, RequirementError, Verdict};
 pub use seat::{Deeper, Residual, Seating};
 
+use crate::design::Findings;
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
 use crate::landscape::{LandscapeError, Resolution, ResolutionError};
 use crate::merit::MeritError;
@@ -120,6 +121,9 @@ impl Default for Run {
 /// Why a run gives no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
+    /// The mated pose does not hold.
+    #[error(transparent)]
+    NotHeld(#[from] Findings),
     /// The method is not made for the design.
     #[error(transparent)]
     NotApplicable(#[from] NotApplicable),

@@ -31,8 +31,10 @@ impl Run {
     /// What this run will do on a problem.
     ///
     /// # Errors
-    /// The method does not apply to the design, its settings are out of range, or the resolution does not suit the free errors.
+    /// The mated pose does not hold, the method does not apply to the design, its settings are out of range, or the resolution does not suit the
+    /// free errors.
     pub fn plan(&self, problem: &Problem) -> Result<Plan, RunError> {
+        problem.ensure_held()?;
         let pair = problem.pair();
         let within = match self.sample {
             Sample::Until(Stop::Budget(budget)) => self.method.within(budget / GRID_PART),

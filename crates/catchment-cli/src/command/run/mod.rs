@@ -140,6 +140,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
 /// Why there is no answer, at the key of the design or the option that it is about.
 pub(super) fn refused(problem: &catchment::problem::Problem, error: RunError) -> Failure {
     match error {
+        RunError::NotHeld(findings) => findings.into(),
         RunError::NotApplicable(refusal) => {
             problem.refused("connector.family", format!("--method {refusal}"), None).into()
         }

@@ -374,7 +374,7 @@ fn combination(axes: &[Axis], number: usize) -> impl Iterator<Item = &str> {
 
 /// One design, computed or taken from what is kept.
 fn one(draft: &Draft, run: &Run, keep: &dyn Keep, exec: &Exec) -> Result<Found, SweepError> {
-    let problem = match draft.clone().build() {
+    let problem = match draft.clone().build().and_then(Problem::checked) {
         Ok(problem) => problem,
         Err(error) => return Ok(Found::Refused(reason(&error))),
     };
