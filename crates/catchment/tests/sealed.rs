@@ -45,7 +45,7 @@ const ASKS: [(&str, &str); 12] = [
 ];
 
 /// Where the core may ask, for what, and why.
-const ALLOWED: [(&str, &str, &str); 9] = [
+const ALLOWED: [(&str, &str, &str); 10] = [
     ("exec/clock.rs", "the time", "deadlines and stopwatches; stands still where there is no clock"),
     ("exec/threads.rs", "a thread", "the pools of a run; the caller's own thread where there are none"),
     ("exec/threads.rs", "the environment", "how many threads a person wants for all programs"),

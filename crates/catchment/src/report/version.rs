@@ -46,7 +46,7 @@ impl Version {
         if is_version {
             return Ok(Self(text.to_owned()));
         }
-        let shown = super::printable(text).chars().take(MOST).collect();
+        let shown = crate::terminal::printable(text).chars().take(MOST).collect();
         Err(VersionError { shown })
     }
 }

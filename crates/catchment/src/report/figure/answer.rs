@@ -1,7 +1,6 @@
 //! The pictures of an answer.
 
 use super::{FigureError, Picture, Placement};
-use crate::acceptance::Acceptance;
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::pose::{CorPose, PoseError};
@@ -97,6 +96,7 @@ fn height_of(pair: &Pair, error: &PoseError) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pose::Dof;
     use crate::problem::Problem;
     use crate::report::schema::testing::design;
     use crate::run::{Over, Run, Sample};
