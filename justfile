@@ -51,7 +51,7 @@ pictures *names:
 archive:
     release/build
 
-# fuzz one of the readers in fuzz/fuzz_targets: just fuzz stl 600
+# fuzz one of the targets of fuzz/src/main.rs, which have the names of fuzz/corpus: just fuzz stl 600
 fuzz target='design' seconds='60':
     fuzz/run {{ seconds }} {{ target }}
 

@@ -369,7 +369,7 @@ class Storm:
         self.tables, self.meshes = corpus("poses"), corpus("stl")
         self.others, self.beside = self.files_beside()
         self.sound = [path.read_bytes() for path in sorted((ROOT / "designs").glob("*.toml"))]
-        self.designs = corpus("design") + self.sound
+        self.designs = corpus("design") + self.sound + self.of_files()
         self.codes, self.commands = collections.Counter(), collections.Counter()
         self.largest, self.longest, self.slow, self.faults = (0, ""), (0.0, ""), [], []
         self.results = self.home / "results"
@@ -403,6 +403,25 @@ class Storm:
         }
         beside = {"v.toml": read("v-face.toml"), "x.toml": read("x-face.toml")}
         return files, beside
+
+    @staticmethod
+    def of_files():
+        """Designs of the files of all readers that are in `drawn`: meshes of every format, and profiles from drawings."""
+        mesh = '[connector]\nwidth = 1.0\nfixed = {{ mesh = "part.{0}"{1} }}\nmoving = {{ mesh = "part.{0}"{1} }}\n[errors]\nx = 0.5\n'
+        part = '[connector]\nwidth = 10.0\nunit = "mm"\n[[connector.fixed.parts]]\nprofile = "part.{0}"\nunit = "mm"\nheight = 5\n[[connector.moving.parts]]\nbox = [4, 4, 5]\n'
+        designs = [mesh.format(ending, "") for ending in ("stl", "obj", "ply")] + [part.format(ending) for ending in ("svg", "dxf")]
+        designs += [mesh.format(ending, "").replace("width = 1.0", 'width = 1.0\nunit = "mm"') for ending in ("3mf", "step")]
+        return [design.encode() for design in designs]
+
+    def drawn(self, dice):
+        """By their names: the files of those designs, from the corpora of the fuzzer, some of them spoilt."""
+        files = {"part.step": b"ISO-10303-21;\n"}
+        for name, endings in (("stl", ["stl"]), ("obj", ["obj"]), ("ply", ["ply"]), ("threemf", ["3mf"]), ("drawing", ["svg", "dxf"])):
+            seeds = corpus(name)
+            for ending in endings:
+                data = dice.choice(seeds)
+                files["part." + ending] = spoilt(dice, data, seeds) if dice.random() < 0.6 else data
+        return files
 
     def start(self, args, folder):
         """Exit code (minus the signal), kilobytes, seconds of the processor and what it said."""
@@ -471,6 +490,9 @@ class Storm:
         (self.work / "s").mkdir(exist_ok=True)
         for name, data in self.beside.items():
             (self.work / name).write_bytes(data)
+        if b'"part.' in design:
+            for name, data in self.drawn(dice).items():
+                (self.work / name).write_bytes(data)
         seeds = list(self.others.values())
         for name, data in self.others.items():
             (self.work / name).write_bytes(spoilt(dice, data, seeds) if dice.random() < 0.25 and not dice.calm else data)

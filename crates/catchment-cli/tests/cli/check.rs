@@ -192,3 +192,54 @@ fn a_half_of_files_and_primitives_says_what_it_is_made_of() {
     assert!(told.contains("united; the surface did not move"), "{told}");
     assert!(told.contains("fixed half          profile plate.svg\n"), "{told}");
 }
+
+/// The same plate with a hole, and in the hole a post that is hidden: by style, by class, on a layer that is off, on paper.
+#[test]
+fn what_a_drawing_hides_is_left_out_and_counted() {
+    let dir = tempfile::tempdir().unwrap();
+    let plate = "<path d='M-20 -20H20V20H-20Z M-5 -5H5V5H-5Z'/>";
+    let post = "<rect x='-3' y='-3' width='6' height='6'/>";
+    let svg = |post: &str| format!("<svg width='100mm' viewBox='0 0 100 100'>{plate}{post}</svg>");
+    let square = |half: i32, groups: &str| {
+        let corner = |x: i32, y: i32| format!("10\n{x}\n20\n{y}\n");
+        let corners =
+            [corner(-half, -half), corner(half, -half), corner(half, half), corner(-half, half)].concat();
+        format!("0\nLWPOLYLINE\n{groups}90\n4\n70\n1\n{corners}")
+    };
+    let dxf = |post: String| {
+        let tables = "0\nSECTION\n2\nTABLES\n0\nLAYER\n2\nOff\n70\n0\n62\n-7\n0\nENDSEC\n";
+        let outlines = [square(20, ""), square(5, ""), post].concat();
+        format!("{tables}0\nSECTION\n2\nENTITIES\n{outlines}0\nENDSEC\n0\nEOF\n")
+    };
+    let files = [
+        ("none.svg", svg(""), false),
+        ("display.svg", svg(&format!("<g display='none'>{post}</g>")), true),
+        ("layer.svg", svg(&format!("<g style='display:none'>{post}</g>")), true),
+        ("visibility.svg", svg(&format!("<g visibility='hidden'>{post}</g>")), true),
+        (
+            "class.svg",
+            svg(&format!("<style>.off {{ display: none }}</style><g class='off'>{post}</g>")),
+            true,
+        ),
+        ("none.dxf", dxf(String::new()), false),
+        ("paper.dxf", dxf(square(3, "67\n1\n")), true),
+        ("invisible.dxf", dxf(square(3, "60\n1\n")), true),
+        ("layer.dxf", dxf(square(3, "8\nOFF\n")), true),
+    ];
+    let mut digests = Vec::new();
+    for (name, text, is_hidden) in files {
+        fs::write(dir.path().join(name), text).unwrap();
+        let design = format!(
+            "[connector]\nwidth = 10\nunit = \"mm\"\n[[connector.fixed.parts]]\nprofile = \"{name}\"\nunit = \"mm\"\nheight = 5\n\
+             [[connector.moving.parts]]\nbox = [9.6, 9.6, 5]\n[alignment]\nfree = [\"x\"]\n[errors]\nx = \"5 mm\"\n[docked]\nx = \"0.5 mm\"\n"
+        );
+        fs::write(dir.path().join("d.toml"), design).unwrap();
+        let said = run(dir.path(), &["check", "d.toml"]);
+        assert!(said.starts_with("exit 0"), "{name}: {said}");
+        let note = "(1 hidden entity left out)";
+        assert_eq!(said.contains(note), is_hidden, "{name}: {said}");
+        let found = json(dir.path(), &["run", "d.toml", "--resolution", "20", "--samples", "0", "--json"]);
+        digests.push(found["acceptance"]["sum"].as_f64().unwrap());
+    }
+    assert!(digests.iter().all(|sum| *sum == digests[0]), "{digests:?}");
+}

@@ -175,7 +175,7 @@ impl Header {
             let least = u128::from(*count) * u128::from(element.least_bytes(dialect));
             if least > (bytes.len() - at) as u128 + 1 {
                 return Err(format!(
-                    "line {line}: the header announces {count} of `{}`, for which the file has too few bytes: it was cut off, or its header is broken",
+                    "line {line}: the header announces {count} of `{}`, more than the file has bytes for: it was cut off, or its header is broken",
                     crate::design::shortened(name)
                 ));
             }
