@@ -88,8 +88,8 @@ PICTURES = {
         "validate designs/trials/pyramid-arc.csv designs/bench-pyramid-arc.toml --accuracy 'x=1.2 mm,pitch=0.5 deg' -o PICTURE"
     ],
 }
-#: Those that take more than a few seconds.
-LONG = ("chance", "trials", "sweep", "success")
+#: Those that take more than ten seconds on a busy machine.
+LONG = ("chance", "friction", "sweep", "success", "trials")
 #: Those that a browser draws.
 BROWSER = "viewer-"
 
@@ -181,6 +181,10 @@ def difference(old: bytes, new: bytes) -> float:
     return differ / (width * height)
 
 
+def kept_digests() -> dict[str, dict[str, str]]:
+    return json.loads(DIGESTS.read_text(encoding="utf-8")) if DIGESTS.exists() else {}
+
+
 def doubt(program: str, name: str, steps: list[str], stored: dict[str, str]) -> str | None:
     """What is out of date about a picture."""
     kept = (DOCS / f"{name}.png").read_bytes()
@@ -196,7 +200,7 @@ def doubt(program: str, name: str, steps: list[str], stored: dict[str, str]) -> 
 
 
 def check(program: str, every: bool) -> None:
-    known, stored = commands(), json.loads(DIGESTS.read_text(encoding="utf-8"))
+    known, stored = commands(), kept_digests()
     there = {str(path.relative_to(DOCS).with_suffix("")) for path in DOCS.rglob("*.png") if not path.name.startswith(BROWSER)}
     wrong = [f"docs/{name}.png: no command draws it; write one into site/pictures.py" for name in sorted(there - set(known))]
     wrong += [f"docs/{name}.png is missing: python3 site/pictures.py {program} {name}" for name in sorted(set(known) - there)]
@@ -216,7 +220,7 @@ def main() -> None:
         return
     if not args or args[0].startswith("-"):
         raise SystemExit(__doc__)
-    stored = json.loads(DIGESTS.read_text(encoding="utf-8")) if DIGESTS.exists() else {}
+    stored = kept_digests()
     for name, steps in commands().items():
         if len(args) > 1 and not any(name.startswith(begin) for begin in args[1:]):
             continue
