@@ -67,9 +67,9 @@ fn halves(svg: &mut Svg, rect: Rect, design: &Design, connector: &Connector) -> 
 fn heights(svg: &mut Svg, rect: Rect, design: &Design, found: &Inverse) -> Result<(), FigureError> {
     let units = Units::of(design);
     let [wanted, reached] = [&found.wanted, &found.reached].map(profile);
-    let ends = || wanted.iter().flatten();
+    let ends = wanted.iter().flatten();
     let (mut lo, mut hi) =
-        ends().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), end| (lo.min(*end), hi.max(*end)));
+        ends.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), end| (lo.min(*end), hi.max(*end)));
     if lo.x >= hi.x {
         return Err(FigureError::Empty { what: "no height is wanted at y = 0" });
     }
@@ -169,7 +169,6 @@ mod tests {
         let (wanted, reached) =
             (path(&document, "stroke-dasharray", "6 4"), path(&document, "stroke", &hex(CURVES[0])));
         assert_eq!((wanted.len(), reached.len()), (1, 1));
-        assert_eq!(wanted[0].attribute("d"), reached[0].attribute("d"));
         assert!(path(&document, "fill", &hex(CURVES[1])).is_empty());
         // A bowl with a slope of 0.6 to all sides: over a socket of 45° less is reached.
         let table =
