@@ -5,6 +5,7 @@ mod field;
 mod layers;
 mod own_halves;
 mod parts;
+mod pieces;
 mod placed;
 mod planar_sums;
 mod proposal;

@@ -40,17 +40,12 @@ impl Dice {
 }
 
 fn write(folder: &Path, name: &str, half: &Half, frame: &DAffine3) -> PartFile {
-    let scaled = Half {
-        surfaces: half
-            .surfaces
-            .iter()
-            .map(|surface| {
-                let mut surface = surface.clone();
-                surface.vertices.iter_mut().for_each(|p| *p *= WIDTH);
-                surface
-            })
-            .collect(),
+    let scaled = |surface: &Surface| {
+        let mut surface = surface.clone();
+        surface.vertices.iter_mut().for_each(|p| *p *= WIDTH);
+        surface
     };
+    let scaled = Half::of(half.surfaces.iter().map(scaled).collect());
     let mut bytes = Vec::new();
     stl::write(&scaled.mapped(|p| frame.transform_point3(p)), stl::Format::Ascii, &mut bytes).unwrap();
     fs::write(folder.join(name), bytes).unwrap();
@@ -192,8 +187,8 @@ fn what_walls_hold_far_apart_is_docked_within_the_play() {
         hull([edge(hole, 0.0), edge(hole, 0.54), edge(rim, 0.6), edge(all, 0.0), edge(all, 0.6)].concat())
     };
     let floor = hull([ring(DVec2::splat(outside), -0.2), ring(DVec2::splat(outside), 0.0)].concat());
-    let fixed = Half { surfaces: (0..4).map(wall).chain([floor]).collect() };
-    let moving = Half { surfaces: vec![hull([ring(peg, 0.0), ring(peg, 1.2)].concat())] };
+    let fixed = Half::union_of((0..4).map(wall).chain([floor]).collect()).unwrap();
+    let moving = Half::of(vec![hull([ring(peg, 0.0), ring(peg, 1.2)].concat())]);
     let folder = tempfile::tempdir().unwrap();
     let frame = DAffine3::IDENTITY;
     let parts =
@@ -270,7 +265,7 @@ fn a_bought_ball_is_part_of_a_half() {
         let sign = |bit: usize| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };
         DVec3::new(0.5 * sign(0), 0.5 * sign(1), 0.1 * f64::from(k >> 2 & 1 == 1))
     };
-    let plate = Half { surfaces: vec![convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()] };
+    let plate = Half::of(vec![convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()]);
     // In its file the plate lies with its face to +x.
     let frame = DAffine3 {
         matrix3: DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X),
@@ -297,7 +292,7 @@ fn a_bought_ball_is_part_of_a_half() {
     // The plate in two files is the plate; a file whose unit nobody says is named with its own size.
     let half = |shift: f64| {
         let corners: Vec<_> = (0..8).map(corner).map(|p| DVec3::new(0.5 * p.x + shift, p.y, p.z)).collect();
-        Half { surfaces: vec![convex_hull(&corners).unwrap()] }
+        Half::of(vec![convex_hull(&corners).unwrap()])
     };
     let first = write(folder.path(), "first \"half\".stl", &half(-0.24), &frame);
     let second = write(folder.path(), "second.stl", &half(0.24), &frame);

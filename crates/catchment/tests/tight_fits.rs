@@ -98,15 +98,14 @@ impl Fit {
     fn pair(self, form: Form) -> Pair {
         let width = |z: f64| HALF_WIDTH - self.clearance + self.draft_deg.to_radians().tan() * (DEPTH - z);
         let peg = self.through(&[self.ring(width(0.0), 0.0), self.ring(width(DEPTH), DEPTH)]);
-        let half = |surfaces| Half { surfaces };
         let fixed = match form {
-            Form::Pieces => half(self.hole_pieces()),
-            _ => half(vec![self.through(&self.hole())]),
+            Form::Pieces => Half::union_of(self.hole_pieces()).unwrap(),
+            _ => Half::of(vec![self.through(&self.hole())]),
         };
         let written = |half: Half| if form == Form::Stl { through_stl(&half) } else { half };
         // Both face centres at the bottom.
         let fixed = written(fixed).mapped(|p| p + DVec3::Z * DEPTH);
-        let moving = written(half(vec![peg])).mapped(|p| Mount::X.apply(p - DVec3::Z * DEPTH));
+        let moving = written(Half::of(vec![peg])).mapped(|p| Mount::X.apply(p - DVec3::Z * DEPTH));
         let mut alignment = Alignment::new(DofSet::ALL, Mount::X);
         alignment.center_of_rotation = 0.0;
         if self.sides > 4 {
@@ -127,7 +126,7 @@ fn through_stl(half: &Half) -> Half {
         let rounded = surface.vertices.iter().map(|p| p.as_vec3().as_dvec3()).collect();
         Surface::from_polygons(rounded, &triangles).unwrap()
     });
-    Half { surfaces: surfaces.collect() }
+    Half::of(surfaces.collect())
 }
 
 fn outcomes(pair: &Pair, poses: usize, step: f64) -> Vec<Outcome> {

@@ -21,8 +21,8 @@ pub(super) fn pieces(design: &Design, found: &Inverse) -> Vec<Vec<DVec3>> {
 
 /// The fixed half in convex pieces, and whether they are its own: else they are columns under its upper side.
 fn fixed_pieces(fixed: &Half) -> (Vec<Vec<DVec3>>, bool) {
-    if fixed.surfaces.iter().all(|surface| surface.convex) {
-        return (fixed.surfaces.iter().map(|surface| surface.vertices.clone()).collect(), true);
+    if fixed.solids().iter().all(|solid| solid.convex) {
+        return (fixed.solids().iter().map(|solid| solid.vertices.clone()).collect(), true);
     }
     let lowest = fixed.surfaces.iter().map(|s| s.bounds().0.z).fold(f64::INFINITY, f64::min);
     let upper = fixed.surfaces.iter().flat_map(|surface| {

@@ -97,7 +97,7 @@ impl Heights {
 
     /// What lies above the function, up to a height above all of it, as convex columns.
     pub fn above(&self, top: f64) -> Half {
-        Half { surfaces: self.facets.iter().filter_map(|f| column(f, top)).collect() }
+        Half::of(self.facets.iter().filter_map(|f| column(f, top)).collect())
     }
 
     /// Corners of the convex pieces of what lies between the function and a height.

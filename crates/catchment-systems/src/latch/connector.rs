@@ -9,19 +9,8 @@
 //! profile itself, lowered, so that the slopes that slide are those of the part.
 //!
 //! Curves become facets, whose corners lie on the curve. The hill on the left is convex. The valley on the right is the union of what lies
-//! below each of its facets' lines, as no line of a valley comes above it: pieces that reach across the valley, and overlap.
-//!
-//! ```text
-//!   ╲  strips that abut                    ╲  lines across
-//!    ╲                                      ╲
-//!     │╲__  the seam │ ends in the          ⋮╲╲__  the end of a piece is buried in the others:
-//!     │ │ ╲__        corner of the valley   ⋮ ╲ ╲__⋯ the corner of the valley is no corner of a piece
-//! ```
-//!
-//! That matters. Where strips abut, the seam's end is a corner of two solids that lies in the corner of the valley; when a corner of
-//! the partner comes there in a facet's direction, an exact motion counts the seam among what carries and finds no way down, although
-//! from the same pose, entered again, there is one. So the valley of strips seems to jam (57 of 60 poses with 12 facets, 41 with
-//! 6), and the same solid of overlapping pieces does not.
+//! below each of its facets' lines, as no line of a valley comes above it: pieces that reach across the valley, and overlap. The library unites them into
+//! one surface.
 //!
 //! Sliding alone the face corrects a whole width either way, exactly, as every X-Face does. With pitch free its area of acceptance does not
 //! depend on the number of facets any more (`docs/latch.md` has the figures). The dissertation says that hand trials, with arms that

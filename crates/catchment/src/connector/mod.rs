@@ -6,9 +6,8 @@
 //!                        └ the world frame: origin at its face centre, facing +z
 //! ```
 //!
-//! A [`Half`] is a list of closed [`Surface`]s whose union is the solid. Surfaces may touch or overlap (convex
-//! pieces that make up a notch); a contact on a wall between two of them is not a contact of the solid, and
-//! the contact room discards it.
+//! A [`Half`] is its closed surface, whatever it was written as: convex pieces, parts, and bodies that touch or overlap are united
+//! (`mesh::union`) before anything is computed with them. The solids it was written as stay beside it for methods that need convexity.
 
 mod family;
 mod hull;
@@ -30,6 +29,7 @@ mod ungendered;
 
 pub use hull::{HullError, MAX_POINTS, convex_hull};
 pub use mesh::MeshProblem;
+pub use mesh::union::UnionProblem;
 pub use outline::OutlineProblem;
 pub use packed::PackedError;
 pub use part::PartError;
@@ -46,18 +46,47 @@ use crate::exec::Exec;
 use crate::pose::{Mount, PoseError};
 use glam::{DAffine3, DVec3};
 
-/// One half of a connector: the union of closed surfaces.
+/// One half of a connector.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Half {
-    /// Closed surfaces, outward normals.
+    /// Its closed surface, outward normals: one for every body, where bodies share no area and no volume. Contact, motion, symmetry, features and mass know nothing
+    /// else.
     pub surfaces: Vec<Surface>,
+    /// The solids it was written as, where they are not its surfaces: their union is the half. They may touch and overlap.
+    pub pieces: Vec<Surface>,
 }
 
 impl Half {
+    /// A half of bodies that share no area and no volume.
+    pub const fn of(surfaces: Vec<Surface>) -> Self {
+        Self { surfaces, pieces: Vec::new() }
+    }
+
+    /// The union of solids that may touch and overlap, with coordinates in double precision, in D.
+    ///
+    /// # Errors
+    /// The solids have no union that closes and encloses what they fill.
+    pub fn union_of(solids: Vec<Surface>) -> Result<Self, UnionProblem> {
+        Self::united(solids, mesh::union::EXACT, &Exec::new())
+    }
+
+    /// The same, where coordinates are as exact as is said.
+    fn united(solids: Vec<Surface>, exactness: f64, exec: &Exec) -> Result<Self, UnionProblem> {
+        let surfaces = mesh::union::united(&solids, exactness, exec)?;
+        let pieces = if surfaces.len() == solids.len() { Vec::new() } else { solids };
+        Ok(Self { surfaces, pieces })
+    }
+
+    /// The solids that it was written as.
+    pub fn solids(&self) -> &[Surface] {
+        if self.pieces.is_empty() { &self.surfaces } else { &self.pieces }
+    }
+
     /// The same half with every vertex moved by `map`, which must be rigid and orientation preserving.
     #[must_use]
     pub fn mapped(&self, map: impl Fn(DVec3) -> DVec3 + Copy) -> Self {
-        Self { surfaces: self.surfaces.iter().map(|s| s.mapped(map)).collect() }
+        let mapped = |surfaces: &[Surface]| surfaces.iter().map(|s| s.mapped(map)).collect();
+        Self { surfaces: mapped(&self.surfaces), pieces: mapped(&self.pieces) }
     }
 
     /// Lowest and highest corner of the box around it.
@@ -77,7 +106,8 @@ impl Half {
     /// The mirror image by `map`, a reflection.
     #[must_use]
     pub(crate) fn reflected(&self, map: impl Fn(DVec3) -> DVec3 + Copy) -> Self {
-        Self { surfaces: self.surfaces.iter().map(|s| s.reflected(map)).collect() }
+        let reflected = |surfaces: &[Surface]| surfaces.iter().map(|s| s.reflected(map)).collect();
+        Self { surfaces: reflected(&self.surfaces), pieces: reflected(&self.pieces) }
     }
 }
 

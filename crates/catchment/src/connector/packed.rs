@@ -24,7 +24,7 @@ pub enum PackedError {
 }
 
 impl Half {
-    /// All of it as bytes.
+    /// Its surface as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let count = |bytes: &mut Vec<u8>, count: usize| bytes.extend((count as u32).to_le_bytes());
@@ -47,14 +47,14 @@ impl Half {
         bytes
     }
 
-    /// A half from its bytes.
+    /// A half from the bytes of its surface.
     ///
     /// # Errors
     /// The bytes are of no half.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PackedError> {
         let mut rest = Rest(bytes);
         let surfaces = (0..rest.count()?).map(|_| rest.surface()).collect::<Result<_, _>>()?;
-        if rest.0.is_empty() { Ok(Self { surfaces }) } else { Err(PackedError::Length) }
+        if rest.0.is_empty() { Ok(Self::of(surfaces)) } else { Err(PackedError::Length) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! What can be wrong with a geometry, where, and what to do about it.
 
 use super::mesh::MeshProblem;
-use super::{HullError, PartError, SurfaceError};
+use super::{HullError, PartError, SurfaceError, UnionProblem};
 use crate::terminal::shown;
 use std::fmt;
 use std::path::PathBuf;
@@ -88,6 +88,14 @@ pub enum Problem {
         part: usize,
         /// Why not.
         error: PartError,
+    },
+    /// Solids that have no union.
+    #[error("{side}: {error}")]
+    Union {
+        /// Which half.
+        side: Side,
+        /// Why not.
+        error: UnionProblem,
     },
     /// Triangles in memory, or of all parts together, that are no half.
     #[error("{side}: {error}")]

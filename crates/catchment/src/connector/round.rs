@@ -94,7 +94,7 @@ mod tests {
                 DVec3::new(center + 0.3 * a.cos(), 0.3 * a.sin(), f64::from(k % 2))
             })
             .collect();
-        Half { surfaces: vec![convex_hull(&corners).unwrap()] }
+        Half::of(vec![convex_hull(&corners).unwrap()])
     }
 
     #[test]

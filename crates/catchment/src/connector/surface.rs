@@ -191,6 +191,24 @@ impl Surface {
         triangles
     }
 
+    /// Distance of a point from the surface, in D.
+    pub(crate) fn distance(&self, point: DVec3) -> f64 {
+        let at = |i: u32| self.vertices[i as usize];
+        let from = |facet: &Facet| {
+            let n = facet.corners.len();
+            let sides = || (0..n).map(|k| [at(facet.corners[k]), at(facet.corners[(k + 1) % n])]);
+            if sides().all(|[a, b]| facet.normal.dot((b - a).cross(point - a)) >= 0.0) {
+                return facet.normal.dot(point - at(facet.corners[0])).abs();
+            }
+            let beside = |[a, b]: [DVec3; 2]| {
+                let share = (point - a).dot(b - a) / (b - a).length_squared();
+                point.distance(a.lerp(b, share.clamp(0.0, 1.0)))
+            };
+            sides().map(beside).fold(f64::INFINITY, f64::min)
+        };
+        self.facets.iter().map(from).fold(f64::INFINITY, f64::min)
+    }
+
     /// Enclosed volume, in D³.
     pub fn volume(&self) -> f64 {
         let at = |i: u32| self.vertices[i as usize];

@@ -11,8 +11,7 @@
 //!
 //! Features that a turn or a reflection of their own half about the approach axis maps onto each other are of one class.
 //!
-//! Not promised: one name for a face that several surfaces make up (pieces of a notch, parts that overlap), and anything about rounds that
-//! are meshed with twelve sides and fewer, which are corners and edges. Lengths in D, angles in radians.
+//! Not promised: anything about rounds that are meshed with twelve sides and fewer, which are corners and edges. Lengths in D, angles in radians.
 
 use super::element::Features as Elements;
 use super::{Contact, Meeting, Pair};

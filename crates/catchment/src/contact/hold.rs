@@ -9,7 +9,6 @@
 //! ```
 //!
 //! Both fall through zero continuously where the contact ends, so that the moment can be found by interpolation.
-//! Whether another piece of the same solid covers the contact is not asked.
 
 use super::element::{Features, Meeting};
 use super::shape::Shape;

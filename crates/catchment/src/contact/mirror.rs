@@ -6,12 +6,12 @@
 //!   both, a half turn about z         → (−x, −y, −roll, −pitch,  yaw)
 //! ```
 //!
-//! Found, not declared: a pair has a symmetry if each of its halves is the same set of facets after the reflection, to
-//! [`GRAIN`]. A half of which only the shape, not the division into facets, is symmetric (some meshes) is not
-//! recognised; nothing but time is lost by that. Symmetries that exchange x and y, or turn by other angles, do not
+//! Found, not declared: a pair has a symmetry if each of its halves has the same creases after the reflection, to
+//! [`GRAIN`], however its faces are divided into facets. Symmetries that exchange x and y, or turn by other angles, do not
 //! map a grid over Euler angles onto itself and are not looked for.
 
-use crate::connector::{Half, Surface};
+use super::crease::{self, Crease};
+use crate::connector::Half;
 use crate::pose::Dof;
 use glam::DVec3;
 
@@ -48,40 +48,28 @@ impl Mirror {
 
 /// The reflections that map both halves onto themselves.
 pub(super) fn of(fixed: &Half, moving: &Half) -> Vec<Mirror> {
-    let halves = [fixed, moving].map(|half| (half, facets(half, |p| p)));
-    let keeps = |m: &Mirror| halves.iter().all(|(half, drawn)| facets(half, |p| m.apply(p)) == *drawn);
+    let halves = [fixed, moving].map(crease::of);
+    let drawn = [0, 1].map(|k| creases(&halves[k], |p| p));
+    let keeps = |m: &Mirror| [0, 1].iter().all(|k| creases(&halves[*k], |p| m.apply(p)) == drawn[*k]);
     Mirror::ALL.into_iter().filter(keeps).collect()
 }
 
 type Corner = [i64; 3];
 
-/// The half as sorted surfaces of sorted facets of sorted corners: equal for equal solids.
-fn facets(half: &Half, place: impl Fn(DVec3) -> DVec3) -> Vec<Vec<Vec<Corner>>> {
-    let corner = |surface: &Surface, k: u32| -> Corner {
-        let p = place(surface.vertices[k as usize]);
+/// The half as its sorted creases: equal for equal solids, whatever they were written as.
+fn creases(half: &[Crease], place: impl Fn(DVec3) -> DVec3) -> Vec<[Corner; 2]> {
+    let corner = |p: DVec3| -> Corner {
         // `as` saturates: what lies further than 10⁹ D away differs anyway.
-        [p.x, p.y, p.z].map(|v| (v / GRAIN).round() as i64)
+        place(p).to_array().map(|v| (v / GRAIN).round() as i64)
     };
-    let mut surfaces: Vec<Vec<Vec<Corner>>> = half
-        .surfaces
-        .iter()
-        .map(|surface| {
-            let mut facets: Vec<Vec<Corner>> = surface
-                .facets
-                .iter()
-                .map(|facet| {
-                    let mut corners: Vec<Corner> =
-                        facet.corners.iter().map(|k| corner(surface, *k)).collect();
-                    corners.sort_unstable();
-                    corners
-                })
-                .collect();
-            facets.sort_unstable();
-            facets
-        })
-        .collect();
-    surfaces.sort_unstable();
-    surfaces
+    let ends = |crease: &Crease| {
+        let mut ends = crease.ends.map(corner);
+        ends.sort_unstable();
+        ends
+    };
+    let mut creases: Vec<[Corner; 2]> = half.iter().map(ends).collect();
+    creases.sort_unstable();
+    creases
 }
 
 #[cfg(test)]

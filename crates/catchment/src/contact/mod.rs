@@ -15,6 +15,7 @@ mod bounds;
 pub mod brute;
 mod candidates;
 mod cone;
+mod crease;
 mod element;
 mod envelope;
 pub(crate) mod face;

@@ -61,7 +61,6 @@ pub(super) struct Shape {
     /// Outward normals of the facets that the spokes border on.
     pub(super) normals: Vec<DVec3>,
     pub(super) ridges: Vec<Ridge>,
-    pub(super) convex: bool,
     pub(super) plans: Plans,
 }
 
@@ -109,7 +108,6 @@ impl Shape {
             spokes,
             normals,
             ridges,
-            convex: surface.convex,
             plans,
         }
     }
@@ -133,11 +131,5 @@ impl Shape {
 
     pub(super) fn at(&self, vertex: u32) -> DVec3 {
         self.vertices[vertex as usize]
-    }
-
-    /// Whether a point lies strictly inside a convex shape, by more than `margin`.
-    pub(super) fn contains(&self, point: DVec3, margin: f64) -> bool {
-        self.convex
-            && self.facets.iter().zip(&self.levels).all(|(f, level)| f.normal.dot(point) - level < -margin)
     }
 }

@@ -5,7 +5,6 @@ use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
 use super::nearby::MET;
 use super::search::{Asked, Carried, Gaps, Number, Trees};
-use super::shape::Shape;
 use super::{Contact, Pair};
 use crate::pose::CorPose;
 use glam::{DMat3, DVec2, DVec3};
@@ -179,8 +178,7 @@ impl<'a> Turned<'a> {
             if !gaps.hold(gap) {
                 continue;
             }
-            let Some(point) = self.foot(element, position, seam) else { continue };
-            if self.is_exposed(element, point, position) {
+            if let Some(point) = self.foot(element, position, seam) {
                 meet((Contact { gap, normal: element.normal, point }, element.meeting));
             }
         }
@@ -219,57 +217,4 @@ impl<'a> Turned<'a> {
         let [f, m] = element.meeting.shapes.map(|s| s as usize);
         element.foot(&self.pair.fixed_shapes[f], &self.pair.moving_shapes[m], &self.rotation, position, seam)
     }
-
-    /// Whether the contact lies on the surface of both solids, not on a wall between two pieces of one.
-    fn is_exposed(&self, element: &Element, point: DVec3, position: DVec3) -> bool {
-        let [fixed, moving] = element.meeting.shapes;
-        let back = self.rotation.transpose();
-        let seen = point + element.normal * element.gap(position) - position;
-        !is_covered(&self.pair.fixed_shapes, fixed, point, element.normal)
-            && !is_covered(&self.pair.moving_shapes, moving, back * seen, back * -element.normal)
-    }
-}
-
-/// How far outside its own surface a contact looks for another piece of the same solid, in D.
-const LOOK: f64 = 1e-7;
-/// How far around a contact the surface of its piece is looked at, and how far above, in D: above the distance by which a foot may overshoot
-/// its feature, and flat enough for walls that flare.
-const AROUND: f64 = 1e-6;
-const BESIDE: f64 = 5e-8;
-/// By how much a point must be inside a piece, in D.
-const WITHIN: f64 = 1e-10;
-
-/// Whether a point of the surface of one convex piece, `normal` its tangent plane there, is inside the solid that the pieces make.
-///
-/// ```text
-///        ╱ upper piece          ×  just above: within another piece, so covered;
-///    ──·╱──────────── ×         ·  at the rim where a piece ends that is covered up to there: above it is nothing,
-///      │ lower piece               but all of its surface around is covered, so it is no ledge
-/// ```
-fn is_covered(shapes: &[Shape], own: u32, point: DVec3, normal: DVec3) -> bool {
-    if shapes.len() < 2 {
-        return false;
-    }
-    let others = || shapes.iter().enumerate().filter(|(s, _)| *s as u32 != own).map(|(_, shape)| shape);
-    // As a rule nothing else is near, and one look tells.
-    if !others().any(|shape| shape.contains(point, -AROUND)) {
-        return false;
-    }
-    if others().any(|shape| shape.contains(point + normal * LOOK, WITHIN)) {
-        return true;
-    }
-    let (side, across) = normal.any_orthonormal_pair();
-    let mut any = false;
-    for k in 0..8 {
-        let (sine, cosine) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
-        let near = point + (side * cosine + across * sine) * AROUND;
-        // Along a rim the point itself may overshoot it: only what is well inside counts.
-        if shapes[own as usize].contains(near - normal * AROUND, 0.25 * AROUND) {
-            if !others().any(|shape| shape.contains(near + normal * BESIDE, WITHIN)) {
-                return false;
-            }
-            any = true;
-        }
-    }
-    any
 }

@@ -89,7 +89,7 @@ mod tests {
                 |axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] },
             ))
         };
-        Half { surfaces: vec![convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()] }
+        Half::of(vec![convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()])
     }
 
     #[test]
@@ -109,7 +109,7 @@ mod tests {
     fn a_slope_counts_as_far_as_it_reaches_in() {
         let cone = |z: f64, tip: f64, r: f64| {
             let ring = [[r, 0.0], [0.0, r], [-r, 0.0], [0.0, -r]].map(|[x, y]| DVec3::new(x, y, z));
-            Half { surfaces: vec![convex_hull(&[&ring[..], &[DVec3::new(0.0, 0.0, tip)]].concat()).unwrap()] }
+            Half::of(vec![convex_hull(&[&ring[..], &[DVec3::new(0.0, 0.0, tip)]].concat()).unwrap()])
         };
         // Tip down to z = −10 from a ring at 0; a floor reaches up to −4: of the slope 6 of 10 count.
         let (moving, fixed) = (cone(0.0, -10.0, 20.0), block([-30.0; 3], [30.0, 30.0, -4.0]));

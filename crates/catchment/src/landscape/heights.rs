@@ -203,7 +203,7 @@ mod tests {
         let mut vertices: Vec<DVec3> = corners.iter().map(|&(x, y)| DVec3::new(x, y, -0.25)).collect();
         vertices.push(DVec3::new(0.0, 0.0, 0.25));
         let facets = [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]];
-        let fixed = Half { surfaces: vec![Surface::from_polygons(vertices, &facets).unwrap()] };
+        let fixed = Half::of(vec![Surface::from_polygons(vertices, &facets).unwrap()]);
         let moving = fixed.mapped(|p| Mount::X.apply(p));
         let mut alignment = Alignment::new(free.iter().copied().collect(), Mount::X);
         alignment.center_of_rotation = cor;

@@ -53,7 +53,7 @@ fn spec(source: Source, contents: &[MeshContent], built: &Half) -> HalfSpec {
 /// The triangles of a half, as a mesh would hold them.
 fn content_of(half: &Half) -> MeshContent {
     let (mut bytes, mut count) = (Vec::new(), 0);
-    for surface in &half.surfaces {
+    for surface in half.surfaces.iter().chain(&half.pieces) {
         for triangle in surface.triangles() {
             let corners = triangle.iter().flat_map(|k| surface.vertices[*k as usize].to_array());
             bytes.extend(corners.flat_map(f64::to_le_bytes));

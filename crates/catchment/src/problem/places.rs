@@ -116,7 +116,7 @@ fn key_of(problem: &Problem) -> String {
             };
             format!("connector.{}.parts[{part}]{key}", half(*side))
         }
-        Problem::Triangles { side, .. } | Problem::NotInDesign { side } => {
+        Problem::Triangles { side, .. } | Problem::Union { side, .. } | Problem::NotInDesign { side } => {
             format!("connector.{}", half(*side))
         }
     }

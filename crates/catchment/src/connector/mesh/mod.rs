@@ -27,6 +27,7 @@ mod shells;
 mod sides;
 mod simplify;
 mod tree;
+pub(in crate::connector) mod union;
 
 pub use point::Point;
 pub(super) use problem::MAX_REPORTED;

@@ -16,11 +16,12 @@
 use super::indexed::Indexed;
 use super::sides::{Side, Sides};
 use glam::DVec3;
+use std::collections::HashSet;
 
-/// How far corners of a polygon may lie from its plane, and from the line between their neighbours, in parts of the distance below which
-/// two points are one: the rounding of computed coordinates. Faces that single precision bends, however little, stay bent: where two of them lie
+/// How far corners of a polygon of a mesh may lie from its plane, and from the line between their neighbours, in parts of the distance below
+/// which two points are one: the rounding of computed coordinates. Faces that single precision bends, however little, stay bent: where two of them lie
 /// flush, a common plane that is not quite theirs leads a half astray.
-const FLAT: f64 = 1e-6;
+pub(super) const FLAT: f64 = 1e-6;
 
 /// Corners of a polygon at most: whether a point is on it is asked of every side.
 const MOST_CORNERS: usize = 16;
@@ -30,9 +31,10 @@ const NONE: u32 = u32::MAX;
 /// Triangles whose normals differ by more than this cosine are not one facet, however thin they are.
 const SAME_WAY: f64 = 0.5;
 
-/// The corners and the polygons of a closed mesh; corners that no polygon has are left out.
-pub(super) fn of(mesh: &Indexed) -> (Vec<DVec3>, Vec<Vec<u32>>) {
-    let mut rings = Rings::of(mesh);
+/// The corners and the polygons of a closed mesh; corners that no polygon has are left out. `flat` is how far corners may lie from the plane
+/// of their polygon, and from the line between their neighbours, in the coordinates of the mesh.
+pub(super) fn of(mesh: &Indexed, flat: f64) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+    let mut rings = Rings::of(mesh, flat);
     // What is not convex yet may become so beside what is joined later.
     let mut edges = rings.inner_edges();
     let mut before = usize::MAX;
@@ -61,7 +63,7 @@ struct Rings<'a> {
 }
 
 impl<'a> Rings<'a> {
-    fn of(mesh: &'a Indexed) -> Self {
+    fn of(mesh: &'a Indexed, flat: f64) -> Self {
         let count = mesh.triangles.len() as u32;
         let turned = |step: u32| (0..3 * count).map(move |h| h - h % 3 + (h + step) % 3);
         let from: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
@@ -83,7 +85,7 @@ impl<'a> Rings<'a> {
             from,
             larger: (0..count).collect(),
             areas: (0..count as usize).map(|t| area(mesh.corners(t))).collect(),
-            flat: FLAT * mesh.tolerance,
+            flat,
             mesh,
         }
     }
@@ -209,8 +211,13 @@ impl<'a> Rings<'a> {
         std::iter::successors(Some(ring), move |half| Some(self.next(*half)).filter(|next| *next != ring))
     }
 
-    /// Leaves out corners that two polygons share, and no third, on the line between their neighbours.
+    /// Leaves out corners that two polygons share, and no third, on the line between their neighbours. Where the neighbours have an edge already, as
+    /// where a solid touches itself along it, the corner stays.
     fn straighten(&mut self) {
+        let mut edges: HashSet<[u32; 2]> = (0..self.from.len() as u32)
+            .filter(|half| !self.has_gone(*half))
+            .map(|half| [half, self.next(half)].map(|half| self.from[half as usize]))
+            .collect();
         for half in 0..self.from.len() as u32 {
             if self.has_gone(half) {
                 continue;
@@ -227,6 +234,11 @@ impl<'a> Rings<'a> {
             if along.dot(away) <= 0.0 || along.cross(away).length() > self.flat * whole.length() {
                 continue;
             }
+            let [a, b] = [before, self.next(half)].map(|half| self.from[half as usize]);
+            if edges.contains(&[a, b]) || edges.contains(&[b, a]) {
+                continue;
+            }
+            edges.extend([[a, b], [b, a]]);
             self.from[half as usize] = NONE;
             self.from[after as usize] = NONE;
             self.link(before, self.next(half));

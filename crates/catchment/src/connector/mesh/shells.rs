@@ -83,7 +83,7 @@ pub(super) fn winding(mesh: &Indexed, triangles: &[u32], point: DVec3) -> f64 {
 }
 
 /// The solid angle of a triangle seen from a point, positive from inside: tan(Ω/2) = a·(b × c) / (abc + (a·b)c + (b·c)a + (c·a)b).
-fn solid_angle(corners: [DVec3; 3], point: DVec3) -> f64 {
+pub(super) fn solid_angle(corners: [DVec3; 3], point: DVec3) -> f64 {
     let [a, b, c] = corners.map(|corner| corner - point);
     let [la, lb, lc] = [a, b, c].map(DVec3::length);
     let numerator = a.dot(b.cross(c));

@@ -1,13 +1,13 @@
 //! A half from its parts: meshes, pieces, balls, cones, boxes and extruded profiles, each at its place.
 //!
 //! ```text
-//! PartSpec, file ──shape──▶ closed surfaces ──axis, rotate, at──▶ the half, which is their union
+//! PartSpec, file ──shape──▶ closed surfaces ──axis, rotate, at──▶ the solids of the half
 //! ```
 //!
-//! Parts may overlap, as a pin does with the plate that it sits in: surfaces of a half may. What is round becomes facets with their corners on it,
-//! so that a ball is never too large, and too small by at most its chord error.
+//! Parts may overlap and touch, as a pin does with the plate that it sits in: they are united afterwards (`mesh::union`). What is round becomes facets
+//! with their corners on it, so that a ball is never too large, and too small by at most its chord error.
 //!
-//! Not promised: faces of two parts that fall together are not sought, and nothing tells a part that touches no other.
+//! Not promised: a message about a part that touches no other.
 
 mod prism;
 mod round;
@@ -70,7 +70,7 @@ pub enum PartError {
     Surface(#[from] SurfaceError),
 }
 
-/// The union of parts, and what their files held.
+/// The solids of all parts, and what their files held.
 pub(super) fn half(
     parts: &[(PartSpec, Option<FileBytes>)],
     side: Side,
@@ -108,7 +108,7 @@ fn shape(
     exec: &Exec,
 ) -> Result<(Half, Option<MeshContent>), Vec<PartError>> {
     let alone = |surface: Result<Surface, PartError>| {
-        surface.map(|surface| (Half { surfaces: vec![surface] }, None)).map_err(|error| vec![error])
+        surface.map(|surface| (Half::of(vec![surface]), None)).map_err(|error| vec![error])
     };
     match shape {
         ShapeSpec::Mesh(spec) => {
@@ -127,7 +127,7 @@ fn shape(
             if !errors.is_empty() {
                 return Err(errors);
             }
-            Ok((Half { surfaces: surfaces.into_iter().flatten().collect() }, None))
+            Ok((Half::of(surfaces.into_iter().flatten().collect()), None))
         }
         ShapeSpec::Sphere { radius, chord_error } => alone(round::sphere(*radius, *chord_error)),
         ShapeSpec::Cone { radius, top_radius, height, chord_error } => {
@@ -165,5 +165,5 @@ fn profile(
     let regions = outline::regions(loops).map_err(refused)?;
     let extruded = regions.iter().map(|region| prism::extruded(region, height).map_err(&refused));
     let surfaces = extruded.collect::<Result<Vec<_>, _>>()?;
-    Ok((Half { surfaces }, content))
+    Ok((Half::of(surfaces), content))
 }

@@ -258,6 +258,17 @@ impl Source {
 
     /// The solid, and what its files held.
     pub(super) fn build(&self, side: Side, size: Size, exec: &Exec) -> Result<Built, Vec<Problem>> {
+        let built = self.solids(side, size, exec)?;
+        // Files hold coordinates in single precision as a rule.
+        let is_written = built.contents.is_empty();
+        let exactness = if is_written { mesh::union::EXACT } else { mesh::union::SINGLE };
+        let refused = |error| vec![Problem::Union { side, error }];
+        let half = Half::united(built.half.surfaces, exactness, exec).map_err(refused)?;
+        Ok(Built { half, ..built })
+    }
+
+    /// The solids as they are written, not united, and what its files held.
+    fn solids(&self, side: Side, size: Size, exec: &Exec) -> Result<Built, Vec<Problem>> {
         match self {
             Self::Family(spec) => {
                 let drawn = family::draw(spec)?;
@@ -284,7 +295,7 @@ impl Source {
             }
             Self::Surface(surface) => {
                 let content = content::of_surface(surface);
-                Ok(Built::of(Half { surfaces: vec![surface.clone()] }, vec![content]))
+                Ok(Built::of(Half::of(vec![surface.clone()]), vec![content]))
             }
         }
     }

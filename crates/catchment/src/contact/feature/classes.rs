@@ -1,10 +1,11 @@
 //! Which features of a half are each other's images: turns and reflections about the approach axis that map the half onto itself.
 //!
-//! Looked for are turns by multiples of 30° and 45°, and the same with y reflected before. A half has one if every facet comes to lie on
-//! one of its facets, to [`GRAIN`]. Of halves of more than [`MOST_FACETS`] none is looked for but the identity.
+//! Looked for are turns by multiples of 30° and 45°, and the same with y reflected before. A half has one if every crease comes to lie on
+//! one of its creases, to [`GRAIN`], however its faces are divided into facets. Of halves of more than [`MOST_FACETS`] none is looked for but the identity.
 
 use super::{Lookup, Sets};
-use crate::connector::{Half, Surface};
+use crate::connector::Half;
+use crate::contact::crease::{self, Crease};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -22,14 +23,8 @@ impl Turns {
         let mut found = vec![DMat3::IDENTITY];
         let facets = half.surfaces.iter().map(|surface| surface.facets.len()).sum::<usize>();
         if facets <= MOST_FACETS {
-            let drawn = Places::of(facets_of(half).map(|(middle, _)| middle));
-            let normals: Vec<DVec3> = facets_of(half).map(|(_, normal)| normal).collect();
-            let keeps = |map: &DMat3| {
-                facets_of(half).all(|(middle, normal)| {
-                    let lies = |k: &u32| normals[*k as usize].abs_diff_eq(*map * normal, GRAIN);
-                    drawn.at(*map * middle).any(|k| lies(&k))
-                })
-            };
+            let creases = Creases::of(half);
+            let keeps = |map: &DMat3| creases.list.iter().all(|crease| creases.image(crease, map).is_some());
             found.extend(candidates().into_iter().filter(keeps));
         }
         Self(found)
@@ -46,47 +41,61 @@ fn candidates() -> Vec<DMat3> {
     turns.flat_map(|k| [turn(k), turn(k) * reflected]).skip(1).collect()
 }
 
-/// Middle and outward normal of every facet.
-fn facets_of(half: &Half) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
-    let facets = |surface: &'_ Surface| -> Vec<(DVec3, DVec3)> {
-        let middle = |corners: &[u32]| {
-            corners.iter().map(|v| surface.vertices[*v as usize]).sum::<DVec3>() / corners.len() as f64
+/// Creases to be found by their places.
+struct Creases {
+    list: Vec<Crease>,
+    middles: Places,
+}
+
+impl Creases {
+    fn of(half: &Half) -> Self {
+        let list = crease::of(half);
+        let middles = Places::of(list.iter().map(Crease::middle));
+        Self { list, middles }
+    }
+
+    /// The crease that lies where `map` brings another one.
+    fn image(&self, crease: &Crease, map: &DMat3) -> Option<&Crease> {
+        let [a, b] = crease.ends.map(|end| *map * end);
+        let lies = |crease: &&Crease| {
+            let [c, d] = crease.ends;
+            let same = |p: DVec3, q: DVec3| p.abs_diff_eq(c, GRAIN) && q.abs_diff_eq(d, GRAIN);
+            same(a, b) || same(b, a)
         };
-        surface.facets.iter().map(|facet| (middle(&facet.corners), facet.normal)).collect()
-    };
-    half.surfaces.iter().flat_map(facets)
+        self.middles.at(*map * crease.middle()).map(|k| &self.list[k as usize]).find(lies)
+    }
 }
 
 /// The class of every feature: the least number of those that lie where a symmetry brings it.
 pub(super) fn of(half: &Half, surfaces: &[Lookup], count: usize, turns: &Turns) -> Vec<u32> {
     let mut sets = Sets::new(count);
     let faces: Vec<u32> = surfaces.iter().flat_map(|lookup| &lookup.faces).copied().collect();
-    let facets: Vec<(DVec3, DVec3)> = facets_of(half).collect();
-    let middles = Places::of(facets.iter().map(|(middle, _)| *middle));
-    let edges: Vec<(DVec3, u32)> = surfaces
-        .iter()
-        .flat_map(|lookup| {
-            let at = |v: u32| lookup.vertices[v as usize];
-            lookup.edges.iter().map(move |((a, b), (feature, _))| (at(*a).midpoint(at(*b)), *feature))
-        })
-        .collect();
+    let edge = |crease: &Crease| {
+        let [a, b] = crease.edge;
+        surfaces[crease.surface].edges.get(&(a, b)).map(|(feature, _)| *feature)
+    };
+    let creases = Creases::of(half);
     let corners: Vec<(DVec3, u32)> = surfaces
         .iter()
         .flat_map(|lookup| lookup.corners.iter().map(|(v, feature)| (lookup.vertices[*v as usize], *feature)))
         .collect();
+    let places = Places::of(corners.iter().map(|(place, _)| *place));
     for turn in &turns.0 {
-        for (own, (middle, normal)) in faces.iter().zip(&facets) {
-            let lies = |k: &u32| facets[*k as usize].1.abs_diff_eq(*turn * *normal, GRAIN);
-            for image in middles.at(*turn * *middle).filter(lies) {
-                sets.join(*own, faces[image as usize]);
+        for crease in &creases.list {
+            let Some(image) = creases.image(crease, turn) else { continue };
+            for (facet, normal) in crease.facets.iter().zip(crease.normals) {
+                let mut its = image.facets.iter().zip(image.normals);
+                if let Some((other, _)) = its.find(|(_, own)| own.abs_diff_eq(*turn * normal, GRAIN)) {
+                    sets.join(faces[*facet as usize], faces[*other as usize]);
+                }
+            }
+            if let [Some(own), Some(other)] = [edge(crease), edge(image)] {
+                sets.join(own, other);
             }
         }
-        for points in [&edges, &corners] {
-            let places = Places::of(points.iter().map(|(place, _)| *place));
-            for (place, own) in points {
-                for image in places.at(*turn * *place) {
-                    sets.join(*own, points[image as usize].1);
-                }
+        for (place, own) in &corners {
+            for image in places.at(*turn * *place) {
+                sets.join(*own, corners[image as usize].1);
             }
         }
     }

@@ -31,14 +31,9 @@ fn family(family: Family) -> Pair {
 
 /// Halves of tetrahedra that cross each other.
 fn soup(corners: &[[f64; 3]]) -> Pair {
-    let half = |corners: &[[f64; 3]]| Half {
-        surfaces: corners
-            .chunks_exact(4)
-            .filter_map(|four| {
-                convex_hull(&four.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>()).ok()
-            })
-            .collect(),
-    };
+    let hull =
+        |four: &[[f64; 3]]| convex_hull(&four.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>()).ok();
+    let half = |corners: &[[f64; 3]]| Half::of(corners.chunks_exact(4).filter_map(hull).collect());
     let (fixed, moving) = corners.split_at(corners.len() / 2);
     with_trees(&Connector::from_halves(half(fixed), half(moving)))
 }

@@ -45,7 +45,7 @@ fn is_wall(corners: &[DVec3], rounding: f64) -> bool {
 
 /// The parts of a half, in its own axes.
 pub(super) fn parts(half: &Half) -> Vec<Part> {
-    half.surfaces
+    half.solids()
         .iter()
         .flat_map(|surface| {
             if surface.convex {
@@ -155,7 +155,7 @@ mod tests {
         }
         let surface = Surface::from_polygons(vertices, &polygons).unwrap();
         assert!(!surface.convex);
-        assert!(matches!(parts(&Half { surfaces: vec![surface] })[..], [Part::Mesh(_)]));
+        assert!(matches!(parts(&Half::of(vec![surface]))[..], [Part::Mesh(_)]));
     }
     /// A square boss on a plate, the top of its walls out by `out`.
     fn boss(out: f64) -> Surface {
@@ -178,12 +178,12 @@ mod tests {
         // Normals with z of 0, −4e-9, −4e-6 and 4e-6.
         for out in [0.0, 4e-11, 4e-8, -4e-8] {
             let surface = boss(out);
-            let parts = parts(&Half { surfaces: vec![surface.clone()] });
+            let parts = parts(&Half::of(vec![surface.clone()]));
             assert!(parts.iter().all(|part| matches!(part, Part::Convex(_))), "{out}");
             // What is left out beside the walls: their length times what they are out by.
             assert!((volume(&parts) - surface.volume()).abs() < 1e-7, "{out}");
         }
         // A hundred times as much is drawn.
-        assert!(matches!(parts(&Half { surfaces: vec![boss(1e-5)] })[..], [Part::Mesh(_)]));
+        assert!(matches!(parts(&Half::of(vec![boss(1e-5)]))[..], [Part::Mesh(_)]));
     }
 }

@@ -165,7 +165,7 @@ fn strips(polytope: &Polytope, axes: &[usize], width: f64) -> Vec<Polytope> {
 /// Convex polytopes whose union is the half.
 fn convex_pieces(half: &Half) -> Result<Vec<Polytope>, PartitionError> {
     let mut pieces = Vec::new();
-    for surface in &half.surfaces {
+    for surface in half.solids() {
         decompose(surface, &mut pieces)?;
         if pieces.len() > MOST_PIECES {
             return Err(PartitionError::TooManyPieces { most: MOST_PIECES });

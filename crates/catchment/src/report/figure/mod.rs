@@ -199,7 +199,7 @@ pub(crate) mod testing {
         let left = prism(&[[-d, -h], [0.0, -h], [-d, h]], -0.25, 0.25);
         let right = prism(&[[d, -h], [d, h], [0.0, -h]], -0.25, 0.25);
         let tip = prism(&[[-d, h], [0.0, -h], [d, h]], -0.25, 0.25);
-        Connector::from_halves(Half { surfaces: vec![left, right] }, Half { surfaces: vec![tip] })
+        Connector::from_halves(Half::of(vec![left, right]), Half::of(vec![tip]))
     }
 
     /// Two crossed ramps in two layers, as the fixed half and a copy of it turned over.
@@ -207,7 +207,7 @@ pub(crate) mod testing {
         let h = 0.25;
         let rising = prism(&[[-0.5, -h], [0.5, -h], [0.5, h]], -0.25, 0.0);
         let falling = prism(&[[-0.5, -h], [0.5, -h], [-0.5, h]], 0.0, 0.25);
-        let fixed = Half { surfaces: vec![rising, falling] };
+        let fixed = Half::of(vec![rising, falling]);
         let moving = fixed.mapped(|p| crate::pose::Mount::Y.apply(p));
         Connector::from_halves(fixed, moving)
     }
@@ -228,7 +228,7 @@ pub(crate) mod testing {
         let mut polygons = vec![vec![0, 1, 2, 3]];
         polygons.extend((0..4u32).map(|k| vec![(k + 1) % 4, k, 4]));
         let plug = Surface::from_polygons(vertices, &polygons).unwrap();
-        Connector::from_halves(Half { surfaces: vec![socket] }, Half { surfaces: vec![plug] })
+        Connector::from_halves(Half::of(vec![socket]), Half::of(vec![plug]))
     }
 
     /// The report of an acceptance over a grid.

@@ -457,8 +457,8 @@ fn touching(problem: &Problem, features: &Features, rests: &[Rested]) -> Vec<(To
     pairs
 }
 
-/// The number of the part that a surface of a half is, where every part is one surface.
-fn part_of(problem: &Problem, side: Side, surface: usize) -> Option<usize> {
+/// The number of the part on which a point of a half lies, in its frame; where every part is one solid.
+fn part_of(problem: &Problem, side: Side, point: DVec3) -> Option<usize> {
     use crate::design::{ConnectorSpec, HalfSpec};
     let ConnectorSpec::Own(own) = &problem.design().connector else { return None };
     let (spec, half) = match side {
@@ -466,5 +466,7 @@ fn part_of(problem: &Problem, side: Side, surface: usize) -> Option<usize> {
         Side::Moving => (&own.moving, &problem.connector().moving),
     };
     let HalfSpec::Parts(parts) = spec else { return None };
-    (parts.len() == half.surfaces.len()).then_some(surface)
+    let nearest = half.solids().iter().map(|solid| solid.distance(point)).enumerate();
+    let nearest = nearest.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(part, _)| part);
+    nearest.filter(|_| parts.len() == half.solids().len())
 }

@@ -193,7 +193,7 @@ impl Rested {
         let first = points.first().copied().unwrap_or_default();
         let named = |side, number: u32, in_frame: DVec3| {
             let feature = features.get(side, number);
-            let part = part_of(problem, side, feature.surface);
+            let part = part_of(problem, side, in_frame);
             Named { kind: feature.kind, name: feature.name(), part, drawn: problem.drawn(side, in_frame) }
         };
         let [fixed, moving] = met.features;

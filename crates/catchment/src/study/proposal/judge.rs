@@ -371,7 +371,8 @@ impl Half {
     /// The same half, every length times `factor`.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         let mut half = self.clone();
-        for point in half.surfaces.iter_mut().flat_map(|surface| &mut surface.vertices) {
+        let surfaces = half.surfaces.iter_mut().chain(&mut half.pieces);
+        for point in surfaces.flat_map(|surface| &mut surface.vertices) {
             *point *= factor;
         }
         half
@@ -387,7 +388,7 @@ mod tests {
     fn a_half_is_scaled() {
         let surface = crate::connector::convex_hull(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
         let volume = surface.volume();
-        let half = Half { surfaces: vec![surface] }.scaled(3.0);
+        let half = Half::of(vec![surface]).scaled(3.0);
         assert!((half.surfaces[0].volume() - 27.0 * volume).abs() < 1e-12);
     }
 }

@@ -23,7 +23,7 @@ const SAME: f64 = 1e-6;
 const PASSES: usize = 16;
 
 /// Parts crowded edges; how many.
-pub(super) fn part(mesh: &mut Indexed) -> usize {
+pub(in crate::connector::mesh) fn part(mesh: &mut Indexed) -> usize {
     let sides = Sides::of(&mesh.triangles);
     let crowded: Vec<&[Side]> = sides.edges().filter(|sides| sides.len() > 2).collect();
     if crowded.is_empty() {

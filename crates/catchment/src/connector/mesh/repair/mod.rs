@@ -18,6 +18,8 @@ mod short;
 mod unite;
 mod winding;
 
+pub(super) use crowded::part as part_crowded;
+
 use super::check;
 use super::crossing::crossings;
 use super::deviation::one_sided;

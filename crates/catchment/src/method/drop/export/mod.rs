@@ -170,8 +170,8 @@ impl<'a> Scene<'a> {
 /// The convex pieces of a half.
 fn convex(half: &Half, name: &'static str) -> Result<Vec<Surface>, ExportError> {
     let mut pieces = Vec::new();
-    for (surface, whole) in half.surfaces.iter().enumerate() {
-        for part in parts(&Half { surfaces: vec![whole.clone()] }) {
+    for (surface, whole) in half.solids().iter().enumerate() {
+        for part in parts(&Half::of(vec![whole.clone()])) {
             match part {
                 Part::Convex(piece) => pieces.push(piece),
                 Part::Mesh(_) => return Err(ExportError::NotConvex { half: name, surface }),

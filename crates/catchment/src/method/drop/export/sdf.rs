@@ -36,7 +36,7 @@ pub fn write(scene: &Scene) -> io::Result<World> {
     for (name, pieces) in [("fixed", &scene.fixed), ("moving", &scene.moving)] {
         for (k, piece) in pieces.iter().enumerate() {
             let mut bytes = Vec::new();
-            write_stl(&Half { surfaces: vec![Surface::clone(piece)] }, Format::Binary, &mut bytes)?;
+            write_stl(&Half::of(vec![Surface::clone(piece)]), Format::Binary, &mut bytes)?;
             files.push((format!("{name}-{k}.stl"), bytes));
         }
     }

@@ -189,7 +189,7 @@ fn boxes_add_their_sides() {
     let brick = |size: DVec3, center: DVec3| {
         let corner = |k: u8| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)) - 0.5;
         let corners: Vec<DVec3> = (0..8).map(|k| center + size * corner(k)).collect();
-        Half { surfaces: vec![convex_hull(&corners).unwrap()] }
+        Half::of(vec![convex_hull(&corners).unwrap()])
     };
     let (a, b) = (DVec3::new(1.0, 0.5, 0.25), DVec3::new(0.5, 0.75, 0.125));
     let connector = Connector::from_halves(
