@@ -241,7 +241,8 @@ fn a_mesh_with_primitives_has_the_heights_of_the_definition() {
     let built = connector(&design(fixed_parts(), moving_parts()), &files);
     let up = |p: DVec3| p + DVec3::Z * 0.35;
     let drawn = [built.fixed.mapped(up), built.moving.mapped(|p| up(Mount::X.apply(p)))];
-    let united = [("u.stl", stl_of(&drawn[0])), ("v.stl", stl_of(&drawn[1]))];
+    let [fixed, moving] = drawn.map(|half| stl_of(&Half::of(half.solids().to_vec())));
+    let united = [("u.stl", fixed), ("v.stl", moving)];
     let one = |name: &str| HalfSpec::Mesh(FileSpec::new(name, 1.0));
     assert!(difference(&own, &pair(one("u.stl"), one("v.stl"), &united)) < 1e-6);
     let contents = connector(&design(one("u.stl"), one("v.stl")), &united).contents;

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops where its preparation fails")]
 
-use catchment::connector::{Half, convex_hull, stl};
+use catchment::connector::{Half, Surface, convex_hull, stl};
 use catchment::design::LengthUnit;
 use catchment::pose::CorPose;
 use catchment::prelude::*;
