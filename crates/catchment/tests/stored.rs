@@ -84,7 +84,7 @@ fn a_newer_layout_is_refused_with_advice_whatever_its_form() {
     let mut other = old_json();
     other["kind"] = "trace\u{1b}[2J".into();
     let other = Report::from_json(&other.to_string()).unwrap_err().to_string();
-    assert!(other.contains("it is a report of `trace?[2J`, not of `run`"), "{other}");
+    assert!(other.contains(r"it is a report of `trace\u{1b}[2J`, not of `run`"), "{other}");
 }
 
 /// The version goes into pages, tables and files of other programs.

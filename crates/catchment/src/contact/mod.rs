@@ -10,6 +10,10 @@
 //! At a fixed rotation R the envelope is piecewise linear in the lateral position: its pieces come from a
 //! corner of one half on a facet of the other, or from two crossing edges. [`brute`] writes that definition
 //! down in plain loops and judges every fast path.
+//!
+//! Two rules decide about planes and borders that both halves share, in the plane and in space alike. *Heights* are those of closed solids: what lies
+//! over a border, or beyond it by rounding, touches. *Overlap* is that of open ones ([`Nearby::overlaps`]): a point inside both proves it, and surfaces
+//! that fall together do not.
 
 mod bounds;
 pub mod brute;

@@ -224,7 +224,8 @@ fn drops_agree_with_motions() {
     for peg in [Peg::new(4, 0.3, 0.02, 0.08), Peg::new(6, 0.3, 0.04, 0.0)] {
         let range = 0.03 + 1.1 * (peg.hole + peg.chamfer - peg.body);
         let problem = peg.problem(&LATERAL, range, |_| ()).unwrap();
-        let poses = Domain::random(problem.alignment(), 60, 5);
+        // So many that a trial more or less, which the engine's bodies decide, is not the answer: some 98 % agree.
+        let poses = Domain::random(problem.alignment(), 400, 5);
         let (dropped, _) =
             drop::run(problem.pair(), poses.clone(), &drop::Settings::default(), &Exec::new()).unwrap();
         let (moved, _) =

@@ -25,14 +25,20 @@ pub(super) struct Pace {
     reach: f64,
     /// How far it reached: the length of the last displacement before it was cut to a step, in steps.
     share: f64,
+    /// How far it may reach at most, in steps.
+    most: f64,
 }
 
 /// How far the push reaches relative to the step: raised on gentle slopes so that they take no longer.
 const MAX_REACH: f64 = 1e7;
 /// The same with friction, whose forces are found less exactly: rest is a slope below 10⁻⁷ beyond what friction holds.
 const MAX_REACH_OF_FRICTION: f64 = 1e4;
-/// From this reach on gaps count that a plain push closes: the turn by which they close, at least gap/ρ, changes slopes by as much, and the reach may
-/// make of that no more than the share `SETTLED` of a step. Half a step's slope is 1/reach.
+/// The same on level ground: rest is a slope below 10⁻⁸, which is what gaps known to 10⁻⁹ D make of contacts about ρ away.
+const MAX_REACH_ON_LEVEL: f64 = 1e5;
+/// Ground is level where the normals of all that carries have at least this z: within 0.6°.
+const LEVEL: f64 = 1.0 - 5e-5;
+/// From this reach on, on level ground, gaps count that a plain push closes: the turn by which they close, at least gap/ρ, changes slopes by as much, and
+/// the reach may make of that no more than the share `SETTLED` of a step. Half a step's slope is 1/reach.
 const HARD: f64 = 16.0;
 const SETTLED: f64 = 1e-3;
 /// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
@@ -65,7 +71,7 @@ const ROUNDING: f64 = 1e-12;
 impl Pace {
     /// For a first step of this length.
     pub(super) const fn new(step: f64) -> Self {
-        Self { step, reach: 1.0, share: 1.0 }
+        Self { step, reach: 1.0, share: 1.0, most: MAX_REACH }
     }
 }
 
@@ -78,7 +84,7 @@ impl Motion<'_> {
         let mut cuts = 0;
         let mut bend = 0.0;
         loop {
-            if length <= REST * pace.step && pace.reach >= self.most_reach() {
+            if length <= REST * pace.step && pace.reach >= pace.most {
                 return Advance::Ended(Outcome::Jammed, *state);
             }
             if self.is_too_gentle(&u, length) {
@@ -180,13 +186,13 @@ impl Motion<'_> {
     ///
     /// The reach of the pace is adapted: raised on gentle slopes.
     fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
-        let Pace { step, reach, share } = pace;
+        let Pace { step, reach, share, most } = pace;
         let step = *step;
-        let most = self.most_reach();
+        *most = self.most_reach();
         let rotation_length = self.pair.alignment.rotation_length;
         let Self { projection, coulomb, rows, settings, .. } = self;
         let contacts = rows.contacts(settings.friction);
-        // A displacement, its length in the ρ-metric, and the widest gap that it closes.
+        // A displacement, its length in the ρ-metric, and on level ground, the widest gap that it closes.
         let mut solve = |reach: f64| {
             let mut push = [0.0; MAX_COORDINATES];
             push[2] = -reach * step;
@@ -199,14 +205,16 @@ impl Motion<'_> {
                 })
                 .unwrap_or_default();
             let length = u.iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, x)| x * x).sum::<f64>();
-            let closed = coulomb.pressed().iter().map(|&k| rows.gaps[k]).fold(0.0, f64::max);
+            let pressed = || coulomb.pressed().iter();
+            let is_level = pressed().len() > 0 && pressed().all(|&k| rows.vectors[k][2] > LEVEL);
+            let closed = is_level.then(|| pressed().map(|&k| rows.gaps[k]).fold(0.0, f64::max));
             (u, length.sqrt(), closed)
         };
         // As far as the last push would have had to reach for a whole step.
-        *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, most);
+        *reach = (*reach / share.clamp(0.5, 4.0)).clamp(1.0, *most);
         let mut found = solve(*reach);
-        while found.1 < 0.5 * step && *reach < most {
-            *reach = (*reach * (step / found.1).clamp(2.0, 16.0)).min(most);
+        while found.1 < 0.5 * step && *reach < *most {
+            *reach = (*reach * (step / found.1).clamp(2.0, 16.0)).min(*most);
             found = solve(*reach);
         }
         while found.1 > 2.0 * step && *reach > 1.0 {
@@ -214,12 +222,15 @@ impl Motion<'_> {
             found = solve(*reach);
         }
         if *reach > HARD && settings.friction == 0.0 {
-            // Gaps that a plain push closes already turn the half as they close: by which slope it goes on is known afterwards.
+            // A half that settles onto level ground turns as its gaps close: by which slope it goes on, if at all, is known afterwards.
             let first = solve(1.0);
-            let most = (SETTLED * rotation_length / first.2).max(1.0);
-            if most < *reach {
-                *reach = most;
-                found = if most > 1.0 { solve(most) } else { first };
+            if let Some(closed) = first.2 {
+                *most = MAX_REACH_ON_LEVEL;
+                let settled = (SETTLED * rotation_length / closed).clamp(1.0, *most);
+                if settled < *reach {
+                    *reach = settled;
+                    found = if settled > 1.0 { solve(settled) } else { first };
+                }
             }
         }
         *share = found.1 / step;
