@@ -39,6 +39,11 @@ pub(crate) fn silence(usage: &mut clap::Error) {
             ContextValue::Strings(texts) => {
                 Some((kind, ContextValue::Strings(texts.iter().map(silent).collect())))
             }
+            // A tip repeats an unknown option.
+            ContextValue::StyledStrs(texts) => {
+                let plain = texts.iter().map(|text| silent(&text.to_string()).into());
+                Some((kind, ContextValue::StyledStrs(plain.collect())))
+            }
             _ => None,
         })
         .collect();

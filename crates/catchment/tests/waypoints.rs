@@ -277,10 +277,10 @@ fn a_tip_that_lands_flat_stays_where_it_lies() {
         assert_eq!(path.outcome, Outcome::Jammed, "{error:?}");
         let last = path.waypoints.last().unwrap();
         let flush = path.waypoints.iter().filter(|w| w.height - last.height < 1e-6);
-        // Until both lie flush a tilt of 10⁻⁵ leads on, over less than 10⁻⁴ D; before, it had led on over a whole step.
+        // The last tilts that close, of 10⁻³ and less, lead on over some 10⁻⁴ D; before, one had led on over a whole step of 0.02 D.
         for w in flush {
             let drift = (w.error.x - last.error.x).hypot(w.error.y - last.error.y);
-            assert!(drift < 1e-4, "{error:?}: {drift}");
+            assert!(drift < 3e-4, "{error:?}: {drift}");
         }
     }
 }

@@ -159,7 +159,7 @@ fn halves_that_do_not_mate_are_refused_in_their_place() {
     fs::write(home.path().join("cubes.toml"), text).unwrap();
     let report = run(home.path(), &["run", "cubes.toml", "-o", "out"]);
     assert!(report.starts_with("exit 2\n--- stdout\n--- stderr\n"), "{report}");
-    assert!(report.contains("the halves overlap") && report.contains("cubes.toml:2"), "{report}");
+    assert!(report.contains("nothing but a plane") && report.contains("cubes.toml:1"), "{report}");
     assert_eq!(entries(home.path()), ["cubes.toml"]);
 }
 

@@ -161,8 +161,8 @@ fn threads_that_the_environment_asks_for_in_vain_are_refused() {
         assert!(said.contains(&format!("RAYON_NUM_THREADS is \"{value}\"")), "{said}");
         assert!(said.contains("from 0 to 1024") && said.contains("unset it"), "{said}");
     }
-    for (value, args) in [("3", &fast[..]), ("", &fast), ("1000000000", &["check", "v.toml"])] {
-        let (code, said) = run(value, args);
+    for value in ["3", ""] {
+        let (code, said) = run(value, &fast);
         assert_eq!(code, Some(0), "{value}: {said}");
     }
     let (code, said) = run("1000000000", &[&fast[..], &["--threads", "2"]].concat());

@@ -37,18 +37,40 @@ fn listens(child: &mut Child) -> bool {
     false
 }
 
+/// Another process that keeps the folder locked, until it is killed.
+struct Keeper(Child);
+
+impl Keeper {
+    fn of(home: &Path) -> Self {
+        let keeper =
+            Command::new("flock").args(["-o", "out", "sleep", "60"]).current_dir(home).spawn().unwrap();
+        let folder = File::open(home.join("out")).unwrap();
+        while folder.try_lock().is_ok() {
+            folder.unlock().unwrap();
+            std::thread::yield_now();
+        }
+        Self(keeper)
+    }
+}
+
+impl Drop for Keeper {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 #[test]
 fn a_locked_folder_is_refused_with_the_process_that_keeps_it() {
     let home = exported();
-    let lock = File::open(home.path().join("out")).unwrap();
-    lock.lock_shared().unwrap();
+    let keeper = Keeper::of(home.path());
     let output = catchment(home.path()).args(EXPORT).output().unwrap();
-    let (said, me) = (said(&output), std::process::id());
+    let (said, other) = (said(&output), keeper.0.id());
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains(&format!("cannot write out: process {me} (")), "{said}");
+    assert!(said.contains(&format!("cannot write out: process {other} (")), "{said}");
     assert!(said.contains("has kept the folder locked for 5 s"), "{said}");
-    assert!(said.contains(&format!("end it (kill {me}), or choose another folder")), "{said}");
-    drop(lock);
+    assert!(said.contains(&format!("end it (kill {other}), or choose another folder")), "{said}");
+    drop(keeper);
     assert_eq!(catchment(home.path()).args(EXPORT).status().unwrap().code(), Some(0));
     assert_eq!(entries(home.path()), ["out", "v.toml"]);
 }
@@ -76,8 +98,7 @@ fn a_program_that_was_started_with_the_lock_says_so() {
 
 /// Says how the program ended that waits for a lock and hears a signal.
 fn ended_by(home: &Path, signal: &str) -> Option<i32> {
-    let lock = File::open(home.join("out")).unwrap();
-    lock.lock().unwrap();
+    let _keeper = Keeper::of(home);
     let mut child =
         catchment(home).args(EXPORT).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     if listens(&mut child) {
