@@ -128,7 +128,7 @@ mod tests {
 
     /// A block of 1 × 1 × 0.3 whose sides have knots at thirds of their length, rounded to six digits.
     fn block() -> Surface {
-        let third = 0.333333;
+        let third = 0.333_333;
         let top = [
             [0.0, 0.0],
             [third, 0.0],
