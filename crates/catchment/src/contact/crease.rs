@@ -66,7 +66,9 @@ fn of_surface(surface: &Surface, number: usize, first: u32, creases: &mut Vec<Cr
         sides.into_iter().filter_map(stretch).filter(|(_, facets)| bends(*facets)).collect();
     let mut from: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (k, (ends, _)) in stretches.iter().enumerate() {
-        ends.iter().for_each(|end| from.entry(*end).or_default().push(k));
+        for end in ends {
+            from.entry(*end).or_default().push(k);
+        }
     }
     // The stretch that goes on straight from the end of another one.
     let goes_on = |k: usize, end: u32| -> Option<usize> {

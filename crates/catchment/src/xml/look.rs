@@ -217,16 +217,14 @@ impl Style<'_, '_> {
             .split_ascii_whitespace()
             .map(|word| word.trim_end_matches("px").parse().ok().filter(|n: &f64| n.abs() <= LARGEST))
             .collect();
-        let about = match (numbers.as_deref(), self.value("transform-box")) {
-            (Some([x, y]), None) => Vec2::new(*x, *y),
-            _ => {
-                let message = format!(
-                    "`transform-origin` is read as two plain numbers, not as `{}`",
-                    crate::design::shortened(&origin)
-                );
-                return Err(Refusal { at, message, help: "apply the transforms in the drawing program" });
-            }
+        let (Some([x, y]), None) = (numbers.as_deref(), self.value("transform-box")) else {
+            let message = format!(
+                "`transform-origin` is read as two plain numbers, not as `{}`",
+                crate::design::shortened(&origin)
+            );
+            return Err(Refusal { at, message, help: "apply the transforms in the drawing program" });
         };
+        let about = Vec2::new(*x, *y);
         Ok(Some((Affine::translate(about) * map * Affine::translate(-about), span)))
     }
 }

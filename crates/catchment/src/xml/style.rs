@@ -253,7 +253,6 @@ fn end_of_block(text: &str, opens: usize) -> usize {
     for (k, byte) in text.bytes().enumerate().skip(opens) {
         match (quote, byte) {
             (Some(open), byte) if open == byte => quote = None,
-            (Some(_), _) => {}
             (None, b'"' | b'\'') => quote = Some(byte),
             (None, b'{') => depth += 1,
             (None, b'}') => {
@@ -262,7 +261,7 @@ fn end_of_block(text: &str, opens: usize) -> usize {
                     return k + 1;
                 }
             }
-            (None, _) => {}
+            _ => {}
         }
     }
     text.len()
@@ -274,12 +273,11 @@ fn end_of_declaration(text: &str, begins: usize) -> usize {
     for (k, byte) in text.bytes().enumerate().skip(begins) {
         match (quote, byte) {
             (Some(open), byte) if open == byte => quote = None,
-            (Some(_), _) => {}
             (None, b'"' | b'\'') => quote = Some(byte),
             (None, b'(') => depth += 1,
             (None, b')') => depth = depth.saturating_sub(1),
             (None, b';') if depth == 0 => return k,
-            (None, _) => {}
+            _ => {}
         }
     }
     text.len()

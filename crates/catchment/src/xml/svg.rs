@@ -82,7 +82,7 @@ impl Refusal {
         Self { at, message: format!("more than {most} {of}"), help: remedy }
     }
 
-    fn broken(error: XmlError) -> Self {
+    fn broken(error: &XmlError) -> Self {
         if let Some(over) = error.over {
             return Self::overspent(error.at..error.at, over);
         }
@@ -103,7 +103,7 @@ pub fn head(text: &str) -> Result<BTreeMap<&'static str, (String, Range<usize>)>
     const READ: [&str; 5] = ["width", "height", "viewBox", "preserveAspectRatio", "data-unit"];
     let mut walk = Walk::new(text.as_bytes(), LIMITS);
     loop {
-        match walk.next().map_err(Refusal::broken)? {
+        match walk.next().map_err(|error| Refusal::broken(&error))? {
             Some(Piece::Start(tag)) => {
                 let own = |name| {
                     let Attribute { value, span } = tag.attribute(name)?;
@@ -135,7 +135,7 @@ pub fn shapes(text: &str, mut each: impl FnMut(Result<Shape<'_>, Refusal>) -> Co
     loop {
         let flow = match walk.next() {
             Err(error) => {
-                let _ = each(Err(Refusal::broken(error)));
+                let _ = each(Err(Refusal::broken(&error)));
                 return hidden;
             }
             Ok(None) => return hidden,

@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn work_is_charged_before_it_is_done() {
-        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0)].repeat(10_000);
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0)].repeat(10_000);
         let over = triangles(&corners, &mut Budget::new(STEPS)).unwrap_err();
         assert!(over.to_string().contains("triangulate the mesh"), "{over}");
         // Every face counts.

@@ -158,7 +158,7 @@ pub(super) struct Drawn {
 
 /// The line that holds a byte of a text, from 1.
 fn line_of(text: &str, at: usize) -> usize {
-    1 + text.as_bytes()[..at.min(text.len())].iter().filter(|byte| **byte == b'\n').count()
+    1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count()
 }
 
 /// The closed loops of a drawing; curves are left by their chords by at most `chord_error`, in D.

@@ -172,9 +172,9 @@ fn polygon(points: &Attribute<'_>, is_closed: bool) -> Result<BezPath, Refusal> 
             return Err(wrong(points.span.clone(), message, "simplify the drawing"));
         }
         if count == 0 {
-            path.move_to(at)
+            path.move_to(at);
         } else {
-            path.line_to(at)
+            path.line_to(at);
         }
         count += 1;
     }

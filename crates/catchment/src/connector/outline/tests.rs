@@ -249,7 +249,7 @@ fn a_transform_has_its_origin() {
 /// Attributes are counted on the tokens that are read: quotes in a text change nothing.
 #[test]
 fn a_crowd_is_counted_where_it_stands() {
-    let crowd = |count: usize| (0..count).map(|k| format!("a{k}='' ")).collect::<String>();
+    let crowd = |count: usize| (0..count).map(|k| format!("a{k}='' ")).collect::<Vec<_>>().concat();
     for text in ["", "='", "=\"", "<!-- ' -->=\"", "<![CDATA[ <g a=\"]]>"] {
         let found =
             drawing("a.svg", &format!("<svg>{text}\n<g {}/></svg>", crowd(201))).unwrap_err().to_string();

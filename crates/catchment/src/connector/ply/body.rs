@@ -126,7 +126,7 @@ impl<'t> Body<'t> {
             Kind::Int { is_signed: false, .. } => whole as f64,
             Kind::Int { bytes, .. } => {
                 let unused = 64 - 8 * bytes as u32;
-                ((whole << unused) as i64 >> unused) as f64
+                ((whole << unused).cast_signed() >> unused) as f64
             }
         })
     }

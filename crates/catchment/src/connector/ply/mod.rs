@@ -194,11 +194,11 @@ mod tests {
     #[test]
     fn a_header_is_believed_as_far_as_there_are_bytes() {
         let refused = |bytes: &[u8]| read(bytes).unwrap_err()[0].to_string();
-        let nothing: String = (0..400).map(|k| format!("element a{k} 1000000\n")).collect();
+        let nothing = (0..400).map(|k| format!("element a{k} 1000000\n")).collect::<Vec<_>>().concat();
         let format = "ply\nformat binary_little_endian 1.0\n";
         let bomb = format!("{format}comment {}\n{nothing}end_header\n", "x".repeat(1_000_000));
         assert!(refused(bomb.as_bytes()).contains("line 4: the 1000000 elements `a0` have no properties"));
-        let many: String = (0..1001).map(|k| format!("element a{k} 0\n")).collect();
+        let many = (0..1001).map(|k| format!("element a{k} 0\n")).collect::<Vec<_>>().concat();
         assert!(
             refused(format!("{format}{many}end_header\n").as_bytes())
                 .contains("line 1003: more than 1000 elements and properties")
@@ -271,7 +271,9 @@ mod tests {
                 (-3i32).to_le_bytes().into(),
             ];
             if order == "big" {
-                numbers.iter_mut().for_each(|number| number.reverse());
+                for number in &mut numbers {
+                    number.reverse();
+                }
             }
             let bytes = [head.into_bytes(), numbers.concat()].concat();
             let header = Header::read(&bytes).unwrap();

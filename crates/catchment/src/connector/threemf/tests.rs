@@ -138,7 +138,7 @@ fn bombs_do_not_go_off() {
     assert!(refused(&long).contains("unpacks to more than"));
     let many = format!("<model>{}</model>", "<a/>".repeat(4_000_000));
     assert!(refused(&many).contains("more than 4000000 elements: export the solids alone"));
-    let crowd: String = (0..65).map(|k| format!(" a{k}=\"\"")).collect();
+    let crowd = (0..65).map(|k| format!(" a{k}=\"\"")).collect::<Vec<_>>().concat();
     assert!(refused(&model(&crowd, "", "")).contains("byte 22: more than 64 attributes of an element"));
     // A path that is as long as a tag may be, in every component of an object that holds itself.
     let path = format!("<component objectid=\"1\" path=\"{}3D/3dmodel.model\"/>", "/".repeat(1_000_000));
@@ -167,7 +167,8 @@ fn bodies_that_fall_together_are_one() {
     let row = |count: usize| -> String {
         (0..count)
             .map(|k| format!("<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 {k} 0 0\"/>"))
-            .collect()
+            .collect::<Vec<_>>()
+            .concat()
     };
     assert_eq!(of_model(&model("", &one, &row(256))).unwrap().bodies.len(), 256);
     let refused = of_model(&model("", &one, &row(257))).err().unwrap();

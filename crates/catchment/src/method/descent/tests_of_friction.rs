@@ -56,7 +56,7 @@ fn in_a_valley_slip_ends_later_than_sticking_begins() {
 }
 
 /// Up to which friction a pyramid slips that is turned by ψ in its socket: four ridges lie on the rim, each at φ = 45° − ψ from the middle of its side. The point of a ridge that
-/// touches, P = (½, ½ tan φ) from the axis, slips by v = (−P_y, P_x, ż) per radian with n·v = 0; without a moment about the axis (P × (n − μ v/|v|))_z = 0.
+/// touches, P = (½, ½ tan φ) from the axis, slips by `v = (−P_y, P_x, ż)` per radian with n·v = 0; without a moment about the axis `(P × (n − μ v/|v|))_z = 0`.
 fn turned_slips_until(aspect_ratio: f64, yaw: f64) -> f64 {
     let (sin, cos) = (FRAC_PI_4 - yaw).sin_cos();
     let steep = 1.0 + 2.0 * (aspect_ratio * sin / cos).powi(2);

@@ -23,7 +23,7 @@ use std::time::Duration;
 /// How long a lock is waited for before anything is computed.
 pub(super) const BEFORE: Duration = Duration::from_secs(5);
 /// The same where a result would be lost.
-pub(super) const AFTER: Duration = Duration::from_secs(60);
+pub(super) const AFTER: Duration = Duration::from_mins(1);
 /// Between two tries.
 const PAUSE: Duration = Duration::from_millis(20);
 

@@ -140,13 +140,17 @@ impl Model {
                 level.remove(0)
             };
             // Faces that touch only by this one may be in its plane, too.
-            level.into_iter().for_each(|other| self.merge(other, plane));
+            for other in level {
+                self.merge(other, plane);
+            }
             self.members[plane as usize].push(k);
             let is_forward = self.planes[plane as usize].normal.dot(normal) > 0.0;
             let facet = &mut self.facets[k as usize];
             (facet.plane, facet.is_forward) = (plane, is_forward);
         }
-        self.members.iter_mut().for_each(|members| members.sort_unstable());
+        for members in &mut self.members {
+            members.sort_unstable();
+        }
     }
 
     /// Gives the facets of one plane to another one, if they lie in it.

@@ -167,7 +167,9 @@ fn closes(faces: &BTreeMap<Key, Net>, points: &[DVec3]) -> Result<(), UnionProbl
     let mut all: BTreeMap<u32, Net> = BTreeMap::new();
     for ((cluster, ..), net) in faces {
         let all = all.entry(*cluster).or_default();
-        net.iter().for_each(|(edge, times)| add(all, *edge, *times));
+        for (edge, times) in net {
+            add(all, *edge, *times);
+        }
     }
     match all.values().flat_map(BTreeMap::keys).next() {
         None => Ok(()),
