@@ -39,16 +39,22 @@ fn outcome(pair: &Pair, [x, y, roll, pitch, yaw]: [f64; 5]) -> Outcome {
 fn seams_hold_nothing() {
     let (connector, alignment) = read("dovetail");
     let dovetail = Pair::new(&connector, &alignment);
-    assert_eq!(outcome(&dovetail, [-0.118209, -0.227331, 0.301862, 0.25282, 0.402937]), Outcome::Aligned);
-    assert_eq!(outcome(&dovetail, [0.013946, -0.221734, -0.082329, 0.329434, -0.432228]), Outcome::Jammed);
+    assert_eq!(
+        outcome(&dovetail, [-0.118_209, -0.227_331, 0.301_862, 0.252_82, 0.402_937]),
+        Outcome::Aligned
+    );
+    assert_eq!(
+        outcome(&dovetail, [0.013_946, -0.221_734, -0.082_329, 0.329_434, -0.432_228]),
+        Outcome::Jammed
+    );
     let (connector, alignment) = read("keyway");
     let keyway = Pair::new(&connector, &alignment);
     for error in [
-        [0.094277, 0.016784, 0.116688, 0.304416, 0.154249],
-        [0.176578, 0.082287, 0.120019, 0.097066, 0.181131],
-        [-0.117593, 0.140808, -0.072145, -0.236315, 0.227788],
-        [-0.006377, 0.155112, -0.075444, -0.167319, 0.099525],
-        [-0.001, 0.004, 0.012217, -0.012217, -0.010123],
+        [0.094_277, 0.016_784, 0.116_688, 0.304_416, 0.154_249],
+        [0.176_578, 0.082_287, 0.120_019, 0.097_066, 0.181_131],
+        [-0.117_593, 0.140_808, -0.072_145, -0.236_315, 0.227_788],
+        [-0.006_377, 0.155_112, -0.075_444, -0.167_319, 0.099_525],
+        [-0.001, 0.004, 0.012_217, -0.012_217, -0.010_123],
     ] {
         assert_eq!(outcome(&keyway, error), Outcome::Aligned, "{error:?}");
     }
@@ -200,7 +206,7 @@ impl Funnel {
         ]
     }
 
-    fn mounted(&self, fixed: Half, moving: Half) -> Connector {
+    fn mounted(&self, fixed: Half, moving: &Half) -> Connector {
         let [low, high] = self.depth;
         Connector::from_halves(fixed, moving.mapped(|p| Mount::X.apply(p - DVec3::Z * (low + high))))
     }
@@ -238,9 +244,9 @@ proptest! {
             alignment
         };
         let (pieces, peg) = (funnel.pieces(), funnel.peg());
-        let united = funnel.mounted(Half::union_of(pieces.clone()).unwrap(), Half::union_of(peg.clone()).unwrap());
+        let united = funnel.mounted(Half::union_of(pieces.clone()).unwrap(), &Half::union_of(peg.clone()).unwrap());
         prop_assert_eq!((united.fixed.surfaces.len(), united.moving.surfaces.len()), (1, 1));
-        let apart = funnel.mounted(Half::of(pieces), Half::of(peg));
+        let apart = funnel.mounted(Half::of(pieces), &Half::of(peg));
         let [pair, judge] = [&united, &apart].map(|connector| Pair::new(connector, &alignment));
         for ([x, y], [roll, pitch, yaw]) in poses {
             let pose = CorPose { lateral: DVec2::new(x, y), rotation: rotation(roll, pitch, yaw) };

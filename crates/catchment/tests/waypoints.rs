@@ -46,7 +46,7 @@ fn poses(pair: &Pair, count: u32, start: u32) -> impl Iterator<Item = PoseError>
     (start..start + count).map(move |k| {
         let mut error = [0.0; 5];
         for dof in free.iter() {
-            let number = (f64::from(k) / ROOT.powi(dof.index() as i32 + 1)).fract();
+            let number = (f64::from(k) / ROOT.powi(i32::try_from(dof.index()).unwrap() + 1)).fract();
             error[dof.index()] = ranges[dof.index()] * (2.0 * number - 1.0);
         }
         PoseError::from_array(error)

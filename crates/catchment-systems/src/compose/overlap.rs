@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The gradient is the sum of the sides of the intersection that belong to the second polygon, each as its length along its outer normal. Where
-//! sides of both polygons fall together O_ij has a kink, and either choice bounds it. Linear terms of pairs add up with their signs, so that they cancel near
+//! sides of both polygons fall together `O_ij` has a kink, and either choice bounds it. Linear terms of pairs add up with their signs, so that they cancel near
 //! the maximum; the second bound serves pairs that overlap by little or nothing.
 
 use super::region::{Node, Region, place};
