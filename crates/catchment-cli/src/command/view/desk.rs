@@ -33,11 +33,17 @@ pub(super) struct Desk {
     state: Mutex<State>,
 }
 
+/// What is computed next.
+struct Request {
+    /// Cells per error; the design's own where none are given.
+    resolution: Option<Resolution>,
+}
+
 #[derive(Default)]
 struct State {
     page: Option<Served>,
     /// Asked for and not begun.
-    next: Option<Option<Resolution>>,
+    next: Option<Request>,
     /// Cancels the computation that runs.
     running: Option<Arc<AtomicBool>>,
     is_closed: bool,
@@ -120,7 +126,7 @@ impl Desk {
         if state.is_closed {
             return false;
         }
-        (state.next, state.share, state.failed) = (Some(resolution), 0.0, None);
+        (state.next, state.share, state.failed) = (Some(Request { resolution }), 0.0, None);
         "design".clone_into(&mut state.stage);
         if let Some(older) = &state.running {
             older.store(true, Ordering::Relaxed);
@@ -141,7 +147,7 @@ impl Desk {
     fn work(self: &Arc<Self>) {
         loop {
             let mut state = self.locked();
-            let Some(resolution) = state.next.take() else {
+            let Some(Request { resolution }) = state.next.take() else {
                 state.running = None;
                 return;
             };

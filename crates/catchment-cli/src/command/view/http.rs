@@ -87,7 +87,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Option<Request>, Response> {
         return Err(Response::text(413, "the request is too long"));
     }
     let Some(body) = bytes.get(head..head + length) else { return Ok(None) };
-    request.body = std::str::from_utf8(body).map_err(|_| bad())?.to_owned();
+    std::str::from_utf8(body).map_err(|_| bad())?.clone_into(&mut request.body);
     Ok(Some(request))
 }
 
