@@ -21,6 +21,9 @@ type Ends<'py> = (Bound<'py, PyArray1<u8>>, Bound<'py, PyArray2<f64>>, Bound<'py
 /// Two features in contact, of the fixed and of the moving half, and where they touch.
 type Touching = (String, String, [f64; 3]);
 
+/// Where a pose ends: outcome, last pose error, z of the COR, what touches.
+type Ended = (&'static str, [f64; 5], Option<f64>, Vec<Touching>);
+
 #[pymethods]
 impl Problem {
     /// A pose error as a person writes it, in D and radians.
@@ -37,7 +40,7 @@ impl Problem {
         name: &str,
         settings: &str,
         how: How,
-    ) -> PyResult<(&'static str, [f64; 5], Option<f64>, Vec<Touching>)> {
+    ) -> PyResult<Ended> {
         work(py, &how, |exec| {
             check_rows(&[pose], self.inner.design())?;
             let by = method(name, settings)?;

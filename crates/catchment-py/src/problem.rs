@@ -85,7 +85,7 @@ impl Problem {
         let source = SourceText::new(path, text).with_files(files);
         let inner = work(py, &how, |exec| {
             let draft = changes.apply(Draft::read_on(source.clone(), exec)?)?;
-            draft.build_on(exec).and_then(|problem| problem.checked()).map_err(Refusal::of_geometry)
+            draft.build_on(exec).and_then(catchment::prelude::Problem::checked).map_err(Refusal::of_geometry)
         })?;
         Ok(Self { inner, source, changes })
     }
