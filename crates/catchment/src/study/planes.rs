@@ -6,8 +6,8 @@
 //! ```
 //!
 //! For every pair of axes of the grid the two errors vary and the others start at exactly 0; all free errors take part in the motion. All planes have
-//! one resolution, at least [`CELLS`] cells per axis and together about as many as one plane of [`MAIN_CELLS`], or fewer where motions of the pair are
-//! slow, and never fewer than the grid.
+//! one resolution: an odd number, at least 25 cells per axis, and together about as many cells as one plane of 71 × 71; fewer where motions of the pair
+//! are slow, but never fewer than the grid.
 //!
 //! Not promised: that a plane is part of the grid. It is computed by exact motions, whatever method decided the grid. Lengths in D, angles in
 //! radians.
