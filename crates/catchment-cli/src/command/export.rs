@@ -26,8 +26,8 @@ use std::path::PathBuf;
 /// Write what other programs read: a stored result for ParaView and tables, a drop test for MuJoCo and Gazebo
 ///
 /// Of a result of `run -o`: the accepted set over up to three of its axes as VTK image data or as its border, or all cells as a table.
-/// Of a design: a drop test, with the same pieces, mass, inertia, damping, friction, force, start and locked degrees of freedom as `--method
-/// drop`, so that whoever doubts it can run it again. A comment in each file says the units and what was set.
+/// Of a design: a drop test, with the same solids, mass, inertia, damping, friction, force, start and locked degrees of freedom as `--method
+/// drop`, so that whoever doubts it can run it again. Pieces stay as the design lists them. A comment in each file says the units and what was set.
 #[derive(Debug, Args)]
 #[command(
     after_long_help = "Examples:\n  \

@@ -224,28 +224,15 @@ fn drops_agree_with_motions() {
     for peg in [Peg::new(4, 0.3, 0.02, 0.08), Peg::new(6, 0.3, 0.04, 0.0)] {
         let range = 0.03 + 1.1 * (peg.hole + peg.chamfer - peg.body);
         let problem = peg.problem(&LATERAL, range, |_| ()).unwrap();
-        let Domain::Poses(poses) = Domain::random(problem.alignment(), 400, 5) else { unreachable!() };
-        let moved = |share: f64| {
-            let scaled = poses.iter().map(|pose| PoseError::from_array(pose.to_array().map(|e| share * e)));
-            let domain = Domain::Poses(scaled.collect());
-            descent::run(problem.pair(), domain, &descent::Settings::default(), &Exec::new())
-                .unwrap()
-                .0
-                .outcomes
-        };
-        let docks = |o: &Outcome| *o == Outcome::Aligned;
-        let [inside, there, beyond] = [0.98, 1.0, 1.02].map(moved);
+        let poses = Domain::random(problem.alignment(), 400, 5);
         let (dropped, _) =
-            drop::run(problem.pair(), Domain::Poses(poses.clone()), &drop::Settings::default(), &Exec::new())
-                .unwrap();
-        // Where an error larger or smaller by 2 % docks otherwise, an engine, whose contacts give, may say either.
-        let clear = (0..poses.len()).filter(|&k| docks(&inside[k]) == docks(&beyond[k]));
-        for k in clear {
-            same[0] += usize::from(docks(&dropped.outcomes[k]) == docks(&there[k]));
-            same[1] += 1;
-        }
+            drop::run(problem.pair(), poses.clone(), &drop::Settings::default(), &Exec::new()).unwrap();
+        let (moved, _) =
+            descent::run(problem.pair(), poses, &descent::Settings::default(), &Exec::new()).unwrap();
+        let docks = |o: &Outcome| *o == Outcome::Aligned;
+        same[0] += dropped.outcomes.iter().zip(&moved.outcomes).filter(|(a, b)| docks(a) == docks(b)).count();
+        same[1] += dropped.outcomes.len();
     }
-    assert!(same[1] > 600, "{same:?}");
     assert!(same[0] * 100 >= same[1] * 97, "{same:?}");
 }
 

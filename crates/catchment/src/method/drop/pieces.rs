@@ -44,25 +44,33 @@ fn is_wall(corners: &[DVec3], rounding: f64) -> bool {
 }
 
 /// The parts of a half, in its own axes.
+///
+/// Of the surface that pieces make together, as long as that is convex or columns: where pieces are stacked, the top of the lower one is
+/// a step inside the solid, on which an engine jams what slides past it.
 pub(super) fn parts(half: &Half) -> Vec<Part> {
+    let whole: Option<Vec<Vec<Surface>>> = half.surfaces.iter().map(convex_parts).collect();
+    if let Some(parts) = whole {
+        return parts.into_iter().flatten().map(Part::Convex).collect();
+    }
     half.solids()
         .iter()
-        .flat_map(|surface| {
-            if surface.convex {
-                return vec![Part::Convex(joined(surface))];
-            }
-            let turn = |p: DVec3| DVec3::new(p.x, -p.y, -p.z);
-            columns(surface)
-                .or_else(|| {
-                    let turned = columns(&surface.mapped(turn))?;
-                    Some(turned.into_iter().map(|column| column.mapped(turn)).collect())
-                })
-                .map_or_else(
-                    || vec![Part::Mesh(surface.clone())],
-                    |columns| columns.into_iter().map(Part::Convex).collect(),
-                )
+        .flat_map(|surface| match convex_parts(surface) {
+            Some(parts) => parts.into_iter().map(Part::Convex).collect(),
+            None => vec![Part::Mesh(surface.clone())],
         })
         .collect()
+}
+
+/// A surface as exact convex parts: itself, or its columns in either direction.
+fn convex_parts(surface: &Surface) -> Option<Vec<Surface>> {
+    if surface.convex {
+        return Some(vec![joined(surface)]);
+    }
+    let turn = |p: DVec3| DVec3::new(p.x, -p.y, -p.z);
+    columns(surface).or_else(|| {
+        let turned = columns(&surface.mapped(turn))?;
+        Some(turned.into_iter().map(|column| column.mapped(turn)).collect())
+    })
 }
 
 /// The columns under the facets that face +z; `None` where some facet facing −z is not at the bottom.

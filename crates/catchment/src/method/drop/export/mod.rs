@@ -7,7 +7,8 @@
 //!       unperturbed
 //! ```
 //!
-//! Both engines take convex pieces only; a mesh that is no union of columns is refused, not approximated.
+//! Pieces stay as they are drawn, which is how they are known in the other program; `run` takes the columns of the solid that they make together,
+//! where it has them. Both engines take convex pieces only; a mesh that is no union of columns is refused, not approximated.
 
 pub mod mjcf;
 pub mod sdf;
