@@ -101,6 +101,7 @@ fn follow(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::acceptance::Outcome;
     use crate::design::Family;
     use crate::pose::DofSet;
     use crate::problem::testing::problem;
@@ -121,11 +122,17 @@ mod tests {
         for plane in &planes {
             let [wide, high] = [0, 1].map(|k| plane.grid().unwrap().axes[k].cells);
             assert!(wide.min(high) > 4, "{wide} × {high}");
-            // (x, y) ↦ (−x, −y) and (x, yaw) ↦ (−x, −yaw); rounding decides cells on the border.
+            // (x, y) ↦ (−x, −y) and (x, yaw) ↦ (−x, −yaw).
             let mirrored = |k: usize| (wide - 1 - k % wide) + wide * (high - 1 - k / wide);
-            let differing =
-                (0..wide * high).filter(|k| plane.outcomes[*k] != plane.outcomes[mirrored(*k)]).count();
-            assert!(differing * 200 <= wide * high, "{differing} of {}", wide * high);
+            let differing = |same: fn(Outcome, Outcome) -> bool| {
+                let cells = 0..wide * high;
+                cells.filter(|k| !same(plane.outcomes[*k], plane.outcomes[mirrored(*k)])).count()
+            };
+            let aligned = differing(|a, b| (a == Outcome::Aligned) == (b == Outcome::Aligned));
+            assert!(aligned * 1000 <= wide * high, "{aligned} of {}", wide * high);
+            // What slides off ends on the rims of both halves at once, and rounding decides whether it jams there.
+            let any = differing(|a, b| a == b);
+            assert!(any * 50 <= wide * high, "{any} of {}", wide * high);
         }
     }
 
