@@ -134,7 +134,9 @@ impl Sheet {
             let is_statement = text.as_bytes()[opens] == b';';
             let end = if is_statement { opens + 1 } else { end_of_block(&text, opens) };
             let span = start + begins..start + begins + head.len();
-            let body = &text[(opens + 1).min(end)..end.saturating_sub(1).max((opens + 1).min(end))];
+            // A block that nothing ends reaches to the end of the sheet.
+            let body = &text[opens + 1..end];
+            let body = body.strip_suffix('}').unwrap_or(body);
             at = end;
             if head.starts_with('@') {
                 at_rule(head, body, span)?;
@@ -297,6 +299,18 @@ mod tests {
         for other in ["", "g path", "g>path", "path:hover", "[id]", ".", "#", "*x", "#a#b", "a\\b"] {
             assert_eq!(of(other), None, "{other}");
         }
+    }
+
+    #[test]
+    fn a_block_that_nothing_ends_reaches_to_the_end() {
+        let added = |text: &str| {
+            let mut sheet = Sheet::default();
+            sheet.add(text, 0).unwrap();
+            sheet.rules.iter().map(|rule| rule.declarations[0].value.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(added("a{display:none}b{display:inline"), ["none", "inline"]);
+        assert_eq!(added("a{display:none;x:\"\u{fffd}"), ["none"]);
+        assert_eq!(added("a{"), [""; 0]);
     }
 
     #[test]
