@@ -278,6 +278,18 @@ pub(super) fn edge_edge(
     Some(Element { meeting: Meeting { shapes: candidate.shapes, features }, normal, offset })
 }
 
+/// Whether two edges pass the sieve, its window aside; `seen` is the direction of the fixed one in the moving frame.
+pub(super) fn edges_may_touch(
+    fixed: &Ridge,
+    moving: &Ridge,
+    rotation: &DMat3,
+    seen: DVec3,
+    sieve: &Sieve,
+) -> bool {
+    let edges = EdgesAt { w: *rotation * moving.along, moving };
+    edges.may_touch(fixed, seen, sieve.slack, sieve.lowest, sieve.skin)
+}
+
 /// A moving edge at one rotation.
 struct EdgesAt<'a> {
     /// Its direction in the world.

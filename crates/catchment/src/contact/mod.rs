@@ -72,7 +72,6 @@ use mated::About;
 use search::Trees;
 use shape::Shape;
 use std::sync::OnceLock;
-use tree::Tree;
 use turned::Turned;
 
 /// From this product of their numbers of facets on, halves have trees, and heights and motions ask them.
@@ -122,10 +121,7 @@ impl Pair {
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
         let count = facets(&fixed) * facets(&moving);
         let lists = count < MOST_LISTED;
-        let trees = (count >= MANY).then(|| Trees {
-            fixed: Tree::over(&fixed_shapes, true),
-            moving: Tree::over(&moving_shapes, false),
-        });
+        let trees = (count >= MANY).then(|| Trees::over(&fixed_shapes, &moving_shapes));
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
         let (alignment, mated_height, homing) = (alignment.clone(), f64::NEG_INFINITY, OnceLock::new());

@@ -180,8 +180,14 @@ impl<'a> Nearby<'a> {
     }
 
     /// Whether the halves overlap with the COR at `position`, by more than touching.
-    pub fn overlaps(&self, position: DVec3) -> bool {
-        self.turned.pair.overlaps(&self.turned.rotation, position)
+    pub fn overlaps(&mut self, position: DVec3) -> bool {
+        let rotation = self.turned.rotation;
+        self.turned.overlaps(&rotation, position)
+    }
+
+    /// The same with the moving half at another rotation.
+    pub(crate) fn overlaps_at(&mut self, rotation: &DMat3, position: DVec3) -> bool {
+        self.turned.overlaps(rotation, position)
     }
 }
 

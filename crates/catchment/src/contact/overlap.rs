@@ -82,7 +82,7 @@ impl Pair {
     /// Whether the halves overlap with the COR at `position` and the moving half at `rotation`.
     pub(crate) fn overlaps(&self, rotation: &DMat3, position: DVec3) -> bool {
         match &self.trees {
-            Some(trees) => trees.overlap(self, rotation, position),
+            Some(trees) => trees.overlap(self, rotation, position, None),
             None => self.overlaps_by_plan(rotation, position),
         }
     }

@@ -9,9 +9,11 @@
 //! equals the first in the order of that list counts. Parts are bounded in single precision and left out where they are lower, or apart, by more than
 //! that rounds ([`super::bounds`]); features are bounded in double precision and left out where they are [`SURE`] to be lower.
 
+mod lists;
 mod near;
 mod pass;
 
+pub(super) use lists::{Lists, Passing, Touching};
 pub(super) use near::Gaps;
 
 use super::bounds::{Four, Placed, rounding};
@@ -64,6 +66,17 @@ fn meeting(fixed: &Leaf, moving: &Leaf) -> Option<Number> {
 pub(super) struct Trees {
     pub(super) fixed: Tree,
     pub(super) moving: Tree,
+    /// The largest distance of a feature of the moving half from its COR, in D.
+    pub(super) radius: f64,
+}
+
+impl Trees {
+    pub(super) fn over(fixed: &[Shape], moving: &[Shape]) -> Self {
+        let vertices = moving.iter().flat_map(|shape| &shape.vertices);
+        // Of a half that is a point at the COR any turn is none.
+        let radius = vertices.map(|v| v.length()).fold(f64::MIN_POSITIVE, f64::max);
+        Self { fixed: Tree::over(fixed, true), moving: Tree::over(moving, false), radius }
+    }
 }
 
 /// What is asked of heights.
@@ -100,11 +113,13 @@ impl Carried {
     }
 }
 
-/// The pair at one rotation.
-struct Turned<'a> {
+/// The pair at one pose.
+#[derive(Clone)]
+pub(super) struct Turned<'a> {
     pair: &'a Pair,
     trees: &'a Trees,
     rotation: DMat3,
+    position: DVec3,
     back: DMat3,
     counts: Counts,
     /// Which cones hold.
@@ -127,7 +142,7 @@ impl<'a> Turned<'a> {
         let (placed, rounding) = (Placed::new(rotation, position), rounding(extent));
         let (rotation, back) = (*rotation, rotation.transpose());
         let pairs = Child::meets;
-        Self { pair, trees, rotation, back, counts, cones, pairs, overhang, placed, rounding }
+        Self { pair, trees, rotation, position, back, counts, cones, pairs, overhang, placed, rounding }
     }
 
     /// Which of two is divided first: the larger one, in plan view.

@@ -4,7 +4,7 @@ use super::brute::SEAM;
 use super::candidates::{Candidates, Counts, FLUSH, Sieve, Window};
 use super::element::{Element, Meeting};
 use super::nearby::MET;
-use super::search::{Asked, Carried, Gaps, Number, Trees};
+use super::search::{Asked, Carried, Gaps, Lists, Number, Passing, Touching, Trees};
 use super::{Contact, Pair};
 use crate::pose::CorPose;
 use glam::{DMat3, DVec2, DVec3};
@@ -26,6 +26,9 @@ pub(super) struct Turned<'a> {
     carriers: [Option<Number>; 2],
     /// What the trees found near a few poses, the last one asked for last: a step returns to where it started, and goes on where it was tried.
     near: Vec<Near>,
+    /// What may touch and what may pass about where it is.
+    touching: Lists<Touching>,
+    passing: Lists<Passing>,
 }
 
 /// Poses near which what was found is kept: a step and all that is tried for it.
@@ -53,6 +56,8 @@ impl<'a> Turned<'a> {
             counts,
             carriers: [None; 2],
             near: Vec::new(),
+            touching: Lists::default(),
+            passing: Lists::default(),
         }
     }
 
@@ -186,7 +191,7 @@ impl<'a> Turned<'a> {
 
     /// Sees to it that what was found last is what has such gaps here, or more.
     fn look_near(&mut self, trees: &Trees, position: DVec3, gaps: Gaps) {
-        let Self { pair, rotation, counts, near, .. } = self;
+        let Self { pair, rotation, counts, near, touching, .. } = self;
         let holds = |near: &Near| {
             near.position == position
                 && near.rotation == *rotation
@@ -209,8 +214,16 @@ impl<'a> Turned<'a> {
         // What a motion tries is where it may go on.
         let least = MET + 2.0 * SEAM;
         let gaps = Gaps { deep: gaps.deep.max(least), front: gaps.front.max(least) };
-        trees.near(pair, rotation, position, *counts, gaps, &mut elements);
+        trees.near(pair, rotation, position, *counts, gaps, touching, &mut elements);
         near.push(Near { rotation: *rotation, position, counts: *counts, gaps, elements });
+    }
+
+    /// Whether the halves overlap with the COR at `position` and the moving half at a rotation.
+    pub(super) fn overlaps(&mut self, rotation: &DMat3, position: DVec3) -> bool {
+        match &self.pair.trees {
+            Some(trees) => trees.overlap(self.pair, rotation, position, Some(&mut self.passing)),
+            None => self.pair.overlaps(rotation, position),
+        }
     }
 
     fn foot(&self, element: &Element, position: DVec3, seam: f64) -> Option<DVec3> {

@@ -6,12 +6,14 @@
 //!          ╲             gap < 0: overlaps, at most `deep`
 //! ```
 
+use super::lists::{Lists, Pairs, Touching};
 use super::{Number, Side, Trees, Turned, meeting};
 use crate::contact::Pair;
 use crate::contact::bounds::Four;
 use crate::contact::candidates::Counts;
 use crate::contact::element::Element;
 use glam::{DMat3, DVec3};
+use std::marker::PhantomData;
 
 /// Which gaps count: down to −`deep`, up to `front`, which is no more.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +69,50 @@ impl Close<'_> {
     }
 }
 
+/// The search for pairs that are near each other, whichever way they face.
+struct Around<'a, P, F> {
+    turned: &'a Turned<'a>,
+    reach: f32,
+    pairs: PhantomData<P>,
+    see: F,
+    goes_on: bool,
+}
+
+impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
+    fn descend(&mut self, fixed: &Side<'_>, moving: &Side<'_>) {
+        let turned = self.turned;
+        if !self.goes_on {
+            return;
+        }
+        if fixed.child.is_leaf && moving.child.is_leaf {
+            let [fixed, moving] =
+                [turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child)];
+            self.goes_on = P::of(fixed, moving).is_none_or(|two| (self.see)(&two));
+            return;
+        }
+        let reach = [self.reach; 2];
+        let test = |f: &Four, m: &Four| {
+            (f.is_near(m, reach, None, turned.rounding).to_bitmask(), [0.0; 4], [0.0; 4])
+        };
+        turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
+    }
+}
+
+impl Turned<'_> {
+    /// Shows every pair of features within `reach` of each other, and some beyond, until `see` says not to go on; whether it saw all.
+    pub(super) fn near_each_other<P: Pairs>(&self, reach: f64, see: impl FnMut(&P::Two) -> bool) -> bool {
+        let turned = Turned { pairs: P::meet, cones: None, ..self.clone() };
+        let mut search =
+            Around { turned: &turned, reach: reach as f32, pairs: PhantomData::<P>, see, goes_on: true };
+        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
+            let [fixed, moving] =
+                [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
+            search.descend(&fixed, &moving);
+        }
+        search.goes_on
+    }
+}
+
 impl Trees {
     /// The elements with such gaps with the COR at `position`, in the order of the list of all.
     pub(in crate::contact) fn near(
@@ -76,10 +122,14 @@ impl Trees {
         position: DVec3,
         counts: Counts,
         gaps: Gaps,
+        lists: &mut Lists<Touching>,
         out: &mut Vec<(Number, Element)>,
     ) {
-        out.clear();
         let turned = Turned::new(pair, self, rotation, position, counts);
+        if lists.near(&turned, gaps, out) {
+            return;
+        }
+        out.clear();
         if let Some(([fixed, moving], [f, m])) = &turned.roots() {
             let [fixed, moving] =
                 [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });

@@ -1,5 +1,6 @@
 //! Whether halves of many facets overlap: edges and facets that come near each other, by branch and bound.
 
+use super::lists::{Lists, Passing};
 use super::{Side, Trees, Turned};
 use crate::contact::Pair;
 use crate::contact::bounds::Four;
@@ -37,9 +38,18 @@ impl<F: Fn(&Leaf, &Leaf) -> bool> Any<'_, F> {
 
 impl Trees {
     /// Whether the halves overlap with the COR at `position`.
-    pub(in crate::contact) fn overlap(&self, pair: &Pair, rotation: &DMat3, position: DVec3) -> bool {
+    pub(in crate::contact) fn overlap(
+        &self,
+        pair: &Pair,
+        rotation: &DMat3,
+        position: DVec3,
+        lists: Option<&mut Lists<Passing>>,
+    ) -> bool {
         let all = Counts { slack: f64::INFINITY, lowest: f64::NEG_INFINITY };
         let turned = Turned { pairs: Child::may_pass, ..Turned::new(pair, self, rotation, position, all) };
+        if let Some(found) = lists.and_then(|lists| lists.pass(&turned, 2.0 * MARGIN)) {
+            return found;
+        }
         let frames = Frames::new(rotation, position);
         let is = |f: &Leaf, m: &Leaf| {
             let (fixed, moving) = turned.shapes([f.shape, m.shape]);

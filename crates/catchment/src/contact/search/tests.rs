@@ -12,8 +12,7 @@ use proptest::prelude::*;
 /// The pair with trees, however small it is.
 fn with_trees(connector: &Connector) -> Pair {
     let mut pair = Pair::new(connector, &Alignment::new(DofSet::ALL, Mount::X));
-    let [fixed, moving] = [Tree::over(&pair.fixed_shapes, true), Tree::over(&pair.moving_shapes, false)];
-    pair.trees = Some(Trees { fixed, moving });
+    pair.trees = Some(Trees::over(&pair.fixed_shapes, &pair.moving_shapes));
     pair
 }
 
@@ -158,6 +157,53 @@ fn trees_of_a_funnel_find_what_the_list_holds() {
                 rotation: rotation(size * (3.0 * a).sin(), size * (5.0 * a).cos(), size * a),
             };
             agree(&pair, &pose, 0.02 * size, reach, 0.1 * size).unwrap();
+        }
+    }
+}
+
+/// Steps of all lengths, forth and back: what is kept for a neighbourhood answers as if nothing were kept.
+fn walk(pair: &Pair, start: &CorPose, seed: f64) {
+    let mut kept = Turned::new(pair);
+    let (mut at, mut turn) = (start.lateral.extend(0.0), start.rotation);
+    let mut seen = [0; 2];
+    for k in 0..80 {
+        let a = seed + f64::from(k);
+        let size = 10f64.powf(-1.0 - 4.0 * (7.0 * a).sin().abs());
+        let (before, was) = (at, turn);
+        at += DVec3::new((3.0 * a).sin(), (5.0 * a).cos(), 0.0) * size;
+        turn = rotation(size * (2.0 * a).sin(), size * (11.0 * a).cos(), size * (13.0 * a).sin()) * turn;
+        let pose = CorPose { lateral: at.truncate(), rotation: turn };
+        let Some(z) = pair.height(&pose) else {
+            (at, turn) = (before, was);
+            continue;
+        };
+        let counts = Counts { slack: 0.1 * size, lowest: if k % 9 == 4 { -2.0 } else { -0.5 } };
+        let [mut listed, _] = both(pair, &turn, counts);
+        kept.turn_trees(&turn, pair.trees.as_ref().unwrap(), counts);
+        for (below, reach) in [(0.0, 1e-5), (0.3 * size, size), (size, 0.1)] {
+            let position = pose.lateral.extend(z - below);
+            let found = contacts(&mut listed, position, reach);
+            assert_eq!(contacts(&mut kept, position, reach), found, "step {k}");
+            let overlap = pair.overlaps_by_plan(&turn, position);
+            assert_eq!(kept.overlaps(&turn, position), overlap, "step {k}");
+            seen = [seen[0] + found.len(), seen[1] + usize::from(overlap)];
+        }
+        // A step that is tried is taken back now and then.
+        if k % 3 == 0 {
+            (at, turn) = (before, was);
+        }
+    }
+    assert!(seen.iter().all(|count| *count > 0), "{seen:?}");
+}
+
+#[test]
+fn what_is_kept_for_a_neighbourhood_answers_as_the_list_does() {
+    for seed in 0..8 {
+        let seed = 0.37 * f64::from(seed);
+        let start = CorPose { lateral: DVec2::new(0.1, -0.05), rotation: rotation(0.05, 0.1, 0.2) };
+        walk(&funnel(300), &start, seed);
+        for which in [Family::Pyramid, Family::PinHole, Family::XFace3dLocking] {
+            walk(&family(which), &start, seed);
         }
     }
 }

@@ -258,7 +258,7 @@ impl Motion<'_> {
     }
 
     /// Whether the halves overlap at `state`.
-    pub(super) fn overlaps(&self, state: &State) -> bool {
-        self.pair.overlaps(&state.rotation, state.cor)
+    pub(super) fn overlaps(&mut self, state: &State) -> bool {
+        self.nearby.overlaps_at(&state.rotation, state.cor)
     }
 }
