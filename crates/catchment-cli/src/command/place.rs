@@ -227,8 +227,8 @@ fn is_file(said: &str) -> bool {
 /// What was chosen, what came next, and what to look at.
 fn told(found: &Proposal) -> Vec<String> {
     let design = found.problem.design();
-    let unit = design.unit.map_or("", LengthUnit::symbol);
-    let head = format!("width D {} {unit}, taken from the facets that can touch", design.width);
+    let unit = design.unit.unwrap_or(LengthUnit::Mm);
+    let head = format!("width D {} {}, taken from the facets that can touch", design.width, unit.symbol());
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
     let told = rows
         .iter()

@@ -348,3 +348,172 @@ fn files_are_placed_with_fewer_triangles() {
         run(home.path(), &[&PARTS[..], &["--simplify=0.1 mm", "--with-fixed", "parts/plug.stl"]].concat());
     assert!(told.starts_with("exit 2") && told.contains("--with-fixed"), "{told}");
 }
+
+/// What was printed, without the breaks of its lines.
+trait Unbroken {
+    fn unbroken(self) -> String;
+}
+
+impl Unbroken for String {
+    fn unbroken(self) -> String {
+        self.replace("\n  │ ", " ").replace("\n        ", " ")
+    }
+}
+
+/// Walls around a square hole, 6 mm high on a plate of 30 mm; its inner half width.
+fn socket(half: f64) -> [[[f64; 2]; 4]; 4] {
+    [
+        rectangle([-15.0, -half], [-15.0, 15.0]),
+        rectangle([half, 15.0], [-15.0, 15.0]),
+        rectangle([-half, half], [half, 15.0]),
+        rectangle([-half, half], [-15.0, -half]),
+    ]
+}
+
+/// A block of this half width between two heights, as drawn.
+fn plug(half: f64, ends: [f64; 2]) -> String {
+    obj(&[(&rectangle([-half, half], [-half, half]), ends, flat)])
+}
+
+/// An OBJ with every coordinate times a factor.
+fn scaled(text: &str, factor: f64) -> String {
+    let line = |line: &str| match line.strip_prefix("v ") {
+        Some(rest) => {
+            let side = |word: &str| format!(" {:.9}", word.parse::<f64>().unwrap() * factor);
+            format!("v{}\n", rest.split(' ').map(side).collect::<String>())
+        }
+        None => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
+}
+
+const TWO: [&str; 6] = ["place", "fixed.obj", "moving.obj", "--unit=mm", "-o", "d.toml"];
+
+/// What is drawn on its axis but not sunk slides along the approach; a few millimetres are no doubt, more are.
+#[test]
+fn what_is_drawn_apart_slides_to_first_contact() {
+    let fixed = on_a_plate(&socket(10.2));
+    for (apart, doubt) in [(0.0, false), (3.8, false), (5.5, false)] {
+        let home = two_parts(&fixed, &plug(10.0, [apart, 20.0 + apart]));
+        let told = run(home.path(), &TWO);
+        assert!(told.starts_with("exit 0") && told.contains("in doubt") == doubt, "{apart}\n{told}");
+        let checked = run(home.path(), &["check", "d.toml"]);
+        assert!(checked.starts_with("exit 0"), "{checked}");
+    }
+}
+
+/// Parts that are drawn together and do not hold are refused with the cause, not put somewhere else.
+#[test]
+fn an_assembly_that_does_not_hold_is_refused_with_its_cause() {
+    let ring = socket(10.2);
+    let ring: Vec<Prism<'_>> =
+        ring.iter().map(|wall| (&wall[..], [0.0, 6.0], flat as fn([f64; 2], f64) -> _)).collect();
+    let cases = [
+        (on_a_plate(&[]), plug(10.0, [0.0, 8.0]), ["flat: the parts meet", "--with-moving"]),
+        (obj(&ring), plug(10.0, [-4.0, 16.0]), ["passes through: no stop", "--with-fixed"]),
+    ];
+    for (fixed, moving, words) in cases {
+        let home = two_parts(&fixed, &moving);
+        let told = run(home.path(), &TWO).unbroken();
+        for words in words.into_iter().chain(["--drawn facing"]) {
+            assert!(told.starts_with("exit 2") && told.contains(words), "{words}\n{told}");
+        }
+        assert!(!home.path().join("d.toml").exists());
+    }
+}
+
+/// A lid exactly as large as its recess has no play: so much is said. A tenth of a millimetre lets it in.
+#[test]
+fn a_lid_as_large_as_its_recess_is_told() {
+    let parts = [
+        "place",
+        "fixed.obj",
+        "moving.obj",
+        "--unit=mm",
+        "--drawn=facing",
+        "--facing-fixed=+z",
+        "--facing-moving=-z",
+    ];
+    let home = two_parts(&on_a_plate(&socket(10.0)), &plug(10.000_01, [40.0, 60.0]));
+    let told = run(home.path(), &parts).unbroken();
+    assert!(
+        told.starts_with("exit 2") && told.contains("no play: ") && told.contains("6 mm into the other"),
+        "{told}"
+    );
+    let home = two_parts(&on_a_plate(&socket(10.1)), &plug(10.0, [40.0, 60.0]));
+    let told = run(home.path(), &parts);
+    assert!(told.starts_with("exit 0"), "{told}");
+}
+
+/// Mistakes in the files that leave no seat: each is named, with what to do.
+#[test]
+fn mistakes_in_the_files_are_named() {
+    let refused = |fixed: &str, moving: &str, more: &[&str]| {
+        let home = two_parts(fixed, moving);
+        let told = run(home.path(), &[&TWO[..], more].concat()).unbroken();
+        assert!(told.starts_with("exit 2"), "{told}");
+        told
+    };
+    let plate = on_a_plate(&[]);
+    // The same part twice, in a file and in a copy of it.
+    let told = refused(&plate, &plate, &[]);
+    assert!(told.contains("both files hold the same part: name the file of the other half"), "{told}");
+    let home = two_parts(&plate, &plate);
+    let told = run(home.path(), &["place", "fixed.obj", "fixed.obj", "--unit=mm"]).unbroken();
+    assert!(told.starts_with("exit 2") && told.contains("both halves are the same file"), "{told}");
+    // Both halves in one file.
+    let two = obj(&[
+        (&rectangle([-15.0, 15.0], [-15.0, 15.0]), [-5.0, 0.0], flat),
+        (&rectangle([-9.0, 9.0], [-9.0, 9.0]), [30.0, 40.0], flat),
+    ]);
+    let told = refused(&two, &plug(7.0, [0.0, 8.0]), &["--drawn=facing"]);
+    assert!(
+        told.contains("the file of the fixed half holds 2 separate bodies") && told.contains("Split"),
+        "{told}"
+    );
+}
+
+/// Inches that are read as millimetres make parts of a few millimetres.
+#[test]
+fn parts_of_a_few_millimetres_may_be_in_inches() {
+    let home = two_parts(
+        &scaled(&on_a_plate(&socket(10.2)), 1.0 / 25.4),
+        &scaled(&plug(10.0, [0.0, 20.0]), 1.0 / 25.4),
+    );
+    let told = run(home.path(), &TWO).unbroken();
+    assert!(told.contains("is the file in inches?") && told.contains("--unit in"), "{told}");
+}
+
+/// Lengths of parts of millimetres are told in mm where their files are in metres.
+#[test]
+fn metres_are_told_in_millimetres() {
+    let home = two_parts(&scaled(&on_a_plate(&socket(10.2)), 1e-3), &scaled(&plug(10.0, [0.0, 20.0]), 1e-3));
+    let told = run(home.path(), &["place", "fixed.obj", "moving.obj", "--unit=m", "-o", "d.toml"]);
+    assert!(
+        told.starts_with("exit 0")
+            && told.contains("6 mm deep, play 0.")
+            && told.contains(" mm to each side"),
+        "{told}"
+    );
+}
+
+/// What is wrong with both files alike is said once.
+#[test]
+fn step_without_a_python_is_told_once() {
+    let home = tempfile::tempdir().unwrap();
+    for name in ["a.step", "b.step"] {
+        fs::write(
+            home.path().join(name),
+            "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n",
+        )
+        .unwrap();
+    }
+    let output = catchment(home.path())
+        .args(["place", "a.step", "b.step"])
+        .env("CATCHMENT_PYTHON", home.path().join("no-python"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert_eq!(told.matches("CATCHMENT_PYTHON").count(), 1, "{told}");
+}

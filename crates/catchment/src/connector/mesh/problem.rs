@@ -203,7 +203,7 @@ pub enum MeshProblem {
         at: Point,
     },
     /// An edge with a triangle on one side only.
-    #[error("the mesh is open along the edge of {place} from {from} to {to}: close the hole")]
+    #[error("the mesh is open along the edge of {place} from {from} to {to}: close the hole (MeshLab: Close Holes; Python: pymeshfix)")]
     Open {
         /// The triangle on the one side.
         place: Place,

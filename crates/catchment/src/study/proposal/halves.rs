@@ -2,10 +2,11 @@
 
 use super::{Beside, PartFile, ProposalError, Settings, file};
 use crate::connector::{Half, Side, of_half};
-use crate::design::{ConnectorSpec, FileSpec, FileUnit, HalfSpec, LengthUnit, SourceText};
+use crate::design::{ConnectorSpec, FileSpec, FileUnit, Findings, HalfSpec, LengthUnit, SourceText};
 use crate::exec::Exec;
 use crate::problem::{Draft, findings};
 use glam::DVec3;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Reads them.
@@ -20,7 +21,7 @@ pub(super) fn read(
         (Ok(fixed), Ok(moving)) => [fixed, moving],
         (fixed, moving) => {
             let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
-            return Err(ProposalError::Problem(findings(&all).into()));
+            return Err(ProposalError::Problem(said_once(findings(&all)).into()));
         }
     };
     if settings.unit.is_none() {
@@ -37,6 +38,16 @@ pub(super) fn read(
         }
     }
     Ok(halves)
+}
+
+/// What is wrong with both files alike is said of the first alone.
+fn said_once(mut findings: Findings) -> Findings {
+    let mut said = HashSet::new();
+    findings.list.retain(|finding| {
+        let reason = finding.message.split_once(": ").map_or(finding.message.as_str(), |(_, reason)| reason);
+        said.insert(reason.to_owned())
+    });
+    findings
 }
 
 fn no_unit(part: &PartFile, half: &Half) -> ProposalError {

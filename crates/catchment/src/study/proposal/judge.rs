@@ -9,6 +9,8 @@
 //! all round, which does not matter; where walls stop them, but later than a seat's
 //! play may be without being said ([`Docked::MOST_PLAY`]), the play is what counts as docked.
 
+use super::largest;
+use super::sink::Sunk;
 use super::way::Lie;
 use crate::connector::{Connector, Half};
 use crate::contact::mated::{MatedProblem, problems_on, round_half};
@@ -22,6 +24,12 @@ use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError};
 use glam::{DMat3, DVec2};
 use std::f64::consts::TAU;
 
+/// A seat that is as steep as this scores one half.
+pub(super) const STEEP: f64 = 3.5;
+/// Halves of more facets than this take long to follow.
+const MANY: usize = 1500;
+/// Heights that rise by less than this share of a step are level.
+const FALLS: f64 = 1e-2;
 /// How far apart what is drawn docked may be, in D.
 const MOST_APART: f64 = 0.05;
 /// How far off the climb is asked, in D, and what of it counts at most.
@@ -73,6 +81,11 @@ pub(super) struct Judged {
     /// How much a half climbs that is off, 0 to 1, and the share of the smaller part's broadest side that can touch.
     pub(super) climb: f64,
     pub(super) shared: f64,
+    /// How high the origin of the turned moving half is.
+    pub(super) lift: f64,
+    /// What a lattice says of it, where one was asked, and which of the places it is: those that differ by a turn about the approach are one.
+    pub(super) sunk: Option<Sunk>,
+    pub(super) class: usize,
     /// What it holds, or why it is no seat; nothing while nobody asked.
     pub(super) seat: Option<Result<Seat, String>>,
     /// The halves in D, mated.
@@ -105,7 +118,60 @@ impl Judged {
                 HELD[lateral]
             }
         };
-        (self.climb * self.shared * held).max(0.0)
+        let share = match &self.sunk {
+            Some(sunk) => sunk.steep / (sunk.steep + STEEP),
+            None => self.climb * self.shared,
+        };
+        (share * held).max(0.0)
+    }
+
+    /// Where a lattice found it.
+    pub(super) fn found(self, sunk: Sunk, class: usize) -> Self {
+        Self { sunk: Some(sunk), class, ..self }
+    }
+
+    /// Whether exact motions take long.
+    pub(super) fn is_slow(&self) -> bool {
+        let halves = [&self.connector.fixed, &self.connector.moving];
+        halves.into_iter().flat_map(|half| &half.surfaces).map(|surface| surface.facets.len()).sum::<usize>()
+            > MANY
+    }
+
+    /// Up to where errors are worth looking at, as shares of 1 D and 90 degrees, without a motion: four times as far as the heights fall all the way to the
+    /// seat along each error alone.
+    pub(super) fn ranges(&self, seat: &Seat, exec: &Exec) -> [f64; 5] {
+        /// Heights along the way.
+        const STEPS: u32 = 12;
+        let pair = Pair::new(&self.connector, &Alignment::new(seat.free, Mount::X));
+        let height = |error: [f64; 5]| {
+            pair.height(&CorPose::from_error(&PoseError::from_array(error), 0.0, seat.free))
+        };
+        let mut ranges = [1.0; 5];
+        for dof in seat.free.iter() {
+            let whole = if dof.is_rotation() { 0.5 * std::f64::consts::PI } else { 1.0 };
+            let falls = |sign: f64, share: f64| {
+                let far = 0.25 * sign * share * whole;
+                let at = |k: u32| {
+                    let mut error = [0.0; 5];
+                    error[dof.index()] = far * f64::from(k) / f64::from(STEPS);
+                    height(error)
+                };
+                let step = far.abs() / f64::from(STEPS);
+                let mut before = pair.mated_height();
+                // Level ground is a seat's play, and a rim where it is higher.
+                exec.is_cancelled()
+                    || (1..=STEPS).all(|k| {
+                        let Some(next) = at(k) else { return false };
+                        let rises = next - before >= FALLS * step;
+                        let is_seated = (next - pair.mated_height()).abs() <= pair.alignment.docked.depth;
+                        before = next;
+                        rises || is_seated
+                    })
+            };
+            ranges[dof.index()] =
+                [-1.0, 1.0].map(|sign| largest(|share| falls(sign, share))).into_iter().fold(0.0, f64::max);
+        }
+        ranges
     }
 
     /// Asks what it holds, which takes the longest.
@@ -124,6 +190,7 @@ pub(super) fn judge(
     lie: Lie,
     offset: DVec2,
     others: &[DVec2],
+    sunk: Option<&Sunk>,
     told: Told,
 ) -> Result<Judged, Refusal> {
     const APART: &str = "they pass each other by";
@@ -138,8 +205,28 @@ pub(super) fn judge(
     let pair = Pair::new(&Connector::from_halves(fixed.clone(), moving.clone()), &nothing_free());
     let height = |pair: &Pair, lateral: DVec2| pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
     let mut lift = height(&pair, offset).ok_or(APART)?;
-    let at = |offset: DVec2| moving.mapped(move |p| p + offset.extend(0.0));
     let mut offset = offset;
+    if let Some(sunk) = sunk {
+        // A lattice is off by a cell: where the half stands on the rim of its hole it may be beside.
+        let on_the_rim = |lift: f64| lift > sunk.height + 0.5 * sunk.climb;
+        let near = others.iter().copied().filter(|other| other.distance(sunk.offset) < 2.0 * sunk.cell);
+        let mut around = near.chain(rings(sunk.cell).map(|by| sunk.offset + by));
+        while on_the_rim(lift)
+            && let Some(other) = around.next()
+        {
+            if let Some(z) = height(&pair, other).filter(|z| *z < lift) {
+                (offset, lift) = (other, z);
+            }
+        }
+        if on_the_rim(lift) {
+            let (deep, cell) = (told.length(sunk.climb), told.length(sunk.cell));
+            let why = format!(
+                "no play: one would sink {deep} into the other if it were {cell} narrower on each side; give it some play"
+            );
+            return Err(Refusal { by: 0.0, why });
+        }
+    }
+    let at = |offset: DVec2| moving.mapped(move |p| p + offset.extend(0.0));
     let wide = width::width(&fixed, &at(offset), lift).ok_or(APART)?;
     if let Lie::Facing { .. } = lie {
         for other in others {
@@ -181,11 +268,35 @@ pub(super) fn judge(
     let own = OwnSpec { drawn, face_height: None, ..OwnSpec::new(0.0, nothing(), nothing()) };
     let connector = face::found(Connector::from_halves(scaled(&fixed), scaled(&placed)), &own);
     let climb = climb(&Pair::new(&connector, &nothing_free()));
-    Ok(Judged { lie, width, is_widened, center, offset, climb, shared, seat: None, connector })
+    Ok(Judged {
+        lie,
+        width,
+        is_widened,
+        center,
+        offset,
+        climb,
+        shared,
+        lift,
+        sunk: None,
+        class: 0,
+        seat: None,
+        connector,
+    })
 }
 
 const fn nothing_free() -> Alignment {
     Alignment::new(DofSet::EMPTY, Mount::X)
+}
+
+/// Offsets around none, up to a cell and a half.
+fn rings(cell: f64) -> impl Iterator<Item = DVec2> {
+    let steps = [-3i32, -2, -1, 0, 1, 2, 3];
+    let mut all: Vec<DVec2> = steps
+        .iter()
+        .flat_map(|i| steps.iter().map(move |j| 0.5 * cell * DVec2::new(f64::from(*i), f64::from(*j))))
+        .collect();
+    all.sort_by(|a, b| a.length().total_cmp(&b.length()));
+    all.into_iter().skip(1)
 }
 
 /// How far from where it is the half lies deepest near, in the middle of its play.

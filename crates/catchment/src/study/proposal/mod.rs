@@ -1,27 +1,32 @@
 //! Two parts as they come from CAD, and the design that docks them: how they lie, where they seat, how wide they are.
 //!
 //! ```text
-//!   two files ──▶ drawn docked, in one frame?   6 directions of approach: moved to first contact, how far, does it hold
-//!             └─▶ each in its own frame?        6 × 6 facings × 4 turns, all lateral offsets: where one sinks into the other
-//!                        └──▶ ranked by what a half climbs that is off, and by how much of the parts can touch ──▶ a design file
+//!   two files ──▶ drawn docked, in one frame?   6 approaches on a lattice near the drawn pose ──▶ exact contact of those that hold
+//!             └─▶ each in its own frame?        6 × 24 views, all lateral offsets on a lattice ──▶ exact contact of the steepest places
+//!                        └──▶ ranked by how steep the seat is ──▶ a design file
 //! ```
 //!
-//! The score of a candidate is climb · shared: how much a half that is 0.1 D and 0.3 D off has to climb, on average all around, 1 standing
-//! for 0.3 D or more; and the area that can touch as a share of the broadest side of the smaller part's box. What holds x and y not both
-//! counts less, what is no seat a tenth.
+//! steep = climb / (e + play): how far the moving half climbs before it leaves the seat, and how far it moves to each side at half of that;
+//! e is half a millimetre for parts of a few centimetres. The score of a candidate is steep / (steep + 3.5). What holds x and y not both counts less,
+//! what is no seat a tenth. A candidate that no lattice found (a shallow groove) scores climb · shared as exact contact has them: how much a half
+//! climbs that is 0.1 D and 0.3 D off, and the area that can touch as a share of the broadest side of the smaller part's box.
+//!
+//! Parts that are drawn in one frame, near each other and without overlap, are an assembly: they dock as drawn or are refused with the cause.
 //!
 //! D is the larger lateral extent of the facets that can touch (`contact::width`). The centre of rotation is put into the face
 //! centre, which no geometry says better. The design is read back and checked as any other before it is given.
 //!
 //! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes, need
-//! a word; a proposal whose second best is nearly as good says so.
+//! a word. A proposal with a runner-up of 0.4 of its steepness, or a weak one, is "in doubt" and says so.
 
+mod cause;
 mod doubt;
 mod file;
 mod halves;
 mod judge;
 mod remedy;
 mod search;
+mod sink;
 mod way;
 
 pub use way::{Lie, Way};
@@ -99,6 +104,15 @@ pub struct Candidate {
     pub lie: Lie,
     /// 0 to 1; the more, the likelier.
     pub score: f64,
+    /// How far the moving half climbs before it leaves, and how far it moves to each side at half of that, in the unit of the design;
+    /// where a lattice found it.
+    pub sunk: Option<[f64; 2]>,
+    /// climb / (e + play); 0 where no lattice found it.
+    pub steep: f64,
+    /// Whether it hardly rises as far as a lattice looks: what lies in a tray, and not in a seat.
+    pub is_loose: bool,
+    /// Which place it is: candidates of one place differ by a turn about the approach.
+    pub class: usize,
     /// How much a half climbs that is off, 0 to 1.
     pub climb: f64,
     /// The area that can touch as a share of the broadest side of the smaller part's box.
@@ -185,10 +199,11 @@ pub enum ProposalError {
 }
 
 /// Candidates that a refusal tells.
-const MOST_TOLD: usize = 6;
+const MOST_TOLD: usize = 4;
 
 fn listed(tried: &[String]) -> String {
-    tried.iter().take(MOST_TOLD).fold(String::new(), |told, line| told + "\n  " + line)
+    let told: Vec<&str> = tried.iter().take(MOST_TOLD).map(String::as_str).collect();
+    if told.is_empty() { String::new() } else { format!(": {}", told.join("; ")) }
 }
 
 fn told(size: [f64; 3]) -> String {
@@ -201,6 +216,51 @@ const LEAST: f64 = 0.02;
 const NEARLY: f64 = 0.8;
 /// Parts whose boxes are nearer than this, in the smaller one's middle extent, may be drawn docked.
 const NEAR: f64 = 0.05;
+/// Places that exact contact judges, the least steep as a share of the steepest.
+const JUDGED: usize = 5;
+const JUDGED_STEEP: f64 = 0.3;
+
+/// Both halves, as exact contact and as lattices see them. Lengths in the smaller one's middle extent.
+struct Parts<'a> {
+    halves: [&'a Half; 2],
+    triangles: [sink::Triangles; 2],
+    grain: sink::Grain,
+    settings: &'a Settings,
+    /// How lengths are told.
+    told: Told,
+}
+
+impl<'a> Parts<'a> {
+    fn new(halves: [&'a Half; 2], grain: sink::Grain, settings: &'a Settings, told: Told) -> Self {
+        Self { halves, triangles: halves.map(sink::triangles), grain, settings, told }
+    }
+
+    fn lattices(&self) -> [&sink::Triangles; 2] {
+        self.triangles.each_ref()
+    }
+}
+
+/// What was judged, and what was refused.
+#[derive(Default)]
+struct Looked {
+    judged: Vec<Judged>,
+    refused: Vec<Refusal>,
+}
+
+impl Looked {
+    fn add(&mut self, found: Vec<Result<Judged, Refusal>>) {
+        for one in found {
+            match one {
+                Ok(one) => self.judged.push(one),
+                Err(refusal) => self.refused.push(refusal),
+            }
+        }
+    }
+
+    fn has_seat(&self) -> bool {
+        self.judged.first().is_some_and(is_seat)
+    }
+}
 
 /// Proposes a design for two parts; it will lie at `place`, to whose folder the parts are written relative.
 ///
@@ -216,8 +276,10 @@ pub fn propose(
     exec.check()?;
     let unit = halves.each_ref().map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
-    let pair = [&fixed, &moving];
-    let told = Told { scale: unit, unit: design_unit(settings).symbol() };
+    let shown = shown_unit(design_unit(settings));
+    let told = Told { scale: unit * design_unit(settings).metres() / shown.metres(), unit: shown.symbol() };
+    let millimetre = 1e-3 / (unit * design_unit(settings).metres());
+    let both = Parts::new([&fixed, &moving], sink::Grain::new(millimetre), settings, told);
     let pinned = settings.facing.iter().any(Option::is_some);
     let may_be = |frames: Frames| match settings.frames {
         Frames::Any => {
@@ -226,84 +288,242 @@ pub fn propose(
         }
         known => known == frames,
     };
-    let (mut judged, mut refused, mut nowhere) = (Vec::new(), Vec::new(), None);
-    let meet = settings.frames != Frames::Any || settings.approach.is_some() || are_near(pair);
+    let mut looked = Looked::default();
+    let (mut doubts, mut why, mut frame) = (Vec::new(), None, cause::Frame::Own);
+    let meet = settings.frames != Frames::Any || settings.approach.is_some() || are_near(both.halves);
     if may_be(Frames::Assembled) && meet {
-        let ways = ways(settings.approach);
-        let found = exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
-            let lie = Lie::Assembled { approach: ways[k] };
-            judge(pair, lie, DVec2::ZERO, &[], told).map_err(|refusal| refusal.of(lie))
-        });
-        sort(found, &mut judged, &mut refused);
-        rank(&mut judged, settings.free, told, exec)?;
-    }
-    let docked = judged.first().is_some_and(is_seat);
-    if may_be(Frames::Facing) && !docked {
-        let found = facing(pair, settings, told, exec)?;
-        if found.is_empty() {
-            nowhere =
-                Some("facing each other: nowhere along the axes does one sink into the other".to_owned());
+        let looks = docked(&both, &mut looked, exec)?;
+        if settings.frames == Frames::Any && settings.approach.is_none() {
+            frame = cause::frame(both.lattices(), both.grain);
         }
-        sort(found, &mut judged, &mut refused);
-        rank(&mut judged, settings.free, told, exec)?;
+        let may_be_assembly = frame != cause::Frame::Own;
+        if !looked.has_seat() {
+            if may_be_assembly && let Some(doubt) = let_down(&both, &looks, &mut looked, exec)? {
+                doubts.push(doubt);
+            }
+            // Of frames of their own it says nothing.
+            why = (may_be_assembly || !may_be(Frames::Facing)).then(|| cause::of(&looks, told));
+        }
     }
-    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, told)).collect();
+    let is_assembly = frame == cause::Frame::Assembly;
+    let faces = may_be(Frames::Facing) && !is_assembly;
+    if faces && !looked.has_seat() {
+        anywhere(&both, &mut looked, exec)?;
+        if frame == cause::Frame::Perhaps {
+            doubts.push(cause::ELSEWHERE.to_owned());
+        }
+    }
+    let Looked { judged, mut refused } = looked;
+    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, unit, told)).collect();
     let best = judged.first().filter(|best| is_seat(best));
     let Some((best, Some(Ok(seat)))) = best.map(|best| (best, &best.seat)) else {
         let slack = |one: &Candidate| {
-            let flat = "a half that is off does not climb";
+            let flat = "flat: a half that is off does not climb";
             let why = if let Held::Refused(why) = &one.seat { why } else { flat };
-            format!("{}{}: {why}", one.lie, one.place_among(&candidates, told.unit))
+            format!("{}{}: {why}", one.lie, one.place_among(&candidates, design_unit(settings)))
         };
         // What is nearest to docking first.
         refused.sort_by(|a, b| a.by.total_cmp(&b.by));
         let refused = refused.into_iter().map(|refusal| refusal.why);
-        let tried = candidates.iter().map(slack).chain(nowhere).chain(refused).collect();
-        let faces = may_be(Frames::Facing);
-        let remedy = if faces { remedy::of(pair, settings, told, exec)? } else { None };
+        let nowhere =
+            faces.then_some("facing each other: nowhere along the axes does one sink into the other");
+        let nowhere = nowhere.filter(|_| candidates.is_empty()).map(ToOwned::to_owned);
+        let tried =
+            why.into_iter().chain(candidates.iter().map(slack)).chain(nowhere).chain(refused).collect();
+        let remedy = match cause::of_files(parts, both.halves, settings, unit) {
+            Some(mistake) => Some(mistake),
+            None if is_assembly => Some(cause::OWN_FRAMES.to_owned()),
+            None if faces => remedy::of(&both, exec)?,
+            None => None,
+        };
         return Err(ProposalError::NoSeat { tried, remedy });
     };
-    let mut doubts = doubt::of(&candidates, settings);
+    doubts.extend(doubt::of(&candidates, settings));
     if best.score() < remedy::WEAK
-        && may_be(Frames::Facing)
-        && let Some((score, told)) = remedy::mirrored(pair, settings, told, exec)?
+        && faces
+        && let Some((score, told)) = remedy::mirrored(&both, exec)?
         && score * NEARLY > best.score()
     {
         doubts.push(told);
     }
+    doubts.extend(cause::inches(both.halves, settings, unit));
     let text = |ranges: &[f64; 5]| file::text(parts, settings, best, *seat, unit, ranges);
     let problem = |text: &str| -> Result<Problem, ProblemError> {
         Draft::read(SourceText::new(place, text))?.build_on(exec)?.checked()
     };
-    let whole = text(&[1.0; 5]);
-    let wide = problem(&whole)?;
-    let ranges = ranges(&wide, exec)?;
-    let (text, problem) = if ranges == [1.0; 5] {
-        (whole, wide)
-    } else {
-        let text = text(&ranges);
+    let (text, problem) = if best.is_slow() && seat.settle.is_none() {
+        let text = text(&best.ranges(seat, exec));
+        exec.check()?;
         let problem = problem(&text)?;
         (text, problem)
+    } else {
+        let whole = text(&[1.0; 5]);
+        let wide = problem(&whole)?;
+        let ranges = ranges(&wide, exec)?;
+        if ranges == [1.0; 5] {
+            (whole, wide)
+        } else {
+            let text = text(&ranges);
+            let problem = problem(&text)?;
+            (text, problem)
+        }
     };
     doubts.extend(problem.design().unit.and_then(|unit| doubt::of_size(problem.design().width, unit)));
     Ok(Proposal { text, problem, candidates, doubts })
 }
 
+/// The unit in which a person says lengths of parts: millimetres where a file is in metres.
+const fn shown_unit(unit: LengthUnit) -> LengthUnit {
+    match unit {
+        LengthUnit::M => LengthUnit::Mm,
+        other => other,
+    }
+}
+
+/// A length given in the unit of the design, as it is told.
+fn shown_length(value: f64, unit: LengthUnit) -> String {
+    let shown = shown_unit(unit);
+    format!("{} {}", number(value * unit.metres() / shown.metres()), shown.symbol())
+}
+
+/// Parts that are drawn docked: what a lattice says of each approach; of those that hold, or that are asked for, what exact contact says.
+fn docked(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<Vec<(Way, sink::Drawn)>, Cancelled> {
+    let ways = ways(both.settings.approach);
+    let looks = exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
+        (ways[k], sink::drawn(both.lattices(), ways[k], false, both.grain))
+    });
+    exec.check()?;
+    let holds = looks.iter().filter_map(|(way, drawn)| match drawn {
+        sink::Drawn::Holds(sunk) => Some((*way, *sunk)),
+        _ => None,
+    });
+    let holds: Vec<(Way, sink::Sunk)> = holds.collect();
+    let found =
+        exec.each(holds.len(), usize::MAX, "seats", |k, exec| let_in(both, holds[k].0, holds[k].1, exec));
+    looked.add(found);
+    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    if !looked.has_seat() {
+        // A groove holds one way only, which is none to a lattice.
+        let rests = |drawn: &sink::Drawn| matches!(drawn, sink::Drawn::Flat { .. });
+        let is_asked = both.settings.frames == Frames::Assembled || both.settings.approach.is_some();
+        let flat: Vec<Way> =
+            looks.iter().filter(|(_, drawn)| is_asked || rests(drawn)).map(|(way, _)| *way).collect();
+        let found = exec.each(flat.len(), usize::MAX, "approaches", |k, _| {
+            let lie = Lie::Assembled { approach: flat[k] };
+            judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie))
+        });
+        looked.add(found);
+        rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    }
+    Ok(looks)
+}
+
+/// A place near the drawn pose, as drawn where exact contact holds there, and otherwise where it is deepest nearby.
+fn let_in(both: &Parts<'_>, way: Way, sunk: sink::Sunk, exec: &Exec) -> Result<Judged, Refusal> {
+    let lie = Lie::Assembled { approach: way };
+    let drawn = judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie));
+    let near = |found: &Judged| {
+        let lift = sunk.height + 0.5 * sunk.climb;
+        found.lift <= lift
+    };
+    if let Ok(found) = drawn
+        && near(&found)
+    {
+        let mut found = found.found(sunk, 0);
+        found.ask(both.settings.free, both.told, exec);
+        if matches!(found.seat, Some(Ok(_))) {
+            return Ok(found);
+        }
+    }
+    let lie = sunk.lie;
+    judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.told)
+        .map(|found| found.found(sunk, 0))
+        .map_err(|refusal| refusal.of(lie))
+}
+
+/// Parts that are drawn apart: let down along the approach to where they hold, however far that is; what to say of it.
+fn let_down(
+    both: &Parts<'_>,
+    looks: &[(Way, sink::Drawn)],
+    looked: &mut Looked,
+    exec: &Exec,
+) -> Result<Option<String>, Cancelled> {
+    let apart: Vec<Way> = looks
+        .iter()
+        .filter(|(_, drawn)| matches!(drawn, sink::Drawn::Apart(_)))
+        .map(|(way, _)| *way)
+        .collect();
+    let found = exec.each(apart.len(), usize::MAX, "approaches", |k, exec| {
+        let sink::Drawn::Holds(sunk) = sink::drawn(both.lattices(), apart[k], true, both.grain) else {
+            return None;
+        };
+        Some(let_in(both, apart[k], sunk, exec))
+    });
+    looked.add(found.into_iter().flatten().collect());
+    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    let best = looked.judged.first().filter(|best| is_seat(best)).and_then(|best| best.sunk);
+    Ok(best.map(|sunk| {
+        format!(
+            "in doubt: as drawn the parts are {} apart; the moving part slides so far along the approach to first contact",
+            both.told.length(sunk.height.abs())
+        )
+    }))
+}
+
+/// Parts in frames of their own: the places where one sinks into the other, or the shallow ones where none does.
+fn anywhere(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<(), Cancelled> {
+    looked.add(sunk(both, exec)?);
+    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    if !looked.has_seat() {
+        looked.add(facing(both.halves, both.settings, both.told, exec)?);
+        rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    }
+    Ok(())
+}
+
+/// The steepest places, as exact contact judges them.
+fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
+    let facing = both.settings.facing.map(ways);
+    let found = sink::sinks(both.lattices(), [&facing[0], &facing[1]], both.grain, exec)?;
+    let classes = sink::classes(both.lattices()[1], &found, both.grain);
+    let most = classes.first().map_or(0.0, |class| class.best.steep);
+    let places: Vec<(usize, sink::Sunk)> = classes
+        .iter()
+        .take(JUDGED)
+        .enumerate()
+        .filter(|(_, class)| class.best.steep >= JUDGED_STEEP * most)
+        .flat_map(|(k, class)| {
+            let turned = class.turned.filter(|turned| k == 0 && turned.steep >= NEARLY * most);
+            std::iter::once(class.best).chain(turned).map(move |sunk| (k, sunk))
+        })
+        .collect();
+    Ok(exec.each(places.len(), usize::MAX, "seats", |k, _| {
+        let (class, sunk) = places[k];
+        judge(
+            both.halves,
+            sunk.lie,
+            sunk.offset,
+            &round_numbers(both.halves, sunk.lie),
+            Some(&sunk),
+            both.told,
+        )
+        .map(|found| found.found(sunk, class))
+        .map_err(|refusal| refusal.of(sunk.lie))
+    }))
+}
+
 /// Up to where errors are worth looking at, as shares of what they are looked at in first: four times as far as each alone is corrected.
 fn ranges(problem: &Problem, exec: &Exec) -> Result<[f64; 5], Cancelled> {
-    const LOOKS: i32 = 5;
     let alignment = problem.alignment();
     let sides: Vec<(Dof, f64)> = alignment.free.iter().flat_map(|dof| [(dof, -1.0), (dof, 1.0)]).collect();
     let found = exec.each(sides.len(), usize::MAX, "errors", |k, exec| {
         let (dof, sign) = sides[k];
-        let docks = |share: &f64| {
+        let docks = |share: f64| {
             let mut error = [0.0; 5];
             error[dof.index()] = 0.25 * sign * share * alignment.half_range(dof);
             exec.is_cancelled() || problem.follow(&PoseError::from_array(error)).outcome == Outcome::Aligned
         };
-        let mut shares = (0..LOOKS).map(|k| f64::from(-k).exp2());
-        let least = f64::from(1 - LOOKS).exp2();
-        shares.find(docks).unwrap_or(least)
+        largest(docks)
     });
     exec.check()?;
     let mut ranges = [1.0; 5];
@@ -312,6 +532,17 @@ fn ranges(problem: &Problem, exec: &Exec) -> Result<[f64; 5], Cancelled> {
         ranges[dof.index()] = of.fold(0.0, f64::max);
     }
     Ok(ranges)
+}
+
+/// The largest of 1, 1/2, 1/4, 1/8 and 1/16 that is accepted, by bisection; the last is not asked.
+fn largest(accepts: impl Fn(f64) -> bool) -> f64 {
+    const HALVED: i32 = 4;
+    let (mut few, mut many) = (0, HALVED);
+    while few < many {
+        let halved = i32::midpoint(few, many);
+        if accepts(f64::from(-halved).exp2()) { many = halved } else { few = halved + 1 }
+    }
+    f64::from(-many).exp2()
 }
 
 /// Parts in frames of their own, judged wherever one may sink into the other.
@@ -325,7 +556,7 @@ fn facing(
     let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
     Ok(exec.each(places.len(), usize::MAX, "seats", |k, _| {
         let search::Place { lie, offset, .. } = places[k];
-        judge(pair, lie, offset, &round_numbers(pair, lie), told).map_err(|refusal| refusal.of(lie))
+        judge(pair, lie, offset, &round_numbers(pair, lie), None, told).map_err(|refusal| refusal.of(lie))
     }))
 }
 
@@ -364,15 +595,6 @@ fn ways(known: Option<Way>) -> Vec<Way> {
     known.map_or_else(|| Way::ALL.to_vec(), |way| vec![way])
 }
 
-fn sort(found: Vec<Result<Judged, Refusal>>, judged: &mut Vec<Judged>, refused: &mut Vec<Refusal>) {
-    for one in found {
-        match one {
-            Ok(one) => judged.push(one),
-            Err(refusal) => refused.push(refusal),
-        }
-    }
-}
-
 /// Whether the boxes of the parts overlap or nearly touch.
 fn are_near([fixed, moving]: [&Half; 2]) -> bool {
     let ((a, b), (c, d)) = (fixed.bounds(), moving.bounds());
@@ -389,19 +611,23 @@ fn round_numbers([fixed, moving]: [&Half; 2], lie: Lie) -> [DVec2; 2] {
     [middle(fixed, &turns[0]) - middle(moving, &turns[1]), DVec2::ZERO]
 }
 
-fn candidate(judged: &Judged, told: Told) -> Candidate {
-    let Judged { lie, width, climb, shared, seat, offset, .. } = judged;
-    let unit = told.scale;
+/// A candidate as a person sees it: lengths times `unit` are in the unit of the design.
+fn candidate(judged: &Judged, unit: f64, told: Told) -> Candidate {
+    let Judged { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
     Candidate {
         lie: *lie,
         score: judged.score(),
+        sunk: sunk.map(|sunk| [sunk.climb * unit, sunk.play * unit]),
+        steep: sunk.map_or(0.0, |sunk| sunk.steep),
+        is_loose: sunk.is_some_and(|sunk| sunk.is_loose),
+        class: *class,
         climb: climb.max(0.0),
         shared: *shared,
         width: width * unit,
         offset: (*offset * unit).to_array(),
         seat: match seat {
             None => Held::NotAsked,
-            Some(Ok(judge::Seat { settle: Some(off), .. })) => settles(off, width * unit, told.unit),
+            Some(Ok(judge::Seat { settle: Some(off), .. })) => settles(off, width * told.scale, told.unit),
             Some(Ok(_)) => Held::Holds,
             Some(Err(reason)) => Held::Refused(reason.clone()),
         },
@@ -428,17 +654,26 @@ fn settles(off: &PoseError, width: f64, unit: &str) -> Held {
 
 impl Candidate {
     /// Where the moving part is, in words to put behind how it lies, where others lie the same way; nothing otherwise.
-    pub fn place_among(&self, all: &[Self], unit: &str) -> String {
+    pub fn place_among(&self, all: &[Self], unit: LengthUnit) -> String {
         if all.iter().filter(|other| other.lie == self.lie).count() < 2 {
             return String::new();
         }
-        let [x, y] = self.offset.map(number);
-        format!(", its origin at ({x}, {y}) {unit}")
+        let shown = shown_unit(unit);
+        let [x, y] = self.offset.map(|side| number(side * unit.metres() / shown.metres()));
+        format!(", its origin at ({x}, {y}) {}", shown.symbol())
     }
 
     /// The candidate in words, beside all of them, with lengths in this unit.
-    pub fn told(&self, all: &[Self], unit: &str) -> String {
+    pub fn told(&self, all: &[Self], unit: LengthUnit) -> String {
         let Self { lie, score, climb, shared, seat, .. } = self;
+        if let Some([deep, play]) = self.sunk {
+            return format!(
+                "{score:.2}  {lie}{}: {} deep, play {} to each side, {seat}",
+                self.place_among(all, unit),
+                shown_length(deep, unit),
+                shown_length(play, unit)
+            );
+        }
         format!(
             "{score:.2}  {lie}{}: climbs {:.0} %, {:.0} % of the smaller part's broad side can touch, {seat}",
             self.place_among(all, unit),

@@ -7,7 +7,7 @@
 //!
 //! Not promised: that parts which dock mirrored were meant to, or that what is in the way is all that is.
 
-use super::{Settings, facing, is_seat, rank, search, ways};
+use super::{Parts, Settings, is_seat, rank, search, sunk, ways};
 use crate::connector::Half;
 use crate::contact::relief;
 use crate::contact::told::{Told, number};
@@ -15,32 +15,23 @@ use crate::exec::{Cancelled, Exec};
 use glam::DVec3;
 
 /// A score below this is a weak one: what a mirror image would have is looked at.
-pub(super) const WEAK: f64 = 0.1;
+pub(super) const WEAK: f64 = 0.3;
 
 /// What would let them, in words.
-pub(super) fn of(
-    pair: [&Half; 2],
-    settings: &Settings,
-    told: Told,
-    exec: &Exec,
-) -> Result<Option<String>, Cancelled> {
-    match mirrored(pair, settings, told, exec)? {
+pub(super) fn of(both: &Parts<'_>, exec: &Exec) -> Result<Option<String>, Cancelled> {
+    match mirrored(both, exec)? {
         Some((_, words)) => Ok(Some(words)),
-        None => obstacle(pair, settings, told, exec),
+        None => obstacle(both.halves, both.settings, both.told, exec),
     }
 }
 
 /// Whether the mirror image of the moving part docks, with which score, and that in words.
-pub(super) fn mirrored(
-    [fixed, moving]: [&Half; 2],
-    settings: &Settings,
-    told: Told,
-    exec: &Exec,
-) -> Result<Option<(f64, String)>, Cancelled> {
+pub(super) fn mirrored(both: &Parts<'_>, exec: &Exec) -> Result<Option<(f64, String)>, Cancelled> {
+    let [fixed, moving] = both.halves;
     let image = moving.reflected(|p| p * DVec3::new(-1.0, 1.0, 1.0));
-    let found = facing([fixed, &image], settings, told, exec)?;
+    let found = sunk(&Parts::new([fixed, &image], both.grain, both.settings, both.told), exec)?;
     let mut judged = found.into_iter().filter_map(Result::ok).collect();
-    rank(&mut judged, settings.free, told, exec)?;
+    rank(&mut judged, both.settings.free, both.told, exec)?;
     let best = judged.into_iter().next().filter(is_seat);
     Ok(best.filter(|found| found.score() >= WEAK).map(|found| {
         let score = found.score();

@@ -20,6 +20,11 @@ impl Way {
         Self::NAMES[self.0 as usize]
     }
 
+    /// Whether another is the opposite one.
+    pub(super) const fn is_opposite(self, other: Self) -> bool {
+        self.0 ^ 1 == other.0
+    }
+
     /// Unit vector.
     pub fn vector(self) -> DVec3 {
         DVec3::AXES[usize::from(self.0 / 2)] * if self.0.is_multiple_of(2) { 1.0 } else { -1.0 }
@@ -67,6 +72,17 @@ pub enum Lie {
 }
 
 impl Lie {
+    /// Each in its own frame, turned so that they lie as they are drawn in one frame: where the frames of parts are one but not their places.
+    pub(super) fn as_drawn(approach: Way) -> Self {
+        let [fixed, moving] = [Way(approach.0 ^ 1), approach];
+        let lie = |turned: u8| Self::Facing { fixed, moving, turned };
+        let is_one = |lie: &Self| {
+            let [fixed, moving] = lie.turns();
+            fixed.abs_diff_eq(moving, 1e-9)
+        };
+        (0..4).map(lie).find(is_one).unwrap_or_else(|| lie(0))
+    }
+
     /// What turns both parts into the frame of the fixed half, the moving half face down above it.
     pub(super) fn turns(self) -> [DMat3; 2] {
         match self {
@@ -123,6 +139,15 @@ mod tests {
         }
         assert_eq!("y".parse::<Way>().map(Way::name), Ok("+y"));
         assert!("up".parse::<Way>().unwrap_err().contains("+x, -x"));
+    }
+
+    #[test]
+    fn parts_may_lie_as_they_are_drawn() {
+        for approach in Way::ALL {
+            let [fixed, moving] = Lie::as_drawn(approach).turns();
+            assert_eq!(fixed, moving);
+            assert_eq!(moving * approach.vector(), DVec3::NEG_Z);
+        }
     }
 
     #[test]

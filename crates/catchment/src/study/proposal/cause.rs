@@ -1,0 +1,190 @@
+//! Why parts do not dock, as a person would say it: what comes of each approach as drawn, and mistakes in the files.
+//!
+//! ```text
+//!   meets nothing            ──▶ passes through: a stop is missing
+//!   meets, and slides off    ──▶ flat: magnets or pins are missing
+//!   blocked all ways         ──▶ interlock: a thread, a snap, an undercut, or so many mm of interference
+//! ```
+//!
+//! Not promised: that the cause is the only one.
+
+use super::halves::design_unit;
+use super::sink::{Drawn, Grain, Triangles, together};
+use super::{PartFile, Settings, Way};
+use crate::connector::Half;
+use crate::contact::told::{Told, number};
+use crate::design::LengthUnit;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// What to do where parts that seem to be drawn assembled are not.
+pub(super) const OWN_FRAMES: &str = "the parts are drawn beside or inside each other without overlap, which was taken as an assembly; if each has a frame of its own, --drawn facing";
+
+/// What to say of a seat that is elsewhere than where parts are drawn that may be assembled.
+pub(super) const ELSEWHERE: &str = "in doubt: the parts are drawn inside each other without overlap, and do not hold so; the seat that was taken is another one";
+
+/// An assembly shares no volume but for rounding and press fits, as a share of the smaller part's.
+const MOST_SHARED: f64 = 0.01;
+/// In an assembly the share of the moving part's surface that is near the fixed one, where the boxes overlap, times the share of the boxes that
+/// overlaps, is at least so much; where it is less, but the boxes overlap by this share, it may be one.
+const LEAST_NEAR: f64 = 0.02;
+const LEAST_INSIDE: f64 = 0.25;
+
+/// How two parts are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Frame {
+    /// Near or inside each other, without overlap.
+    Assembly,
+    /// Inside each other, without overlap and far from each other's surface.
+    Perhaps,
+    /// Each in its own frame.
+    Own,
+}
+
+/// How parts are drawn.
+pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
+    let found = together(parts, grain);
+    if found.shared >= MOST_SHARED {
+        Frame::Own
+    } else if found.near * found.inside >= LEAST_NEAR {
+        Frame::Assembly
+    } else if found.inside >= LEAST_INSIDE {
+        Frame::Perhaps
+    } else {
+        Frame::Own
+    }
+}
+
+/// The cause, of what comes of each approach.
+pub(super) fn of(looks: &[(Way, Drawn)], told: Told) -> String {
+    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Holds(_))) {
+        return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
+    }
+    let flat = looks.iter().find_map(|(way, drawn)| match drawn {
+        Drawn::Flat { climb } => Some((way, *climb)),
+        _ => None,
+    });
+    if let Some((way, climb)) = flat {
+        return format!(
+            "as drawn, approach {way}: flat: the parts meet and nothing holds them sideways (the moving part climbs {} before it slides off). Are magnets or \
+             pins missing? Add them with --with-moving or --with-fixed",
+            told.length(climb)
+        );
+    }
+    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Passes)) {
+        return format!(
+            "as drawn, approach {way}: the moving part meets nothing and passes through: no stop. Add what it comes to rest on with --with-fixed"
+        );
+    }
+    let apart = looks.iter().filter_map(|(way, drawn)| match drawn {
+        Drawn::Apart(by) => Some((*by, way)),
+        _ => None,
+    });
+    if let Some((by, way)) = apart.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        return format!(
+            "as drawn, approach {way}: the parts are {} apart, and where the moving part then meets the fixed one nothing holds it",
+            told.length(by)
+        );
+    }
+    let blocked = looks.iter().filter_map(|(way, drawn)| match drawn {
+        Drawn::Blocked(by) => Some((*by, way)),
+        _ => None,
+    });
+    match blocked.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((by, way)) => format!(
+            "as drawn the parts interlock: no straight way along an axis brings them together. Nearest is approach {way}, {} short. A thread, a snap, an \
+             undercut or an interference?",
+            told.length(by)
+        ),
+        None => "as drawn the parts do not meet".to_owned(),
+    }
+}
+
+/// A mistake in the files, and its remedy; lengths of the halves times `scale` are in the unit of the design.
+pub(super) fn of_files(
+    parts: &[PartFile; 2],
+    halves: [&Half; 2],
+    settings: &Settings,
+    scale: f64,
+) -> Option<String> {
+    let [fixed, moving] = halves;
+    if settings.with.iter().all(Vec::is_empty) && parts[0].written == parts[1].written {
+        return Some("both halves are the same file: name the file of the other half".to_owned());
+    }
+    if is_same(fixed, moving) && settings.with.iter().all(Vec::is_empty) {
+        return Some("both files hold the same part: name the file of the other half".to_owned());
+    }
+    for ((whose, half), with) in ["fixed", "moving"].into_iter().zip(halves).zip(&settings.with) {
+        let count = bodies(half);
+        if with.is_empty() && count > 1 {
+            return Some(format!(
+                "the file of the {whose} half holds {count} separate bodies: if both halves are in it, split it into a file for each \
+                 (MeshLab: Split in Connected Components; PrusaSlicer: Split to objects)"
+            ));
+        }
+    }
+    inches(halves, settings, scale)
+}
+
+/// The corner that stands for a body.
+fn root(body: &mut [usize], mut k: usize) -> usize {
+    while body[k] != k {
+        body[k] = body[body[k]];
+        k = body[k];
+    }
+    k
+}
+
+/// How many bodies a half has whose boxes do not lie within each other.
+fn bodies(half: &Half) -> usize {
+    let mut boxes: Vec<(DVec3, DVec3)> = Vec::new();
+    for surface in &half.surfaces {
+        // Corners that a facet joins are of one body.
+        let mut body: Vec<usize> = (0..surface.vertices.len()).collect();
+        for facet in &surface.facets {
+            let first = root(&mut body, facet.corners[0] as usize);
+            for corner in &facet.corners {
+                let other = root(&mut body, *corner as usize);
+                body[other] = first;
+            }
+        }
+        let mut found: HashMap<usize, (DVec3, DVec3)> = HashMap::new();
+        for (k, p) in surface.vertices.iter().enumerate() {
+            let (low, high) = found.entry(root(&mut body, k)).or_insert((*p, *p));
+            (*low, *high) = (low.min(*p), high.max(*p));
+        }
+        boxes.extend(found.into_values());
+    }
+    let within =
+        |a: &(DVec3, DVec3), b: &(DVec3, DVec3)| a.0.cmpge(b.0).all() && a.1.cmple(b.1).all() && a != b;
+    boxes.iter().filter(|a| !boxes.iter().any(|b| within(a, b))).count()
+}
+
+/// Whether two halves have the same corners.
+fn is_same(one: &Half, other: &Half) -> bool {
+    let same = |a: &DVec3, b: &DVec3| a.abs_diff_eq(*b, 1e-9);
+    one.surfaces.len() == other.surfaces.len()
+        && one.surfaces.iter().zip(&other.surfaces).all(|(a, b)| {
+            a.vertices.len() == b.vertices.len()
+                && a.vertices.iter().zip(&b.vertices).all(|(a, b)| same(a, b))
+        })
+}
+
+/// Parts that are no longer than this, in millimetres, are rather in inches.
+const SHORT: f64 = 6.0;
+
+/// That files which say no unit, and of which somebody said millimetres, are rather in inches.
+pub(super) fn inches(halves: [&Half; 2], settings: &Settings, scale: f64) -> Option<String> {
+    let longest = halves.map(|half| {
+        let (low, high) = half.bounds();
+        (high - low).max_element() * scale
+    });
+    let longest = longest[0].max(longest[1]);
+    (design_unit(settings) == LengthUnit::Mm && longest < SHORT).then(|| {
+        format!(
+            "the larger part is {} mm long: is the file in inches? Then it is {} mm long: --unit in",
+            number(longest),
+            number(longest * 25.4)
+        )
+    })
+}

@@ -1,0 +1,205 @@
+//! Where one part sinks into the other: all facings and all lateral offsets, on lattices, before exact contact judges the best of them.
+//!
+//! ```text
+//!   fixed   F(p)  highest z over p            h(o) = max over p of F(p + o) + M(p)     height of first contact at the lateral offset o
+//!   moving  M(p)  −lowest z over p            F worn by half a cell: h bounds the heights of the whole cell of o from below
+//!
+//!   6 × 24 views ──▶ h over all offsets ──▶ basins ──▶ again on a fine lattice ──▶ steep = climb / (e + play at half the climb)
+//!   as drawn, 6 approaches ──▶ h near the origin ──▶ holds, passes through, flat, blocked or apart
+//! ```
+//!
+//! The climb of a basin is how far the moving part has to rise before it leaves it. Its play is half its extent at half that height, and
+//! e ([`Grain::small`]) is half a millimetre for parts of a few centimetres. A deep hole with little play is steep, a lid that lies in a wide tray
+//! is not.
+//!
+//! Not promised: seats that are narrower than the fine lattice, turns that are no quarter turns, and that what is steep is what was meant.
+
+mod classes;
+mod drawn;
+mod flood;
+mod height;
+mod refine;
+
+pub(super) use classes::classes;
+pub(super) use drawn::{Drawn, drawn, together};
+
+use super::way::{Lie, Way};
+use crate::connector::Half;
+use crate::exec::{Cancelled, Exec};
+use flood::basins;
+use glam::{DMat3, DVec2, DVec3};
+use height::{HeightMap, Phases, Point, SUB, deciding, heights};
+
+/// A part as triangles.
+pub(super) type Triangles = Vec<[DVec3; 3]>;
+
+/// The triangles of a half.
+pub(super) fn triangles(half: &Half) -> Triangles {
+    let mut all = Vec::new();
+    for surface in &half.surfaces {
+        for facet in &surface.facets {
+            let at = |k: usize| surface.vertices[facet.corners[k] as usize];
+            all.extend((2..facet.corners.len()).map(|k| [at(0), at(k - 1), at(k)]));
+        }
+    }
+    all
+}
+
+/// Which lengths count as small.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grain {
+    /// Half a millimetre, for parts of a few centimetres. Lengths are in the unit of the parts.
+    pub(super) small: f64,
+}
+
+impl Grain {
+    /// What is small for parts in whose unit a millimetre has this length, the smaller of which is 1 wide.
+    pub(super) fn new(millimetre: f64) -> Self {
+        const LEAST: f64 = 0.004;
+        const MOST: f64 = 0.06;
+        Self { small: (0.5 * millimetre).clamp(LEAST, MOST) }
+    }
+
+    /// A basin with a lower climb is flat.
+    pub(super) fn least_climb(self) -> f64 {
+        0.8 * self.small
+    }
+}
+
+/// A place where the moving part sinks in.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sunk {
+    /// How the parts lie.
+    pub(super) lie: Lie,
+    /// Where the origin of the turned moving part is, in the frame of the turned fixed one: in plan view, and how high.
+    pub(super) offset: DVec2,
+    pub(super) height: f64,
+    /// How far it climbs before it leaves.
+    pub(super) climb: f64,
+    /// How far it moves to each side at half the climb.
+    pub(super) play: f64,
+    /// Whether it hardly rises as far as is looked: what lies in a tray is loose, what lies in a funnel is not.
+    pub(super) is_loose: bool,
+    /// climb / (e + play), and up to 15 % less where the parts lie beside each other.
+    pub(super) steep: f64,
+    /// Side of a cell of the lattice that found it.
+    pub(super) cell: f64,
+}
+
+/// Points of the lattice of offsets across both parts, and the length of a cell at most, in small lengths.
+const CELLS: f64 = 160.0;
+const MOST_CELL: f64 = 1.6;
+/// Points of the moving part that are looked at.
+const MOST_POINTS: usize = 2500;
+/// Basins of one view that are kept, and of all.
+const OF_ONE: usize = 6;
+const MOST: usize = 100;
+
+/// Turns a part over: heights of its underside are heights of its top.
+pub(super) const UPSIDE_DOWN: DMat3 = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::NEG_Z);
+
+/// The places where the moving part sinks into the fixed one, the steepest first.
+pub(super) fn sinks(
+    [fixed, moving]: [&Triangles; 2],
+    facing: [&[Way]; 2],
+    grain: Grain,
+    exec: &Exec,
+) -> Result<Vec<Sunk>, Cancelled> {
+    let extent = |part: &Triangles| {
+        let (low, high) = HeightMap::bounds(part, &DMat3::IDENTITY);
+        (high - low).max_element()
+    };
+    let cell = ((extent(fixed) + extent(moving)) / CELLS).min(MOST_CELL * grain.small);
+    // Very different parts: no more cells than time allows.
+    let cell = cell.max((extent(fixed) + extent(moving)) / (6.0 * CELLS));
+    let views = views(moving, facing[1], cell, exec)?;
+    let found = exec.each(facing[0].len(), usize::MAX, "facings", |k, exec| {
+        let way = facing[0][k];
+        let turn = Lie::Facing { fixed: way, moving: way, turned: 0 }.turns()[0];
+        let top = HeightMap::whole(fixed, &turn, cell / SUB as f64, SUB);
+        let first = top.first;
+        // Worn, no narrow hole is missed; thickened, no thin wall.
+        let worn = Phases::of(&top.eroded(SUB / 2));
+        let maps = [worn, Phases::of(&top.thickened(fixed, &turn))];
+        let mut found = Vec::new();
+        for view in &views {
+            if exec.is_cancelled() {
+                break;
+            }
+            found.extend(seen(way, first, &maps, view, cell, grain));
+        }
+        found
+    });
+    exec.check()?;
+    let mut found: Vec<Sunk> = found.into_iter().flatten().collect();
+    found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
+    found.truncate(MOST);
+    let fine = exec.each(found.len(), usize::MAX, "places", |k, exec| {
+        if exec.is_cancelled() { None } else { refine::refined([fixed, moving], found[k], cell, grain) }
+    });
+    exec.check()?;
+    let mut fine: Vec<Sunk> = fine.into_iter().flatten().collect();
+    fine.sort_by(|a, b| b.steep.total_cmp(&a.steep));
+    Ok(fine)
+}
+
+/// A way in which the moving part may be turned, seen from below.
+struct View {
+    way: Way,
+    turned: u8,
+    bottom: HeightMap,
+    points: Vec<Point>,
+}
+
+/// The ways in which the moving part may be turned; of those that look alike from below the first.
+fn views(moving: &Triangles, ways: &[Way], cell: f64, exec: &Exec) -> Result<Vec<View>, Cancelled> {
+    let all: Vec<(Way, u8)> = ways.iter().flat_map(|way| (0..4).map(|turned| (*way, turned))).collect();
+    let maps = exec.each(all.len(), usize::MAX, "views", |k, _| {
+        let (way, turned) = all[k];
+        let turn = Lie::Facing { fixed: way, moving: way, turned }.turns()[1];
+        HeightMap::whole(moving, &(UPSIDE_DOWN * turn), cell / SUB as f64, SUB)
+    });
+    exec.check()?;
+    let level = (0.5 * cell) as f32;
+    let mut views: Vec<View> = Vec::new();
+    for ((way, turned), bottom) in all.into_iter().zip(maps) {
+        if views.iter().any(|view| view.way == way && view.bottom.is_like(&bottom, level)) {
+            continue;
+        }
+        let mut block = SUB;
+        let points = loop {
+            let points = deciding(&bottom, block, level);
+            if points.len() <= MOST_POINTS || block > 4 * SUB {
+                break points;
+            }
+            block += 1;
+        };
+        views.push(View { way, turned, bottom, points });
+    }
+    Ok(views)
+}
+
+/// The basins of one view, on the first lattice.
+fn seen(way: Way, first: DVec2, maps: &[Phases; 2], view: &View, cell: f64, grain: Grain) -> Vec<Sunk> {
+    let lie = Lie::Facing { fixed: way, moving: view.way, turned: view.turned };
+    let mut found: Vec<Sunk> = Vec::new();
+    for phases in maps {
+        let h = heights(phases, &view.points, view.bottom.counts);
+        for basin in basins(&h.z, h.wide, grain.least_climb() as f32).into_iter().take(2 * OF_ONE) {
+            let cells = DVec2::new((basin.at % h.wide) as f64, (basin.at / h.wide) as f64) - h.before;
+            let offset = first - view.bottom.first + cell * cells;
+            if found.iter().any(|other| (other.offset - offset).abs().max_element() < 2.0 * cell) {
+                continue;
+            }
+            let climb = f64::from(basin.climb);
+            let height = f64::from(h.z[basin.at]);
+            found.push(Sunk { lie, offset, height, climb, play: 0.0, is_loose: false, steep: 0.0, cell });
+        }
+    }
+    found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
+    found.truncate(OF_ONE);
+    found
+}
+
+#[cfg(test)]
+mod tests;
