@@ -203,7 +203,9 @@ pub enum MeshProblem {
         at: Point,
     },
     /// An edge with a triangle on one side only.
-    #[error("the mesh is open along the edge of {place} from {from} to {to}: close the hole (MeshLab: Close Holes; Python: pymeshfix)")]
+    #[error(
+        "the mesh is open along the edge of {place} from {from} to {to}: close the hole (MeshLab: Close Holes; Python: pymeshfix)"
+    )]
     Open {
         /// The triangle on the one side.
         place: Place,

@@ -290,6 +290,8 @@ pub fn propose(
     };
     let mut looked = Looked::default();
     let (mut doubts, mut why, mut frame) = (Vec::new(), None, cause::Frame::Own);
+    // Of parts that lie flat on each other as drawn: said if no other way is found.
+    let mut flat = None;
     let meet = settings.frames != Frames::Any || settings.approach.is_some() || are_near(both.halves);
     if may_be(Frames::Assembled) && meet {
         let looks = docked(&both, &mut looked, exec)?;
@@ -303,6 +305,8 @@ pub fn propose(
             }
             // Of frames of their own it says nothing.
             why = (may_be_assembly || !may_be(Frames::Facing)).then(|| cause::of(&looks, told));
+            let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::Drawn::Flat { .. }));
+            flat = are_flat.then(|| cause::of(&looks, told));
         }
     }
     let is_assembly = frame == cause::Frame::Assembly;
@@ -328,8 +332,13 @@ pub fn propose(
         let nowhere =
             faces.then_some("facing each other: nowhere along the axes does one sink into the other");
         let nowhere = nowhere.filter(|_| candidates.is_empty()).map(ToOwned::to_owned);
-        let tried =
-            why.into_iter().chain(candidates.iter().map(slack)).chain(nowhere).chain(refused).collect();
+        let tried = why
+            .or(flat)
+            .into_iter()
+            .chain(candidates.iter().map(slack))
+            .chain(nowhere)
+            .chain(refused)
+            .collect();
         let remedy = match cause::of_files(parts, both.halves, settings, unit) {
             Some(mistake) => Some(mistake),
             None if is_assembly => Some(cause::OWN_FRAMES.to_owned()),
