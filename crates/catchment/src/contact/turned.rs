@@ -214,7 +214,7 @@ impl<'a> Turned<'a> {
         // What a motion tries is where it may go on.
         let least = MET + 2.0 * SEAM;
         let gaps = Gaps { deep: gaps.deep.max(least), front: gaps.front.max(least) };
-        trees.near(pair, rotation, position, *counts, gaps, touching, &mut elements);
+        trees.near(pair, (rotation, position), *counts, gaps, touching, &mut elements);
         near.push(Near { rotation: *rotation, position, counts: *counts, gaps, elements });
     }
 

@@ -118,8 +118,7 @@ impl Trees {
     pub(in crate::contact) fn near(
         &self,
         pair: &Pair,
-        rotation: &DMat3,
-        position: DVec3,
+        (rotation, position): (&DMat3, DVec3),
         counts: Counts,
         gaps: Gaps,
         lists: &mut Lists<Touching>,

@@ -356,11 +356,25 @@ pub fn propose(
         doubts.push(told);
     }
     doubts.extend(cause::inches(both.halves, settings, unit));
+    let (text, problem) = designed(parts, settings, (best, seat), unit, place, exec)?;
+    doubts.extend(problem.design().unit.and_then(|unit| doubt::of_size(problem.design().width, unit)));
+    Ok(Proposal { text, problem, candidates, doubts })
+}
+
+/// The design of a seat, as text and as a problem that was checked.
+fn designed(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    (best, seat): (&Judged, &judge::Seat),
+    unit: f64,
+    place: &Path,
+    exec: &Exec,
+) -> Result<(String, Problem), ProposalError> {
     let text = |ranges: &[f64; 5]| file::text(parts, settings, best, *seat, unit, ranges);
     let problem = |text: &str| -> Result<Problem, ProblemError> {
         Draft::read(SourceText::new(place, text))?.build_on(exec)?.checked()
     };
-    let (text, problem) = if best.is_slow() && seat.settle.is_none() {
+    Ok(if best.is_slow() && seat.settle.is_none() {
         let text = text(&best.ranges(seat, exec));
         exec.check()?;
         let problem = problem(&text)?;
@@ -376,9 +390,7 @@ pub fn propose(
             let problem = problem(&text)?;
             (text, problem)
         }
-    };
-    doubts.extend(problem.design().unit.and_then(|unit| doubt::of_size(problem.design().width, unit)));
-    Ok(Proposal { text, problem, candidates, doubts })
+    })
 }
 
 /// The unit in which a person says lengths of parts: millimetres where a file is in metres.
