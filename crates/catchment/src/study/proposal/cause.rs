@@ -135,7 +135,10 @@ fn root(body: &mut [usize], mut k: usize) -> usize {
     k
 }
 
-/// How many bodies a half has whose boxes do not lie within each other.
+/// Bodies whose boxes are compared in pairs, at most.
+const MOST_COMPARED: usize = 2000;
+
+/// How many bodies a half has whose boxes do not lie within each other; all of them if there are more than [`MOST_COMPARED`].
 fn bodies(half: &Half) -> usize {
     let mut boxes: Vec<(DVec3, DVec3)> = Vec::new();
     for surface in &half.surfaces {
@@ -154,6 +157,9 @@ fn bodies(half: &Half) -> usize {
             (*low, *high) = (low.min(*p), high.max(*p));
         }
         boxes.extend(found.into_values());
+    }
+    if boxes.len() > MOST_COMPARED {
+        return boxes.len();
     }
     let within =
         |a: &(DVec3, DVec3), b: &(DVec3, DVec3)| a.0.cmpge(b.0).all() && a.1.cmple(b.1).all() && a != b;
