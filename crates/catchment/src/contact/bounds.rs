@@ -10,6 +10,7 @@
 //! In single precision, four to an instruction: whoever asks widens what it asks for by [`rounding`].
 
 use super::cone::Cone;
+use super::tree::SLACKS;
 use glam::{DMat3, DVec3};
 use wide::f32x4;
 
@@ -34,7 +35,7 @@ pub(super) struct Bounds<T> {
     over: T,
     slope: [T; 2],
     /// Cosine and sine of half the angle of the cone around the normal, for each slack; no numbers where it is wide.
-    cones: [[T; 2]; 2],
+    cones: [[T; 2]; SLACKS.len()],
 }
 
 /// Four parts.
@@ -61,7 +62,7 @@ impl<T: Copy> Bounds<T> {
             ahead: to(&self.ahead),
             over: to(&self.over),
             slope: two(&self.slope),
-            cones: [two(&self.cones[0]), two(&self.cones[1])],
+            cones: self.cones.each_ref().map(two),
         }
     }
 }
@@ -73,7 +74,7 @@ impl One {
         radius: f64,
         normal: DVec3,
         level: f64,
-        cones: [Cone; 2],
+        cones: [Cone; SLACKS.len()],
     ) -> Self {
         let center = (low + high) / 2.0;
         let single = |v: DVec3| v.as_vec3().to_array();
@@ -98,7 +99,7 @@ impl One {
         ahead: 0.0,
         over: FAR,
         slope: [0.0; 2],
-        cones: [[0.0; 2]; 2],
+        cones: [[0.0; 2]; SLACKS.len()],
     };
 }
 
@@ -119,7 +120,7 @@ impl Four {
             ahead: one(|part| part.ahead),
             over: one(|part| part.over),
             slope: [f32x4::ZERO; 2],
-            cones: [0, 1].map(cone),
+            cones: std::array::from_fn(cone),
         }
     }
 

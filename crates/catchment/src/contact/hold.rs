@@ -59,13 +59,12 @@ impl Pair {
 
 /// Distance of a point of a facet's plane from the facet's border; negative outside.
 pub(super) fn inside(shape: &Shape, facet: u32, point: DVec3) -> f64 {
-    let facet = &shape.facets[facet as usize];
-    let corners = facet.corners.iter().map(|&k| shape.at(k));
-    let next = corners.clone().cycle().skip(1);
-    corners
-        .zip(next)
-        .map(|(a, b)| facet.normal.dot((b - a).normalize_or_zero().cross(point - a)))
-        .fold(f64::INFINITY, f64::min)
+    let normal = shape.facets[facet as usize].normal;
+    let mut least = f64::INFINITY;
+    for side in shape.sides_of(facet) {
+        least = least.min(normal.dot(side.along.cross(point - side.from)));
+    }
+    least
 }
 
 /// Distance of a point of an edge's line from the nearer end; negative beyond.

@@ -113,6 +113,12 @@ impl Carried {
     }
 }
 
+/// Sine and cosine of how far beyond the horizontal normals lean whose z-component is as low as this.
+fn overhang(lowest: f64) -> [f32; 2] {
+    let sine = (-lowest).clamp(0.0, 1.0);
+    [sine as f32, (1.0 - sine * sine).sqrt() as f32]
+}
+
 /// The pair at one pose.
 #[derive(Clone)]
 pub(super) struct Turned<'a> {
@@ -136,8 +142,7 @@ pub(super) struct Turned<'a> {
 impl<'a> Turned<'a> {
     fn new(pair: &'a Pair, trees: &'a Trees, rotation: &DMat3, position: DVec3, counts: Counts) -> Self {
         let cones = SLACKS.iter().position(|slack| counts.slack <= *slack);
-        let sine = (-counts.lowest).clamp(0.0, 1.0);
-        let overhang = [sine as f32, (1.0 - sine * sine).sqrt() as f32];
+        let overhang = overhang(counts.lowest);
         let extent = trees.fixed.extent + 2.0 * trees.moving.extent + position.abs().max_element();
         let (placed, rounding) = (Placed::new(rotation, position), rounding(extent));
         let (rotation, back) = (*rotation, rotation.transpose());

@@ -37,6 +37,14 @@ pub(super) struct Ridge {
     pub(super) normals: [DVec3; 2],
 }
 
+/// A side of a facet, which lies to its left.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FacetSide {
+    pub(super) from: DVec3,
+    /// Unit vector.
+    pub(super) along: DVec3,
+}
+
 /// A feature that is touched against all of its facets, by more than this cosine, is touched from inside.
 pub(super) const INSIDE: f64 = 0.5;
 
@@ -55,6 +63,9 @@ pub(super) struct Shape {
     pub(super) facets: Vec<Facet>,
     /// `normal·p` for the points p of each facet.
     pub(super) levels: Vec<f64>,
+    /// The sides of all facets, one facet after the other, and where those of each begin.
+    sides: Vec<FacetSide>,
+    first_sides: Vec<u32>,
     pub(super) corners: Vec<Corner>,
     /// Unit vectors from the corners to their neighbours along edges.
     pub(super) spokes: Vec<DVec3>,
@@ -94,6 +105,17 @@ impl Shape {
             normals.extend(neighbors.iter().map(|(_, normal)| normal));
             corners.push(Corner { vertex: v as u32, spokes: first..spokes.len() as u32 });
         }
+        let (mut sides, mut first_sides) = (Vec::new(), vec![0]);
+        for facet in &surface.facets {
+            let corners = facet.corners.iter().map(|k| at(*k));
+            let next = corners.clone().cycle().skip(1);
+            sides.extend(
+                corners
+                    .zip(next)
+                    .map(|(from, to)| FacetSide { from, along: (to - from).normalize_or_zero() }),
+            );
+            first_sides.push(sides.len() as u32);
+        }
         let around = |ids: &[u32]| Plan::around(ids.iter().map(|&k| at(k).truncate()));
         let plans = Plans {
             facets: PlanTree::over(surface.facets.iter().map(|f| around(&f.corners))),
@@ -104,6 +126,8 @@ impl Shape {
             vertices: surface.vertices.clone(),
             levels: surface.facets.iter().map(|f| f.normal.dot(at(f.corners[0]))).collect(),
             facets: surface.facets.clone(),
+            sides,
+            first_sides,
             corners,
             spokes,
             normals,
@@ -117,6 +141,12 @@ impl Shape {
     pub(super) fn supports(&self, corner: &Corner, toward: DVec3, slack: f64) -> bool {
         self.spokes_of(corner).iter().all(|s| toward.dot(*s) >= -slack)
             && (slack <= FLUSH || self.normals_of(corner).iter().any(|n| toward.dot(*n) < INSIDE))
+    }
+
+    /// The sides of a facet, in the order of its corners.
+    pub(super) fn sides_of(&self, facet: u32) -> &[FacetSide] {
+        let [first, end] = [0, 1].map(|k| self.first_sides[facet as usize + k] as usize);
+        &self.sides[first..end]
     }
 
     /// Unit vectors from a corner to its neighbours.

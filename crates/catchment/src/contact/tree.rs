@@ -35,8 +35,9 @@ pub(super) enum Kind {
     Ridge = 4,
 }
 
-/// Sines of the angles by which features may fail to support a normal and still count: those of heights, and those of the steps of a motion.
-pub(super) const SLACKS: [f64; 2] = [FLUSH, 0.1];
+/// Sines of the angles by which features may fail to support a normal and still count: those of heights, those of the steps of a motion, and those of lists, which hold
+/// for some turn as well.
+pub(super) const SLACKS: [f64; 3] = [FLUSH, 0.1, 0.35];
 /// What is below a node: four parts at most, each another node or a feature.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
@@ -71,7 +72,7 @@ struct Built {
     high: DVec3,
     /// Around which it touches, unit or 0, and up to which angles, with each slack.
     axis: DVec3,
-    angles: [f64; 2],
+    angles: [f64; SLACKS.len()],
     leaf: Leaf,
 }
 
@@ -154,7 +155,7 @@ fn bounds(features: &[Built], shapes: &[Shape]) -> One {
     let high = features.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
     let normal = features.iter().map(|f| f.axis).sum::<DVec3>().normalize_or_zero();
     let center = (low + high) / 2.0;
-    let (mut level, mut radius, mut angles) = (f64::NEG_INFINITY, 0.0_f64, [0.0_f64; 2]);
+    let (mut level, mut radius, mut angles) = (f64::NEG_INFINITY, 0.0_f64, [0.0_f64; SLACKS.len()]);
     for feature in features {
         feature.leaf.points(&shapes[feature.leaf.shape as usize], |p| {
             level = level.max(normal.dot(p));
@@ -162,7 +163,8 @@ fn bounds(features: &[Built], shapes: &[Shape]) -> One {
         });
         // Where a mean is none, this is no number.
         let off = feature.axis.angle_between(normal);
-        angles = [0, 1].map(|k| if off.is_nan() { PI } else { angles[k].max(off + feature.angles[k]) });
+        angles =
+            std::array::from_fn(|k| if off.is_nan() { PI } else { angles[k].max(off + feature.angles[k]) });
     }
     One::new([low, high], radius, normal, level, angles.map(Cone::of))
 }

@@ -13,6 +13,9 @@
 //! each other have a clearance of at most `moved` + `reach`, so of a list sorted by clearance the first part answers, as long as that sum is not above the
 //! reach of the list. Directions are sieved as in [`super::super::candidates`], widened by the turn for which a list holds.
 //!
+//! A wider list serves for longer, and takes longer to make. Which of the two is cheaper depends on how far the motion goes on, which nobody knows: the first few
+//! lists of a level are made from the trees, and then one of the next wider level (ski rental: at most a few times what knowing it would take).
+//!
 //! The answers are those of the trees: every pair whose contact lies on both features, with the same numbers. Where a list would hold more than
 //! [`MOST`] pairs, the next narrower one is the widest.
 
@@ -28,6 +31,8 @@ use glam::{DMat3, DVec3};
 const MOST: usize = 150_000;
 /// Lists of one reach that are kept: a step tries poses on both sides of where it ends.
 const KEPT: usize = 3;
+/// So many lists of a level are made from the trees before a wider one is made to take them from.
+const RENTED: usize = 3;
 /// What rounding makes of a clearance and of how far a half has moved, in D.
 const ROUNDED: f64 = 1e-6;
 /// The share of its reach by which a half may have turned where a list holds.
@@ -39,12 +44,14 @@ pub(in crate::contact) trait Pairs {
     type Two: Copy;
     /// Reaches of the lists, in D, the widest first; each is asked for up to half of it.
     const REACHES: &'static [f64];
+    /// Whether they count only where they face each other.
+    const FACE: bool;
     /// Whether parts hold such pairs.
     fn meet(fixed: Child, moving: Child) -> bool;
     /// The pair of two features.
     fn of(fixed: &Leaf, moving: &Leaf) -> Option<Self::Two>;
-    /// A lower bound of the distance of two features, if they may count within the sieve's turn.
-    fn clearance(turned: &Turned<'_>, two: &Self::Two, sieve: &Sieve) -> Option<f64>;
+    /// A lower bound of the distance of two features, if they may count within the sieve's turn; above `most` it may be any.
+    fn clearance(turned: &Turned<'_>, two: &Self::Two, sieve: &Sieve, most: f64) -> Option<f64>;
 }
 
 /// The pairs about one pose.
@@ -80,11 +87,17 @@ pub(in crate::contact) struct Lists<P: Pairs> {
     levels: Vec<Vec<List<P::Two>>>,
     /// The widest that is not too long.
     widest: usize,
+    /// How many lists of each level were made from the trees since a wider one was.
+    made: Vec<usize>,
 }
 
 impl<P: Pairs> Default for Lists<P> {
     fn default() -> Self {
-        Self { levels: P::REACHES.iter().map(|_| Vec::new()).collect(), widest: 0 }
+        Self {
+            levels: P::REACHES.iter().map(|_| Vec::new()).collect(),
+            widest: 0,
+            made: vec![0; P::REACHES.len()],
+        }
     }
 }
 
@@ -103,14 +116,15 @@ impl<P: Pairs> Lists<P> {
         true
     }
 
+    /// Which list of a level holds what is within `reach` of each other for turns of `skin`, and by how much its clearances may be too large.
+    fn find(&self, turned: &Turned<'_>, level: usize, reach: f64, skin: f64) -> Option<(usize, f64)> {
+        let lists = self.levels[level].iter().enumerate().rev();
+        lists.into_iter().find_map(|(k, list)| Some((k, list.moved(turned, reach, skin)?)))
+    }
+
     /// Sees to it that the last list of a level holds what is within `reach` of each other for turns of `skin`; by how much clearances may be too large.
     fn prepare(&mut self, turned: &Turned<'_>, level: usize, reach: f64, skin: f64) -> Option<f64> {
-        let found = self.levels[level]
-            .iter()
-            .enumerate()
-            .rev()
-            .find_map(|(k, list)| Some((k, list.moved(turned, reach, skin)?)));
-        if let Some((k, moved)) = found {
+        if let Some((k, moved)) = self.find(turned, level, reach, skin) {
             self.levels[level][k..].rotate_left(1);
             return Some(moved);
         }
@@ -130,19 +144,26 @@ impl<P: Pairs> Lists<P> {
             oldest
         };
         let mut add = |two: &P::Two| {
-            let clearance = P::clearance(turned, two, &sieve).filter(|clearance| *clearance <= own);
+            let clearance = P::clearance(turned, two, &sieve, own).filter(|clearance| *clearance <= own);
             pairs.extend(clearance.map(|clearance| (clearance, *two)));
             pairs.len() <= MOST
         };
-        if level > self.widest {
-            let wide = Turned { counts, ..turned.clone() };
-            let moved = self.prepare(&wide, level - 1, own, sieve.skin)?;
-            let parent = self.levels[level - 1].last()?;
+        // A wider list serves for longer and takes longer: it is made once some of this level were.
+        let wide = Turned { counts, ..turned.clone() };
+        let has_parent = level > self.widest
+            && (self.made[level] >= RENTED || self.find(&wide, level - 1, own, sieve.skin).is_some());
+        let parent = if has_parent { self.prepare(&wide, level - 1, own, sieve.skin) } else { None };
+        if let (Some(moved), Some(parent)) =
+            (parent, level.checked_sub(1).and_then(|k| self.levels[k].last()))
+        {
             for (_, two) in parent.pairs.iter().take_while(|(clearance, _)| *clearance <= moved + own) {
                 add(two);
             }
-        } else if !turned.near_each_other::<P>(own, &mut add) {
-            self.widest += 1;
+            self.made[level] = 0;
+        } else if turned.near_each_other::<P>(own, &sieve, &mut add) {
+            self.made[level] += 1;
+        } else {
+            self.widest = level + 1;
             self.levels[level].clear();
             return None;
         }
@@ -162,6 +183,7 @@ pub(in crate::contact) struct Touching;
 impl Pairs for Touching {
     type Two = Number;
     const REACHES: &'static [f64] = &[0.3, 0.08, 0.02, 0.004, 0.001];
+    const FACE: bool = true;
 
     fn meet(fixed: Child, moving: Child) -> bool {
         fixed.meets(moving)
@@ -171,7 +193,7 @@ impl Pairs for Touching {
         meeting(fixed, moving)
     }
 
-    fn clearance(turned: &Turned<'_>, (meets, two): &Number, sieve: &Sieve) -> Option<f64> {
+    fn clearance(turned: &Turned<'_>, (meets, two): &Number, sieve: &Sieve, most: f64) -> Option<f64> {
         let (fixed, moving) = turned.shapes(two.shapes);
         let (f, m) = (two.fixed as usize, two.moving as usize);
         let wide = sieve.slack + sieve.skin;
@@ -182,7 +204,7 @@ impl Pairs for Touching {
                 let counts = normal.z > sieve.lowest
                     && moving.spokes_of(corner).iter().all(|spoke| seen.dot(*spoke) >= -wide);
                 let at = || turned.rotation * moving.at(corner.vertex) + turned.position;
-                counts.then(|| from_facet(fixed, f, at()))
+                counts.then(|| from_facet(fixed, two.fixed, at(), most))
             }
             Meets::CornerFacet => {
                 let normal = turned.rotation * moving.facets[m].normal;
@@ -190,7 +212,7 @@ impl Pairs for Touching {
                 let counts = -normal.z > sieve.lowest - sieve.skin
                     && fixed.spokes_of(corner).iter().all(|spoke| normal.dot(*spoke) >= -wide);
                 let at = || turned.back * (fixed.at(corner.vertex) - turned.position);
-                counts.then(|| from_facet(moving, m, at()))
+                counts.then(|| from_facet(moving, two.moving, at(), most))
             }
             Meets::EdgeEdge => {
                 let (u, w) = (&fixed.ridges[f], &moving.ridges[m]);
@@ -210,6 +232,7 @@ pub(in crate::contact) struct Passing;
 impl Pairs for Passing {
     type Two = (bool, Candidate);
     const REACHES: &'static [f64] = &[0.02, 0.003];
+    const FACE: bool = false;
 
     fn meet(fixed: Child, moving: Child) -> bool {
         fixed.may_pass(moving)
@@ -225,15 +248,15 @@ impl Pairs for Passing {
         Some((is_facet, Candidate { shapes, fixed: fixed.index, moving: moving.index }))
     }
 
-    fn clearance(turned: &Turned<'_>, (is_facet, two): &Self::Two, _: &Sieve) -> Option<f64> {
+    fn clearance(turned: &Turned<'_>, (is_facet, two): &Self::Two, _: &Sieve, most: f64) -> Option<f64> {
         let (fixed, moving) = turned.shapes(two.shapes);
         let (f, m) = (two.fixed as usize, two.moving as usize);
         Some(if *is_facet {
             let ends = moving.ridges[m].ends.map(|k| turned.rotation * moving.at(k) + turned.position);
-            of_segment_and_facet(ends, fixed, f)
+            of_segment_and_facet(ends, fixed, two.fixed, most)
         } else {
             let ends = fixed.ridges[f].ends.map(|k| turned.back * (fixed.at(k) - turned.position));
-            of_segment_and_facet(ends, moving, m)
+            of_segment_and_facet(ends, moving, two.moving, most)
         })
     }
 }
@@ -275,28 +298,35 @@ impl Lists<Passing> {
     }
 }
 
-/// A lower bound of the distance of a point from a facet.
-fn from_facet(shape: &Shape, facet: usize, point: DVec3) -> f64 {
-    let above = shape.facets[facet].normal.dot(point) - shape.levels[facet];
-    let beyond = borders(shape, facet).map(|(a, out)| out.dot(point - a)).fold(0.0, f64::max);
+/// A lower bound of the distance of a point from a facet; of its plane alone where that is above `most`.
+fn from_facet(shape: &Shape, facet: u32, point: DVec3, most: f64) -> f64 {
+    let normal = shape.facets[facet as usize].normal;
+    let above = normal.dot(point) - shape.levels[facet as usize];
+    if above.abs() > most {
+        return above.abs();
+    }
+    let mut beyond = 0.0f64;
+    for side in shape.sides_of(facet) {
+        beyond = beyond.max(side.along.cross(normal).dot(point - side.from));
+    }
     above.hypot(beyond)
 }
 
 /// The same of a segment: some plane of the facet's own or along its border lies between them.
-fn of_segment_and_facet(ends: [DVec3; 2], shape: &Shape, facet: usize) -> f64 {
-    let heights = ends.map(|p| shape.facets[facet].normal.dot(p) - shape.levels[facet]);
+fn of_segment_and_facet(ends: [DVec3; 2], shape: &Shape, facet: u32, most: f64) -> f64 {
+    let normal = shape.facets[facet as usize].normal;
+    let heights = ends.map(|p| normal.dot(p) - shape.levels[facet as usize]);
     let above = if heights[0] * heights[1] > 0.0 { heights[0].abs().min(heights[1].abs()) } else { 0.0 };
-    let beyond = borders(shape, facet)
-        .map(|(a, out)| ends.map(|p| out.dot(p - a)).into_iter().fold(f64::INFINITY, f64::min));
-    beyond.fold(above, f64::max)
-}
-
-/// A point of each side of a facet, and the unit vector out of it in its plane.
-fn borders(shape: &Shape, facet: usize) -> impl Iterator<Item = (DVec3, DVec3)> {
-    let facet = &shape.facets[facet];
-    let corners = facet.corners.iter().map(|k| shape.at(*k));
-    let next = corners.clone().cycle().skip(1);
-    corners.zip(next).map(|(a, b)| (a, (b - a).cross(facet.normal).normalize_or_zero()))
+    if above > most {
+        return above;
+    }
+    let mut least = above;
+    for side in shape.sides_of(facet) {
+        let out = side.along.cross(normal);
+        let [start, end] = ends.map(|p| out.dot(p - side.from));
+        least = least.max(start.min(end));
+    }
+    least
 }
 
 /// The distance of two segments (Ericson, *Real-Time Collision Detection*, 2005, 5.1.9).

@@ -7,11 +7,12 @@
 //! ```
 
 use super::lists::{Lists, Pairs, Touching};
-use super::{Number, Side, Trees, Turned, meeting};
+use super::{Number, Side, Trees, Turned, meeting, overhang};
 use crate::contact::Pair;
 use crate::contact::bounds::Four;
-use crate::contact::candidates::Counts;
+use crate::contact::candidates::{Counts, Sieve};
 use crate::contact::element::Element;
+use crate::contact::tree::SLACKS;
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 
@@ -69,7 +70,7 @@ impl Close<'_> {
     }
 }
 
-/// The search for pairs that are near each other, whichever way they face.
+/// The search for pairs that are near each other.
 struct Around<'a, P, F> {
     turned: &'a Turned<'a>,
     reach: f32,
@@ -99,9 +100,21 @@ impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
 }
 
 impl Turned<'_> {
-    /// Shows every pair of features within `reach` of each other, and some beyond, until `see` says not to go on; whether it saw all.
-    pub(super) fn near_each_other<P: Pairs>(&self, reach: f64, see: impl FnMut(&P::Two) -> bool) -> bool {
-        let turned = Turned { pairs: P::meet, cones: None, ..self.clone() };
+    /// Shows every pair of features within `reach` of each other that may count within the sieve's turn, and some beyond, until `see` says not to go on;
+    /// whether it saw all.
+    pub(super) fn near_each_other<P: Pairs>(
+        &self,
+        reach: f64,
+        sieve: &Sieve,
+        see: impl FnMut(&P::Two) -> bool,
+    ) -> bool {
+        let cones = SLACKS.iter().position(|slack| sieve.slack + sieve.skin <= *slack);
+        let turned = Turned {
+            pairs: P::meet,
+            cones: cones.filter(|_| P::FACE),
+            overhang: overhang(sieve.lowest - sieve.skin),
+            ..self.clone()
+        };
         let mut search =
             Around { turned: &turned, reach: reach as f32, pairs: PhantomData::<P>, see, goes_on: true };
         if let Some(([fixed, moving], [f, m])) = &turned.roots() {
