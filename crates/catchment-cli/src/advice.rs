@@ -15,8 +15,10 @@ pub(crate) fn flags(advice: Advice) -> Option<String> {
         Advice::FewerPoses => "try fewer poses at a time".to_owned(),
         Advice::FewerSlices => "use fewer --slices or --strips".to_owned(),
         Advice::FewerThreads => "use fewer --threads".to_owned(),
+        Advice::MissingPart => "add what is missing with --with-fixed or --with-moving".to_owned(),
         Advice::Method(name) => format!("--method {name}"),
         Advice::MoreMemory => "allow more with --memory".to_owned(),
+        Advice::OwnFrames => "if each part has a frame of its own, --drawn facing".to_owned(),
         Advice::Samples => "--samples 4000, --budget 10s or --tolerance 1%".to_owned(),
         Advice::AtMostResolution(_) | Advice::AtMostSamples(_) | Advice::EnlargeErrors => return None,
     })

@@ -20,10 +20,14 @@ pub enum Advice {
     FewerSlices,
     /// Fewer threads.
     FewerThreads,
+    /// A magnet, a pin, a stop: what belongs to a half beside its file.
+    MissingPart,
     /// This method instead.
     Method(&'static str),
     /// A larger memory budget.
     MoreMemory,
+    /// Parts that are each drawn in a frame of their own, instead of as an assembly.
+    OwnFrames,
     /// Random poses, followed exactly.
     Samples,
 }
@@ -38,8 +42,10 @@ impl fmt::Display for Advice {
             Self::FewerPoses => f.write_str("try fewer poses at a time"),
             Self::FewerSlices => f.write_str("use fewer slices or strips"),
             Self::FewerThreads => f.write_str("use fewer threads"),
+            Self::MissingPart => f.write_str("add what a half has beside its file"),
             Self::Method(name) => write!(f, "use the method {name}"),
             Self::MoreMemory => f.write_str("allow more memory"),
+            Self::OwnFrames => f.write_str("take the parts as drawn in frames of their own"),
             Self::Samples => f.write_str("follow random poses exactly"),
         }
     }

@@ -1,5 +1,6 @@
 //! `catchment place`: two parts as they come from CAD, and the design that docks them.
 
+use crate::advice::flags;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
@@ -8,7 +9,9 @@ use catchment::design::{Complaint, LengthUnit, Quantity, Scale, Unit, parse_dofs
 use catchment::pose::DofSet;
 use catchment::problem::ProblemError;
 use catchment::report::figure;
-use catchment::study::proposal::{Beside, Frames, PartFile, Proposal, ProposalError, Settings, Way, propose};
+use catchment::study::proposal::{
+    Beside, Frames, PartFile, Proposal, ProposalError, Settings, Way, propose, shown_length,
+};
 use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use std::path::{Component, Path, PathBuf};
@@ -78,7 +81,7 @@ pub(crate) struct PlaceArgs {
     name: Option<String>,
     /// Write the design to this file instead of stdout; paths in it are relative to its folder
     #[arg(short, long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
-    output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
     /// Also draw the halves, apart and mated (.svg, .png)
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     figure: Option<PathBuf>,
@@ -228,7 +231,7 @@ fn is_file(said: &str) -> bool {
 fn told(found: &Proposal) -> Vec<String> {
     let design = found.problem.design();
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
-    let head = format!("width D {} {}, taken from the facets that can touch", design.width, unit.symbol());
+    let head = format!("width D {}, taken from the facets that can touch", shown_length(design.width, unit));
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
     let told = rows
         .iter()
@@ -242,9 +245,9 @@ fn told(found: &Proposal) -> Vec<String> {
 fn refused(error: ProposalError) -> Failure {
     let help = match &error {
         ProposalError::NoUnit { guess, .. } => format!("--unit {}?", guess.symbol()),
-        ProposalError::NoSeat { remedy, .. } => {
-            let remedy = remedy.iter().map(|remedy| format!("{remedy}; or "));
-            remedy.collect::<String>()
+        ProposalError::NoSeat { remedy, advice, .. } => {
+            let remedy = remedy.iter().cloned().chain(advice.and_then(flags));
+            remedy.map(|one| one + "; or ").collect::<String>()
                 + "say which way they lie: --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; lock what the seat does not hold: \
              --free x,y; parts at an angle to their axes: write the design file by hand (docs/parts.md)"
         }

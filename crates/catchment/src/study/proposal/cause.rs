@@ -11,14 +11,16 @@
 use super::halves::design_unit;
 use super::sink::{Drawn, Grain, Triangles, together};
 use super::{PartFile, Settings, Way};
+use crate::advice::Advice;
 use crate::connector::Half;
 use crate::contact::told::{Told, number};
 use crate::design::LengthUnit;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// What to do where parts that seem to be drawn assembled are not.
-pub(super) const OWN_FRAMES: &str = "the parts are drawn beside or inside each other without overlap, which was taken as an assembly; if each has a frame of its own, --drawn facing";
+/// What to say where parts that seem to be drawn assembled do not hold so.
+pub(super) const OWN_FRAMES: &str =
+    "the parts are drawn beside or inside each other without overlap, which was taken as an assembly";
 
 /// What to say of a seat that is elsewhere than where parts are drawn that may be assembled.
 pub(super) const ELSEWHERE: &str = "in doubt: the parts are drawn inside each other without overlap, and do not hold so; the seat that was taken is another one";
@@ -55,8 +57,18 @@ pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
     }
 }
 
-/// The cause, of what comes of each approach.
-pub(super) fn of(looks: &[(Way, Drawn)], told: Told) -> String {
+/// The cause, of what comes of each approach, and what helps.
+pub(super) fn of(looks: &[(Way, Drawn)], told: Told) -> (String, Option<Advice>) {
+    let text = words(looks, told);
+    let stops = |drawn: &Drawn| matches!(drawn, Drawn::Flat { .. } | Drawn::Passes);
+    let holds = |drawn: &Drawn| matches!(drawn, Drawn::Holds(_));
+    let is_part_missing =
+        looks.iter().any(|(_, drawn)| stops(drawn)) && !looks.iter().any(|(_, drawn)| holds(drawn));
+    (text, is_part_missing.then_some(Advice::MissingPart))
+}
+
+/// The cause in words.
+fn words(looks: &[(Way, Drawn)], told: Told) -> String {
     if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Holds(_))) {
         return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
     }
@@ -67,13 +79,13 @@ pub(super) fn of(looks: &[(Way, Drawn)], told: Told) -> String {
     if let Some((way, climb)) = flat {
         return format!(
             "as drawn, approach {way}: flat: the parts meet and nothing holds them sideways (the moving part climbs {} before it slides off). Are magnets or \
-             pins missing? Add them with --with-moving or --with-fixed",
+             pins missing?",
             told.length(climb)
         );
     }
     if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Passes)) {
         return format!(
-            "as drawn, approach {way}: the moving part meets nothing and passes through: no stop. Add what it comes to rest on with --with-fixed"
+            "as drawn, approach {way}: the moving part meets nothing and passes through: no stop. What does it come to rest on?"
         );
     }
     let apart = looks.iter().filter_map(|(way, drawn)| match drawn {
@@ -188,7 +200,7 @@ pub(super) fn inches(halves: [&Half; 2], settings: &Settings, scale: f64) -> Opt
     let longest = longest[0].max(longest[1]);
     (design_unit(settings) == LengthUnit::Mm && longest < SHORT).then(|| {
         format!(
-            "the larger part is {} mm long: is the file in inches? Then it is {} mm long: --unit in",
+            "the larger part is {} mm long: is the file in inches? Then it is {} mm long",
             number(longest),
             number(longest * 25.4)
         )

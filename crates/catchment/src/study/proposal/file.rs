@@ -172,7 +172,7 @@ pub(super) fn text(
     alignment(&mut line, seat, settings, unit);
     line("\n# Up to where errors are looked at, to both sides.");
     if seat.free.iter().any(|dof| ranges[dof.index()] < 1.0) {
-        line("# A few times as far as each alone is corrected.");
+        line("# About four times what each error alone tolerates.");
     }
     line("[errors]");
     for dof in seat.free.iter() {

@@ -9,7 +9,6 @@
 //! all round, which does not matter; where walls stop them, but later than a seat's
 //! play may be without being said ([`Docked::MOST_PLAY`]), the play is what counts as docked.
 
-use super::largest;
 use super::sink::Sunk;
 use super::way::Lie;
 use crate::connector::{Connector, Half};
@@ -26,10 +25,6 @@ use std::f64::consts::TAU;
 
 /// A seat that is as steep as this scores one half.
 pub(super) const STEEP: f64 = 3.5;
-/// Halves of more facets than this take long to follow.
-const MANY: usize = 1500;
-/// Heights that rise by less than this share of a step are level.
-const FALLS: f64 = 1e-2;
 /// How far apart what is drawn docked may be, in D.
 const MOST_APART: f64 = 0.05;
 /// How far off the climb is asked, in D, and what of it counts at most.
@@ -130,48 +125,13 @@ impl Judged {
         Self { sunk: Some(sunk), class, ..self }
     }
 
-    /// Whether exact motions take long.
-    pub(super) fn is_slow(&self) -> bool {
-        let halves = [&self.connector.fixed, &self.connector.moving];
-        halves.into_iter().flat_map(|half| &half.surfaces).map(|surface| surface.facets.len()).sum::<usize>()
-            > MANY
-    }
-
-    /// Up to where errors are worth looking at, as shares of 1 D and 90 degrees, without a motion: four times as far as the heights fall all the way to the
-    /// seat along each error alone.
-    pub(super) fn ranges(&self, seat: &Seat, exec: &Exec) -> [f64; 5] {
-        /// Heights along the way.
-        const STEPS: u32 = 12;
-        let pair = Pair::new(&self.connector, &Alignment::new(seat.free, Mount::X));
-        let height = |error: [f64; 5]| {
-            pair.height(&CorPose::from_error(&PoseError::from_array(error), 0.0, seat.free))
-        };
-        let mut ranges = [1.0; 5];
-        for dof in seat.free.iter() {
-            let whole = if dof.is_rotation() { 0.5 * std::f64::consts::PI } else { 1.0 };
-            let falls = |sign: f64, share: f64| {
-                let far = 0.25 * sign * share * whole;
-                let at = |k: u32| {
-                    let mut error = [0.0; 5];
-                    error[dof.index()] = far * f64::from(k) / f64::from(STEPS);
-                    height(error)
-                };
-                let step = far.abs() / f64::from(STEPS);
-                let mut before = pair.mated_height();
-                // Level ground is a seat's play, and a rim where it is higher.
-                exec.is_cancelled()
-                    || (1..=STEPS).all(|k| {
-                        let Some(next) = at(k) else { return false };
-                        let rises = next - before >= FALLS * step;
-                        let is_seated = (next - pair.mated_height()).abs() <= pair.alignment.docked.depth;
-                        before = next;
-                        rises || is_seated
-                    })
-            };
-            ranges[dof.index()] =
-                [-1.0, 1.0].map(|sign| largest(|share| falls(sign, share))).into_iter().fold(0.0, f64::max);
-        }
-        ranges
+    /// The halves as the design of the seat will have them.
+    pub(super) fn pair(&self, seat: &Seat) -> Pair {
+        let mut alignment = Alignment::new(seat.free, Mount::X);
+        alignment.dont_care = seat.dont_care;
+        alignment.docked.limits = seat.play;
+        let settled = seat.settle.and_then(|_| settle::settled(self.connector.clone(), &alignment));
+        Pair::new(settled.as_ref().unwrap_or(&self.connector), &alignment)
     }
 
     /// Asks what it holds, which takes the longest.

@@ -19,8 +19,10 @@
 //! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes, need
 //! a word. A proposal with a runner-up of 0.4 of its steepness, or a weak one, is "in doubt" and says so.
 
+mod candidate;
 mod cause;
 mod doubt;
+mod errors;
 mod file;
 mod halves;
 mod judge;
@@ -29,21 +31,22 @@ mod search;
 mod sink;
 mod way;
 
+pub use candidate::{Candidate, Held, shown_length};
 pub use way::{Lie, Way};
 
-use crate::acceptance::Outcome;
+use crate::advice::Advice;
 use crate::connector::Half;
 use crate::contact::relief;
-use crate::contact::told::{Told, number};
-use crate::design::{LengthUnit, SourceText};
+use crate::contact::told::Told;
+use crate::design::LengthUnit;
 use crate::exec::{Cancelled, Exec};
-use crate::pose::{Dof, DofSet, PoseError};
-use crate::problem::{Draft, Problem, ProblemError};
+use crate::pose::DofSet;
+use crate::problem::{Problem, ProblemError};
 use crate::terminal::shown;
+use candidate::{candidate, shown_unit};
 use glam::{DMat3, DVec2};
 use halves::design_unit;
 use judge::{Judged, Refusal, judge};
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// In which frames the parts are drawn.
@@ -97,65 +100,6 @@ pub struct PartFile {
     pub written: String,
 }
 
-/// One way in which the parts may dock.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Candidate {
-    /// How they lie.
-    pub lie: Lie,
-    /// 0 to 1; the more, the likelier.
-    pub score: f64,
-    /// How far the moving half climbs before it leaves, and how far it moves to each side at half of that, in the unit of the design;
-    /// where a lattice found it.
-    pub sunk: Option<[f64; 2]>,
-    /// climb / (e + play); 0 where no lattice found it.
-    pub steep: f64,
-    /// Whether it hardly rises as far as a lattice looks: what lies in a tray, and not in a seat.
-    pub is_loose: bool,
-    /// Which place it is: candidates of one place differ by a turn about the approach.
-    pub class: usize,
-    /// How much a half climbs that is off, 0 to 1.
-    pub climb: f64,
-    /// The area that can touch as a share of the broadest side of the smaller part's box.
-    pub shared: f64,
-    /// D, in the unit of the design.
-    pub width: f64,
-    /// Where the origin of the moving part is across the approach, in the unit of the design and the frame of the fixed half, turned.
-    pub offset: [f64; 2],
-    /// Whether it is a seat.
-    pub seat: Held,
-}
-
-/// Whether a candidate is a seat.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Held {
-    /// As drawn.
-    Holds,
-    /// Where the halves have settled.
-    Settles {
-        /// By how much the moving half turned, in radians.
-        turn: f64,
-        /// By how much it shifted across the approach, in the unit of the design.
-        shift: f64,
-        /// How that is told.
-        told: String,
-    },
-    /// It is none, and why.
-    Refused(String),
-    /// Others are better, so that it was not asked.
-    NotAsked,
-}
-
-impl fmt::Display for Held {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Holds => f.write_str("holds"),
-            Self::Settles { told, .. } => write!(f, "settles, {told} off"),
-            Self::Refused(reason) => f.write_str(reason),
-            Self::NotAsked => f.write_str("not looked at any closer"),
-        }
-    }
-}
-
 /// A design that docks two parts.
 #[derive(Debug, Clone)]
 pub struct Proposal {
@@ -192,6 +136,8 @@ pub enum ProposalError {
         tried: Vec<String>,
         /// What would let them: a mirror image, or something narrow left out.
         remedy: Option<String>,
+        /// What helps besides.
+        advice: Option<Advice>,
     },
     /// The computation was asked to stop.
     #[error(transparent)]
@@ -332,20 +278,18 @@ pub fn propose(
         let nowhere =
             faces.then_some("facing each other: nowhere along the axes does one sink into the other");
         let nowhere = nowhere.filter(|_| candidates.is_empty()).map(ToOwned::to_owned);
-        let tried = why
-            .or(flat)
-            .into_iter()
-            .chain(candidates.iter().map(slack))
-            .chain(nowhere)
-            .chain(refused)
-            .collect();
+        let (why, advice) = why.or(flat).unzip();
+        let advice = advice.flatten();
+        let tried =
+            why.into_iter().chain(candidates.iter().map(slack)).chain(nowhere).chain(refused).collect();
         let remedy = match cause::of_files(parts, both.halves, settings, unit) {
             Some(mistake) => Some(mistake),
             None if is_assembly => Some(cause::OWN_FRAMES.to_owned()),
             None if faces => remedy::of(&both, exec)?,
             None => None,
         };
-        return Err(ProposalError::NoSeat { tried, remedy });
+        let advice = if is_assembly { Some(Advice::OwnFrames) } else { advice };
+        return Err(ProposalError::NoSeat { tried, remedy, advice });
     };
     doubts.extend(doubt::of(&candidates, settings));
     if best.score() < remedy::WEAK
@@ -356,55 +300,9 @@ pub fn propose(
         doubts.push(told);
     }
     doubts.extend(cause::inches(both.halves, settings, unit));
-    let (text, problem) = designed(parts, settings, (best, seat), unit, place, exec)?;
+    let (text, problem) = errors::designed(parts, settings, (best, seat), unit, place, exec)?;
     doubts.extend(problem.design().unit.and_then(|unit| doubt::of_size(problem.design().width, unit)));
     Ok(Proposal { text, problem, candidates, doubts })
-}
-
-/// The design of a seat, as text and as a problem that was checked.
-fn designed(
-    parts: &[PartFile; 2],
-    settings: &Settings,
-    (best, seat): (&Judged, &judge::Seat),
-    unit: f64,
-    place: &Path,
-    exec: &Exec,
-) -> Result<(String, Problem), ProposalError> {
-    let text = |ranges: &[f64; 5]| file::text(parts, settings, best, *seat, unit, ranges);
-    let problem = |text: &str| -> Result<Problem, ProblemError> {
-        Draft::read(SourceText::new(place, text))?.build_on(exec)?.checked()
-    };
-    Ok(if best.is_slow() && seat.settle.is_none() {
-        let text = text(&best.ranges(seat, exec));
-        exec.check()?;
-        let problem = problem(&text)?;
-        (text, problem)
-    } else {
-        let whole = text(&[1.0; 5]);
-        let wide = problem(&whole)?;
-        let ranges = ranges(&wide, exec)?;
-        if ranges == [1.0; 5] {
-            (whole, wide)
-        } else {
-            let text = text(&ranges);
-            let problem = problem(&text)?;
-            (text, problem)
-        }
-    })
-}
-
-/// The unit in which a person says lengths of parts: millimetres where a file is in metres.
-const fn shown_unit(unit: LengthUnit) -> LengthUnit {
-    match unit {
-        LengthUnit::M => LengthUnit::Mm,
-        other => other,
-    }
-}
-
-/// A length given in the unit of the design, as it is told.
-fn shown_length(value: f64, unit: LengthUnit) -> String {
-    let shown = shown_unit(unit);
-    format!("{} {}", number(value * unit.metres() / shown.metres()), shown.symbol())
 }
 
 /// Parts that are drawn docked: what a lattice says of each approach; of those that hold, or that are asked for, what exact contact says.
@@ -533,39 +431,6 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, C
     }))
 }
 
-/// Up to where errors are worth looking at, as shares of what they are looked at in first: four times as far as each alone is corrected.
-fn ranges(problem: &Problem, exec: &Exec) -> Result<[f64; 5], Cancelled> {
-    let alignment = problem.alignment();
-    let sides: Vec<(Dof, f64)> = alignment.free.iter().flat_map(|dof| [(dof, -1.0), (dof, 1.0)]).collect();
-    let found = exec.each(sides.len(), usize::MAX, "errors", |k, exec| {
-        let (dof, sign) = sides[k];
-        let docks = |share: f64| {
-            let mut error = [0.0; 5];
-            error[dof.index()] = 0.25 * sign * share * alignment.half_range(dof);
-            exec.is_cancelled() || problem.follow(&PoseError::from_array(error)).outcome == Outcome::Aligned
-        };
-        largest(docks)
-    });
-    exec.check()?;
-    let mut ranges = [1.0; 5];
-    for dof in alignment.free.iter() {
-        let of = sides.iter().zip(&found).filter(|((side, _), _)| *side == dof).map(|(_, share)| *share);
-        ranges[dof.index()] = of.fold(0.0, f64::max);
-    }
-    Ok(ranges)
-}
-
-/// The largest of 1, 1/2, 1/4, 1/8 and 1/16 that is accepted, by bisection; the last is not asked.
-fn largest(accepts: impl Fn(f64) -> bool) -> f64 {
-    const HALVED: i32 = 4;
-    let (mut few, mut many) = (0, HALVED);
-    while few < many {
-        let halved = i32::midpoint(few, many);
-        if accepts(f64::from(-halved).exp2()) { many = halved } else { few = halved + 1 }
-    }
-    f64::from(-many).exp2()
-}
-
 /// Parts in frames of their own, judged wherever one may sink into the other.
 fn facing(
     pair: [&Half; 2],
@@ -630,76 +495,4 @@ fn round_numbers([fixed, moving]: [&Half; 2], lie: Lie) -> [DVec2; 2] {
         low.midpoint(high)
     };
     [middle(fixed, &turns[0]) - middle(moving, &turns[1]), DVec2::ZERO]
-}
-
-/// A candidate as a person sees it: lengths times `unit` are in the unit of the design.
-fn candidate(judged: &Judged, unit: f64, told: Told) -> Candidate {
-    let Judged { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
-    Candidate {
-        lie: *lie,
-        score: judged.score(),
-        sunk: sunk.map(|sunk| [sunk.climb * unit, sunk.play * unit]),
-        steep: sunk.map_or(0.0, |sunk| sunk.steep),
-        is_loose: sunk.is_some_and(|sunk| sunk.is_loose),
-        class: *class,
-        climb: climb.max(0.0),
-        shared: *shared,
-        width: width * unit,
-        offset: (*offset * unit).to_array(),
-        seat: match seat {
-            None => Held::NotAsked,
-            Some(Ok(judge::Seat { settle: Some(off), .. })) => settles(off, width * told.scale, told.unit),
-            Some(Ok(_)) => Held::Holds,
-            Some(Err(reason)) => Held::Refused(reason.clone()),
-        },
-    }
-}
-
-/// Where halves have settled.
-fn settles(off: &PoseError, width: f64, unit: &str) -> Held {
-    let turn = off.roll.hypot(off.pitch).hypot(off.yaw);
-    let shift = off.x.hypot(off.y) * width;
-    // What is less is how well the rest is known.
-    let shown = [(turn.to_degrees(), "deg", 0.05), (shift, unit, 1e-4 * width)];
-    let parts: Vec<String> = shown
-        .into_iter()
-        .filter(|(value, _, least)| value >= least)
-        .map(|(value, unit, _)| match unit {
-            "deg" => format!("{value:.1} deg"),
-            _ => format!("{} {unit}", number(value)),
-        })
-        .collect();
-    let told = if parts.is_empty() { "hardly".to_owned() } else { parts.join(" and ") };
-    Held::Settles { turn, shift, told }
-}
-
-impl Candidate {
-    /// Where the moving part is, in words to put behind how it lies, where others lie the same way; nothing otherwise.
-    pub fn place_among(&self, all: &[Self], unit: LengthUnit) -> String {
-        if all.iter().filter(|other| other.lie == self.lie).count() < 2 {
-            return String::new();
-        }
-        let shown = shown_unit(unit);
-        let [x, y] = self.offset.map(|side| number(side * unit.metres() / shown.metres()));
-        format!(", its origin at ({x}, {y}) {}", shown.symbol())
-    }
-
-    /// The candidate in words, beside all of them, with lengths in this unit.
-    pub fn told(&self, all: &[Self], unit: LengthUnit) -> String {
-        let Self { lie, score, climb, shared, seat, .. } = self;
-        if let Some([deep, play]) = self.sunk {
-            return format!(
-                "{score:.2}  {lie}{}: {} deep, play {} to each side, {seat}",
-                self.place_among(all, unit),
-                shown_length(deep, unit),
-                shown_length(play, unit)
-            );
-        }
-        format!(
-            "{score:.2}  {lie}{}: climbs {:.0} %, {:.0} % of the smaller part's broad side can touch, {seat}",
-            self.place_among(all, unit),
-            climb * 100.0,
-            shared * 100.0
-        )
-    }
 }
