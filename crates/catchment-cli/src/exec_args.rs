@@ -1,12 +1,14 @@
 //! How a computation runs: threads, memory, progress. Nothing here changes a result.
 
 use crate::failure::Failure;
+use crate::output::to_stderr;
 use crate::signals;
 use catchment::exec::Exec;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Options of every command that computes.
 #[derive(Debug, Args)]
@@ -18,7 +20,7 @@ pub(crate) struct ExecArgs {
     /// Refuse results larger than this, such as "4 GiB" [default: three quarters of the free memory]
     #[arg(long, value_name = "SIZE", value_parser = bytes, help_heading = "How to run (never changes a result)")]
     memory: Option<u64>,
-    /// No progress bar
+    /// No progress
     #[arg(short, long, help_heading = "How to run (never changes a result)")]
     quiet: bool,
 }
@@ -59,22 +61,48 @@ impl Drop for Running {
     }
 }
 
+/// Progress where no bar can be drawn: one line per tenth, of computations that take long.
+struct Log {
+    started: Instant,
+    /// Tenths that were reported.
+    tenths: u32,
+}
+
+impl Log {
+    /// What ends earlier than this needs no progress.
+    const SILENT: Duration = Duration::from_secs(20);
+
+    fn new() -> Self {
+        Self { started: Instant::now(), tenths: 0 }
+    }
+
+    fn line(&mut self, fraction: f64, stage: &str) -> Option<String> {
+        let tenths = (fraction * 10.0) as u32;
+        let elapsed = self.started.elapsed();
+        if tenths <= self.tenths || elapsed < Self::SILENT {
+            return None;
+        }
+        self.tenths = tenths;
+        Some(format!("progress: {} % after {} s ({stage})", 10 * tenths, elapsed.as_secs()))
+    }
+}
+
 impl ExecArgs {
     /// How many worker threads are asked for; 0 means one per core.
     pub(crate) fn threads(&self) -> usize {
         usize::from(self.threads)
     }
 
-    /// Starts threads, the progress bar (on a terminal only) and the handling of signals: once per process.
+    /// Starts threads, progress (a bar on a terminal, lines elsewhere) and the handling of signals: once per process.
     pub(crate) fn start(&self) -> Result<Running, Failure> {
         const STEPS: u64 = 1000;
         let mut exec = Exec::new().with_threads(usize::from(self.threads))?;
         if let Some(bytes) = self.memory {
             exec = exec.with_memory_budget(bytes);
         }
-        let bar = if self.quiet || !std::io::stderr().is_terminal() {
+        let bar = if self.quiet {
             ProgressBar::hidden()
-        } else {
+        } else if std::io::stderr().is_terminal() {
             let bar = ProgressBar::new(STEPS);
             bar.set_style(ProgressStyle::with_template("{msg:16} {bar:40} {percent:>3} %  {eta}")?);
             let shown = bar.clone();
@@ -83,6 +111,13 @@ impl ExecArgs {
                 shown.set_position((fraction * STEPS as f64) as u64);
             }));
             bar
+        } else {
+            let log = Mutex::new(Log::new());
+            exec = exec.with_progress(Arc::new(move |fraction, stage| {
+                let line = log.lock().unwrap_or_else(PoisonError::into_inner).line(fraction, stage);
+                to_stderr(&line.into_iter().collect::<Vec<_>>());
+            }));
+            ProgressBar::hidden()
         };
         signals::listen(&exec.cancel_flag())?;
         Ok(Running { exec, bar })
@@ -123,6 +158,16 @@ mod tests {
         assert_eq!(running.exec.threads(), 2);
         assert_eq!(running.exec.memory_budget(), 1000);
         assert!(signals::received().is_none() && !running.exec.is_cancelled());
+    }
+
+    #[test]
+    fn a_log_has_one_line_per_tenth_of_what_takes_long() {
+        let mut log = Log::new();
+        assert_eq!(log.line(0.5, "cells"), None);
+        log.started -= 2 * Log::SILENT;
+        assert_eq!(log.line(0.51, "cells").as_deref(), Some("progress: 50 % after 40 s (cells)"));
+        assert_eq!(log.line(0.59, "cells"), None);
+        assert!(log.line(0.6, "cells").is_some() && log.line(1.0, "cells").is_some());
     }
 
     #[test]

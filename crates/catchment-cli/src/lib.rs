@@ -34,8 +34,17 @@ pub fn run() -> ExitStatus {
 /// Does what a command line says; its first word is the name of the program.
 pub fn run_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitStatus {
     signals::outlive_file_limits();
+    let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
+    // Whoever reads JSON types nothing.
+    let is_read = words.iter().any(|word| word == "--json");
     bug::caught(|| match Cli::try_parse_from(words) {
-        Ok(cli) => cli.command.run().unwrap_or_else(failure::Failure::show),
+        Ok(cli) => {
+            let next = cli.command.next().filter(|_| !is_read);
+            let status = cli.command.run().unwrap_or_else(failure::Failure::show);
+            let next = next.filter(|_| status == ExitStatus::Done);
+            output::to_stderr(&next.map(|next| format!("next: {next}")).into_iter().collect::<Vec<_>>());
+            status
+        }
         Err(usage) => usage::tell(usage),
     })
 }

@@ -52,7 +52,7 @@ use std::time::Instant;
 )]
 pub(crate) struct ChanceArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// A file of laws (TOML), under [dynamics]
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, help_heading = DRAWN)]
     dynamics: Option<PathBuf>,

@@ -20,7 +20,7 @@ use clap::Args;
     catchment check design.toml --json | jq .problems")]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Print problems, or the design as understood, as JSON
     #[arg(long)]
     json: bool,

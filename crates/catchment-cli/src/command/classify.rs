@@ -20,7 +20,7 @@ use clap::Args;
     catchment catalog --append design.toml   as a row of the catalogue")]
 pub(crate) struct ClassifyArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,

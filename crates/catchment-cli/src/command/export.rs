@@ -47,7 +47,7 @@ use std::path::PathBuf;
 )]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Of a design: the pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     pose: Option<String>,

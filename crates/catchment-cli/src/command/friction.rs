@@ -28,7 +28,7 @@ use std::time::Instant;
     -o writes .png and .svg (pictures), .csv (a line per friction) and .json.")]
 pub(crate) struct FrictionArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Coefficients of friction, beside none [default: 0.05,0.1,0.15,0.2,0.25,0.3,0.4,0.5]
     #[arg(long, value_name = "MU,…", value_parser = number, value_delimiter = ',')]
     frictions: Vec<f64>,

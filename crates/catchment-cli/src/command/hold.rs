@@ -33,7 +33,7 @@ use std::time::Instant;
     in radians in CSV and JSON.")]
 pub(crate) struct HoldArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Coefficient of friction between the halves
     #[arg(long, value_name = "MU", value_parser = number, default_value_t = 0.0, allow_negative_numbers = true)]
     friction: f64,

@@ -36,7 +36,7 @@ use std::path::{Path, PathBuf};
     the wanted heights (.svg, .png).")]
 pub(crate) struct InvertArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Wanted heights: a design (.toml) or a table x,y,height in D (.csv) [default: the design's own]
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     heights: Option<PathBuf>,

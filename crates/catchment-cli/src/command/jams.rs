@@ -33,7 +33,7 @@ use std::time::Instant;
     radians in CSV and JSON.")]
 pub(crate) struct JamsArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Random poses of the error box [default: 4000, fewer for round halves]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     motions: Option<u32>,

@@ -16,6 +16,7 @@ mod jams;
 mod latch;
 mod man;
 mod new;
+mod next;
 mod outcome;
 mod place;
 mod plan;

@@ -39,7 +39,7 @@ use std::sync::{Mutex, PoisonError};
     name that is nearly an error (dx, X_mm) is refused. Final errors come in the units of their columns. At most 64 MiB and 1000000 poses.")]
 pub(crate) struct OutcomeArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// The table of pose errors (CSV); - reads stdin
     #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath)]
     poses: PathBuf,

@@ -39,7 +39,7 @@ use std::time::Instant;
         .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     #[command(flatten)]
     pattern: PatternArgs,
     /// Standard deviation of each error of the robot, such as "x=0.1 mm,yaw=0.2 deg"; what is not named is exact

@@ -26,18 +26,19 @@ use serde_json::Value;
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment report design.toml -o page.html           computes what it shows\n  \
-    catchment report out -o page.html                   of a result of `run -o`\n  \
-    catchment report out -o page.html --leave-out window,jams\n  \
+    catchment report out -o page.html                   of a result of `run -o`, with what it holds\n  \
+    catchment run design.toml --window --jams -o out    a result that holds jams and window\n  \
+    catchment report design.toml -o page.html --leave-out window,jams\n  \
     catchment report design.toml --free x,y,yaw --resolution 24 -o page.html\n  \
     catchment report design.toml --friction 0.2 -o page.html\n\n\
-    Jams and window are computed beside the result, from its design. A result whose mesh files are gone or changed becomes a page \
-    without halves, motions, jams and window, which says so. `catchment view` serves the same page and computes again on demand.",
+    Of a design, slices, jams and window are computed beside the result; of a stored result they are those it holds. A result whose mesh files are gone or \
+    changed becomes a page without halves and motions, which says so. `catchment view` serves the same page and computes again on demand.",
     mut_arg("path", |path| path.value_name("RESULT_OR_DESIGN")
         .help("A design, a folder written by `run -o`, or its NAME.zarr")
         .value_hint(clap::ValueHint::AnyPath)))]
 pub(crate) struct ReportArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     #[command(flatten)]
     made: MadeArgs,
     #[command(flatten)]
@@ -100,6 +101,23 @@ impl MadeArgs {
         Ok(Run { over, ..Run::by(method) })
     }
 
+    /// Takes from the page of a stored result what it shall not have, and notes what the result does not hold.
+    fn of_stored(&self, parts: &mut Parts) {
+        let Studies { jams, window, .. } = self.studies();
+        parts.jams.take_if(|_| !jams);
+        parts.window.take_if(|_| !window);
+        let missing =
+            [(jams && parts.jams.is_none(), "--jams"), (window && parts.window.is_none(), "--window")];
+        let missing: Vec<&str> =
+            missing.into_iter().filter(|(is, _)| *is).map(|(_, option)| option).collect();
+        if !missing.is_empty() {
+            parts.notes.push(format!(
+                "the page has what the result holds; `catchment run` with {} stores more",
+                missing.join(" ")
+            ));
+        }
+    }
+
     /// What is studied beside it.
     fn studies(&self) -> Studies {
         let wanted = |study| !self.leave_out.contains(&study);
@@ -130,7 +148,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
         }
         let running = args.exec.start()?;
         let mut parts = Parts::stored(path, &running.exec)?;
-        parts.study(args.made.studies(), &running.exec)?;
+        args.made.of_stored(&mut parts);
         args.output.write(&parts.page().html(&running.exec)?)?;
         parts
     } else {

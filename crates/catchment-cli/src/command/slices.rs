@@ -32,7 +32,7 @@ use std::time::Instant;
     -o DIR: slices.png, slices.svg, slices.csv, report.json, and a Zarr group such as x-pitch.zarr for each.")]
 pub(crate) struct SlicesArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Two errors to vary, such as x,pitch; may be repeated [default: all pairs of free errors]
     #[arg(long, value_name = "AXIS,AXIS", value_parser = pair)]
     axes: Vec<[Dof; 2]>,

@@ -28,7 +28,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, Value
     Lengths are in D and angles in radians; z is the approach, and an angle takes the axis that no free length has.")]
 pub(crate) struct SolidsArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Which shape
     #[arg(long, value_name = "SHAPE", default_value = "collision", value_parser = shape_parser())]
     shape: Subject,

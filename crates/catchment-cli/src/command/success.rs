@@ -39,7 +39,7 @@ use std::time::Instant;
     Lengths are in D and angles in radians unless they have a unit; in JSON always.")]
 pub(crate) struct SuccessArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     #[command(flatten)]
     errors: ExpectedArgs,
     /// The success for which the largest standard deviations are sought

@@ -38,7 +38,7 @@ use std::time::Instant;
     kept in DIR.parts: the same command goes on from there after Ctrl-C, and writes what it would have written.")]
 pub(crate) struct SweepArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// A key of the design file and its values, such as cor=-1..1/5 or errors.x=1,2; may be repeated
     #[arg(long, value_name = "KEY=VALUE,…", required = true, allow_hyphen_values = true, value_parser = axis)]
     over: Vec<Axis>,

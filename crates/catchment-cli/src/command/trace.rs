@@ -34,7 +34,7 @@ use clap::{Args, ValueEnum};
     line per contact point), .json, .vtp (way, contacts and halves for ParaView) and .glb (glTF animation, in metres).")]
 pub(crate) struct TraceArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// The pose error to start from, such as "x=0.2,pitch=10 deg"; what is not named is 0
     #[arg(long, value_name = "ERRORS", allow_hyphen_values = true)]
     pose: String,

@@ -45,7 +45,7 @@ pub(crate) struct ValidateArgs {
     #[arg(value_name = "PLAN", value_hint = clap::ValueHint::FilePath)]
     plan: PathBuf,
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Standard deviation of each error of the robot, such as "x=0.1 mm,yaw=0.2 deg"; what is not named is exact
     #[arg(long, value_name = "AXIS=SIZE,…")]
     accuracy: String,

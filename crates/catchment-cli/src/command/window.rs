@@ -32,7 +32,7 @@ use std::time::Instant;
     error box of the design.")]
 pub(crate) struct WindowArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// Half-widths that are given, such as "x=2 mm,y=2 mm": the window holds them, and the others grow
     #[arg(long, value_name = "AXIS=SIZE,…")]
     fix: Option<String>,

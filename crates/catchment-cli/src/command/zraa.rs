@@ -42,7 +42,7 @@ use std::time::Instant;
     exact border has its 95 % interval. -o then writes the picture of both, or the trials of the last round (.csv).")]
 pub(crate) struct ZraaArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     /// More designs, to stand beside the first; x must be their only free offset
     #[arg(value_name = "MORE", value_hint = clap::ValueHint::FilePath)]
     more: Vec<PathBuf>,

@@ -283,7 +283,7 @@ fn a_certificate_tells_three_parts_of_the_error_box_and_how_well_the_seat_holds(
     let [lo, hi] = [0, 1].map(|k| number(&followed["acceptance"]["sum_ci95"][k]));
     assert!(number(&found["sum"]) < hi && lo < most, "{found} {lo} {hi}");
     let said = run(home.path(), &how);
-    assert!(said.contains("for certain: ") && !said.contains("one cell of doubt"), "{said}");
+    assert!(said.contains("for certain: ") && !said.contains("border moves by one cell"), "{said}");
     assert!(!said.contains("too coarse") && !said.contains("without an interval"), "{said}");
     assert!(["all dock", "none docks", "retention"].iter().all(|word| said.contains(word)), "{said}");
     let asked = [&how[..], &["--require", "certificate.undecided<=0"]].concat();

@@ -60,9 +60,9 @@ fn the_picture_of_five_dimensions_shows_the_sum_of_its_table() {
     let args = ["run", pyramid.to_str().unwrap(), "--resolution", "6", "--samples", "300", "-o", "out"];
     let said = run(home.path(), &args);
     assert!(said.starts_with("exit 0"), "{said}");
-    // `  Sum            12.59 ± 0.23 D²·rad³   (…`
-    let line = said.lines().find(|line| line.trim_start().starts_with("Sum ")).unwrap();
-    let sum = line.trim_start().trim_start_matches("Sum").trim_start();
+    // `  AA (Sum)       12.59 ± 0.23 D²·rad³   (…`
+    let line = said.lines().find(|line| line.trim_start().starts_with("AA (Sum) ")).unwrap();
+    let sum = line.trim_start().trim_start_matches("AA (Sum)").trim_start();
     let sum = sum.split("   ").next().unwrap();
     assert!(sum.contains(" ± "), "{line}");
     for name in ["overview.svg", "slices.svg"] {

@@ -6,6 +6,7 @@ use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::Resolution;
+use crate::pose::Dof;
 
 /// Seconds of one descent between simple halves, on one core: what cost estimates count in.
 pub(super) const DESCENT_SECONDS: f64 = 1e-4;
@@ -15,13 +16,19 @@ pub(super) const DESCENT_SECONDS: f64 = 1e-4;
 pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
 
 /// How many descents can be afforded, as a share of what simple halves allow: the time of a descent grows with about the cube of the
-/// number of facets, and where the trees are asked as measured of funnels of 600 to 6000 facets.
+/// number of facets, and where the trees are asked as measured.
 pub fn affordable(pair: &Pair) -> f64 {
     const SIMPLE: f64 = 64.0;
     let facets = |half: &crate::connector::Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
     let facets = (facets(&pair.fixed) + facets(&pair.moving)) as f64;
     let listed = (SIMPLE / facets.max(SIMPLE)).powi(3);
-    if pair.asks_trees() { listed.max(by_trees(facets)) } else { listed }
+    let tilts = [Dof::Roll, Dof::Pitch].into_iter().any(|dof| pair.alignment.free.contains(dof));
+    if pair.asks_trees() { listed.max(by_trees(facets, tilts)) } else { listed }
+}
+
+/// Seconds that a motion takes about, on one core.
+pub fn seconds_per_motion(pair: &Pair) -> f64 {
+    DESCENT_SECONDS / affordable(pair)
 }
 
 /// Cells per axis that can be afforded of so many of simple halves with as many free errors, each a descent; in all no fewer than `poses`, where those are as many.
@@ -35,13 +42,16 @@ pub(super) fn affordable_cells(pair: &Pair, simple: [usize; 5], poses: usize) ->
     })
 }
 
-/// The same of halves that are searched by trees, by the number of their facets.
-fn by_trees(facets: f64) -> f64 {
-    /// Seconds of a descent of so many facets, and with which power of their number they grow.
-    const SECONDS: f64 = 4e-3;
+/// The same of halves that are searched by trees, by the number of their facets and whether motions tilt.
+fn by_trees(facets: f64, tilts: bool) -> f64 {
+    /// Seconds of a descent of so many facets that does not tilt, and with which power of their number they grow: grid cups, funnels, gears.
+    const SECONDS: f64 = 5e-4;
     const MEASURED: f64 = 600.0;
-    const POWER: f64 = 0.71;
-    (DESCENT_SECONDS / SECONDS * (MEASURED / facets).powf(POWER)).min(1.0)
+    const POWER: f64 = 0.9;
+    /// Where it tilts, other features come near at every step.
+    const TILTED: f64 = 10.0;
+    let factor = if tilts { TILTED } else { 1.0 };
+    (DESCENT_SECONDS / (factor * SECONDS) * (MEASURED / facets).powf(POWER)).min(1.0)
 }
 
 /// Refuses what would not fit into memory, with the resolution that would.
@@ -82,10 +92,11 @@ mod tests {
 
     #[test]
     fn the_time_of_a_descent_is_the_measured_one() {
-        let milliseconds = |facets: f64| 1e3 * DESCENT_SECONDS / by_trees(facets);
-        assert!((milliseconds(600.0) - 4.0).abs() < 1e-9);
-        // Ten times as many facets take 10^0.71 times as long.
-        assert!((milliseconds(6000.0) / milliseconds(600.0) - 5.13).abs() < 0.01);
-        assert_eq!(by_trees(1.0), 1.0);
+        let milliseconds = |facets: f64, tilts: bool| 1e3 * DESCENT_SECONDS / by_trees(facets, tilts);
+        assert!((milliseconds(600.0, false) - 0.5).abs() < 1e-9);
+        assert!((milliseconds(600.0, true) - 5.0).abs() < 1e-9);
+        // Ten times as many facets take 10^0.9 times as long.
+        assert!((milliseconds(6000.0, false) / milliseconds(600.0, false) - 7.94).abs() < 0.01);
+        assert_eq!(by_trees(1.0, false), 1.0);
     }
 }

@@ -1,7 +1,7 @@
 //! An answer, told: its report, whether it meets what was required, and its files.
 
 use super::envelope::{Body, Envelope};
-use super::schema::{PartitionReport, SuccessReport, Timing, WarningReport, WatershedsReport};
+use super::schema::{PartitionReport, SuccessReport, Timing, UprightReport, WarningReport, WatershedsReport};
 use super::{JamsFound, Report, WindowSection};
 use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
 use crate::exec::Exec;
@@ -11,10 +11,11 @@ use crate::method::certified::Certificate;
 use crate::method::confluence::Joined;
 use crate::method::correction::{self, ByNeighbours, Stop};
 use crate::method::flood;
+use crate::pose::DofSet;
 use crate::problem::Problem;
 use crate::run::jams::Jams;
 use crate::run::window::Window;
-use crate::run::{Answer, Corrected, Requirement, RequirementError, Run, RunError, Seating, Verdict};
+use crate::run::{Answer, Corrected, Over, Requirement, RequirementError, Run, RunError, Seating, Verdict};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -43,6 +44,7 @@ impl Answer {
         if let (Some(distribution), Some(success)) = (&self.run.errors, &self.success) {
             report.success = Some(SuccessReport::new(distribution.clone(), success));
         }
+        report.upright = self.upright.as_ref().map(UprightReport::from);
         report.jams = self.jams.as_ref().map(|found| JamsFound::new(self.problem.design(), found));
         report.window = self.window.as_ref().and_then(|found| found.as_ref().ok()).map(WindowSection::from);
         report.seat = Some(self.seating.clone());
@@ -111,7 +113,11 @@ impl Run {
         let plan = self.plan(problem)?;
         let exec = Exec::new();
         let domain = match plan.domain {
-            Domain::Grid(_) => Domain::Grid(Grid::over(problem.alignment(), |_| Resolution::LEAST)),
+            // Whatever answers in the place of a grid tells the same of it.
+            _ if matches!(self.over, Over::Grid(_)) => {
+                Domain::Grid(Grid::over(problem.alignment(), |_| Resolution::LEAST))
+            }
+            Domain::Grid(grid) => Domain::Grid(grid),
             Domain::Poses(poses) => Domain::Poses(poses.into_iter().take(1).collect()),
         };
         let outcomes = vec![Outcome::Aligned; domain.len()];
@@ -128,6 +134,10 @@ impl Run {
             let found = correction::estimate(grid, &by, &one, &exec, aligned)?;
             let settings = Value::Null;
             report = report.with_sample(&Corrected { found, seed: sample.seed, method, settings });
+        }
+        if problem.alignment().free == DofSet::ALL {
+            let tolerances = report.tolerances.clone();
+            report.upright = report.centered.clone().map(|window| UprightReport { window, tolerances });
         }
         report.seat = Some(Seating::form(problem));
         if self.window {

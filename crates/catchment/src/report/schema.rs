@@ -15,7 +15,7 @@ use crate::merit::{MeritError, Merits};
 use crate::method::certified::Certificate;
 use crate::method::confluence::Joined;
 use crate::pose::Dof;
-use crate::run::Seating;
+use crate::run::{Seating, Upright};
 use serde::{Deserialize, Serialize};
 
 /// Everything one run has to say, with its head.
@@ -40,6 +40,10 @@ pub struct RunBody {
     pub centered: Option<CenteredReport>,
     /// How far each error may go alone; empty for listed poses.
     pub tolerances: Vec<ToleranceReport>,
+    /// The same with roll and pitch locked, where all five errors are free and motions were followed; null otherwise, and in reports of versions that did not
+    /// ask.
+    #[serde(default)]
+    pub upright: Option<UprightReport>,
     /// Success probability for the errors asked about; null if none were.
     pub success: Option<SuccessReport>,
     /// The basins behind the outcomes; null for methods that know none.
@@ -181,6 +185,15 @@ pub struct CenteredReport {
     pub followed: bool,
 }
 
+/// What a connector tolerates whose roll and pitch are locked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UprightReport {
+    /// The largest box around zero all of which docks, in the proportions of the tolerances; its edge is a multiple of these.
+    pub window: CenteredReport,
+    /// How far each error may go alone.
+    pub tolerances: Vec<ToleranceReport>,
+}
+
 /// How far one error may go alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ToleranceReport {
@@ -298,6 +311,7 @@ impl Report {
             onaa: onaa.map(OnaaReport::from),
             centered: centered.map(CenteredReport::from),
             tolerances: tolerances.into_iter().map(ToleranceReport::from).collect(),
+            upright: None,
             success: None,
             basins: None,
             watersheds: None,
@@ -389,6 +403,15 @@ impl From<Onaa> for OnaaReport {
     fn from(onaa: Onaa) -> Self {
         let bounds = onaa.bounds.into_iter().map(|(axis, lo, hi)| Interval { axis, lo, hi }).collect();
         Self { edge: onaa.edge, bounds, followed: onaa.is_followed }
+    }
+}
+
+impl From<&Upright> for UprightReport {
+    fn from(found: &Upright) -> Self {
+        Self {
+            window: found.window.clone().into(),
+            tolerances: found.tolerances.iter().copied().map(ToleranceReport::from).collect(),
+        }
     }
 }
 

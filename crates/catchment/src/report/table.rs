@@ -5,7 +5,8 @@ mod certificate;
 mod jams;
 mod seat;
 
-use super::schema::{AcceptanceReport, OnaaReport, Report, ToleranceReport};
+use super::resting::Told;
+use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, Report, ToleranceReport};
 use super::text::{
     COLUMNS, decimals, grouped, length, line, percent, rounded, row, significant, with_error, wrapped,
 };
@@ -42,27 +43,18 @@ pub fn table_with(report: &Report, controls: impl Fn(Advice) -> Option<String>) 
         }
     }
     text.push('\n');
-    acceptance(&mut text, report);
-    if let Some(onaa) = &report.onaa {
-        row(&mut text, "ONAA edge", &cube(onaa));
-    }
-    if let Some(centered) = &report.centered {
-        let more = if centered.reaches_border { ", up to the error box" } else { "" };
-        row(&mut text, "centred edge", &format!("{:.4}   around zero{more}", centered.edge));
-        if centered.followed {
-            row(&mut text, "", "in both all poses that were followed dock");
-        }
-    }
+    limits(&mut text, report);
     if let Some(s) = &report.success {
         let outside = format!("{} of the errors lie outside the error box", percent(s.outside));
         row(&mut text, "success", &format!("{}   ({outside})", percent(s.probability)));
         let [lo, hi] = s.ci95.unwrap_or(s.bracket).map(percent);
-        let what = if s.ci95.is_some() { "95 % interval" } else { "one cell of doubt:" };
+        let what = if s.ci95.is_some() { "95 % CI" } else { "if the border moves by one cell:" };
         row(&mut text, "", &format!("{what} {lo} … {hi}"));
-    }
-    if !report.tolerances.is_empty() {
         text.push('\n');
-        tolerances(&mut text, report);
+    }
+    acceptance(&mut text, report);
+    if let Some(onaa) = &report.onaa {
+        row(&mut text, "ONAA edge", &cube(onaa));
     }
     if let Some(found) = &report.seat {
         text.push('\n');
@@ -102,11 +94,11 @@ fn by_products(text: &mut String, report: &Report) {
     }
     if let Some(found) = &report.joined {
         let [joined, cells, tried] = [found.joined, found.cells, found.tried].map(grouped);
-        row(text, "joined", &format!("{joined} of {cells} cells in contact joined others;"));
+        row(text, "inherited", &format!("{joined} of {cells} contact cells inherit a neighbour's outcome;"));
         let most = percent(found.wrong_ci95[1]);
         let told = match found.tried {
-            0 => "none of them was followed to ask whether it ends alike".to_owned(),
-            _ => format!("of {tried} tried {} end otherwise (at most {most} of them)", grouped(found.wrong)),
+            0 => "none of them was re-checked".to_owned(),
+            _ => format!("{} of {tried} re-checked differ (at most {most} of them)", grouped(found.wrong)),
         };
         row(text, "", &told);
     }
@@ -162,37 +154,40 @@ fn tried(report: &Report) -> String {
     format!("{} = {} cells", cells.join(" × "), grouped(report.acceptance.cells))
 }
 
-/// The Sum with its unit, and half its interval where it has one: `12.587 ± 0.023 D²·rad³`.
+/// The Sum with its unit, and half its interval where it has one: `12.587 ± 0.023 D²·rad³`. Where half the interval is more than the Sum, its upper
+/// end alone: too few sampled poses docked to say more.
 pub(super) fn sum(a: &AcceptanceReport) -> String {
-    let sum = a.sum_ci95.map_or_else(|| significant(a.sum), |ci95| with_error(a.sum, ci95));
+    let sum = match a.sum_ci95 {
+        None => significant(a.sum),
+        Some([lo, hi]) if hi - lo > 2.0 * a.sum => format!("below {}", significant(hi)),
+        Some(ci95) => with_error(a.sum, ci95),
+    };
     format!("{sum} {}", a.unit)
 }
 
 fn acceptance(text: &mut String, report: &Report) {
     let a = &report.acceptance;
-    row(text, "Sum", &format!("{}   ({} of the error box)", sum(a), percent(a.fraction)));
+    row(text, "AA (Sum)", &format!("{}   ({} of the error box)", sum(a), percent(a.fraction)));
     let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
     if a.sum_ci95.is_some() {
-        row(
-            text,
-            "",
-            &format!("± is the 95 % interval of {} random poses, followed exactly", grouped(poses)),
-        );
+        row(text, "", &format!("95 % CI, {} sampled poses", grouped(poses)));
     }
     if let Some([lo, hi]) = a.sum_bracket {
-        let cells = if a.sample.is_some() {
-            format!("accepted cells: {}, ", significant(a.sum_grid))
-        } else {
-            String::new()
+        let [lo, hi] = [lo, hi].map(significant);
+        let told = match (report.certificate.is_some(), a.sample.is_some()) {
+            (true, _) => format!("for certain: {lo} … {hi}"),
+            (_, true) => {
+                let grid = significant(a.sum_grid);
+                format!("grid: {grid}; {lo} … {hi} if its border moves by one cell")
+            }
+            (_, false) => format!("{lo} … {hi} if its border moves by one cell"),
         };
-        let what = if report.certificate.is_some() { "for certain" } else { "one cell of doubt" };
-        row(text, "", &format!("{cells}{what}: {} … {}", significant(lo), significant(hi)));
+        row(text, "", &told);
     }
     if let Some(sample) = &a.sample {
         let [lo, hi] = sample.differing_ci95.map(percent);
-        let told =
-            format!("cells fare otherwise than {} of the box ({lo} … {hi})", percent(sample.differing));
-        row(text, "", &told);
+        let share = percent(sample.differing);
+        row(text, "misclassified", &format!("{share} of the error box by the grid (95 % CI {lo} … {hi})"));
     }
     let share =
         |n: usize| format!("{:.1} %", if a.cells == 0 { 0.0 } else { 100.0 * n as f64 / a.cells as f64 });
@@ -217,52 +212,96 @@ fn cube(onaa: &OnaaReport) -> String {
     format!("{:.4}   of the error box, along every axis", onaa.edge)
 }
 
-fn tolerances(text: &mut String, report: &Report) {
-    let unit = report.design.unit;
-    let own = unit.map_or_else(String::new, |u| format!("{:>22}", u.symbol()));
-    line(text, &format!("  {:<9}{:>22}{own}{:>22}", "tolerance", "D, rad", "deg"));
-    let mut open = false;
-    for t in &report.tolerances {
-        let angle = t.axis.is_rotation();
-        let base = both(t, 1.0, 4);
-        let lengths =
-            if angle { String::new() } else { both(t, report.design.width, decimals(report.design.width)) };
-        let lengths = if unit.is_none() { String::new() } else { format!("{lengths:>22}") };
-        let degrees = if angle { both(t, 1f64.to_degrees(), 2) } else { String::new() };
-        line(text, &format!("  {:<9}{base:>22}{lengths}{degrees:>22}", t.axis.name()));
-        open |= t.minus_reaches_border || t.plus_reaches_border;
+/// What an engineer asks first: the tolerance window, and how far each error may go alone.
+fn limits(text: &mut String, report: &Report) {
+    let centered = report.centered.as_ref();
+    if report.tolerances.is_empty() && centered.is_none() {
+        return;
     }
-    let half: Vec<String> = report
-        .tolerances
-        .iter()
-        .map(|t| {
+    line(
+        text,
+        &format!("  {:<9}{:>20}{:>25}{:>23}", "error", "tolerance window", "single-axis limit", "D, rad"),
+    );
+    let mut is_open = limit_rows(text, &report.design, centered, &report.tolerances);
+    if let Some(found) = &report.upright {
+        line(text, "  with roll and pitch locked");
+        is_open |= limit_rows(text, &report.design, Some(&found.window), &found.tolerances);
+    }
+    match centered {
+        Some(found) if found.followed => {
+            line(text, "  window: largest centred box in which every sampled pose docks");
+        }
+        Some(_) => line(text, "  window: largest centred box of accepted cells"),
+        None => {}
+    }
+    if report.tolerances.iter().all(|t| t.followed) {
+        line(text, "  single-axis limit: one error, all others zero");
+    } else if report.certificate.is_some() {
+        line(text, "  single-axis limit: at least, as far as whole cells dock for certain");
+    } else {
+        let half = |t: &ToleranceReport| {
             if t.axis.is_rotation() {
                 format!("{} {:.2}°", t.axis.name(), t.half_cell.to_degrees())
             } else {
                 format!("{} {:.4} D", t.axis.name(), t.half_cell)
             }
-        })
-        .collect();
-    if report.tolerances.iter().all(|t| t.followed) {
-        line(text, "  each alone, by poses followed exactly along its axis");
-    } else if report.certificate.is_some() {
-        line(text, "  each at least, as far as whole cells dock for certain");
-    } else {
-        wrapped(text, "  each ± half a cell: ", &half.join(", "));
+        };
+        let half: Vec<String> = report.tolerances.iter().map(half).collect();
+        wrapped(text, "  single-axis limit: one error, all others zero, ± half a cell: ", &half.join(", "));
     }
-    if open {
-        line(text, "  * up to the border of the error box, perhaps further");
+    if is_open {
+        line(text, "  * ends at the error box, perhaps larger");
+    }
+    text.push('\n');
+}
+
+/// A row per error; says whether the error box ends any of them.
+fn limit_rows(
+    text: &mut String,
+    design: &Design,
+    window: Option<&CenteredReport>,
+    limits: &[ToleranceReport],
+) -> bool {
+    let told = Told::of(design);
+    let mut is_open = false;
+    for axis in design.alignment.free.iter() {
+        let half_width = window.and_then(|found| found.bounds.iter().find(|side| side.axis == axis));
+        let limit = limits.iter().find(|limit| limit.axis == axis);
+        if half_width.is_none() && limit.is_none() {
+            continue;
+        }
+        let box_ends = window.is_some_and(|found| found.reaches_border);
+        let half_width = half_width.map_or_else(String::new, |side| {
+            format!("{}{}", told.size(axis, side.hi), if box_ends { "*" } else { "" })
+        });
+        let [own, base] = limit.map_or_else(Default::default, |limit| {
+            is_open |= limit.minus_reaches_border || limit.plus_reaches_border;
+            [in_own_unit(limit, design), both(limit, 1.0, 4, "")]
+        });
+        is_open |= box_ends;
+        line(text, &format!("  {:<9}{half_width:>20}{own:>25}{base:>23}", axis.name()));
+    }
+    is_open
+}
+
+/// A limit in the unit of the design, or in D; angles in degrees.
+fn in_own_unit(limit: &ToleranceReport, design: &Design) -> String {
+    if limit.axis.is_rotation() {
+        return both(limit, 1f64.to_degrees(), 2, "°");
+    }
+    match design.unit {
+        Some(unit) => format!("{} {}", both(limit, design.width, decimals(design.width), ""), unit.symbol()),
+        None => format!("{} D", both(limit, 1.0, 4, "")),
     }
 }
 
 /// `±0.5` where both sides agree, `−0.5 / +0.3` where they do not; a star where the error box cut it off.
-fn both(t: &ToleranceReport, scale: f64, digits: usize) -> String {
-    let star = |open: bool| if open { "*" } else { "" };
-    let (minus, plus) = (format!("{:.digits$}", t.minus * scale), format!("{:.digits$}", t.plus * scale));
-    if minus == plus && t.minus_reaches_border == t.plus_reaches_border {
-        return format!("±{plus}{}", star(t.plus_reaches_border));
-    }
-    format!("−{minus}{} / +{plus}{}", star(t.minus_reaches_border), star(t.plus_reaches_border))
+fn both(t: &ToleranceReport, scale: f64, digits: usize, unit: &str) -> String {
+    let side = |value: f64, is_open: bool| {
+        format!("{:.digits$}{unit}{}", value * scale, if is_open { "*" } else { "" })
+    };
+    let (minus, plus) = (side(t.minus, t.minus_reaches_border), side(t.plus, t.plus_reaches_border));
+    if minus == plus { format!("±{plus}") } else { format!("−{minus} / +{plus}") }
 }
 
 #[cfg(test)]

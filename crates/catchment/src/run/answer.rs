@@ -2,7 +2,7 @@
 
 use super::jams::Jams;
 use super::window::{Window, WindowError};
-use super::{Run, Seating};
+use super::{Run, Seating, Upright};
 use crate::acceptance::{Acceptance, Warning};
 use crate::landscape::Grid;
 use crate::merit::Merits;
@@ -30,6 +30,8 @@ pub struct Answer {
     pub by_products: ByProducts,
     /// What the accepted cells are worth.
     pub merits: Merits,
+    /// The same with roll and pitch locked, of problems with all five errors free that exact motions answer.
+    pub upright: Option<Upright>,
     /// The success probability for the errors asked about.
     pub success: Option<Success>,
     /// Where motions rest that do not dock, if that was asked.

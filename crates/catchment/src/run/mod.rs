@@ -28,6 +28,7 @@ mod requirement;
 pub mod rests;
 mod seat;
 mod stages;
+mod upright;
 pub mod window;
 pub(crate) use stages::correct;
 
@@ -37,6 +38,7 @@ pub use part::{Part, PartAnswer, PartError};
 pub use plan::Plan;
 pub use requirement::{Requirement, RequirementError, Verdict};
 pub use seat::{Deeper, Residual, Seating};
+pub use upright::Upright;
 
 use crate::design::Findings;
 use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};

@@ -3,9 +3,9 @@
 use super::{Over, Run, RunError, Sample, jams, window};
 use crate::acceptance::Domain;
 use crate::exec::{Exec, OutOfBudget};
-use crate::landscape::Landscape;
+use crate::landscape::{Grid, Landscape, Resolution};
 use crate::method::correction::{self, Stop};
-use crate::method::{Cost, Method, ensure_fits};
+use crate::method::{Cost, Method, ensure_fits, seconds_per_motion};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 
@@ -27,6 +27,13 @@ pub struct Plan {
 /// One in so many parts of a budget of time is the most that the grid takes of it; random poses, which make the Sum, have the others.
 pub(super) const GRID_PART: u32 = 2;
 
+/// Fewest cells per axis of a grid that nobody asked for: of an error box that is four times the tolerance wide two of eight are accepted.
+const LEAST_CELLS: usize = 8;
+
+/// Core-seconds that random poses may take in the place of such a grid, and the least and the most of them.
+const SAMPLED_SECONDS: f64 = 30.0;
+const SAMPLED: [f64; 2] = [200.0, 4000.0];
+
 impl Run {
     /// What this run will do on a problem.
     ///
@@ -40,13 +47,16 @@ impl Run {
             Sample::Until(Stop::Budget(budget)) => self.method.within(budget / GRID_PART),
             _ => None,
         };
-        let method = within.as_ref().unwrap_or(&self.method);
+        let mut method = within.unwrap_or_else(|| self.method.clone());
         method.check()?;
         method.applies_to(problem.design())?;
-        let grid = |resolution: &crate::landscape::Resolution| {
-            resolution.grid(problem.alignment(), &method.default_cells(pair))
-        };
-        let (domain, cost) = match &self.over {
+        let over = self.resolved(&method, problem)?;
+        if over != self.over {
+            method = Method::new(method.motions());
+        }
+        let grid =
+            |resolution: &Resolution| resolution.grid(problem.alignment(), &method.default_cells(pair));
+        let (domain, cost) = match &over {
             Over::Grid(resolution) => {
                 let grid = grid(resolution)?;
                 let cost = method.cost(problem, &grid);
@@ -54,7 +64,7 @@ impl Run {
             }
             Over::Stream(count) => {
                 // What a cell costs, a pose costs.
-                let one = method.cost(problem, &grid(&crate::landscape::Resolution::default())?);
+                let one = method.cost(problem, &grid(&Resolution::default())?);
                 let bytes_per_cell = one.bytes_per_cell + size_of::<PoseError>() as u64;
                 let domain = Domain::random(problem.alignment(), *count, self.seed);
                 (domain, Cost { bytes_per_cell, ..one })
@@ -73,7 +83,28 @@ impl Run {
         let sample = stop.map(|stop| correction::Settings { seed: self.seed, stop });
         let has_heights = method.by_products().contains(&"landscape");
         let heights = self.heights && is_grid && !has_heights;
-        Ok(Plan { method: method.clone(), domain, sample, heights, cost })
+        Ok(Plan { method, domain, sample, heights, cost })
+    }
+
+    /// Which poses answer: those that were asked for, or random ones where a grid that can be afforded is too coarse to resolve the accepted set.
+    fn resolved(&self, method: &Method, problem: &Problem) -> Result<Over, RunError> {
+        let pair = problem.pair();
+        let is_sampled =
+            method.follows().is_none() && method.default_samples(pair) > 0 && self.sample != Sample::None;
+        if self.over != Over::default() || !is_sampled {
+            return Ok(self.over);
+        }
+        let grid = Resolution::default().grid(problem.alignment(), &method.default_cells(pair))?;
+        let is_resolved = |grid: &Grid| grid.axes.iter().all(|axis| axis.cells >= LEAST_CELLS);
+        if is_resolved(&grid) {
+            return Ok(self.over);
+        }
+        let poses = match self.sample {
+            Sample::Until(Stop::Samples(poses)) => poses as f64,
+            Sample::Until(Stop::Budget(budget)) => budget.as_secs_f64() / seconds_per_motion(pair),
+            _ => SAMPLED_SECONDS / seconds_per_motion(pair),
+        };
+        Ok(Over::Stream(poses.clamp(SAMPLED[0], SAMPLED[1]) as usize))
     }
 
     /// How the window is looked for: in the proportions of the error box, with the friction of the method.
@@ -90,6 +121,27 @@ impl Run {
 }
 
 impl Plan {
+    /// Core-seconds that everything takes, about: the decision and the motions that follow it (Sum, limits, window, seat).
+    pub fn seconds(&self, problem: &Problem) -> f64 {
+        /// Random poses of the window and motions of its search, as multiples of those of the Sum; motions of a limit and of the seat.
+        const WINDOW: f64 = 3.0;
+        const LIMIT: f64 = 20.0;
+        const SEAT: f64 = 40.0;
+        let pair = problem.pair();
+        let samples = self.method.default_samples(pair) as f64;
+        let drawn = self.sample.map_or(0.0, |sample| match sample.stop {
+            Stop::Samples(samples) => samples as f64,
+            _ => samples,
+        });
+        let decided = match &self.domain {
+            Domain::Grid(_) => self.cost.seconds,
+            Domain::Poses(poses) => poses.len() as f64 * seconds_per_motion(pair),
+        };
+        let sides = 2.0 * problem.alignment().free.len() as f64;
+        let motions = if samples > 0.0 { drawn + WINDOW * samples + LIMIT * sides + SEAT } else { 0.0 };
+        decided + motions * seconds_per_motion(pair)
+    }
+
     /// Refuses what would not fit into memory, with what would.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use super::plan::GRID_PART;
 use super::window::WindowError;
-use super::{Answer, Corrected, Plan, Run, RunError, Seating, jams, window};
+use super::{Answer, Corrected, Over, Plan, Run, RunError, Seating, Upright, jams, window};
 use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
@@ -81,9 +81,13 @@ pub(super) fn finish(
         return Err(error.into());
     }
     let mut merits = Merits::of(&acceptance, problem.alignment(), exec)?;
-    if let Domain::Grid(grid) = &plan.domain
-        && (corrected.is_some() || judge.own.is_some())
-    {
+    let mut upright = None;
+    if matches!(run.over, Over::Grid(_)) && (corrected.is_some() || judge.own.is_some()) {
+        let grid = &match &plan.domain {
+            Domain::Grid(grid) => grid.clone(),
+            // Its axes say no more than the error box.
+            Domain::Poses(_) => Grid::over(problem.alignment(), |_| 1),
+        };
         // What follows random poses exactly can follow some along the axes, and about the largest cubes.
         let steps = (STEPS * affordable(problem.pair()).sqrt()).max(LEAST_STEPS) as usize;
         merits.tolerances = followed(grid, steps, |poses| {
@@ -96,6 +100,7 @@ pub(super) fn finish(
             let random = corrected.as_ref().map_or(most, |corrected| corrected.found.descents.min(most));
             let by = window::Effort { seed: run.seed, random, motions: &motions };
             window::follow_cubes(&mut merits, centered, problem, grid, &by, exec)?;
+            upright = Upright::of(problem, steps, &by, exec)?;
         }
     }
     let success = match &run.errors {
@@ -112,6 +117,7 @@ pub(super) fn finish(
         corrected,
         by_products,
         merits,
+        upright,
         success,
         jams,
         window,

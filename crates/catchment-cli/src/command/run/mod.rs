@@ -15,9 +15,12 @@ use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use crate::method_args::{Choice, MethodArgs};
 use crate::output::{to_stderr, to_stdout};
+use catchment::acceptance::Domain;
 use catchment::landscape::Resolution;
+use catchment::pose::{Dof, DofSet};
+use catchment::problem::Problem;
 use catchment::report::{UnanswerableError, figure, table_with};
-use catchment::run::{Over, Requirement, Run, RunError};
+use catchment::run::{Over, Plan, Requirement, Run, RunError};
 use catchment::terminal::escaped;
 use clap::Args;
 
@@ -42,7 +45,7 @@ use clap::Args;
     --converge, which may end it earlier on a slower machine).")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
-    design: DesignArgs,
+    pub(super) design: DesignArgs,
     #[command(flatten)]
     how: MethodArgs,
     /// Cells per axis of the error grid, such as 30 or x=40,yaw=24 [default: by method and number of axes]
@@ -53,7 +56,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     errors: ErrorArgs,
     #[command(flatten)]
-    place: place::PlaceArgs,
+    pub(super) place: place::PlaceArgs,
     #[command(flatten)]
     study: study::StudyArgs,
     /// Also find the largest box of errors that all dock, in the proportions of the error box, as `catchment window` does
@@ -111,8 +114,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         }
     })?;
     let running = args.exec.start()?;
+    let plan = run.plan(&problem).map_err(|error| refused(&problem, error))?;
+    to_stderr(&said_before(&run, &plan, &problem, running.exec.threads()));
     if targets.draw() {
-        let plan = run.plan(&problem).map_err(|error| refused(&problem, error))?;
         plan.ensure_fits(&running.exec)?;
         figure::ensure_run_fits(&plan, &running.exec)?;
     }
@@ -137,8 +141,47 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     Ok(status)
 }
 
+/// What takes longer than this is said before it begins, in seconds.
+const LONG: f64 = 20.0;
+
+/// How long it will take, and what would be faster.
+fn said_before(run: &Run, plan: &Plan, problem: &Problem, threads: usize) -> Vec<String> {
+    let wall = |plan: &Plan, problem: &Problem| plan.seconds(problem) / threads as f64;
+    let seconds = wall(plan, problem);
+    if seconds < LONG {
+        return Vec::new();
+    }
+    let count =
+        |free: DofSet| if free.len() == 1 { "1 error".to_owned() } else { format!("{} errors", free.len()) };
+    let free = problem.alignment().free;
+    let how = match &plan.domain {
+        Domain::Grid(grid) => format!("{} cells", grid.len()),
+        Domain::Poses(poses) => format!("{} random poses, as a grid would be too coarse", poses.len()),
+    };
+    let mut said = format!("{} on these halves: about {} ({how})", count(free), time(seconds));
+    let mut design = problem.design().clone();
+    design.alignment.free =
+        [Dof::X, Dof::Y, Dof::Yaw].into_iter().filter(|dof| free.contains(*dof)).collect();
+    if design.alignment.free != free
+        && !design.alignment.free.is_empty()
+        && let Ok(fewer) = problem.with(design)
+        && let Ok(plan) = run.plan(&fewer)
+    {
+        let names: Vec<&str> = fewer.alignment().free.iter().map(Dof::name).collect();
+        let named = names.join(", ");
+        let fewer = time(wall(&plan, &fewer));
+        said = format!("{said}; {named} alone: about {fewer} (--free {})", names.join(","));
+    }
+    vec![said, "--budget 30s ends it earlier, --samples N says how many poses".to_owned()]
+}
+
+/// Seconds as one says them.
+fn time(seconds: f64) -> String {
+    if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
+}
+
 /// Why there is no answer, at the key of the design or the option that it is about.
-pub(super) fn refused(problem: &catchment::problem::Problem, error: RunError) -> Failure {
+pub(super) fn refused(problem: &Problem, error: RunError) -> Failure {
     match error {
         RunError::NotHeld(findings) => findings.into(),
         RunError::NotApplicable(refusal) => {

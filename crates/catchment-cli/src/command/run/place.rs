@@ -19,7 +19,7 @@ pub(crate) struct PlaceArgs {
     /// Write pictures, report.json and result.zarr into this folder; NAME.zarr: only that group; NAME.vti, .vtp or .csv: only the set, for
     /// ParaView or as a table (see `export`)
     #[arg(short, long, value_name = "DIR|FILE", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
-    output: Option<PathBuf>,
+    pub(in crate::command) output: Option<PathBuf>,
     /// Write only the pictures into this folder
     #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, help_heading = "Files")]
     figures: Option<PathBuf>,

@@ -69,6 +69,9 @@ impl Answer {
                 drawn.keep("watersheds", stages)?;
             }
         }
+        if self.grid().is_none() {
+            drawn.keep("sampled", super::sampled(&report, acceptance))?;
+        }
         if let Some(basins) = &self.by_products.basins {
             drawn.keep("basins", super::basins(&report, acceptance, basins))?;
         }

@@ -102,6 +102,6 @@ mod tests {
         assert!(picture.svg().contains(told), "{}", picture.svg());
         assert!(picture.svg().contains("of this slice:") && picture.svg().contains("jammed 100 %"));
         assert!(picture.svg().contains("slice beside zero"));
-        assert!(table(&report).contains("Sum            10.5 ± 3.9 D²·rad³   (12.50 % of the error box)"));
+        assert!(table(&report).contains("AA (Sum)       10.5 ± 3.9 D²·rad³   (12.50 % of the error box)"));
     }
 }

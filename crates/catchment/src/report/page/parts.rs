@@ -8,6 +8,8 @@ use crate::design::{Design, hex};
 use crate::exec::{Cancelled, Exec, OutOfBudget};
 use crate::method::Method;
 use crate::problem::Problem;
+#[cfg(feature = "zarr")]
+use crate::report::{JamsBody, WindowBody, WindowSection};
 use crate::report::{JamsReport, Report, WindowReport};
 use crate::run::Answer;
 use crate::run::jams::{self, JamsError};
@@ -53,7 +55,7 @@ impl Parts {
         Self { report, acceptance, planes: Vec::new(), problem, jams: None, window: None, notes: Vec::new() }
     }
 
-    /// Of a result that was stored: its folder or its group. Halves that come from files are read again; where they cannot be, or are others by
+    /// Of a result that was stored, its folder or its group, with what is stored of jams and window. Halves that come from files are read again; where they cannot be, or are others by
     /// now, the page has none and says so.
     ///
     /// # Errors
@@ -68,7 +70,15 @@ impl Parts {
             Ok(problem) => (Some(problem), Vec::new()),
             Err(why) => (None, vec![why]),
         };
-        Ok(Self { report, acceptance, planes: Vec::new(), problem, jams: None, window: None, notes })
+        let design = || report.design.clone();
+        let jams = report
+            .jams
+            .clone()
+            .map(|found| JamsReport::of(JamsBody { design: design(), found }, Vec::new(), None));
+        let window = report.window.clone().map(|WindowSection { half_widths, found }| {
+            WindowReport::of(WindowBody { design: design(), window: half_widths, found }, Vec::new(), None)
+        });
+        Ok(Self { report, acceptance, planes: Vec::new(), problem, jams, window, notes })
     }
 
     /// Adds studies, with the friction of the run. One that finds nothing leaves a note.

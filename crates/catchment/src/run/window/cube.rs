@@ -15,6 +15,7 @@
 //! Not promised: that no pose in it fails, only that none did that was followed; they are about three times the random poses of the Sum. Nor that no larger
 //! cube lies elsewhere. Its middle is that of the cells' largest, or zero where that one is larger.
 
+use super::Settings;
 use super::search::Search;
 use super::space::Space;
 use crate::acceptance::Outcome;
@@ -35,7 +36,8 @@ pub(in crate::run) struct Effort<'a> {
     pub(in crate::run) motions: &'a descent::Settings,
 }
 
-/// Puts the cubes that motions find in the place of those of the cells. The centred one may be known: as a window in the proportions of the error box.
+/// Puts the cubes that motions find in the place of those of the cells; without cells there is the centred one alone. It may be known: as a
+/// window in the proportions of the error box.
 pub(in crate::run) fn follow(
     merits: &mut Merits,
     centered: Option<CenteredBox>,
@@ -55,8 +57,8 @@ pub(in crate::run) fn follow(
         CenteredBox { scale, half_widths: sides(scale), reaches_border, is_followed: true }
     };
     let mut center = [0.0; 5];
-    let of_cells = merits.onaa.take().map_or_else(Vec::new, |onaa| onaa.bounds);
-    for (axis, lo, hi) in &of_cells {
+    let of_cells = merits.onaa.take().map(|onaa| onaa.bounds);
+    for (axis, lo, hi) in of_cells.iter().flatten() {
         center[axis.index()] = 0.5 * (lo + hi);
     }
     // What is no larger than the centred one is not told.
@@ -66,9 +68,28 @@ pub(in crate::run) fn follow(
         if centered.scale >= elsewhere { (centered.scale, [0.0; 5]) } else { (elsewhere, center) };
     let bounds = |(axis, half): (Dof, f64)| (axis, center[axis.index()] - half, center[axis.index()] + half);
     let bounds = if edge > 0.0 { sides(edge).into_iter().map(bounds).collect() } else { Vec::new() };
-    merits.onaa = Some(Onaa { edge, bounds, is_followed: true });
+    merits.onaa = of_cells.is_some().then_some(Onaa { edge, bounds, is_followed: true });
     merits.centered = Some(centered);
     Ok(())
+}
+
+/// The largest box in the proportions of `settings`, by as many motions as a cube; `None` where there is none.
+pub(in crate::run) fn window_of(
+    problem: &Problem,
+    settings: &Settings,
+    by: &Effort<'_>,
+    exec: &Exec,
+) -> Result<Option<CenteredBox>, Cancelled> {
+    let Ok(space) = Space::of(problem, settings) else { return Ok(None) };
+    let mut search = Search::new(problem, space, by.seed, by.motions).within(2 * by.random);
+    let Some(found) = search.shrink(by.random, exec)? else { return Ok(None) };
+    let half_widths = search.space().half_widths(found.scale);
+    Ok(Some(CenteredBox {
+        scale: found.scale,
+        half_widths: problem.alignment().free.iter().map(|axis| (axis, half_widths[axis.index()])).collect(),
+        reaches_border: search.worst().is_none(),
+        is_followed: true,
+    }))
 }
 
 /// A cube: its edge as a share of the error box.

@@ -26,7 +26,7 @@ mod space;
 #[cfg(test)]
 mod tests;
 
-pub(super) use cube::{Effort, follow as follow_cubes};
+pub(super) use cube::{Effort, follow as follow_cubes, window_of};
 
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};

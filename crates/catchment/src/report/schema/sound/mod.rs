@@ -58,7 +58,12 @@ impl RunBody {
             share(edge, &format!("{name}.edge"))?;
             bounds(sides, &format!("{name}.bounds"))?;
         }
-        for tolerance in &self.tolerances {
+        if let Some(upright) = &self.upright {
+            not_negative(upright.window.edge, "upright.window.edge")?;
+            bounds(&upright.window.bounds, "upright.window.bounds")?;
+        }
+        let upright = self.upright.iter().flat_map(|found| &found.tolerances);
+        for tolerance in self.tolerances.iter().chain(upright) {
             let sound = [tolerance.minus, tolerance.plus, tolerance.half_cell].iter().all(|v| *v >= 0.0);
             hold(sound, format!("tolerances of {}", tolerance.axis.name()), "must not be negative")?;
         }

@@ -1,0 +1,73 @@
+//! The tolerances of a connector that cannot tilt: x, y and yaw free, roll and pitch locked.
+//!
+//! ```text
+//!   all five errors free          roll and pitch locked
+//!        ╱▔▔╱                          ▔▔▔▔            a mount that yields in tilt forgives more of x and y:
+//!     ──┘  ╱ ┌──                    ──┐    ┌──          the half tips into its seat
+//!        ╲╱  │                        └────┘
+//! ```
+//!
+//! The window has the proportions of the single-axis limits, so that its corners say what these limits are worth together.
+//!
+//! Not promised: more than [`window`](super::window) promises of as many random poses. Lengths in D, angles in radians.
+
+use super::RunError;
+use super::window::{Effort, Settings, window_of};
+use crate::acceptance::Domain;
+use crate::exec::Exec;
+use crate::landscape::Grid;
+use crate::merit::centered::CenteredBox;
+use crate::merit::tolerance::{Tolerance, followed};
+use crate::method::descent;
+use crate::pose::{Dof, DofSet, PoseError};
+use crate::problem::Problem;
+
+/// What a connector tolerates whose roll and pitch are locked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Upright {
+    /// How far each error may go alone.
+    pub tolerances: Vec<Tolerance>,
+    /// The largest box around zero, in their proportions.
+    pub window: CenteredBox,
+}
+
+/// Errors that stay free.
+const LEVEL: [Dof; 3] = [Dof::X, Dof::Y, Dof::Yaw];
+
+impl Upright {
+    /// Of a problem with all five errors free; `None` of others, and where the mated pose does not hold with roll and pitch locked.
+    ///
+    /// # Errors
+    /// It was asked to stop.
+    pub(super) fn of(
+        problem: &Problem,
+        steps: usize,
+        by: &Effort<'_>,
+        exec: &Exec,
+    ) -> Result<Option<Self>, RunError> {
+        if problem.alignment().free != DofSet::ALL {
+            return Ok(None);
+        }
+        let mut design = problem.design().clone();
+        design.alignment.free = LEVEL.into_iter().collect();
+        let held = problem.with(design).ok().filter(|problem| problem.ensure_held().is_ok());
+        let Some(problem) = held else { return Ok(None) };
+        let axes = Grid::over(problem.alignment(), |_| 1);
+        let tolerances = followed(&axes, steps, |poses| {
+            let decided = descent::run(problem.pair(), Domain::Poses(poses), by.motions, exec)?;
+            Ok::<_, RunError>(decided.0.outcomes)
+        })?;
+        let mut proportions = [0.0; 5];
+        for tolerance in &tolerances {
+            proportions[tolerance.dof.index()] = tolerance.symmetric();
+        }
+        let settings = Settings {
+            proportions: Some(PoseError::from_array(proportions)),
+            seed: by.seed,
+            friction: by.motions.friction,
+            ..Settings::default()
+        };
+        let window = window_of(&problem, &settings, by, exec)?;
+        Ok(window.map(|window| Self { tolerances, window }))
+    }
+}
