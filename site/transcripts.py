@@ -33,7 +33,8 @@ def printed(program: str, folder: Path, command: str) -> list[str]:
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=folder, env=env, check=False)
     if done.returncode != 0:
         raise SystemExit(f"{command}: exit {done.returncode}\n{done.stdout}")
-    return [line.rstrip() for line in done.stdout.rstrip().splitlines()]
+    # How long a command takes is the machine's.
+    return [line.rstrip() for line in done.stdout.rstrip().splitlines() if not line.startswith("progress: ")]
 
 
 def cut(said: list[str], shown: list[str]) -> list[str]:

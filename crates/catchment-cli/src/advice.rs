@@ -18,7 +18,11 @@ pub(crate) fn flags(advice: Advice) -> Option<String> {
         Advice::MissingPart => "add what is missing with --with-fixed or --with-moving".to_owned(),
         Advice::Method(name) => format!("--method {name}"),
         Advice::MoreMemory => "allow more with --memory".to_owned(),
-        Advice::OwnFrames => "if each part has a frame of its own, --drawn facing".to_owned(),
+        Advice::OwnFrames => {
+            "the parts were taken as an assembly, since they are drawn beside or inside each other without overlap: if each has a frame of \
+             its own, --drawn facing"
+                .to_owned()
+        },
         Advice::Samples => "--samples 4000, --budget 10s or --tolerance 1%".to_owned(),
         Advice::AtMostResolution(_) | Advice::AtMostSamples(_) | Advice::EnlargeErrors => return None,
     })

@@ -326,3 +326,46 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
         }
     }
 }
+
+/// A pyramid that cannot tilt corrects offsets up to D/2 and a yaw up to 45°, each alone.
+#[test]
+fn with_five_free_errors_a_run_answers_for_a_connector_that_cannot_tilt() {
+    let answer = run("confluence", 4, 200).on(&problem(Family::Pyramid, DofSet::ALL), &Exec::new()).unwrap();
+    let upright = answer.upright.as_ref().unwrap();
+    let limits: Vec<(Dof, f64)> = upright.tolerances.iter().map(|t| (t.dof, t.symmetric())).collect();
+    let expected = [(Dof::X, 0.5), (Dof::Y, 0.5), (Dof::Yaw, 0.25 * std::f64::consts::PI)];
+    for ((dof, limit), (axis, exact)) in limits.iter().zip(expected) {
+        assert!(*dof == axis && (limit - exact).abs() < 0.01 * exact, "{limits:?}");
+    }
+    // In their proportions: no wider than they are, and not much narrower.
+    for ((dof, half), (axis, limit)) in upright.window.half_widths.iter().zip(&limits) {
+        assert!(dof == axis && *half <= *limit && *half > 0.9 * limit, "{upright:?}");
+    }
+    let level: DofSet = [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect();
+    for free in [level, level.with(Dof::Roll)] {
+        let answer = run("confluence", 4, 30).on(&problem(Family::Pyramid, free), &Exec::new()).unwrap();
+        assert_eq!(answer.upright, None);
+    }
+}
+
+/// Where a grid that can be afforded is too coarse, random poses answer; a grid that is asked for stays one.
+#[test]
+fn random_poses_answer_in_the_place_of_a_grid_that_resolves_nothing() {
+    let problem = problem(Family::PinHole, DofSet::ALL);
+    let few = Run { sample: Sample::Until(Stop::Samples(20)), ..Run::default() };
+    let plan = few.plan(&problem).unwrap();
+    assert!(
+        matches!(&plan.domain, Domain::Poses(poses) if poses.len() == 20) && plan.method.name() == "descent"
+    );
+    let plan = run("confluence", 4, 20).plan(&problem).unwrap();
+    assert!(matches!(plan.domain, Domain::Grid(_)) && plan.method.name() == "confluence");
+    let answer = few.on(&problem, &Exec::new()).unwrap();
+    // Window and limits rest on motions, with a grid or without.
+    assert_eq!(answer.merits.tolerances.len(), problem.alignment().free.len());
+    let centered = answer.merits.centered.as_ref().unwrap();
+    assert!(centered.is_followed && centered.scale > 0.0 && answer.merits.onaa.is_none());
+    let [lo, hi] = answer.sum_ci95().unwrap();
+    assert!(lo <= answer.sum() && answer.sum() <= hi);
+    let report = serde_json::to_value(answer.report()).unwrap();
+    assert_eq!(report["acceptance"]["cells"], 20);
+}

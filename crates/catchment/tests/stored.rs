@@ -44,7 +44,7 @@ fn a_report_of_the_last_layout_is_read_and_written_in_this_one() {
     new.as_object_mut().unwrap().shift_remove("kind");
     new["schema"] = 2.into();
     // What did not exist then has its default.
-    for later in ["seat", "watersheds", "joined", "certificate", "jams", "window"] {
+    for later in ["seat", "watersheds", "joined", "certificate", "jams", "window", "upright"] {
         new.as_object_mut().unwrap().shift_remove(later);
     }
     for later in ["differing", "differing_ci95"] {

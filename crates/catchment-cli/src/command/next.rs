@@ -26,7 +26,6 @@ impl Command {
             Self::Report(args) => of("view", &args.design.path, ""),
             Self::Slices(args) => of("run", &args.design.path, " -o out"),
             Self::Window(args) => of("jams", &args.design.path, ""),
-            Self::Outcome(args) => of("jams", &args.design.path, ""),
             Self::Trace(args) => of("jams", &args.design.path, ""),
             Self::Jams(args) => of("friction", &args.design.path, ""),
             Self::Friction(args) => of("hold", &args.design.path, ""),

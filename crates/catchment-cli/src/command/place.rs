@@ -246,7 +246,7 @@ fn refused(error: ProposalError) -> Failure {
     let help = match &error {
         ProposalError::NoUnit { guess, .. } => format!("--unit {}?", guess.symbol()),
         ProposalError::NoSeat { remedy, advice, .. } => {
-            let remedy = remedy.iter().cloned().chain(advice.and_then(flags));
+            let remedy = remedy.iter().cloned().chain(advice.iter().copied().filter_map(flags));
             remedy.map(|one| one + "; or ").collect::<String>()
                 + "say which way they lie: --drawn assembled --approach WAY, or --facing-fixed WAY --facing-moving WAY; lock what the seat does not hold: \
              --free x,y; parts at an angle to their axes: write the design file by hand (docs/parts.md)"

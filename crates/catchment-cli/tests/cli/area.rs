@@ -302,3 +302,25 @@ fn slices_and_strips_belong_to_the_partition() {
     let said = run(home.path(), &["run", "v.toml", "--method", "partition", "--strips", "0"]);
     assert!(said.starts_with("exit 2") && said.contains("strips must be at least 1"), "{said}");
 }
+
+/// Halves whose motions take long: random poses in the place of a grid, with pictures of them, and the next command.
+#[test]
+fn a_first_run_on_many_facets_answers_without_a_grid() {
+    let home = home();
+    fs::write(home.path().join("pins.toml"), "[connector]\nfamily = \"pin-hole\"\n").unwrap();
+    let said = run(home.path(), &["run", "pins.toml", "--samples", "20", "-o", "out"]);
+    assert!(said.starts_with("exit 0"), "{said}");
+    for words in ["descent, 20 poses", "tolerance window", "single-axis limit", "95 % CI, 20 sampled poses"] {
+        assert!(said.contains(words), "{words} is missing in\n{said}");
+    }
+    // The window stands above the Sum, and the next command last.
+    assert!(said.find("tolerance window") < said.find("AA (Sum)"), "{said}");
+    assert!(said.trim_end().ends_with("next: catchment report out -o page.html"), "{said}");
+    let written = entries(&home.path().join("out"));
+    assert!(
+        written.contains(&"sampled.png".to_owned()) && !written.contains(&"slices.png".to_owned()),
+        "{written:?}"
+    );
+    let page = run(home.path(), &["report", "out", "-o", "page.html"]);
+    assert!(page.starts_with("exit 0"), "{page}");
+}

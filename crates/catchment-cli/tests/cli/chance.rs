@@ -108,7 +108,11 @@ fn the_way_of_a_trial_is_told_and_drawn() {
         "2",
     ];
     let told = run(home.path(), &[&args[..], &["-o", "t.svg"]].concat());
-    assert!(told.contains("time [s]") && told.ends_with("outcome: aligned\n--- stderr\n"), "{told}");
+    assert!(
+        told.contains("time [s]")
+            && told.ends_with("outcome: aligned\n--- stderr\nnext: catchment jams v.toml\n"),
+        "{told}"
+    );
     assert!(fs::read_to_string(home.path().join("t.svg")).unwrap().contains("aligned"));
     let report = json(home.path(), &[&args[..], &["--json"]].concat());
     assert_eq!((&report["method"], &report["settings"]["launch"]["speed"]), (&"drop".into(), &2.0.into()));

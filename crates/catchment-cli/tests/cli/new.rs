@@ -15,7 +15,7 @@ fn every_starting_point_is_a_good_design() {
         assert_eq!(std::fs::read(dir.path().join(&file)).unwrap(), printed);
         let report = run(dir.path(), &["check", &file]);
         assert!(report.starts_with(&format!("exit 0\n--- stdout\n{file}: no problems\n")), "{report}");
-        assert!(report.ends_with("--- stderr\n"), "{report}");
+        assert!(report.ends_with(&format!("--- stderr\nnext: catchment run {file} -o out\n")), "{report}");
     }
 }
 

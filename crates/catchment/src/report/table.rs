@@ -247,7 +247,8 @@ fn limits(text: &mut String, report: &Report) {
             }
         };
         let half: Vec<String> = report.tolerances.iter().map(half).collect();
-        wrapped(text, "  single-axis limit: one error, all others zero, ± half a cell: ", &half.join(", "));
+        line(text, "  single-axis limit: one error, all others zero, ± half a cell:");
+        wrapped(text, "    ", &half.join(", "));
     }
     if is_open {
         line(text, "  * ends at the error box, perhaps larger");
@@ -329,7 +330,7 @@ mod tests {
             assert!(line.chars().count() <= COLUMNS && line == line.trim_end(), "{line:?}");
         }
         for word in
-            ["pyramid, AR 1/2", "D = 50 mm", "D²·rad³", "32 768 cells", "ONAA", "mm", "deg", "warning: "]
+            ["pyramid, AR 1/2", "D = 50 mm", "D²·rad³", "32 768 cells", "ONAA", "mm", "°", "warning: "]
         {
             assert!(text.contains(word), "{word} is missing in\n{text}");
         }
@@ -340,7 +341,10 @@ mod tests {
         // x: aligned while 1.96 x² < 0.7, so to the border of the cell with centre 0.59: 0.6 D = 30 mm.
         let text = text([Dof::X].into_iter().collect(), 100);
         let row = text.lines().find(|l| l.starts_with("  x ")).unwrap();
-        assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["x", "±0.6000", "±30.000"]);
+        assert_eq!(
+            row.split_whitespace().collect::<Vec<_>>(),
+            ["x", "±30.000", "mm", "±30.000", "mm", "±0.6000"]
+        );
     }
 
     /// A part of 16 mm whose design is in metres: nothing in it is 0.000 m.
@@ -356,7 +360,10 @@ mod tests {
             Some(Seating { depth: 0.002, play: vec![play], poses: 11, residual: vec![off], deeper: None });
         let text = table(&report);
         let row = |start: &str| text.lines().find(|l| l.trim_start().starts_with(start)).unwrap();
-        assert_eq!(row("x  ").split_whitespace().collect::<Vec<_>>(), ["x", "±0.6000", "±0.00960"]);
+        assert_eq!(
+            row("x  ").split_whitespace().collect::<Vec<_>>(),
+            ["x", "±0.00960", "m", "±0.00960", "m", "±0.6000"]
+        );
         assert!(row("seat").contains("within 0.00003 m of"), "{text}");
         for told in ["±0.00080 m", "0.00032 m", "0.00064 m"] {
             assert!(text.contains(told), "{text}");

@@ -97,7 +97,11 @@ pub(super) fn finish(
         if judge.is_descent() {
             let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
             let most = motions.default_samples(problem.pair());
-            let random = corrected.as_ref().map_or(most, |corrected| corrected.found.descents.min(most));
+            let drawn = match &plan.domain {
+                Domain::Poses(poses) => poses.len(),
+                Domain::Grid(_) => corrected.as_ref().map_or(most, |corrected| corrected.found.descents),
+            };
+            let random = drawn.min(most);
             let by = window::Effort { seed: run.seed, random, motions: &motions };
             window::follow_cubes(&mut merits, centered, problem, grid, &by, exec)?;
             upright = Upright::of(problem, steps, &by, exec)?;

@@ -115,7 +115,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     })?;
     let running = args.exec.start()?;
     let plan = run.plan(&problem).map_err(|error| refused(&problem, error))?;
-    to_stderr(&said_before(&run, &plan, &problem, running.exec.threads()));
+    // Whoever chooses a resolution knows what it takes.
+    if args.resolution.is_none() {
+        to_stderr(&said_before(&run, &plan, &problem, running.exec.threads()));
+    }
     if targets.draw() {
         plan.ensure_fits(&running.exec)?;
         figure::ensure_run_fits(&plan, &running.exec)?;

@@ -31,7 +31,7 @@ use glam::{DMat3, DVec3};
 const MOST: usize = 150_000;
 /// Lists of one reach that are kept: a step tries poses on both sides of where it ends.
 const KEPT: usize = 3;
-/// So many lists of a level are made from the trees before a wider one is made to take them from.
+/// So many lists of a level are made from the trees before a wider one is made to take them from; none where the last wider one served as many.
 const RENTED: usize = 3;
 /// What rounding makes of a clearance and of how far a half has moved, in D.
 const ROUNDED: f64 = 1e-6;
@@ -87,16 +87,19 @@ pub(in crate::contact) struct Lists<P: Pairs> {
     levels: Vec<Vec<List<P::Two>>>,
     /// The widest that is not too long.
     widest: usize,
-    /// How many lists of each level were made from the trees since a wider one was.
+    /// How many lists of each level were made from the trees since a wider one was, and how many that one has served.
     made: Vec<usize>,
+    served: Vec<usize>,
 }
 
 impl<P: Pairs> Default for Lists<P> {
     fn default() -> Self {
+        let none = || vec![0; P::REACHES.len()];
         Self {
             levels: P::REACHES.iter().map(|_| Vec::new()).collect(),
             widest: 0,
-            made: vec![0; P::REACHES.len()],
+            made: none(),
+            served: none(),
         }
     }
 }
@@ -150,8 +153,15 @@ impl<P: Pairs> Lists<P> {
         };
         // A wider list serves for longer and takes longer: it is made once some of this level were.
         let wide = Turned { counts, ..turned.clone() };
-        let has_parent = level > self.widest
-            && (self.made[level] >= RENTED || self.find(&wide, level - 1, own, sieve.skin).is_some());
+        let has_parent = level > self.widest && {
+            let found = self.find(&wide, level - 1, own, sieve.skin).is_some();
+            let is_due = self.made[level] >= RENTED || self.served[level] >= RENTED;
+            // Another wide list is begun.
+            if !found && is_due {
+                self.served[level] = 0;
+            }
+            found || is_due
+        };
         let parent = if has_parent { self.prepare(&wide, level - 1, own, sieve.skin) } else { None };
         if let (Some(moved), Some(parent)) =
             (parent, level.checked_sub(1).and_then(|k| self.levels[k].last()))
@@ -160,6 +170,7 @@ impl<P: Pairs> Lists<P> {
                 add(two);
             }
             self.made[level] = 0;
+            self.served[level] += 1;
         } else if turned.near_each_other::<P>(own, &sieve, &mut add) {
             self.made[level] += 1;
         } else {

@@ -49,9 +49,11 @@ pub(super) struct Chunks {
     pub(super) packed: Vec<Vec<u8>>,
 }
 
-/// All outcomes over a grid.
+/// All outcomes over a grid. Of listed poses there is no cell to look into.
 pub(super) fn packed(acceptance: &Acceptance, exec: &Exec) -> Result<Chunks, PageError> {
-    let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
+    let Some(grid) = acceptance.grid() else {
+        return Ok(Chunks { cells: 1, packed: vec![deflated(&[Outcome::Undecided as u8])?] });
+    };
     // Before they are packed and, at worst, after: what does not compress stays as it is.
     let needed = 2 * acceptance.outcomes.len() as u64;
     exec.ensure_fits("the outcomes of a page", needed, |_| vec![Advice::MoreMemory])?;

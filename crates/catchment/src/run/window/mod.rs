@@ -31,8 +31,8 @@ pub(super) use cube::{Effort, follow as follow_cubes, window_of};
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::merit::centered::CenteredBox;
-use crate::method::Decide;
 use crate::method::descent::{self, FrictionOutOfRange, Touch};
+use crate::method::{affordable, seconds_per_motion};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
 use search::{Search, Shrunk, WINDOWS};
@@ -47,7 +47,7 @@ pub struct Settings {
     pub fixed: [Option<f64>; 5],
     /// Proportions of the others; the ranges of the error box where nothing is said. 0 for errors that do not occur.
     pub proportions: Option<PoseError>,
-    /// Random poses of the certificate; 300 000 where nothing is said, fewer of halves with many facets.
+    /// Random poses of the certificate; 300 000 where nothing is said, of halves with many facets as many as can be followed in three core-seconds.
     pub motions: Option<usize>,
     /// Their seed, and that of the search.
     pub seed: u64,
@@ -246,10 +246,11 @@ fn place(error: &PoseError) -> String {
 const FIRST_CHANCE: f64 = 0.0498;
 const LATER_CHANCE: f64 = 0.0002;
 
-/// Of the random poses of the certificate so many are drawn again beyond the window, per error that goes on while the others stay in it: one in so many, and no fewer
-/// than these if it has as many.
+/// Of the random poses of the certificate so many are drawn again beyond the window, per error that goes on while the others stay in it: one in 20, and no fewer
+/// than these, but one in 4 at most.
 const BESIDE_SHARE: usize = 20;
 const BESIDE_LEAST: usize = 2000;
+const BESIDE_MOST_SHARE: usize = 4;
 
 /// Finds the window of a problem and certifies it.
 ///
@@ -307,7 +308,7 @@ pub(super) fn by(
     let half_widths = search.space().half_widths(scale);
     let mut followed = search.followed();
     let hints: Vec<[f64; 5]> = search.worst_way().into_iter().collect();
-    let beyond = (motions / BESIDE_SHARE).max(motions.min(BESIDE_LEAST));
+    let beyond = (motions / BESIDE_SHARE).max((motions / BESIDE_MOST_SHARE).min(BESIDE_LEAST));
     let mut axes = Vec::new();
     for axis in problem.alignment().free.iter() {
         let half_width = half_widths[axis.index()];
@@ -340,9 +341,14 @@ fn chance(redrawn: usize) -> f64 {
 
 /// As many as seconds allow.
 fn default_motions(problem: &Problem) -> usize {
-    /// As a multiple of the random poses of a run: 300 000 of simple halves.
-    const PER_SAMPLE: usize = 75;
-    PER_SAMPLE * descent::Settings::default().default_samples(problem.pair())
+    /// Of simple halves.
+    const MOST: usize = 300_000;
+    /// Core-seconds of other halves, and fewest poses.
+    const SECONDS: f64 = 3.0;
+    const LEAST: usize = 300;
+    let pair = problem.pair();
+    let few = (SECONDS / seconds_per_motion(pair)) as usize;
+    if affordable(pair) < 1.0 { few.clamp(LEAST, MOST) } else { MOST }
 }
 
 impl Worst {

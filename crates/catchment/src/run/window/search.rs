@@ -23,6 +23,8 @@ const INSIDE: f64 = 0.998;
 const LOOKS: usize = 8;
 /// The same along one error alone, where looking costs little, and from a window on, in which all is known to dock.
 const LOOKS_ALONE: usize = 64;
+/// No fewer of halves whose motions take long.
+const LEAST_LOOKS_ALONE: usize = 16;
 const LOOKS_BESIDE: usize = 4;
 /// Moves per batch, and how many in a row that find nothing end the search.
 const BATCH: usize = 64;
@@ -165,7 +167,8 @@ impl<'a> Search<'a> {
     ) -> Result<Reach, Cancelled> {
         let all = self.space.all();
         if all.len() == 2 {
-            self.try_batches(&all, from, LOOKS_ALONE, exec)?;
+            let looks = (LOOKS_ALONE as f64 * affordable(self.problem.pair()).sqrt()) as usize;
+            self.try_batches(&all, from, looks.max(LEAST_LOOKS_ALONE), exec)?;
         } else {
             let both = hints.iter().flat_map(|u| [1.0, -1.0].map(|sign| self.facing(u, sign)));
             let hinted: Vec<Direction> = both.filter_map(|u| self.space.onto_surface(u)).collect();

@@ -18,10 +18,6 @@ use crate::design::LengthUnit;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// What to say where parts that seem to be drawn assembled do not hold so.
-pub(super) const OWN_FRAMES: &str =
-    "the parts are drawn beside or inside each other without overlap, which was taken as an assembly";
-
 /// What to say of a seat that is elsewhere than where parts are drawn that may be assembled.
 pub(super) const ELSEWHERE: &str = "in doubt: the parts are drawn inside each other without overlap, and do not hold so; the seat that was taken is another one";
 

@@ -137,7 +137,7 @@ pub enum ProposalError {
         /// What would let them: a mirror image, or something narrow left out.
         remedy: Option<String>,
         /// What helps besides.
-        advice: Option<Advice>,
+        advice: Vec<Advice>,
     },
     /// The computation was asked to stop.
     #[error(transparent)]
@@ -279,16 +279,15 @@ pub fn propose(
             faces.then_some("facing each other: nowhere along the axes does one sink into the other");
         let nowhere = nowhere.filter(|_| candidates.is_empty()).map(ToOwned::to_owned);
         let (why, advice) = why.or(flat).unzip();
-        let advice = advice.flatten();
+        let taken = is_assembly.then_some(Advice::OwnFrames);
+        let advice = advice.flatten().into_iter().chain(taken).collect();
         let tried =
             why.into_iter().chain(candidates.iter().map(slack)).chain(nowhere).chain(refused).collect();
         let remedy = match cause::of_files(parts, both.halves, settings, unit) {
             Some(mistake) => Some(mistake),
-            None if is_assembly => Some(cause::OWN_FRAMES.to_owned()),
             None if faces => remedy::of(&both, exec)?,
             None => None,
         };
-        let advice = if is_assembly { Some(Advice::OwnFrames) } else { advice };
         return Err(ProposalError::NoSeat { tried, remedy, advice });
     };
     doubts.extend(doubt::of(&candidates, settings));
