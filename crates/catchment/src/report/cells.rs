@@ -1,10 +1,11 @@
-//! The cells of a decided grid as a table: what pandas, a spreadsheet or a database reads.
+//! The cells of a decided grid, or listed poses, as a table: what pandas, a spreadsheet or a database reads.
 
 use super::text::number;
 use super::vtk::ViewError;
 use crate::acceptance::Acceptance;
 use crate::advice::Advice;
 use crate::exec::Exec;
+use crate::pose::Dof;
 use std::fmt::Write;
 
 /// Bytes of a line, about: seven numbers.
@@ -14,12 +15,12 @@ const LINE_BYTES: u64 = 128;
 const AT_ONCE: usize = 1 << 16;
 
 /// A line for every cell as CSV: its centre (D, rad), its outcome, and z of the centre of rotation at first contact (D; empty without
-/// contact) where the heights are known. The first axis runs fastest.
+/// contact) where the heights are known. The first axis runs fastest. Of listed poses a line for each, with all five errors.
 ///
 /// # Errors
-/// The outcomes are over no grid, the table does not fit into memory, or it was asked to stop.
+/// The table does not fit into memory, or it was asked to stop.
 pub fn cells(acceptance: &Acceptance, heights: Option<&[f32]>, exec: &Exec) -> Result<Vec<u8>, ViewError> {
-    let grid = acceptance.grid().ok_or(ViewError::NotAGrid)?;
+    let Some(grid) = acceptance.grid() else { return listed(acceptance, exec) };
     exec.ensure_fits("a table of all cells", LINE_BYTES.saturating_mul(grid.len() as u64), |_| {
         vec![Advice::MoreMemory]
     })?;
@@ -55,10 +56,32 @@ pub fn cells(acceptance: &Acceptance, heights: Option<&[f32]>, exec: &Exec) -> R
     Ok(text.into_bytes())
 }
 
+/// A line for every listed pose.
+fn listed(acceptance: &Acceptance, exec: &Exec) -> Result<Vec<u8>, ViewError> {
+    let poses = acceptance.outcomes.len();
+    exec.ensure_fits("a table of all poses", LINE_BYTES.saturating_mul(poses as u64), |_| {
+        vec![Advice::MoreMemory]
+    })?;
+    let names = Dof::ALL.map(Dof::name);
+    let mut text = names.join(",") + ",outcome\n";
+    for (k, outcome) in acceptance.outcomes.iter().enumerate() {
+        if k % AT_ONCE == 0 {
+            exec.check()?;
+        }
+        for value in acceptance.domain.pose(k).to_array() {
+            text.push_str(&number(value));
+            text.push(',');
+        }
+        text.push_str(outcome.name());
+        text.push('\n');
+    }
+    Ok(text.into_bytes())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::Dof;
+    use crate::acceptance::Domain;
     use crate::report::schema::testing::{blob, design};
 
     #[test]
@@ -82,5 +105,22 @@ mod tests {
         assert!(bare.starts_with(b"x,yaw,outcome\n"));
         let small = Exec::new().with_memory_budget(100);
         assert!(matches!(cells(&acceptance, None, &small), Err(ViewError::OutOfBudget(_))));
+    }
+
+    #[test]
+    fn every_listed_pose_has_a_line() {
+        let cells = blob(&design([Dof::X, Dof::Yaw].into_iter().collect()), 3);
+        let poses = (0..9).map(|k| cells.domain.pose(k)).collect();
+        let listed = Acceptance { domain: Domain::Poses(poses), ..cells.clone() };
+        let table = super::cells(&listed, None, &Exec::new()).unwrap();
+        let mut reader = csv::Reader::from_reader(&table[..]);
+        let head: Vec<String> = reader.headers().unwrap().iter().map(ToOwned::to_owned).collect();
+        assert_eq!(head, ["x", "y", "roll", "pitch", "yaw", "outcome"]);
+        let records: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        assert_eq!(records.len(), 9);
+        for (k, record) in records.iter().enumerate() {
+            assert_eq!(record[0].parse::<f64>().unwrap(), cells.domain.pose(k).x);
+            assert_eq!(&record[5], cells.outcomes[k].name());
+        }
     }
 }

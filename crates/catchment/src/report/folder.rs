@@ -1,7 +1,7 @@
 //! The folder that a result is written into: complete or not at all, and never over something else.
 //!
 //! ```text
-//!   run       report.json, result.zarr, and every picture as .png and .svg
+//!   run       report.json, result.zarr (poses.csv of a run without a grid), and every picture as .png and .svg
 //!   a study   report.json, and its table, picture and groups under its own name
 //! ```
 //!
@@ -17,6 +17,9 @@ pub const REPORT: &str = "report.json";
 
 /// The name of the Zarr group in the folder of a run.
 pub const RESULT: &str = "result.zarr";
+
+/// The name of the table of sampled poses in the folder of a run without a grid.
+pub const POSES: &str = "poses.csv";
 
 /// Files by name.
 pub type Files = Vec<(String, Vec<u8>)>;

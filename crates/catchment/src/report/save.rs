@@ -7,8 +7,9 @@
 //!   save_set       one file for another program: NAME.vti, NAME.vtp, NAME.csv
 //! ```
 
+use super::cells;
 use super::figure::Drawn;
-use super::folder::{REPORT, RESULT, SaveError, encode, save_files, write_all};
+use super::folder::{POSES, REPORT, RESULT, SaveError, encode, save_files, write_all};
 use super::vtk::View;
 use super::write::{self, WriteError};
 use super::{Report, SlicesReport, SweepReport, set, zarr};
@@ -53,7 +54,11 @@ impl Answer {
         let json = report.to_json()?;
         write::folder(path, RUN, exec, |folder| -> Result<(), SaveError> {
             write_all(folder, &pictures, exec)?;
-            zarr::write(&folder.join(RESULT), &report, &self.acceptance, &self.layers(), exec)?;
+            if self.grid().is_some() {
+                zarr::write(&folder.join(RESULT), &report, &self.acceptance, &self.layers(), exec)?;
+            } else {
+                write::part(folder, POSES, &cells(&self.acceptance, None, exec)?)?;
+            }
             write::part(folder, REPORT, json.as_bytes())?;
             Ok(exec.check()?)
         })?;
@@ -84,6 +89,9 @@ impl Answer {
     /// Whatever the system refuses, or the set cannot be shown so. Nothing is left behind.
     pub fn save_set(&self, path: &Path, kind: set::Kind, exec: &Exec) -> Result<(), SaveError> {
         let heights = self.layers().heights;
+        if self.grid().is_none() && kind == set::Kind::Table {
+            return Ok(write::file(path, &cells(&self.acceptance, None, exec)?, false)?);
+        }
         let view = View::new(&self.acceptance, heights, None, &PoseError::default())?;
         Ok(write::file(path, &kind.bytes(&view, &self.acceptance, heights, exec)?, false)?)
     }

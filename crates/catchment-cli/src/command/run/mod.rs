@@ -115,6 +115,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     })?;
     let running = args.exec.start()?;
     let plan = run.plan(&problem).map_err(|error| refused(&problem, error))?;
+    if targets.need_grid() && matches!(plan.domain, Domain::Poses(_)) {
+        let message =
+            "a grid that can be afforded resolves nothing here, and random poses have no cells to write"
+                .to_owned();
+        let help =
+            "--resolution 8 computes a grid, however long it takes; -o DIR or -o FILE.csv writes the poses"
+                .to_owned();
+        return Err(Failure::with_help(message, Some(help)));
+    }
     // Whoever chooses a resolution knows what it takes.
     if args.resolution.is_none() {
         to_stderr(&said_before(&run, &plan, &problem, running.exec.threads()));

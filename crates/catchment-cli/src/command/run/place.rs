@@ -5,7 +5,7 @@ use crate::output::written;
 use catchment::exec::Exec;
 use catchment::report::Target;
 use catchment::report::figure::Drawn;
-use catchment::report::folder::{REPORT, RESULT, StudyFolder};
+use catchment::report::folder::{POSES, REPORT, RESULT, StudyFolder};
 use catchment::report::set::Kind;
 use catchment::report::write;
 use catchment::run::Answer;
@@ -80,6 +80,15 @@ impl Targets<'_> {
         self.0.iter().any(|target| !matches!(target, Target::Group(_) | Target::Set(..)))
     }
 
+    /// Whether something is written that only a grid has.
+    pub(super) fn need_grid(&self) -> bool {
+        let needs = |target: &Target<'_>| match target {
+            Target::Group(_) | Target::Set(_, Kind::Image | Kind::Border) => true,
+            Target::Folder(_) | Target::Pictures(_) | Target::Set(_, Kind::Table) => false,
+        };
+        self.0.iter().any(needs)
+    }
+
     /// Whether the heights over the grid are written.
     pub(super) fn want_heights(&self) -> bool {
         self.0.iter().any(|target| !matches!(target, Target::Pictures(_)))
@@ -110,7 +119,8 @@ impl Targets<'_> {
                     let pictures = answer.save_drawn(path, &drawn, exec)?.pictures;
                     written(path);
                     let place = shown(path);
-                    format!("wrote {place}: {REPORT}, {RESULT}, {pictures} pictures as PNG and SVG")
+                    let set = if answer.grid().is_some() { RESULT } else { POSES };
+                    format!("wrote {place}: {REPORT}, {set}, {pictures} pictures as PNG and SVG")
                 }
             });
         }
