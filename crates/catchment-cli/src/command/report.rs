@@ -31,7 +31,7 @@ use serde_json::Value;
     catchment report design.toml -o page.html --leave-out window,jams\n  \
     catchment report design.toml --free x,y,yaw --resolution 24 -o page.html\n  \
     catchment report design.toml --friction 0.2 -o page.html\n\n\
-    Of a design, slices, jams and window are computed beside the result; of a stored result they are those it holds. A result whose mesh files are gone or \
+    Of a design, slices, jams and window are computed beside the result; of a stored result jams and window are those it holds. A result whose mesh files are gone or \
     changed becomes a page without halves and motions, which says so. `catchment view` serves the same page and computes again on demand.",
     mut_arg("path", |path| path.value_name("RESULT_OR_DESIGN")
         .help("A design, a folder written by `run -o`, or its NAME.zarr")
@@ -149,6 +149,9 @@ pub(crate) fn run(args: &ReportArgs) -> Result<ExitStatus, Failure> {
         let running = args.exec.start()?;
         let mut parts = Parts::stored(path, &running.exec)?;
         args.made.of_stored(&mut parts);
+        // Slices at zero are exact motions, which no result holds.
+        let planes = args.made.studies().planes;
+        parts.study(Studies { planes, jams: false, window: false }, &running.exec)?;
         args.output.write(&parts.page().html(&running.exec)?)?;
         parts
     } else {
