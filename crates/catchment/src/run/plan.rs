@@ -31,7 +31,7 @@ pub(super) const GRID_PART: u32 = 2;
 const LEAST_CELLS: usize = 8;
 
 /// Core-seconds that random poses may take in the place of such a grid, and the least and the most of them.
-const SAMPLED_SECONDS: f64 = 30.0;
+const SAMPLED_SECONDS: f64 = 15.0;
 const SAMPLED: [f64; 2] = [200.0, 4000.0];
 
 impl Run {
@@ -124,7 +124,7 @@ impl Plan {
     /// Core-seconds that everything takes, about: the decision and the motions that follow it (Sum, limits, window, seat).
     pub fn seconds(&self, problem: &Problem) -> f64 {
         /// Random poses of the window and motions of its search, as multiples of those of the Sum; motions of a limit and of the seat.
-        const WINDOW: f64 = 3.0;
+        const WINDOW: f64 = 6.0;
         const LIMIT: f64 = 20.0;
         const SEAT: f64 = 40.0;
         let pair = problem.pair();
