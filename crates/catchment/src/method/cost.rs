@@ -44,7 +44,7 @@ pub(super) fn affordable_cells(pair: &Pair, simple: [usize; 5], poses: usize) ->
 
 /// The same of halves that are searched by trees, by the number of their facets and whether motions tilt.
 fn by_trees(facets: f64, tilts: bool) -> f64 {
-    /// Seconds of a descent of so many facets that does not tilt, and with which power of their number they grow: grid cups, funnels, gears.
+    /// Seconds of a descent of so many facets that does not tilt, and with which power of their number they grow: grid cups and funnels.
     const SECONDS: f64 = 5e-4;
     const MEASURED: f64 = 600.0;
     const POWER: f64 = 0.9;

@@ -100,7 +100,7 @@ impl Run {
             return Ok(self.over);
         }
         let poses = match self.sample {
-            Sample::Until(Stop::Samples(poses)) => return Ok(Over::Stream(poses)),
+            Sample::Until(Stop::Samples(poses)) => return Ok(Over::Stream(poses.max(1))),
             Sample::Until(Stop::Budget(budget)) => budget.as_secs_f64() / seconds_per_motion(pair),
             _ => SAMPLED_SECONDS / seconds_per_motion(pair),
         };

@@ -184,7 +184,7 @@ fn said_before(run: &Run, plan: &Plan, problem: &Problem, threads: usize) -> Vec
         let fewer = time(wall(&plan, &fewer));
         said = format!("{said}; {named} alone: about {fewer} (--free {})", names.join(","));
     }
-    vec![said, "--budget 30s ends it earlier, --samples N says how many poses".to_owned()]
+    vec![said, "--budget 30s takes fewer poses, --samples N that many".to_owned()]
 }
 
 /// Seconds as one says them.

@@ -23,10 +23,10 @@ use crate::report::text::{percent, significant};
 use crate::study::slices::{Slice, Slices};
 
 /// Room left of the maps, above them, below them, and between them to the right and downwards.
-const LEFT: f64 = 72.0;
-const TOP: f64 = 84.0;
-const BELOW: f64 = 84.0;
-const GAP: [f64; 2] = [26.0, 30.0];
+pub(super) const LEFT: f64 = 72.0;
+pub(super) const TOP: f64 = 84.0;
+pub(super) const BELOW: f64 = 84.0;
+pub(super) const GAP: [f64; 2] = [26.0, 30.0];
 /// A picture is at least this wide, so that its title and legend fit.
 const LEAST_WIDTH: f64 = 560.0;
 

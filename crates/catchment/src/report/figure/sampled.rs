@@ -11,16 +11,12 @@
 use super::draw::axis::{Frame, Scale, Units};
 use super::draw::colour::{self, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::matrix::{BELOW, GAP, LEFT, TOP};
 use super::{FigureError, Picture, headline};
 use crate::acceptance::{Acceptance, Outcome};
 use crate::pose::Dof;
 use crate::report::Report;
 
-/// Room left of the plots, above and below them, and between them.
-const LEFT: f64 = 72.0;
-const TOP: f64 = 84.0;
-const BELOW: f64 = 84.0;
-const GAP: [f64; 2] = [26.0, 30.0];
 /// Radius of a dot.
 const DOT: f64 = 1.6;
 

@@ -66,7 +66,8 @@ impl Parts {
     pub fn stored(path: &std::path::Path, exec: &Exec) -> Result<Self, crate::report::zarr::ZarrError> {
         use crate::report::folder::RESULT;
         let inner = path.join(RESULT);
-        let (report, acceptance) = match sampled(path).filter(|_| !inner.is_dir()) {
+        let without_grid = if inner.is_dir() { None } else { sampled(path) };
+        let (report, acceptance) = match without_grid {
             Some(report) => {
                 let domain = Domain::Poses(Vec::new());
                 let (method, outcomes) = ("descent", Vec::new());

@@ -22,7 +22,7 @@
 mod candidate;
 mod cause;
 mod doubt;
-mod errors;
+mod error_box;
 mod file;
 mod halves;
 mod judge;
@@ -299,7 +299,7 @@ pub fn propose(
         doubts.push(told);
     }
     doubts.extend(cause::inches(both.halves, settings, unit));
-    let (text, problem) = errors::designed(parts, settings, (best, seat), unit, place, exec)?;
+    let (text, problem) = error_box::designed(parts, settings, (best, seat), unit, place, exec)?;
     doubts.extend(problem.design().unit.and_then(|unit| doubt::of_size(problem.design().width, unit)));
     Ok(Proposal { text, problem, candidates, doubts })
 }
