@@ -56,9 +56,13 @@ mod tests {
     /// Until nothing follows: `place` leads to a window, a page and what holds.
     #[test]
     fn every_next_command_can_be_typed() {
-        for first in
-            ["place a.stl b.stl -o d.toml", "slices d.toml", "success d.toml", "chance d.toml", "run d.toml"]
-        {
+        for first in [
+            "place a.stl b.stl -o d.toml",
+            "slices d.toml",
+            "success d.toml --error-sigma x=0.1",
+            "chance d.toml",
+            "run d.toml",
+        ] {
             let mut words = format!("catchment {first}");
             for _ in 0..10 {
                 let parsed = Cli::try_parse_from(words.split(' '));
