@@ -62,7 +62,7 @@
 //!
 //! // 5. For people, in their own units.
 //! let table = report::table(&answer.report());
-//! assert!(table.contains("mm") && table.contains("deg"), "{table}");
+//! assert!(table.contains("mm") && table.contains('°'), "{table}");
 //!
 //! // 6. Another method enters by the same door; its settings have names.
 //! let flood: Method = "flood".parse()?;
