@@ -52,6 +52,9 @@ pub struct Repairs {
     /// Triangles taken away that lay on others with the same corners.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub doubled: usize,
+    /// Triangles taken away of lids: sheets without thickness across a hole, without which the body is closed.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub lids: usize,
     /// Triangles that were turned over.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub turned: usize,
@@ -76,7 +79,7 @@ const fn is_zero(count: &usize) -> bool {
 impl Repairs {
     /// Whether nothing was done.
     pub const fn is_none(&self) -> bool {
-        self.without_area + self.doubled + self.turned + self.parted + self.united == 0
+        self.without_area + self.doubled + self.lids + self.turned + self.parted + self.united == 0
             && self.simplified.is_none()
     }
 
@@ -84,6 +87,7 @@ impl Repairs {
     pub(crate) fn add(&mut self, other: &Self) {
         self.without_area += other.without_area;
         self.doubled += other.doubled;
+        self.lids += other.lids;
         self.turned += other.turned;
         self.parted += other.parted;
         self.united += other.united;
@@ -104,6 +108,11 @@ impl Repairs {
         };
         part(self.without_area, "triangle without area dropped", "triangles without area dropped");
         part(self.doubled, "doubled triangle dropped", "doubled triangles dropped");
+        part(
+            self.lids,
+            "triangle of a lid without thickness dropped",
+            "triangles of lids without thickness dropped",
+        );
         part(self.turned, "triangle turned over", "triangles turned over");
         part(self.parted, "edge parted where solids touch", "edges parted where solids touch");
         part(self.united, "crossing united", "crossings united");

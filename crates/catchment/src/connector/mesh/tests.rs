@@ -90,6 +90,33 @@ fn a_solid_that_touches_itself_is_parted_in_the_middle() {
     assert!((ready.surface.volume() - 5.0).abs() < 1e-12, "{}", ready.surface.volume());
 }
 
+/// Blocks of size 1 at these places of a lattice.
+fn cells(at: impl IntoIterator<Item = [f64; 3]>) -> Soup {
+    at.into_iter().flat_map(|lo| block(lo, lo.map(|c| c + 1.0))).collect()
+}
+
+#[test]
+fn a_lid_across_a_hole_goes() {
+    let ring = (0..9).filter(|k| *k != 4).map(|k| [f64::from(k % 3), f64::from(k / 3), 0.0]);
+    let mut frame = cells(ring);
+    let [a, b, c, d] = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+    // Wound against each other: a lid has no outside.
+    frame.extend([[a, b, c], [a, d, c]]);
+    let ready = repaired(&frame);
+    assert_eq!((ready.repairs.lids, ready.repairs.deviation), (2, 0.0), "{:?}", ready.repairs);
+    assert!((ready.surface.volume() - 8.0).abs() < 1e-12, "{}", ready.surface.volume());
+}
+
+#[test]
+fn a_lid_on_a_blind_hole_may_as_well_be_its_top() {
+    let cup = (0..18).filter(|k| *k != 13).map(|k| [k % 3, k / 3 % 3, k / 9].map(f64::from));
+    let mut cup = cells(cup);
+    let [a, b, c, d] = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]].map(|[x, y]| DVec3::new(x, y, 2.0));
+    cup.extend([[a, b, c], [a, c, d]]);
+    let problems = refused(&cup);
+    assert!(matches!(problems[0], MeshProblem::NonManifold { count: 3, .. }), "{problems:?}");
+}
+
 #[test]
 fn windings_are_made_one() {
     let mut cube = block([0.0; 3], [1.0; 3]);

@@ -142,7 +142,7 @@ keys! {
         "Meshes, pieces, spheres, cylinders, cones, boxes and extruded profiles whose union is the half, each at a place of its own.");
     /// `repair` of a half
     REPAIR = key(Table::Half, "repair", Kind::Flag,
-        "Whether a mesh that needs it is repaired, which is told; true without it. Triangles without area and doubled ones are dropped, \
+        "Whether a mesh that needs it is repaired, which is told; true without it. Triangles without area, doubled ones and lids without thickness are dropped, \
          windings unified, solids that touch along an edge parted, shells that cross united. Holes are never closed.");
     /// `simplify` of a half
     SIMPLIFY = key(Table::Half, "simplify", Kind::DrawnLength(Range::new(1e-6, 0.05, "D")),

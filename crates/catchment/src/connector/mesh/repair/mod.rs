@@ -3,7 +3,7 @@
 //! ```text
 //! weld, divide ─▶ what is wrong? ─▶ nothing: as it is
 //!                       │
-//!                       └▶ doubled ─▶ flat ─▶ divide ─▶ winding ─▶ crowded ─▶ what is wrong? ─▶ crossings: unite, and again
+//!                       └▶ doubled ─▶ flat ─▶ divide ─▶ lids ─▶ winding ─▶ crowded ─▶ what is wrong? ─▶ crossings: unite, and again
 //! ```
 //!
 //! Each step is a file of its own and says what it changes. Corners stay where they are, but for those that welding joins; new ones arise on edges
@@ -14,6 +14,7 @@
 mod crowded;
 mod doubled;
 mod flat;
+mod lids;
 mod short;
 mod unite;
 mod winding;
@@ -73,7 +74,7 @@ pub(super) fn mended(before: &Indexed) -> Mended {
     }
     if problems.is_empty() && !repairs.is_none() {
         // Walls inside of the solid went: how far they lay from the surface that is left says nothing.
-        let is_less = repairs.united + repairs.doubled > 0;
+        let is_less = repairs.united + repairs.doubled + repairs.lids > 0;
         repairs.deviation = one_sided(&mesh, before, f64::INFINITY);
         if !is_less {
             repairs.deviation = repairs.deviation.max(one_sided(before, &mesh, f64::INFINITY));
@@ -113,7 +114,12 @@ fn tidy(mesh: &mut Indexed, repairs: &mut Repairs) {
     repairs.without_area += flat::drop(mesh);
     // Taking flat triangles away may lay others on each other.
     repairs.doubled += doubled::drop(mesh).doubled;
-    let sides = divide(mesh);
+    let mut sides = divide(mesh);
+    let lids = lids::drop(mesh, &sides);
+    if lids > 0 {
+        repairs.lids += lids;
+        sides = Sides::of(&mesh.triangles);
+    }
     repairs.turned += winding::unify(mesh, &sides);
     let parted = crowded::part(mesh);
     repairs.parted += parted;
