@@ -143,7 +143,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         Some(path) => write_file(path, found.text.as_bytes(), args.force)?,
         None => to_stdout(&found.text)?,
     }
-    to_stderr(&told(&found));
+    to_stderr(&told(&found, &args.moving));
     Ok(ExitStatus::Done)
 }
 
@@ -228,17 +228,21 @@ fn is_file(said: &str) -> bool {
 }
 
 /// What was chosen, what came next, and what to look at.
-fn told(found: &Proposal) -> Vec<String> {
+fn told(found: &Proposal, moving: &Path) -> Vec<String> {
     let design = found.problem.design();
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
     let head = format!("width D {}, taken from the facets that can touch", shown_length(design.width, unit));
+    let halves = format!(
+        "moving {}: pose errors and the centre of rotation are of this half; swap the files if the other one moves",
+        shown(moving)
+    );
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
     let told = rows
         .iter()
         .enumerate()
         .map(|(k, one)| format!("{} {}", if k == 0 { "taken " } else { "      " }, one.told(&rows, unit)));
     let doubts = found.doubts.iter().map(|doubt| format!("note: {doubt}"));
-    std::iter::once(head).chain(told).chain(doubts).collect()
+    [head, halves].into_iter().chain(told).chain(doubts).collect()
 }
 
 /// A refusal in the words of the command line.

@@ -201,13 +201,19 @@ impl Four {
         slack: Option<usize>,
         rounding: f32,
     ) -> f32x4 {
+        let apart = [0, 1, 2].map(|k| moving.center[k] - self.center[k]);
+        let wide = f32x4::splat(deep + 2.0 * rounding);
+        let meets = |k: usize| apart[k].abs().simd_le(self.half[k] + moving.half[k] + wide);
+        let meets = meets(0) & meets(1) & meets(2);
+        if meets.to_bitmask() == 0 {
+            return meets;
+        }
         let (most, beside) = self.most(moving, deep, rounding);
         let [front, reach] = [front, deep].map(|reach| f32x4::splat(reach + 2.0 * rounding));
         let before = |part: &Self| match slack {
             Some(slack) => part.cones[slack][0].simd_gt(f32x4::splat(Cone::ROUNDING)).bitselect(front, reach),
             None => reach,
         };
-        let apart = [0, 1, 2].map(|k| moving.center[k] - self.center[k]);
         let dot = |a: &[f32x4; 3], b: &[f32x4; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let size = |n: &[f32x4; 3], half: &[f32x4; 3]| {
             n[0].abs() * half[0] + n[1].abs() * half[1] + n[2].abs() * half[2]
@@ -220,8 +226,7 @@ impl Four {
         // Or above it by more than the slope of the fixed plane makes of the reach.
         let slope = f32x4::ONE + self.slope[0].abs() + self.slope[1].abs();
         let under = most.simd_ge(-reach * slope);
-        let level = (self.least(moving)).simd_le(reach);
-        beside & ahead & behind & under & level
+        meets & beside & ahead & behind & under
     }
 
     /// Whether features of the two parts may touch as they face, with a slack, where normals may lean beyond the horizontal by this angle.

@@ -133,8 +133,15 @@ impl Tree {
     }
 }
 
-/// Divides features across the longest side of the box around them.
+/// Divides features: kinds from each other, as of most pairs of kinds nothing is asked, then across the longest side of the box around them.
 fn halves(features: &mut [Built]) -> (&mut [Built], &mut [Built]) {
+    for kind in [Kind::Ridge, Kind::Facet] {
+        let count = features.iter().filter(|f| f.leaf.kind == kind).count();
+        if count > 0 && count < features.len() {
+            features.sort_by_key(|f| f.leaf.kind == kind);
+            return features.split_at_mut(features.len() - count);
+        }
+    }
     let low = features.iter().map(|f| f.low).fold(DVec3::INFINITY, DVec3::min);
     let high = features.iter().map(|f| f.high).fold(DVec3::NEG_INFINITY, DVec3::max);
     let size = high - low;

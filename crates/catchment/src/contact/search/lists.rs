@@ -3,7 +3,7 @@
 //! ```text
 //!        ╭──────────────────╮  list 0: pairs within 0.3 D at (R₀, c₀), from the trees
 //!        │    ╭───────╮     │
-//!        │    │ ╭─╮   │     │  list 1: pairs within 0.08 D at (R₁, c₁), from list 0; and so on down to 0.001 D
+//!        │    │ ╭─╮   │     │  list 1: pairs within 0.08 D at (R₁, c₁), from list 0; and so on down to 0.004 D
 //!        │    │ ╰─╯ · │     │
 //!        │    ╰───────╯     │  moved = |c − c₀| + radius·|R − R₀|     how far any point of the moving half is from where it was
 //!        ╰──────────────────╯
@@ -13,8 +13,9 @@
 //! each other have a clearance of at most `moved` + `reach`, so of a list sorted by clearance the first part answers, as long as that sum is not above the
 //! reach of the list. Directions are sieved as in [`super::super::candidates`], widened by the turn for which a list holds.
 //!
-//! A wider list serves for longer, and takes longer to make. Which of the two is cheaper depends on how far the motion goes on, which nobody knows: the first few
-//! lists of a level are made from the trees, and then one of the next wider level (ski rental: at most a few times what knowing it would take).
+//! A wider list serves for longer and takes longer to make, so it is rented before it is bought (ski rental: at most about twice the least cost). Lists
+//! are made from the trees, and for some places it is kept what a wider list there would have saved. A wider list is made once that exceeds its price.
+//! Prices are counts of pairs looked at, of parts in the trees and of features in lists, which take about as long each.
 //!
 //! The answers are those of the trees: every pair whose contact lies on both features, with the same numbers. Where a list would hold more than
 //! [`MOST`] pairs, the next narrower one is the widest.
@@ -31,8 +32,10 @@ use glam::{DMat3, DVec3};
 const MOST: usize = 150_000;
 /// Lists of one reach that are kept: a step tries poses on both sides of where it ends.
 const KEPT: usize = 3;
-/// So many lists of a level are made from the trees before a wider one is made to take them from; none where the last wider one served as many.
-const RENTED: usize = 3;
+/// Places of each level for which savings are kept.
+const RENTED: usize = 16;
+/// The price of a list in the price of one of the next narrower level, before one was made.
+const WIDER: u64 = 5;
 /// What rounding makes of a clearance and of how far a half has moved, in D.
 const ROUNDED: f64 = 1e-6;
 /// The share of its reach by which a half may have turned where a list holds.
@@ -54,20 +57,25 @@ pub(in crate::contact) trait Pairs {
     fn clearance(turned: &Turned<'_>, two: &Self::Two, sieve: &Sieve, most: f64) -> Option<f64>;
 }
 
-/// The pairs about one pose.
+/// Where a list holds.
 #[derive(Debug, Clone)]
-struct List<T> {
+struct Ball {
     rotation: DMat3,
     position: DVec3,
     counts: Counts,
-    /// Up to which turn it holds.
+    /// Up to which turn.
     skin: f64,
     reach: f64,
-    /// By their clearances.
-    pairs: Vec<(f64, T)>,
 }
 
-impl<T> List<T> {
+impl Ball {
+    /// About a pose, for a level of this reach.
+    fn about(turned: &Turned<'_>, reach: f64) -> Self {
+        let Turned { rotation, position, counts, .. } = *turned;
+        let counts = Counts { slack: counts.slack.max(SLACKS[1]), ..counts };
+        Self { rotation, position, counts, skin: TURNED * reach / turned.trees.radius, reach }
+    }
+
     /// By how much at most the clearance of a pair is above its distance at another pose, where the list holds what is within `reach` there.
     fn moved(&self, turned: &Turned<'_>, reach: f64, skin: f64) -> Option<f64> {
         let turn = chord(&self.rotation, &turned.rotation);
@@ -80,69 +88,104 @@ impl<T> List<T> {
     }
 }
 
+/// The pairs about one pose, by their clearances.
+#[derive(Debug, Clone)]
+struct List<T> {
+    ball: Ball,
+    pairs: Vec<(f64, T)>,
+}
+
+/// The lists of one reach, and what they cost, in pairs looked at.
+#[derive(Debug, Clone)]
+struct Level<T> {
+    /// The one that was asked last at the end.
+    lists: Vec<List<T>>,
+    /// Where a list would have saved so much; the one that was asked last at the end.
+    rented: Vec<(Ball, u64)>,
+    /// The cost of the last list, of the last one from the trees, and of the last one from a wider list.
+    price: Option<u64>,
+    from_trees: Option<u64>,
+    from_list: Option<u64>,
+}
+
 /// Lists within lists.
 #[derive(Debug, Clone)]
 pub(in crate::contact) struct Lists<P: Pairs> {
-    /// Of each reach, the one that was asked last at the end.
-    levels: Vec<Vec<List<P::Two>>>,
+    levels: Vec<Level<P::Two>>,
     /// The widest that is not too long.
     widest: usize,
-    /// How many lists of each level were made from the trees since a wider one was, and how many that one has served.
-    made: Vec<usize>,
-    served: Vec<usize>,
 }
 
 impl<P: Pairs> Default for Lists<P> {
     fn default() -> Self {
-        let none = || vec![0; P::REACHES.len()];
-        Self {
-            levels: P::REACHES.iter().map(|_| Vec::new()).collect(),
-            widest: 0,
-            made: none(),
-            served: none(),
+        let level = |_: &f64| Level {
+            lists: Vec::new(),
+            rented: Vec::new(),
+            price: None,
+            from_trees: None,
+            from_list: None,
+        };
+        Self { levels: P::REACHES.iter().map(level).collect(), widest: 0 }
+    }
+}
+
+impl<T> Level<T> {
+    /// Sees to it that the last list holds what is within `reach` of each other for turns of `skin`, if any does; by how much clearances may be too large.
+    fn find(&mut self, turned: &Turned<'_>, reach: f64, skin: f64) -> Option<f64> {
+        let lists = self.lists.iter().enumerate().rev();
+        let (k, moved) =
+            lists.into_iter().find_map(|(k, list)| Some((k, list.ball.moved(turned, reach, skin)?)))?;
+        self.lists[k..].rotate_left(1);
+        Some(moved)
+    }
+
+    /// The pairs of the last list that may be within `reach` of each other.
+    fn last_within(&self, moved: f64, reach: f64) -> &[(f64, T)] {
+        let pairs = self.lists.last().map_or(&[][..], |list| &list.pairs);
+        &pairs[..pairs.partition_point(|(clearance, _)| *clearance <= moved + reach)]
+    }
+
+    /// Counts what a list of this level would have saved about a pose, had `narrow` come from it.
+    fn rent(&mut self, turned: &Turned<'_>, reach: f64, narrow: &Ball, saved: u64) {
+        let holds = |(ball, _): &(Ball, u64)| ball.moved(turned, narrow.reach, narrow.skin).is_some();
+        if let Some(k) = self.rented.iter().position(holds) {
+            self.rented[k].1 += saved;
+            self.rented[k..].rotate_left(1);
+            return;
         }
+        if self.rented.len() == RENTED {
+            self.rented.remove(0);
+        }
+        self.rented.push((Ball::about(turned, reach), saved));
     }
 }
 
 impl<P: Pairs> Lists<P> {
     /// Shows every pair within `reach` of each other, and some beyond; says whether it could, else nothing was shown.
-    fn within(&mut self, turned: &Turned<'_>, reach: f64, mut see: impl FnMut(&P::Two) -> bool) -> bool {
+    fn within(&mut self, turned: &Turned<'_>, reach: f64, see: impl FnMut(&P::Two) -> bool) -> bool {
         let fits = |level: &usize| reach <= 0.5 * P::REACHES[*level];
         let Some(level) = (self.widest..P::REACHES.len()).rev().find(fits) else { return false };
         let Some(moved) = self.prepare(turned, level, reach, 0.0) else { return false };
-        let Some(list) = self.levels[level].last() else { return false };
-        for (_, two) in list.pairs.iter().take_while(|(clearance, _)| *clearance <= moved + reach) {
-            if see(two) {
-                break;
-            }
-        }
+        let mut pairs = self.levels[level].last_within(moved, reach).iter().map(|(_, two)| two);
+        pairs.any(see);
         true
-    }
-
-    /// Which list of a level holds what is within `reach` of each other for turns of `skin`, and by how much its clearances may be too large.
-    fn find(&self, turned: &Turned<'_>, level: usize, reach: f64, skin: f64) -> Option<(usize, f64)> {
-        let lists = self.levels[level].iter().enumerate().rev();
-        lists.into_iter().find_map(|(k, list)| Some((k, list.moved(turned, reach, skin)?)))
     }
 
     /// Sees to it that the last list of a level holds what is within `reach` of each other for turns of `skin`; by how much clearances may be too large.
     fn prepare(&mut self, turned: &Turned<'_>, level: usize, reach: f64, skin: f64) -> Option<f64> {
-        if let Some((k, moved)) = self.find(turned, level, reach, skin) {
-            self.levels[level][k..].rotate_left(1);
+        if let Some(moved) = self.levels[level].find(turned, reach, skin) {
             return Some(moved);
         }
         let own = P::REACHES[level];
-        let counts = Counts { slack: turned.counts.slack.max(SLACKS[1]), ..turned.counts };
-        let sieve = Sieve {
-            slack: counts.slack,
-            lowest: counts.lowest,
-            skin: TURNED * own / turned.trees.radius,
-            window: None,
-        };
-        let mut pairs = if self.levels[level].len() < KEPT {
+        let ball = Ball::about(turned, own);
+        let Counts { slack, lowest } = ball.counts;
+        let sieve = Sieve { slack, lowest, skin: ball.skin, window: None };
+        let wide = Turned { counts: ball.counts, ..turned.clone() };
+        let wider = self.wider(&wide, level, &ball);
+        let mut pairs = if self.levels[level].lists.len() < KEPT {
             Vec::new()
         } else {
-            let mut oldest = self.levels[level].remove(0).pairs;
+            let mut oldest = self.levels[level].lists.remove(0).pairs;
             oldest.clear();
             oldest
         };
@@ -151,39 +194,54 @@ impl<P: Pairs> Lists<P> {
             pairs.extend(clearance.map(|clearance| (clearance, *two)));
             pairs.len() <= MOST
         };
-        // A wider list serves for longer and takes longer: it is made once some of this level were.
-        let wide = Turned { counts, ..turned.clone() };
-        let has_parent = level > self.widest && {
-            let found = self.find(&wide, level - 1, own, sieve.skin).is_some();
-            let is_due = self.made[level] >= RENTED || self.served[level] >= RENTED;
-            // Another wide list is begun.
-            if !found && is_due {
-                self.served[level] = 0;
-            }
-            found || is_due
-        };
-        let parent = if has_parent { self.prepare(&wide, level - 1, own, sieve.skin) } else { None };
-        if let (Some(moved), Some(parent)) =
-            (parent, level.checked_sub(1).and_then(|k| self.levels[k].last()))
-        {
-            for (_, two) in parent.pairs.iter().take_while(|(clearance, _)| *clearance <= moved + own) {
+        let price = if let Some((k, moved)) = wider {
+            let from = self.levels[k].last_within(moved, own);
+            for (_, two) in from {
                 add(two);
             }
-            self.made[level] = 0;
-            self.served[level] += 1;
-        } else if turned.near_each_other::<P>(own, &sieve, &mut add) {
-            self.made[level] += 1;
+            let looked = from.len() as u64;
+            self.levels[level].from_list = Some(looked);
+            looked
+        } else if let Some(looked) = turned.near_each_other::<P>(own, &sieve, &mut add) {
+            self.levels[level].from_trees = Some(looked);
+            if level > self.widest {
+                let saved = looked.saturating_sub(self.levels[level].from_list.unwrap_or(looked / 2));
+                let above = &mut self.levels[level - 1];
+                above.price.get_or_insert(WIDER * looked);
+                above.rent(&wide, P::REACHES[level - 1], &ball, saved);
+            }
+            looked
         } else {
             self.widest = level + 1;
-            self.levels[level].clear();
+            self.levels[level].lists.clear();
             return None;
-        }
+        };
+        self.levels[level].price = Some(price);
         pairs.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
-        let (rotation, position) = (turned.rotation, turned.position);
-        let list = List { rotation, position, counts, skin: sieve.skin, reach: own, pairs };
-        let moved = list.moved(turned, reach, skin);
-        self.levels[level].push(list);
+        let moved = ball.moved(turned, reach, skin);
+        self.levels[level].lists.push(List { ball, pairs });
         moved
+    }
+
+    /// The level whose last list has all pairs for a narrower ball, and by how much its clearances may be too large: one that is there and
+    /// shorter than the way through the trees, or one that has paid.
+    fn wider(&mut self, turned: &Turned<'_>, level: usize, narrow: &Ball) -> Option<(usize, f64)> {
+        let from_trees = self.levels[level].from_trees.unwrap_or(u64::MAX);
+        for k in (self.widest..level).rev() {
+            if let Some(moved) = self.levels[k].find(turned, narrow.reach, narrow.skin) {
+                let count = self.levels[k].last_within(moved, narrow.reach).len() as u64;
+                if count < from_trees {
+                    return Some((k, moved));
+                }
+            }
+        }
+        let k = level.checked_sub(1).filter(|k| *k >= self.widest)?;
+        let Level { rented, price, .. } = &mut self.levels[k];
+        let price = (*price)?;
+        let holds = |ball: &Ball| ball.moved(turned, narrow.reach, narrow.skin).is_some();
+        let paid = rented.iter().position(|(ball, saved)| *saved > price && holds(ball))?;
+        rented.remove(paid);
+        Some((k, self.prepare(turned, k, narrow.reach, narrow.skin)?))
     }
 }
 
@@ -193,7 +251,7 @@ pub(in crate::contact) struct Touching;
 
 impl Pairs for Touching {
     type Two = Number;
-    const REACHES: &'static [f64] = &[0.3, 0.08, 0.02, 0.004, 0.001];
+    const REACHES: &'static [f64] = &[0.3, 0.08, 0.02, 0.004];
     const FACE: bool = true;
 
     fn meet(fixed: Child, moving: Child) -> bool {

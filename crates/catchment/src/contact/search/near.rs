@@ -77,6 +77,8 @@ struct Around<'a, P, F> {
     pairs: PhantomData<P>,
     see: F,
     goes_on: bool,
+    /// How many pairs of parts were looked at.
+    looked: u64,
 }
 
 impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
@@ -85,6 +87,7 @@ impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
         if !self.goes_on {
             return;
         }
+        self.looked += 1;
         if fixed.child.is_leaf && moving.child.is_leaf {
             let [fixed, moving] =
                 [turned.trees.fixed.leaf(fixed.child), turned.trees.moving.leaf(moving.child)];
@@ -100,14 +103,14 @@ impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
 }
 
 impl Turned<'_> {
-    /// Shows every pair of features within `reach` of each other that may count within the sieve's turn, and some beyond, until `see` says not to go on;
-    /// whether it saw all.
+    /// Shows every pair of features within `reach` of each other that may count within the sieve's turn, and some beyond, until `see` says not to go on.
+    /// How many pairs of parts it looked at, if it saw all.
     pub(super) fn near_each_other<P: Pairs>(
         &self,
         reach: f64,
         sieve: &Sieve,
         see: impl FnMut(&P::Two) -> bool,
-    ) -> bool {
+    ) -> Option<u64> {
         let cones = SLACKS.iter().position(|slack| sieve.slack + sieve.skin <= *slack);
         let turned = Turned {
             pairs: P::meet,
@@ -115,14 +118,14 @@ impl Turned<'_> {
             overhang: overhang(sieve.lowest - sieve.skin),
             ..self.clone()
         };
-        let mut search =
-            Around { turned: &turned, reach: reach as f32, pairs: PhantomData::<P>, see, goes_on: true };
+        let (reach, pairs) = (reach as f32, PhantomData::<P>);
+        let mut search = Around { turned: &turned, reach, pairs, see, goes_on: true, looked: 0 };
         if let Some(([fixed, moving], [f, m])) = &turned.roots() {
             let [fixed, moving] =
                 [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
             search.descend(&fixed, &moving);
         }
-        search.goes_on
+        search.goes_on.then_some(search.looked)
     }
 }
 
