@@ -1,7 +1,7 @@
 //! `catchment place`: from two files to a design, to what it forgives.
 
+use crate::prisms::{Prism, TWO, arc, deep, flat, obj, on_a_plate, plug, socket, two_parts};
 use crate::{catchment, designs, entries, run};
-use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
@@ -96,47 +96,6 @@ fn parts_that_do_not_dock_are_told_and_nothing_is_written() {
     assert_eq!(entries(home.path()), ["parts"]);
 }
 
-/// An OBJ of prisms: their outlines, from where to where they reach, and where a corner is put.
-type Prism<'a> = (&'a [[f64; 2]], [f64; 2], fn([f64; 2], f64) -> [f64; 3]);
-
-fn obj(prisms: &[Prism<'_>]) -> String {
-    let (mut corners, mut faces, mut first) = (String::new(), String::new(), 1);
-    for (outline, ends, put) in prisms {
-        for corner in ends.iter().flat_map(|end| outline.iter().map(|p| put(*p, *end))) {
-            let _ = writeln!(corners, "v {:.9} {:.9} {:.9}", corner[0], corner[1], corner[2]);
-        }
-        let count = outline.len();
-        let mut face = |list: Vec<usize>| {
-            let list: Vec<String> = list.iter().map(|k| (first + k).to_string()).collect();
-            let _ = writeln!(faces, "f {}", list.join(" "));
-        };
-        face((0..count).rev().collect());
-        face((count..2 * count).collect());
-        for (k, next) in (0..count).map(|k| (k, (k + 1) % count)) {
-            face(vec![k, next, count + next, count + k]);
-        }
-        first += 2 * count;
-    }
-    corners + &faces
-}
-
-/// Drawn in the plane of x and z, extruded along −y.
-fn deep([x, z]: [f64; 2], y: f64) -> [f64; 3] {
-    [x, -y, z]
-}
-
-/// Drawn in the plane of x and y, extruded along z.
-fn flat([x, y]: [f64; 2], z: f64) -> [f64; 3] {
-    [x, y, z]
-}
-
-fn two_parts(fixed: &str, moving: &str) -> tempfile::TempDir {
-    let home = tempfile::tempdir().unwrap();
-    fs::write(home.path().join("fixed.obj"), fixed).unwrap();
-    fs::write(home.path().join("moving.obj"), moving).unwrap();
-    home
-}
-
 const ASSEMBLED: [&str; 8] =
     ["place", "fixed.obj", "moving.obj", "--unit=mm", "--drawn=assembled", "--approach=-z", "-o", "d.toml"];
 
@@ -159,11 +118,6 @@ fn a_bar_that_balances_is_not_proposed_to_tip() {
         assert!(text.contains("\nfree = [\"x\"") && !text.contains("\"pitch\""), "{text}");
         assert!(run(home.path(), &["check", "d.toml"]).starts_with("exit 0"));
     }
-}
-
-fn arc(radius: f64, from: f64, to: f64, count: u32) -> Vec<[f64; 2]> {
-    let at = |k: u32| (from + (to - from) * f64::from(k) / f64::from(count)).to_radians();
-    (0..=count).map(|k| [radius * at(k).cos(), radius * at(k).sin()]).collect()
 }
 
 /// Two keys between two walls turn by 48 degrees either way, and not all round: their yaw is locked, and does matter.
@@ -210,15 +164,6 @@ fn what_settles_says_how_far() {
     assert!(told.contains("note: as drawn the parts do not hold"), "{told}");
 }
 
-/// Ways of approach that are blocked say by how much in the unit of the parts.
-#[test]
-fn a_blocked_approach_is_told_in_millimetres() {
-    let home = home();
-    let parts = ["place", "parts/assembled-socket.obj", "parts/assembled-plug.ply", "--unit", "mm"];
-    let told = run(home.path(), &[&parts[..], &["--drawn=assembled", "--approach=+x"]].concat());
-    assert!(told.starts_with("exit 2") && told.contains("blocked: ") && told.contains(" mm above"), "{told}");
-}
-
 /// What is read is not written over, by whatever option it was named.
 #[test]
 fn what_belongs_to_a_half_is_not_written_over() {
@@ -232,92 +177,6 @@ fn what_belongs_to_a_half_is_not_written_over() {
     assert_eq!(fs::read(home.path().join(ball)).unwrap(), bytes);
     let told = run(home.path(), &[&PARTS[..], &["--with-moving", "parts/none.stl"]].concat());
     assert!(told.contains("there is no file parts/none.stl") && told.contains("help: "), "{told}");
-}
-
-/// A box from where to where along x and y, z.
-fn rectangle([x0, x1]: [f64; 2], [y0, y1]: [f64; 2]) -> [[f64; 2]; 4] {
-    [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
-}
-
-/// A plate of 30 mm with these rectangles on it, 6 mm high.
-fn on_a_plate(raised: &[[[f64; 2]; 4]]) -> String {
-    let plate = rectangle([-15.0, 15.0], [-15.0, 15.0]);
-    let mut prisms: Vec<Prism<'_>> = vec![(&plate, [-5.0, 0.0], flat)];
-    prisms.extend(raised.iter().map(|outline| (&outline[..], [0.0, 6.0], flat as fn([f64; 2], f64) -> _)));
-    obj(&prisms)
-}
-
-/// An L and its recess, one of them exported mirrored: no turn brings them together.
-#[test]
-fn a_mirrored_part_is_told_as_one() {
-    let l = [rectangle([-8.0, -2.0], [-10.0, 10.0]), rectangle([-2.0, 8.0], [-10.0, -4.0])];
-    // Faces up in its own file, so that it is turned over about x to dock.
-    let recess = [
-        rectangle([-15.0, -9.0], [-15.0, 15.0]),
-        rectangle([9.0, 15.0], [-15.0, 15.0]),
-        rectangle([-9.0, 9.0], [11.0, 15.0]),
-        rectangle([-9.0, 9.0], [-15.0, -11.0]),
-        rectangle([-1.0, 9.0], [-11.0, 3.0]),
-    ];
-    let home = two_parts(&on_a_plate(&l), &on_a_plate(&recess));
-    let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
-    let told = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat());
-    assert!(told.starts_with("exit 0") && !told.contains("mirror"), "{told}");
-    // Where it tolerates a few millimetres, the error box does not reach to 30.
-    let text = fs::read_to_string(home.path().join("d.toml")).unwrap();
-    assert!(
-        text.contains("About four times what each error alone tolerates.") && text.contains("\nx = 0.18 # D"),
-        "{text}"
-    );
-    let mirrored = recess.map(|outline| outline.map(|[x, y]| [-x, y])).map(|[a, b, c, d]| [d, c, b, a]);
-    fs::write(home.path().join("moving.obj"), on_a_plate(&mirrored)).unwrap();
-    let told = run(home.path(), &[&parts[..], &["-o", "m.toml"]].concat()).replace("\n        ", " ");
-    assert!(
-        told.starts_with("exit 2") && told.contains("a mirror image of the moving part would dock"),
-        "{told}"
-    );
-    assert!(!home.path().join("m.toml").exists());
-}
-
-/// A web across a socket keeps its plug out: where it is, on which part, and what it costs.
-#[test]
-fn a_web_in_the_way_is_pointed_at() {
-    let walls = [
-        rectangle([-15.0, -11.0], [-15.0, 15.0]),
-        rectangle([11.0, 15.0], [-15.0, 15.0]),
-        rectangle([-11.0, 11.0], [11.0, 15.0]),
-        rectangle([-11.0, 11.0], [-15.0, -11.0]),
-    ];
-    let web = rectangle([-11.0, 11.0], [-1.0, 1.0]);
-    let plug = [rectangle([-10.0, 10.0], [-10.0, 10.0])];
-    let home = two_parts(&on_a_plate(&[&walls[..], &[web]].concat()), &on_a_plate(&plug));
-    let parts = ["place", "fixed.obj", "moving.obj", "--unit=mm"];
-    let told = run(home.path(), &[&parts[..], &["-o", "d.toml"]].concat()).replace("\n        ", " ");
-    for words in
-        ["something narrow of the fixed part is in the way", "6) mm of the fixed", "about 6 mm deeper"]
-    {
-        assert!(told.starts_with("exit 2") && told.contains(words), "{words}\n{told}");
-    }
-    // A design that somebody wrote says the same, on the moving half as well.
-    for (fixed, moving, whose) in [("fixed", "moving", "fixed"), ("moving", "fixed", "moving")] {
-        let half = |name: &str| format!("{{ mesh = \"{name}.obj\", unit = \"mm\" }}");
-        let text = format!(
-            "[connector]\nwidth = 22\nunit = \"mm\"\nfixed = {}\nmoving = {}\n[alignment]\nfree = [\"x\", \"y\", \"yaw\"]\n",
-            half(fixed),
-            half(moving)
-        );
-        fs::write(home.path().join("d.toml"), text).unwrap();
-        let told = run(home.path(), &["check", "d.toml"]).replace("\n        ", " ");
-        let words = format!("something narrow of the {whose} part is in the way");
-        assert!(
-            told.starts_with("exit 2") && told.contains(&words) && told.contains("deeper, into a seat"),
-            "{told}"
-        );
-    }
-    // Without the web it docks.
-    fs::write(home.path().join("fixed.obj"), on_a_plate(&walls)).unwrap();
-    let told = run(home.path(), &[&parts[..], &["-o", "e.toml"]].concat());
-    assert!(told.starts_with("exit 0") && !told.contains("in the way"), "{told}");
 }
 
 /// Files of more triangles than a half may have are placed with fewer, which the design says.
@@ -349,46 +208,6 @@ fn files_are_placed_with_fewer_triangles() {
     assert!(told.starts_with("exit 2") && told.contains("--with-fixed"), "{told}");
 }
 
-/// What was printed, without the breaks of its lines.
-trait Unbroken {
-    fn unbroken(self) -> String;
-}
-
-impl Unbroken for String {
-    fn unbroken(self) -> String {
-        self.replace("\n  │ ", " ").replace("\n        ", " ")
-    }
-}
-
-/// Walls around a square hole, 6 mm high on a plate of 30 mm; its inner half width.
-fn socket(half: f64) -> [[[f64; 2]; 4]; 4] {
-    [
-        rectangle([-15.0, -half], [-15.0, 15.0]),
-        rectangle([half, 15.0], [-15.0, 15.0]),
-        rectangle([-half, half], [half, 15.0]),
-        rectangle([-half, half], [-15.0, -half]),
-    ]
-}
-
-/// A block of this half width between two heights, as drawn.
-fn plug(half: f64, ends: [f64; 2]) -> String {
-    obj(&[(&rectangle([-half, half], [-half, half]), ends, flat)])
-}
-
-/// An OBJ with every coordinate times a factor.
-fn scaled(text: &str, factor: f64) -> String {
-    let line = |line: &str| match line.strip_prefix("v ") {
-        Some(rest) => {
-            let side = |word: &str| format!(" {:.9}", word.parse::<f64>().unwrap() * factor);
-            format!("v{}\n", rest.split(' ').map(side).collect::<String>())
-        }
-        None => format!("{line}\n"),
-    };
-    text.lines().map(line).collect()
-}
-
-const TWO: [&str; 6] = ["place", "fixed.obj", "moving.obj", "--unit=mm", "-o", "d.toml"];
-
 /// What is drawn on its axis but not sunk slides along the approach; a few millimetres are no doubt, more are.
 #[test]
 fn what_is_drawn_apart_slides_to_first_contact() {
@@ -402,122 +221,11 @@ fn what_is_drawn_apart_slides_to_first_contact() {
     }
 }
 
-/// Parts that are drawn together and do not hold are refused with the cause, not put somewhere else.
+/// Ways of approach that are blocked say by how much in the unit of the parts.
 #[test]
-fn an_assembly_that_does_not_hold_is_refused_with_its_cause() {
-    let ring = socket(10.2);
-    let ring: Vec<Prism<'_>> =
-        ring.iter().map(|wall| (&wall[..], [0.0, 6.0], flat as fn([f64; 2], f64) -> _)).collect();
-    let cases = [
-        (on_a_plate(&[]), plug(10.0, [0.0, 8.0]), &["flat: the parts meet", "--with-moving"][..]),
-        (
-            obj(&ring),
-            plug(10.0, [-4.0, 16.0]),
-            &["passes through: no stop", "--with-fixed", "--drawn facing"],
-        ),
-    ];
-    for (fixed, moving, words) in cases {
-        let home = two_parts(&fixed, &moving);
-        let told = run(home.path(), &TWO).unbroken();
-        for words in words {
-            assert!(told.starts_with("exit 2") && told.contains(words), "{words}\n{told}");
-        }
-        assert!(!home.path().join("d.toml").exists());
-    }
-}
-
-/// A lid exactly as large as its recess has no play: so much is said. A tenth of a millimetre lets it in.
-#[test]
-fn a_lid_as_large_as_its_recess_is_told() {
-    let parts = [
-        "place",
-        "fixed.obj",
-        "moving.obj",
-        "--unit=mm",
-        "--drawn=facing",
-        "--facing-fixed=+z",
-        "--facing-moving=-z",
-    ];
-    let home = two_parts(&on_a_plate(&socket(10.0)), &plug(10.000_01, [40.0, 60.0]));
-    let told = run(home.path(), &parts).unbroken();
-    assert!(
-        told.starts_with("exit 2") && told.contains("no play: ") && told.contains("6 mm into the other"),
-        "{told}"
-    );
-    let home = two_parts(&on_a_plate(&socket(10.1)), &plug(10.0, [40.0, 60.0]));
-    let told = run(home.path(), &parts);
-    assert!(told.starts_with("exit 0"), "{told}");
-}
-
-/// Mistakes in the files that leave no seat: each is named, with what to do.
-#[test]
-fn mistakes_in_the_files_are_named() {
-    let refused = |fixed: &str, moving: &str, more: &[&str]| {
-        let home = two_parts(fixed, moving);
-        let told = run(home.path(), &[&TWO[..], more].concat()).unbroken();
-        assert!(told.starts_with("exit 2"), "{told}");
-        told
-    };
-    let plate = on_a_plate(&[]);
-    // The same part twice, in a file and in a copy of it.
-    let told = refused(&plate, &plate, &[]);
-    assert!(told.contains("both files hold the same part: name the file of the other half"), "{told}");
-    let home = two_parts(&plate, &plate);
-    let told = run(home.path(), &["place", "fixed.obj", "fixed.obj", "--unit=mm"]).unbroken();
-    assert!(told.starts_with("exit 2") && told.contains("both halves are the same file"), "{told}");
-    // Both halves in one file.
-    let two = obj(&[
-        (&rectangle([-15.0, 15.0], [-15.0, 15.0]), [-5.0, 0.0], flat),
-        (&rectangle([-9.0, 9.0], [-9.0, 9.0]), [30.0, 40.0], flat),
-    ]);
-    let told = refused(&two, &plug(7.0, [0.0, 8.0]), &["--drawn=facing"]);
-    assert!(
-        told.contains("the file of the fixed half holds 2 separate bodies") && told.contains("Split"),
-        "{told}"
-    );
-}
-
-/// Inches that are read as millimetres make parts of a few millimetres.
-#[test]
-fn parts_of_a_few_millimetres_may_be_in_inches() {
-    let home = two_parts(
-        &scaled(&on_a_plate(&socket(10.2)), 1.0 / 25.4),
-        &scaled(&plug(10.0, [0.0, 20.0]), 1.0 / 25.4),
-    );
-    let told = run(home.path(), &TWO).unbroken();
-    assert!(told.contains("is the file in inches? Then it is "), "{told}");
-}
-
-/// Lengths of parts of millimetres are told in mm where their files are in metres.
-#[test]
-fn metres_are_told_in_millimetres() {
-    let home = two_parts(&scaled(&on_a_plate(&socket(10.2)), 1e-3), &scaled(&plug(10.0, [0.0, 20.0]), 1e-3));
-    let told = run(home.path(), &["place", "fixed.obj", "moving.obj", "--unit=m", "-o", "d.toml"]);
-    assert!(
-        told.starts_with("exit 0")
-            && told.contains("6 mm deep, play 0.")
-            && told.contains(" mm to each side"),
-        "{told}"
-    );
-}
-
-/// What is wrong with both files alike is said once.
-#[test]
-fn step_without_a_python_is_told_once() {
-    let home = tempfile::tempdir().unwrap();
-    for name in ["a.step", "b.step"] {
-        fs::write(
-            home.path().join(name),
-            "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n",
-        )
-        .unwrap();
-    }
-    let output = catchment(home.path())
-        .args(["place", "a.step", "b.step"])
-        .env("CATCHMENT_PYTHON", home.path().join("no-python"))
-        .output()
-        .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{told}");
-    assert_eq!(told.matches("CATCHMENT_PYTHON").count(), 1, "{told}");
+fn a_blocked_approach_is_told_in_millimetres() {
+    let home = home();
+    let parts = ["place", "parts/assembled-socket.obj", "parts/assembled-plug.ply", "--unit", "mm"];
+    let told = run(home.path(), &[&parts[..], &["--drawn=assembled", "--approach=+x"]].concat());
+    assert!(told.starts_with("exit 2") && told.contains("blocked: ") && told.contains(" mm above"), "{told}");
 }

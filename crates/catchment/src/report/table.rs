@@ -157,17 +157,26 @@ fn tried(report: &Report) -> String {
 /// The Sum with its unit, and half its interval where it has one: `12.587 ± 0.023 D²·rad³`. Where half the interval is more than the Sum, its upper
 /// end alone: too few sampled poses docked to say more.
 pub(super) fn sum(a: &AcceptanceReport) -> String {
-    let sum = match a.sum_ci95 {
-        None => significant(a.sum),
-        Some([lo, hi]) if hi - lo > 2.0 * a.sum => format!("below {}", significant(hi)),
-        Some(ci95) => with_error(a.sum, ci95),
+    let sum = match (upper_end(a), a.sum_ci95) {
+        (Some(hi), _) => format!("below {}", significant(hi)),
+        (None, Some(ci95)) => with_error(a.sum, ci95),
+        (None, None) => significant(a.sum),
     };
     format!("{sum} {}", a.unit)
 }
 
+/// The upper end of an interval that is wider than twice the Sum.
+fn upper_end(a: &AcceptanceReport) -> Option<f64> {
+    a.sum_ci95.and_then(|[lo, hi]| (hi - lo > 2.0 * a.sum).then_some(hi))
+}
+
 fn acceptance(text: &mut String, report: &Report) {
     let a = &report.acceptance;
-    row(text, "AA (Sum)", &format!("{}   ({} of the error box)", sum(a), percent(a.fraction)));
+    let share = match upper_end(a) {
+        Some(_) => "too few sampled poses docked to say more".to_owned(),
+        None => format!("{} of the error box", percent(a.fraction)),
+    };
+    row(text, "AA (Sum)", &format!("{}   ({share})", sum(a)));
     let poses = a.sample.as_ref().map_or(a.cells, |sample| sample.descents);
     if a.sum_ci95.is_some() {
         row(text, "", &format!("95 % CI, {} sampled poses", grouped(poses)));

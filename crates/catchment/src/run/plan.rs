@@ -1,11 +1,11 @@
 //! What a run will do, known before anything is computed.
 
 use super::{Over, Run, RunError, Sample, jams, window};
-use crate::acceptance::Domain;
+use crate::acceptance::{Domain, Outcome};
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::method::correction::{self, Stop};
-use crate::method::{Cost, Method, ensure_fits, seconds_per_motion};
+use crate::method::{Cost, Method, descent, ensure_fits, seconds_per_motion};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 
@@ -29,6 +29,8 @@ pub(super) const GRID_PART: u32 = 2;
 
 /// Fewest cells per axis of a grid that nobody asked for: of an error box that is four times the tolerance wide two of eight are accepted.
 const LEAST_CELLS: usize = 8;
+/// So many cells the accepted set spans to some side of the mated pose along every axis of such a grid: cells beside it are not all there is.
+const SPANNED: f64 = 1.5;
 
 /// Core-seconds that random poses may take in the place of such a grid, and the least and the most of them.
 const SAMPLED_SECONDS: f64 = 15.0;
@@ -95,8 +97,7 @@ impl Run {
             return Ok(self.over);
         }
         let grid = Resolution::default().grid(problem.alignment(), &method.default_cells(pair))?;
-        let is_resolved = |grid: &Grid| grid.axes.iter().all(|axis| axis.cells >= LEAST_CELLS);
-        if is_resolved(&grid) {
+        if grid.axes.iter().all(|axis| axis.cells >= LEAST_CELLS) && spans_cells(problem, method, &grid) {
             return Ok(self.over);
         }
         let poses = match self.sample {
@@ -118,6 +119,19 @@ impl Run {
         let friction = self.method.motions().friction;
         jams::Settings { seed: self.seed, errors: self.errors.clone(), friction, ..jams::Settings::default() }
     }
+}
+
+/// Whether the accepted set spans cells enough of a grid along every axis, by exact motions.
+fn spans_cells(problem: &Problem, method: &Method, grid: &Grid) -> bool {
+    let motions = method.motions();
+    let mut follower = descent::Follower::new(problem.pair(), &motions);
+    grid.axes.iter().all(|axis| {
+        [1.0, -1.0].into_iter().any(|sign| {
+            let mut error = [0.0; 5];
+            error[axis.dof.index()] = sign * SPANNED * axis.step();
+            follower.follow(&PoseError::from_array(error)).outcome == Outcome::Aligned
+        })
+    })
 }
 
 impl Plan {

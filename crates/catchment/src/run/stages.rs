@@ -8,7 +8,7 @@ use crate::exec::{Exec, Stopwatch};
 use crate::landscape::{Grid, Landscape};
 use crate::merit::Merits;
 use crate::merit::success::success;
-use crate::merit::tolerance::followed;
+use crate::merit::tolerance::{Tolerance, followed};
 use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop};
 use crate::method::{Decide, Decided, Doubts, Follow, Method, affordable, descent};
 use crate::problem::Problem;
@@ -94,6 +94,9 @@ pub(super) fn finish(
             let decided = judge.as_follow().follow(problem, Domain::Poses(poses), exec);
             Ok::<_, RunError>(decided?.0.outcomes)
         })?;
+        if let Domain::Poses(_) = &plan.domain {
+            acceptance.warnings.extend(small_part(&merits.tolerances, grid));
+        }
         if judge.is_descent() {
             let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
             let most = motions.default_samples(problem.pair());
@@ -129,6 +132,25 @@ pub(super) fn finish(
         seconds: started.seconds(),
         threads: exec.threads(),
     })
+}
+
+/// Single-axis limits below this share of the error box leave few random poses that dock.
+const SMALL: f64 = 0.2;
+
+/// That little of the error box can dock, where random poses answer.
+fn small_part(tolerances: &[Tolerance], grid: &Grid) -> Option<Warning> {
+    let share = |tolerance: &Tolerance| {
+        let axis = grid.axes.iter().find(|axis| axis.dof == tolerance.dof)?;
+        let share = tolerance.minus.max(tolerance.plus) / axis.lo.abs().max(axis.hi.abs());
+        (share < SMALL).then(|| format!("{} at {:.0} %", tolerance.dof.name(), 100.0 * share))
+    };
+    let shares: Vec<String> = tolerances.iter().filter_map(share).collect();
+    let text = format!(
+        "the single-axis limits end early in the error box ({} of its half width), so few of the sampled poses dock: [errors] of about \
+         four times the limits make the Sum more precise",
+        shares.join(", ")
+    );
+    (!shares.is_empty()).then_some(Warning::Note { text })
 }
 
 /// What the grid has left of a budget of time, of which random poses have their part in any case.
