@@ -45,10 +45,12 @@ PICTURES = {
         "compose designs/systems/hook.toml designs/systems/loop.toml --keep-out designs/systems/boat.toml,designs/systems/boat.toml "
         "--heading '-20..20 deg' -o PICTURE"
     ],
-    "first-dock-pair": ["place designs/meshes/socket.stl designs/meshes/plug.stl --unit mm -o my.toml --figure PICTURE"],
+    "first-dock-pair": [
+        "place designs/meshes/grid-baseplate.stl designs/meshes/grid-cup.stl --unit mm --free x,y,yaw -o my.toml --figure PICTURE"
+    ],
     "first-dock": [
-        "place designs/meshes/socket.stl designs/meshes/plug.stl --unit mm -o my.toml",
-        "run my.toml --free x,y,yaw -o out",
+        "place designs/meshes/grid-baseplate.stl designs/meshes/grid-cup.stl --unit mm --free x,y,yaw -o my.toml",
+        "run my.toml -o out",
         "out/overview",
     ],
     "flooding": [

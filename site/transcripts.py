@@ -21,8 +21,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "docs/first-dock.md", ROOT / "docs/budget-to-window.md", ROOT / "docs/source-and-findings.md"]
-PARTS = [ROOT / "designs/meshes/socket.stl", ROOT / "designs/meshes/plug.stl"]
-#: 300 000 motions.
+PARTS = [ROOT / "designs/meshes/grid-baseplate.stl", ROOT / "designs/meshes/grid-cup.stl"]
+#: Thousands of motions of meshes.
 LONG = ("window",)
 BLOCK = re.compile(r"^```console\n\$ (catchment [^\n]*)\n(.*?)^```$", re.M | re.S)
 

@@ -37,52 +37,59 @@ pub(super) fn designed(
 /// Ranges as shares of 1 D and 90 degrees.
 fn ranges(pair: &Pair, exec: &Exec) -> Result<[f64; 5], Cancelled> {
     let free = pair.alignment.free;
-    let sides: Vec<(Dof, f64)> = free.iter().flat_map(|dof| [(dof, -1.0), (dof, 1.0)]).collect();
+    let free: Vec<Dof> = free.iter().collect();
     let motions = descent::Settings::default();
-    let found = exec.each(sides.len(), usize::MAX, "errors", |k, exec| {
-        let (dof, sign) = sides[k];
-        let whole = if dof.is_rotation() { FRAC_PI_2 } else { 1.0 };
-        largest(|share| {
+    let found = exec.each(free.len(), usize::MAX, "errors", |k, exec| {
+        let whole = if free[k].is_rotation() { FRAC_PI_2 } else { 1.0 };
+        let mut follower = descent::Follower::new(pair, &motions);
+        let mut docks = |sign: f64, share: f64| {
             let mut error = [0.0; 5];
-            error[dof.index()] = 0.25 * sign * share * whole;
-            exec.is_cancelled()
-                || descent::outcome(pair, &PoseError::from_array(error), &motions).outcome == Outcome::Aligned
-        })
+            error[free[k].index()] = 0.25 * sign * share * whole;
+            exec.is_cancelled() || follower.follow(&PoseError::from_array(error)).outcome == Outcome::Aligned
+        };
+        let one = largest(STEPS, |share| docks(-1.0, share));
+        // As a rule the other side is no larger.
+        let is_larger = one > 0 && docks(1.0, share(one - 1));
+        share(if is_larger { largest(one - 1, |share| docks(1.0, share)) } else { one })
     });
     exec.check()?;
     let mut ranges = [1.0; 5];
-    for dof in free.iter() {
-        let of = sides.iter().zip(&found).filter(|((side, _), _)| *side == dof).map(|(_, share)| *share);
-        ranges[dof.index()] = of.fold(0.0, f64::max);
+    for (dof, range) in free.iter().zip(found) {
+        ranges[dof.index()] = range;
     }
     Ok(ranges)
 }
 
-/// The largest of 1, 2^(−1/2), 1/2 … 1/16 that is accepted, by bisection, to two digits; the last is not asked.
-fn largest(accepts: impl Fn(f64) -> bool) -> f64 {
-    const STEPS: u32 = 8;
-    let share = |k: u32| (100.0 * (-0.5 * f64::from(k)).exp2()).ceil() / 100.0;
-    let (mut few, mut many) = (0, STEPS);
+/// Ranges that are tried: 1, 2^(−1/2), 1/2 … 1/16, to two digits.
+const STEPS: u32 = 8;
+
+fn share(step: u32) -> f64 {
+    (100.0 * (-0.5 * f64::from(step)).exp2()).ceil() / 100.0
+}
+
+/// The first step whose share is accepted, by bisection; the last is not asked.
+fn largest(last: u32, mut accepts: impl FnMut(f64) -> bool) -> u32 {
+    let (mut few, mut many) = (0, last);
     while few < many {
         let middle = u32::midpoint(few, many);
         if accepts(share(middle)) { many = middle } else { few = middle + 1 }
     }
-    share(many)
+    many
 }
 
 #[cfg(test)]
 mod tests {
-    use super::largest;
+    use super::{STEPS, largest, share};
 
     #[test]
     fn a_range_is_three_to_four_times_the_tolerance() {
         for tolerance in [0.3, 0.25, 0.2, 0.1, 0.09, 0.05, 0.03] {
-            let range = largest(|share| 0.25 * share <= tolerance);
+            let range = share(largest(STEPS, |share| 0.25 * share <= tolerance));
             assert!(
                 range <= 4.0 * tolerance && (range == 1.0 || range > 2.6 * tolerance),
                 "{tolerance}: {range}"
             );
         }
-        assert_eq!(largest(|_| false), 0.07);
+        assert_eq!(share(largest(STEPS, |_| false)), 0.07);
     }
 }

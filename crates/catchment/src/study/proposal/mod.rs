@@ -272,17 +272,19 @@ pub fn propose(
             let why = if let Held::Refused(why) = &one.seat { why } else { flat };
             format!("{}{}: {why}", one.lie, one.place_among(&candidates, design_unit(settings)))
         };
-        // What is nearest to docking first.
+        // What is nearest to docking first, before all that is flat: what lacks nothing but play.
         refused.sort_by(|a, b| a.by.total_cmp(&b.by));
-        let refused = refused.into_iter().map(|refusal| refusal.why);
+        let (tight, refused): (Vec<Refusal>, Vec<Refusal>) =
+            refused.into_iter().partition(|refusal| refusal.by <= 0.0);
+        let [tight, refused] = [tight, refused].map(|list| list.into_iter().map(|refusal| refusal.why));
         let nowhere =
             faces.then_some("facing each other: nowhere along the axes does one sink into the other");
         let nowhere = nowhere.filter(|_| candidates.is_empty()).map(ToOwned::to_owned);
         let (why, advice) = why.or(flat).unzip();
         let taken = is_assembly.then_some(Advice::OwnFrames);
         let advice = advice.flatten().into_iter().chain(taken).collect();
-        let tried =
-            why.into_iter().chain(candidates.iter().map(slack)).chain(nowhere).chain(refused).collect();
+        let slack = candidates.iter().map(slack);
+        let tried = tight.chain(why).chain(slack).chain(nowhere).chain(refused).collect();
         let remedy = match cause::of_files(parts, both.halves, settings, unit) {
             Some(mistake) => Some(mistake),
             None if faces => remedy::of(&both, exec)?,
