@@ -135,7 +135,7 @@ function build() {
     const cards = [merits(page, units), windowCard(page, units, examine), jamsCard(page, units, examine), doubts(page)].filter((card) => card !== null);
     document.body.append(
         make("header", {}, make("div", {}, make("h1", {}, design.name), make("p", {}, summary(page, units))), make("div", { class: "tools" }, ...(page.served ? [again()] : []), help(), theme(repaint))),
-        make("main", {}, make("div", { class: "top" }, halves, set), make("div", { class: "cards" }, ...cards)),
+        make("main", {}, make("div", { class: "top" }, halves, ...(slices.length ? [set] : [])), make("div", { class: "cards" }, ...cards)),
         make("footer", {}, `catchment ${report.catchment}; works offline.`));
     keys({ player, sliders, section: section as HTMLSelectElement, mated: () => examine([0, 0, 0, 0, 0]) });
     // On paper everything is dark on white.

@@ -103,9 +103,9 @@ export function doubts({ report, notes }: Page): HTMLElement | null {
 /** What it is a result of. */
 export function summary(page: Page, units: Units): string {
     const { report } = page;
-    const cells = report.axes.map((axis) => axis.cells).join(" × ");
+    const cells = report.axes.length ? `${report.axes.map((axis) => axis.cells).join(" × ")} cells` : `${report.acceptance.cells} poses`;
     const width = report.design.unit ? `, D = ${tidy(report.design.width)} ${report.design.unit}` : "";
     const free = AXES.filter((axis) => report.design.alignment.free.includes(axis)).join(", ");
     const friction = page.friction ? `, friction ${tidy(page.friction)}` : "";
-    return `free: ${free} · ${report.method}, ${cells} cells${friction}${width} · centre of rotation ${units.size(report.design.alignment.center_of_rotation)} before the face`;
+    return `free: ${free} · ${report.method}, ${cells}${friction}${width} · centre of rotation ${units.size(report.design.alignment.center_of_rotation)} before the face`;
 }

@@ -171,7 +171,9 @@ fn metres_are_told_in_millimetres() {
     let home = two_parts(&scaled(&on_a_plate(&socket(10.2)), 1e-3), &scaled(&plug(10.0, [0.0, 20.0]), 1e-3));
     let told = run(home.path(), &["place", "fixed.obj", "moving.obj", "--unit=m", "-o", "d.toml"]);
     assert!(
-        told.starts_with("exit 0") && told.contains("6 mm play 0.") && told.contains(" mm to each side"),
+        told.starts_with("exit 0")
+            && told.contains("6 mm deep, play 0.")
+            && told.contains(" mm to each side"),
         "{told}"
     );
 }

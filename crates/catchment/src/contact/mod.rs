@@ -75,7 +75,7 @@ use std::sync::OnceLock;
 use turned::Turned;
 
 /// From this product of their numbers of facets on, halves have trees, and heights and motions ask them.
-const MANY: usize = 150 * 150;
+const MANY: usize = 300 * 300;
 /// From this one on grids ask the trees, too: below it a list of all that can carry, which serves all cells of a rotation, is as fast.
 const MOST_LISTED: usize = 3000 * 3000;
 

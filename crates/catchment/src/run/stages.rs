@@ -95,7 +95,8 @@ pub(super) fn finish(
             Ok::<_, RunError>(decided?.0.outcomes)
         })?;
         if let Domain::Poses(_) = &plan.domain {
-            acceptance.warnings.extend(small_part(&merits.tolerances, grid));
+            let small = small_part(&merits.tolerances, grid);
+            merits.warnings.extend(small);
         }
         if judge.is_descent() {
             let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
