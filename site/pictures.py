@@ -51,7 +51,7 @@ PICTURES = {
     "first-dock": [
         "place designs/meshes/grid-baseplate.stl designs/meshes/grid-cup.stl --unit mm --free x,y,yaw -o my.toml",
         "run my.toml -o out",
-        "out/overview",
+        "out/sampled",
     ],
     "flooding": [
         "run designs/v-face.toml --aspect-ratio 0.5 --cor=-0.5 --method meyer --resolution 100 --samples 0 -o out",

@@ -24,7 +24,7 @@ fn placed(more: &[&str]) -> tempfile::TempDir {
     home
 }
 
-/// With x, y and yaw free a grid answers, which sees what docks.
+/// With x, y and yaw free: the limits of x, and a Sum that is none of zero.
 #[test]
 fn a_grid_cup_docks_within_its_closed_form() {
     let home = placed(&["--free=x,y,yaw"]);
