@@ -233,7 +233,7 @@ fn told(found: &Proposal, moving: &Path) -> Vec<String> {
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
     let head = format!("width D {}, taken from the facets that can touch", shown_length(design.width, unit));
     let halves = format!(
-        "moving {}: pose errors and the centre of rotation are of this half; swap the files if the other one moves",
+        "moving {} (pose errors and the centre of rotation are those of this half; if the other half moves, swap the files)",
         shown(moving)
     );
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();

@@ -18,9 +18,9 @@ fn placed(more: &[&str]) -> tempfile::TempDir {
         fs::copy(designs().join("meshes").join(name), home.path().join(name)).unwrap();
     }
     let place = ["place", "grid-baseplate.stl", "grid-cup.stl", "--unit=mm", "-o", "d.toml"];
-    let told = run(home.path(), &[&place[..], more].concat());
-    assert!(told.starts_with("exit 0") && !told.contains("in doubt"), "{told}");
-    assert!(told.contains("docked as drawn, approach -z"), "{told}");
+    let printed = run(home.path(), &[&place[..], more].concat());
+    assert!(printed.starts_with("exit 0") && !printed.contains("in doubt"), "{printed}");
+    assert!(printed.contains("docked as drawn, approach -z"), "{printed}");
     home
 }
 
@@ -45,9 +45,9 @@ fn a_grid_cup_docks_within_its_closed_form() {
 #[test]
 fn a_grid_that_sees_nothing_is_not_taken() {
     let home = placed(&[]);
-    let told = run(home.path(), &["run", "d.toml", "--free=x,y,yaw", "--samples=400"]);
-    assert!(told.starts_with("exit 0"), "{told}");
-    assert!(told.contains("descent, 400 poses"), "{told}");
-    assert!(told.contains("end early in the error box"), "{told}");
-    assert!(!told.contains("mated pose itself"), "{told}");
+    let printed = run(home.path(), &["run", "d.toml", "--free=x,y,yaw", "--samples=400"]);
+    assert!(printed.starts_with("exit 0"), "{printed}");
+    assert!(printed.contains("descent, 400 poses"), "{printed}");
+    assert!(printed.contains("end early in the error box"), "{printed}");
+    assert!(!printed.contains("mated pose itself"), "{printed}");
 }

@@ -1,4 +1,5 @@
-//! What a run will do, known before anything is computed.
+//! What a run will do, known before poses are decided. Where nothing says which poses, two motions per error at most tell whether the default grid
+//! resolves the accepted set.
 
 use super::{Over, Run, RunError, Sample, jams, window};
 use crate::acceptance::{Domain, Outcome};
@@ -29,7 +30,7 @@ pub(super) const GRID_PART: u32 = 2;
 
 /// Fewest cells per axis of a grid that nobody asked for: of an error box that is four times the tolerance wide two of eight are accepted.
 const LEAST_CELLS: usize = 8;
-/// So many cells the accepted set spans to some side of the mated pose along every axis of such a grid: cells beside it are not all there is.
+/// The accepted set spans at least so many cells of such a grid on one side of the mated pose, along every axis: else the grid shows next to nothing of it.
 const SPANNED: f64 = 1.5;
 
 /// Core-seconds that random poses may take in the place of such a grid, and the least and the most of them.
