@@ -25,6 +25,8 @@ pub(super) struct Bounds<T> {
     center: [T; 3],
     /// Half of the size of the box.
     half: [T; 3],
+    /// The same along the axes of its own half.
+    own: [T; 3],
     /// Largest distance from the centre.
     radius: T,
     /// Mean normal of the features, unit, or 0 where they cancel.
@@ -57,6 +59,7 @@ impl<T: Copy> Bounds<T> {
         Bounds {
             center: three(&self.center),
             half: three(&self.half),
+            own: three(&self.own),
             radius: to(&self.radius),
             normal: three(&self.normal),
             ahead: to(&self.ahead),
@@ -78,9 +81,11 @@ impl One {
     ) -> Self {
         let center = (low + high) / 2.0;
         let single = |v: DVec3| v.as_vec3().to_array();
+        let half = single((high - low) / 2.0);
         Self {
             center: single(center),
-            half: single((high - low) / 2.0),
+            half,
+            own: half,
             radius: radius as f32,
             normal: single(normal),
             ahead: (level - normal.dot(center)) as f32,
@@ -94,6 +99,7 @@ impl One {
     pub(super) const NONE: Self = Self {
         center: [0.0; 3],
         half: [-FAR; 3],
+        own: [-FAR; 3],
         radius: -FAR,
         normal: [0.0; 3],
         ahead: 0.0,
@@ -115,6 +121,7 @@ impl Four {
         Self {
             center: three(|part| part.center),
             half: three(|part| part.half),
+            own: three(|part| part.own),
             radius: one(|part| part.radius),
             normal: three(|part| part.normal),
             ahead: one(|part| part.ahead),
@@ -192,19 +199,30 @@ impl Four {
     }
 
     /// Whether gaps between anything of the two parts may be between −`deep` and `front`, the latter no more than the former, where features count
-    /// with a slack. What overlaps along a normal of a part's cone does not lie in front of its plane.
+    /// with a slack. What overlaps along a normal of a part's cone does not lie in front of its plane. Boxes are looked at along the axes of both halves:
+    /// long walls of a turned half are thin along its own.
     #[inline]
     pub(super) fn is_near(
         &self,
         moving: &Self,
         [front, deep]: [f32; 2],
         slack: Option<usize>,
-        rounding: f32,
+        (placed, rounding): (&Placed, f32),
     ) -> f32x4 {
         let apart = [0, 1, 2].map(|k| moving.center[k] - self.center[k]);
         let wide = f32x4::splat(deep + 2.0 * rounding);
         let meets = |k: usize| apart[k].abs().simd_le(self.half[k] + moving.half[k] + wide);
         let meets = meets(0) & meets(1) & meets(2);
+        if meets.to_bitmask() == 0 {
+            return meets;
+        }
+        let meets_turned = |k: usize| {
+            let [axis, size] = [placed.axes[k], placed.sizes[k]];
+            let along = apart[0] * axis[0] + apart[1] * axis[1] + apart[2] * axis[2];
+            let half = self.half[0] * size[0] + self.half[1] * size[1] + self.half[2] * size[2];
+            along.abs().simd_le(moving.own[k] + half + wide)
+        };
+        let meets = meets & meets_turned(0) & meets_turned(1) & meets_turned(2);
         if meets.to_bitmask() == 0 {
             return meets;
         }
@@ -251,13 +269,23 @@ pub(super) struct Placed {
     rotation: [[f32; 3]; 3],
     grows: [[f32; 3]; 3],
     position: [f32; 3],
+    /// The axes of the moving half in the world, and the same without signs.
+    axes: [[f32; 3]; 3],
+    sizes: [[f32; 3]; 3],
 }
 
 impl Placed {
     pub(super) fn new(rotation: &DMat3, position: DVec3) -> Self {
-        let rotation = [0, 1, 2].map(|k| rotation.row(k).as_vec3().to_array());
-        let grows = rotation.map(|row| row.map(f32::abs));
-        Self { rotation, grows, position: position.as_vec3().to_array() }
+        let rows = [0, 1, 2].map(|k| rotation.row(k).as_vec3().to_array());
+        let axes = [0, 1, 2].map(|k| rotation.col(k).as_vec3().to_array());
+        let unsigned = |vectors: [[f32; 3]; 3]| vectors.map(|v| v.map(f32::abs));
+        Self {
+            rotation: rows,
+            grows: unsigned(rows),
+            position: position.as_vec3().to_array(),
+            axes,
+            sizes: unsigned(axes),
+        }
     }
 
     /// Parts of the moving half in the world.

@@ -74,14 +74,21 @@ use shape::Shape;
 use std::sync::OnceLock;
 use turned::Turned;
 
-/// From this product of their numbers of facets on, halves have trees, and heights and motions ask them.
+/// From this product of their numbers of facets on, halves have trees, and heights and motions ask them: pins in holes that fit tightly move 1.6 times as
+/// fast with trees at 150 × 150 facets, 2.5 times at 300 × 300, and 0.8 times at 20 × 20.
 const MANY: usize = 300 * 300;
+const MANY_WHERE_TIGHT: usize = 100 * 100;
 /// From this one on grids ask the trees, too: below it a list of all that can carry, which serves all cells of a rotation, is as fast.
 const MOST_LISTED: usize = 3000 * 3000;
 
 /// Facets of a half.
 fn facets(half: &Half) -> usize {
     half.surfaces.iter().map(|surface| surface.facets.len()).sum()
+}
+
+/// Whether halves with this product of their numbers of facets have trees.
+const fn has_trees(count: usize, is_tight: bool) -> bool {
+    count >= if is_tight { MANY_WHERE_TIGHT } else { MANY }
 }
 
 /// A connector whose moving half is given from the COR: ready for heights.
@@ -95,7 +102,7 @@ pub struct Pair {
     pub alignment: Alignment,
     fixed_shapes: Vec<Shape>,
     moving_shapes: Vec<Shape>,
-    /// Of halves of [`MANY`] facets.
+    /// Of halves of [`MANY`] facets, or [`MANY_WHERE_TIGHT`].
     trees: Option<Trees>,
     /// Whether all that can carry at a rotation is listed for a grid.
     lists: bool,
@@ -121,9 +128,9 @@ impl Pair {
         let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
         let count = facets(&fixed) * facets(&moving);
         let lists = count < MOST_LISTED;
-        let trees = (count >= MANY).then(|| Trees::over(&fixed_shapes, &moving_shapes));
         let mirrors = mirror::of(&fixed, &moving);
         let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
+        let trees = has_trees(count, tight).then(|| Trees::over(&fixed_shapes, &moving_shapes));
         let (alignment, mated_height, homing) = (alignment.clone(), f64::NEG_INFINITY, OnceLock::new());
         let mut pair = Self {
             fixed,
@@ -152,6 +159,11 @@ impl Pair {
         let mut pair = self.clone();
         pair.alignment.free = free;
         pair.tight = walls::are_close(&pair.fixed_shapes, &pair.moving_shapes, &pair.alignment);
+        if !has_trees(facets(&pair.fixed) * facets(&pair.moving), pair.tight) {
+            pair.trees = None;
+        } else if pair.trees.is_none() {
+            pair.trees = Some(Trees::over(&pair.fixed_shapes, &pair.moving_shapes));
+        }
         if free != self.alignment.free {
             pair.homing = OnceLock::new();
             pair.spins = OnceLock::new();

@@ -23,7 +23,7 @@ pub fn affordable(pair: &Pair) -> f64 {
     let facets = (facets(&pair.fixed) + facets(&pair.moving)) as f64;
     let listed = (SIMPLE / facets.max(SIMPLE)).powi(3);
     let tilts = [Dof::Roll, Dof::Pitch].into_iter().any(|dof| pair.alignment.free.contains(dof));
-    if pair.asks_trees() { listed.max(by_trees(facets, tilts)) } else { listed }
+    if pair.asks_trees() { listed.max(by_trees(facets, tilts, pair.is_tight())) } else { listed }
 }
 
 /// Seconds that a motion takes about, on one core.
@@ -42,17 +42,17 @@ pub(super) fn affordable_cells(pair: &Pair, simple: [usize; 5], poses: usize) ->
     })
 }
 
-/// The same of halves that are searched by trees, by the number of their facets and whether motions tilt.
-fn by_trees(facets: f64, tilts: bool) -> f64 {
-    /// Seconds of a descent of so many facets that does not tilt, and with which power of their number they grow: grid cups of 300 and 4 000 facets, funnels
-    /// of 1 400 and 15 000, within a factor of two.
-    const SECONDS: f64 = 7e-4;
+/// The same of halves that are searched by trees, by the number of their facets, whether motions tilt and whether the fit is tight: seconds of a motion of
+/// halves of 600 facets, and the power of their number with which they grow. Grid cups of 600 and 7 000 facets, funnels of 1 000 to 100 000, a gear of
+/// 50 000, within a factor of two and a half.
+fn by_trees(facets: f64, tilts: bool, is_tight: bool) -> f64 {
     const MEASURED: f64 = 600.0;
-    const POWER: f64 = 0.7;
-    /// Where it tilts, other features come near at every step.
-    const TILTED: f64 = 14.0;
-    let factor = if tilts { TILTED } else { 1.0 };
-    (DESCENT_SECONDS / (factor * SECONDS) * (MEASURED / facets).powf(POWER)).min(1.0)
+    let (seconds, power) = match (tilts, is_tight) {
+        (true, true) => (8e-3, 0.5),
+        (true, false) => (3e-4, 0.8),
+        (false, _) => (1.5e-4, 0.9),
+    };
+    (DESCENT_SECONDS / seconds * (MEASURED / facets).powf(power)).min(1.0)
 }
 
 /// Refuses what would not fit into memory, with the resolution that would.
@@ -84,20 +84,23 @@ mod tests {
             let connector = Connector::of_family(&spec, Mount::X).unwrap();
             affordable(&Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X)))
         };
-        // Hundreds of facets take milliseconds: by the cube of their number it would be a tenth of a second and more.
+        // Hundreds of facets take a millisecond: by the cube of their number it would be a tenth of a second and more.
         let (coarse, fine) = (share(1e-2), share(1e-5));
         assert!(coarse > fine, "{coarse} {fine}");
         let milliseconds = |share: f64| 1e3 * DESCENT_SECONDS / share;
-        assert!((2.0..20.0).contains(&milliseconds(fine)), "{}", milliseconds(fine));
+        assert!((0.2..5.0).contains(&milliseconds(fine)), "{}", milliseconds(fine));
     }
 
     #[test]
     fn the_time_of_a_descent_is_the_measured_one() {
-        let milliseconds = |facets: f64, tilts: bool| 1e3 * DESCENT_SECONDS / by_trees(facets, tilts);
-        assert!((milliseconds(600.0, false) - 0.7).abs() < 1e-9);
-        assert!((milliseconds(600.0, true) - 9.8).abs() < 1e-9);
-        // Ten times as many facets take 10^0.7 times as long.
-        assert!((milliseconds(6000.0, false) / milliseconds(600.0, false) - 5.01).abs() < 0.01);
-        assert_eq!(by_trees(1.0, false), 1.0);
+        let milliseconds = |facets: f64, tilts: bool, is_tight: bool| {
+            1e3 * DESCENT_SECONDS / by_trees(facets, tilts, is_tight)
+        };
+        assert!((milliseconds(600.0, false, true) - 0.15).abs() < 1e-9);
+        assert!((milliseconds(600.0, true, false) - 0.3).abs() < 1e-9);
+        assert!((milliseconds(600.0, true, true) - 8.0).abs() < 1e-9);
+        // A hundred times as many facets take ten times as long.
+        assert!((milliseconds(60_000.0, true, true) - 80.0).abs() < 1e-9);
+        assert_eq!(by_trees(1.0, false, false), 1.0);
     }
 }

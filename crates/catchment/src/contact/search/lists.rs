@@ -15,6 +15,8 @@
 //!
 //! A wider list serves for longer and takes longer to make, so it is rented before it is bought (ski rental: at most about twice the least cost). Lists
 //! are made from the trees, and for some places it is kept what a wider list there would have saved. A wider list is made once that exceeds its price.
+//! Where the last list answered one question only, the next is answered by the trees, and a list is made where a second one is asked.
+//!
 //! Prices are counts of pairs looked at, of parts in the trees and of features in lists, which take about as long each.
 //!
 //! The answers are those of the trees: every pair whose contact lies on both features, with the same numbers. Where a list would hold more than
@@ -25,7 +27,7 @@ use crate::contact::candidates::{Candidate, Counts, Sieve, edges_may_touch};
 use crate::contact::nearby::chord;
 use crate::contact::overlap::Frames;
 use crate::contact::shape::Shape;
-use crate::contact::tree::{Child, Kind, Leaf, SLACKS};
+use crate::contact::tree::{Child, Kind, Leaf};
 use glam::{DMat3, DVec3};
 
 /// Pairs of a list, at most.
@@ -72,7 +74,6 @@ impl Ball {
     /// About a pose, for a level of this reach.
     fn about(turned: &Turned<'_>, reach: f64) -> Self {
         let Turned { rotation, position, counts, .. } = *turned;
-        let counts = Counts { slack: counts.slack.max(SLACKS[1]), ..counts };
         Self { rotation, position, counts, skin: TURNED * reach / turned.trees.radius, reach }
     }
 
@@ -92,6 +93,8 @@ impl Ball {
 #[derive(Debug, Clone)]
 struct List<T> {
     ball: Ball,
+    /// Whether it has answered a second question.
+    is_worth_it: bool,
     pairs: Vec<(f64, T)>,
 }
 
@@ -100,6 +103,8 @@ struct List<T> {
 struct Level<T> {
     /// The one that was asked last at the end.
     lists: Vec<List<T>>,
+    /// About which pose something was asked last without a list.
+    unlisted: Option<Ball>,
     /// Where a list would have saved so much; the one that was asked last at the end.
     rented: Vec<(Ball, u64)>,
     /// The cost of the last list, of the last one from the trees, and of the last one from a wider list.
@@ -120,6 +125,7 @@ impl<P: Pairs> Default for Lists<P> {
     fn default() -> Self {
         let level = |_: &f64| Level {
             lists: Vec::new(),
+            unlisted: None,
             rented: Vec::new(),
             price: None,
             from_trees: None,
@@ -137,6 +143,21 @@ impl<T> Level<T> {
             lists.into_iter().find_map(|(k, list)| Some((k, list.ball.moved(turned, reach, skin)?)))?;
         self.lists[k..].rotate_left(1);
         Some(moved)
+    }
+
+    /// Whether a list should answer a question: one that is there, or one that is likely to answer another as well, as the last one did.
+    fn is_worth_it(&mut self, turned: &Turned<'_>, own: f64, reach: f64) -> bool {
+        let holds = |ball: &Ball| ball.moved(turned, reach, 0.0).is_some();
+        if let Some(list) = self.lists.iter_mut().rev().find(|list| holds(&list.ball)) {
+            list.is_worth_it = true;
+            return true;
+        }
+        let last = self.lists.last().is_none_or(|list| list.is_worth_it);
+        if last || self.unlisted.as_ref().is_some_and(holds) {
+            return true;
+        }
+        self.unlisted = Some(Ball::about(turned, own));
+        false
     }
 
     /// The pairs of the last list that may be within `reach` of each other.
@@ -165,6 +186,9 @@ impl<P: Pairs> Lists<P> {
     fn within(&mut self, turned: &Turned<'_>, reach: f64, see: impl FnMut(&P::Two) -> bool) -> bool {
         let fits = |level: &usize| reach <= 0.5 * P::REACHES[*level];
         let Some(level) = (self.widest..P::REACHES.len()).rev().find(fits) else { return false };
+        if !self.levels[level].is_worth_it(turned, P::REACHES[level], reach) {
+            return false;
+        }
         let Some(moved) = self.prepare(turned, level, reach, 0.0) else { return false };
         let mut pairs = self.levels[level].last_within(moved, reach).iter().map(|(_, two)| two);
         pairs.any(see);
@@ -219,7 +243,9 @@ impl<P: Pairs> Lists<P> {
         self.levels[level].price = Some(price);
         pairs.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
         let moved = ball.moved(turned, reach, skin);
-        self.levels[level].lists.push(List { ball, pairs });
+        let is_worth_it =
+            self.levels[level].unlisted.take().is_some_and(|one| one.moved(turned, reach, skin).is_some());
+        self.levels[level].lists.push(List { ball, is_worth_it, pairs });
         moved
     }
 

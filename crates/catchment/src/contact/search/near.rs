@@ -63,7 +63,7 @@ impl Close<'_> {
         let turned = *turned;
         let reach = [gaps.front as f32, gaps.deep as f32];
         let test = |f: &Four, m: &Four| {
-            let near = f.is_near(m, reach, turned.cones, turned.rounding);
+            let near = f.is_near(m, reach, turned.cones, (&turned.placed, turned.rounding));
             (near.to_bitmask(), [0.0; 4], [0.0; 4])
         };
         turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
@@ -96,7 +96,7 @@ impl<P: Pairs, F: FnMut(&P::Two) -> bool> Around<'_, P, F> {
         }
         let reach = [self.reach; 2];
         let test = |f: &Four, m: &Four| {
-            (f.is_near(m, reach, None, turned.rounding).to_bitmask(), [0.0; 4], [0.0; 4])
+            (f.is_near(m, reach, None, (&turned.placed, turned.rounding)).to_bitmask(), [0.0; 4], [0.0; 4])
         };
         turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));
     }

@@ -29,7 +29,7 @@ impl<F: Fn(&Leaf, &Leaf) -> bool> Any<'_, F> {
             return;
         }
         let test = |f: &Four, m: &Four| {
-            let near = f.is_near(m, [MARGIN as f32; 2], None, turned.rounding);
+            let near = f.is_near(m, [MARGIN as f32; 2], None, (&turned.placed, turned.rounding));
             (near.to_bitmask(), [0.0; 4], [0.0; 4])
         };
         turned.divide(fixed, moving, test, |fixed, moving, _| self.descend(fixed, moving));

@@ -179,6 +179,55 @@ fn a_stop_is_obeyed() {
     assert_eq!(run(&pair, domain, &Settings::default(), &exec).err(), Some(Cancelled));
 }
 
+/// Pins in holes that fit tightly, followed by trees: lengths of a step that overlap, tried before an overlap was seen, count as clear no more. These poses of
+/// 310 jammed.
+#[test]
+fn pins_by_trees_do_not_jam_on_a_length_that_seemed_clear() {
+    let pair = pair(Family::PinHole, |_| ());
+    assert!(pair.is_tight() && pair.asks_trees());
+    let settings = Settings::default();
+    let mut follower = Follower::new(&pair, &settings);
+    for error in [
+        [
+            0.0439213884081331,
+            -0.00644289101759219,
+            0.015845856933659853,
+            0.0611522530357695,
+            -0.028595614480528386,
+        ],
+        [
+            -0.03460785646661364,
+            -0.0415485319520536,
+            -0.01602384413709226,
+            -0.06325622746883297,
+            0.0036932609335696754,
+        ],
+        [
+            -0.04105939014009483,
+            -0.020066364928582537,
+            -0.08049035304386143,
+            -0.06589186533082043,
+            0.000284569176817584,
+        ],
+        [
+            0.04472135224522901,
+            0.019006102165110696,
+            -0.0061912316851796545,
+            -0.07353382423072477,
+            0.05325624784224612,
+        ],
+        [
+            0.02143827399367766,
+            0.02717796498643652,
+            -0.05667132761100418,
+            -0.09100741391250494,
+            -0.004361367979551156,
+        ],
+    ] {
+        assert_eq!(follower.follow(&PoseError::from_array(error)).outcome, Outcome::Aligned, "{error:?}");
+    }
+}
+
 /// Lips and pins have vertical walls; a motion must be followed past them to its end.
 #[test]
 fn walls_are_followed_to_the_end() {

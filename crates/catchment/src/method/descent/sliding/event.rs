@@ -18,6 +18,8 @@ use crate::contact::{Contact, Meeting, chord};
 
 /// Most trials of a step: bisection alone takes some 35 to [`NOWHERE`].
 const MOST_TRIALS: usize = 60;
+/// Trials of an event alone between two at which everything is looked at: of events that jump more are in vain.
+const NARROWINGS: usize = 8;
 /// A step shorter than this leads nowhere, in D.
 const NOWHERE: f64 = 1e-12;
 /// A correction may move a body by this share of its step, and by this much in D, before it is not trusted.
@@ -49,8 +51,10 @@ enum Trial {
     Clear(State),
     /// A contact overlaps, or one that carries is lost.
     Passed(State, Event),
-    /// The contacts that carry cannot be kept, or the halves overlap and no contact says so.
+    /// The contacts that carry cannot be kept.
     Failed,
+    /// The halves overlap, and no contact in reach explains it.
+    Overlaps,
 }
 
 /// What may happen to two features.
@@ -71,6 +75,7 @@ struct Event {
 }
 
 /// An event between a clear length and one that passes it, with the values there for false position.
+#[derive(Clone, Copy)]
 struct Bracket {
     event: Event,
     clear: f64,
@@ -108,6 +113,14 @@ impl Bracket {
             0.5
         }
     }
+
+    /// Whether a step that ends where the event's function has this value ends on the event.
+    fn lands(&self, value: f64) -> bool {
+        match self.event.kind {
+            Kind::Met => value.abs() <= LANDING,
+            Kind::Lost => (-0.5 * FAR_SIDE..0.5 * FAR_SIDE).contains(&value),
+        }
+    }
 }
 
 impl Motion<'_> {
@@ -116,19 +129,19 @@ impl Motion<'_> {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
         let mut bracket: Option<Bracket> = None;
-        // Overlaps that no contact announces are looked for where the step would end, and once one was found, at every trial.
+        // Whether the halves overlap is asked where the step would end, and once they did, at every length.
         let mut wary = false;
         for _ in 0..MOST_TRIALS {
             let trial = self.attempt(state, start, at, wary);
             let ends = match &trial {
                 Trial::Clear(next) => match &bracket {
-                    Some(b) => b.event.kind == Kind::Met && self.value(&b.event, next).abs() <= LANDING,
+                    Some(b) => b.event.kind == Kind::Met && b.lands(self.value(&b.event, next)),
                     None => at >= high,
                 },
                 Trial::Passed(next, event) => {
                     event.kind == Kind::Lost && self.value(event, next) >= -0.5 * FAR_SIDE
                 }
-                Trial::Failed => false,
+                Trial::Failed | Trial::Overlaps => false,
             };
             match trial {
                 Trial::Clear(next) | Trial::Passed(next, _) if ends => {
@@ -157,7 +170,11 @@ impl Motion<'_> {
                         }
                     }
                 }
-                Trial::Failed => {
+                Trial::Overlaps if !wary => {
+                    // A length that seemed clear may overlap, too.
+                    (low, clear, high, bracket, wary) = (0.0, *state, at, None, true);
+                }
+                Trial::Failed | Trial::Overlaps => {
                     high = at;
                     bracket = None;
                 }
@@ -165,7 +182,10 @@ impl Motion<'_> {
             if high - low < NOWHERE {
                 break;
             }
-            at = low + bracket.as_ref().map_or(0.5, Bracket::share) * (high - low);
+            at = match &bracket {
+                Some(bracket) => self.narrowed(state, start, [low, high], *bracket),
+                None => low + 0.5 * (high - low),
+            };
         }
         if low > NOWHERE && (wary || !self.overlaps(&clear)) {
             return Reached::At(clear, low);
@@ -176,6 +196,34 @@ impl Motion<'_> {
                 (contact.gap.abs() <= CLOSE).then_some((contact, event.meeting))
             },
         ))
+    }
+
+    /// The length between a clear one and one that passes an event at which a step ends on it, whatever else may happen there: by false position, and
+    /// without a look at other features.
+    fn narrowed(
+        &mut self,
+        state: &State,
+        start: &Vector,
+        [mut low, mut high]: [f64; 2],
+        mut bracket: Bracket,
+    ) -> f64 {
+        let mut at = low + bracket.share() * (high - low);
+        for _ in 0..NARROWINGS {
+            let Some(next) = self.step_of(state, start, at) else { break };
+            let value = self.value(&bracket.event, &next);
+            if bracket.lands(value) || high - low < NOWHERE {
+                break;
+            }
+            if value < 0.0 {
+                high = at;
+                bracket.passed_at(value);
+            } else {
+                low = at;
+                bracket.clear_at(value);
+            }
+            at = low + bracket.share() * (high - low);
+        }
+        at
     }
 
     /// Value of an event's function at `state`: 0 within half of its tolerance.
@@ -195,18 +243,25 @@ impl Motion<'_> {
 
     /// A step of length `at`, and what comes of it; overlaps that no contact announces are seen only if `wary`.
     fn attempt(&mut self, state: &State, start: &Vector, at: f64, wary: bool) -> Trial {
+        let Some(next) = self.step_of(state, start, at) else { return Trial::Failed };
+        let carrying = std::mem::take(&mut self.sliding.carrying);
+        let trial = self.judge(state, next, at, &carrying, wary);
+        self.sliding.carrying = carrying;
+        trial
+    }
+
+    /// Where a step of length `at` ends, with the contacts that carry kept, as far as they can be.
+    fn step_of(&mut self, state: &State, start: &Vector, at: f64) -> Option<State> {
         let middle = self.moved(state, &start.map(|x| 0.5 * at * x));
         let u = self.direction(&middle).unwrap_or(*start);
         let next = self.moved(state, &u.map(|x| at * x));
         let trusted = TRUSTED_SHARE * at + TRUSTED;
         let carrying = std::mem::take(&mut self.sliding.carrying);
-        let trial = self
-            .corrected(&next, &carrying, trusted)
-            // Contacts that hold a body fast cannot all be kept; that none overlaps is enough.
-            .or_else(|| self.corrected(&next, &[], trusted))
-            .map_or(Trial::Failed, |next| self.judge(state, next, at, &carrying, wary));
+        // Contacts that hold a body fast cannot all be kept; that none overlaps is enough.
+        let corrected =
+            self.corrected(&next, &carrying, trusted).or_else(|| self.corrected(&next, &[], trusted));
         self.sliding.carrying = carrying;
-        trial
+        corrected
     }
 
     /// What comes of a step of length `at` from `state` that ends at `next`.
@@ -227,7 +282,7 @@ impl Motion<'_> {
         });
         match holds.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(hold, _)| *hold < 0.0) {
             Some((hold, event)) if hold < -FAR_SIDE => Trial::Passed(next, event),
-            _ if wary && self.overlaps(&next) => Trial::Failed,
+            _ if wary && self.overlaps(&next) => Trial::Overlaps,
             Some((_, event)) => Trial::Passed(next, event),
             None => Trial::Clear(next),
         }

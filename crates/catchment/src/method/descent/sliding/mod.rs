@@ -52,6 +52,10 @@ const STILL: f64 = 1e-7;
 const BEND: f64 = 0.05;
 /// Steps are not halved below this share for the sake of the direction: edges that are nearly parallel turn at any scale.
 const LEAST_SHARE: f64 = 1e-6;
+/// After an event a step is tried as many times as long as the last one, but no shorter than this share of the longest: where a step is tried, everything
+/// that is near there is looked at.
+const FURTHER: f64 = 4.0;
+const LEAST_TRY: f64 = 0.25;
 /// How far beyond the border a lost contact is left at most, in D or as a sine: below what a landing tells apart.
 const FAR_SIDE: f64 = 1e-9;
 /// What was met at the very start of a step is one more contact, at most so often: the corners of two faces.
@@ -122,7 +126,9 @@ impl Motion<'_> {
             let step = self.straight(&state, &start, pace.step.min(self.settings.step));
             match self.until_event(&state, &start, step) {
                 Reached::At(next, length) => {
-                    pace.step = 2.0 * step;
+                    let least = self.settings.step * LEAST_TRY;
+                    let further = if length < step { (FURTHER * length).max(least) } else { f64::INFINITY };
+                    pace.step = further.min(2.0 * step);
                     self.crawl(length);
                     return Advance::Moved(next, length * lateral(&start));
                 }
