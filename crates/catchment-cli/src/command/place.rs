@@ -52,7 +52,7 @@ pub(crate) struct PlaceArgs {
     /// In which frames the parts are drawn
     #[arg(long, value_enum, default_value_t = Drawn::Auto, help_heading = "Instead of what is found")]
     drawn: Drawn,
-    /// The direction in which the moving half comes, of parts drawn docked: +x, -x, +y, -y, +z or -z
+    /// The direction in which the moving half comes, of parts drawn docked: +x, -x, +y, -y, +z or -z, or half way between two, such as +y+z
     #[arg(long, value_name = "WAY", allow_hyphen_values = true, help_heading = "Instead of what is found")]
     approach: Option<Way>,
     /// Where the fixed half faces in its file

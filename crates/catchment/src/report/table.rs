@@ -166,7 +166,7 @@ pub(super) fn sum(a: &AcceptanceReport) -> String {
 }
 
 /// The upper end of an interval that is wider than twice the Sum.
-fn upper_end(a: &AcceptanceReport) -> Option<f64> {
+pub(super) fn upper_end(a: &AcceptanceReport) -> Option<f64> {
     a.sum_ci95.and_then(|[lo, hi]| (hi - lo > 2.0 * a.sum).then_some(hi))
 }
 

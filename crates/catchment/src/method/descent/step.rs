@@ -43,6 +43,8 @@ const HARD: f64 = 16.0;
 const SETTLED: f64 = 1e-3;
 /// A displacement below this share of the step, at the largest reach, is rest: a slope below 10⁻¹⁰.
 const REST: f64 = 1e-3;
+/// A half rests if it does within steps of this share of the longest: within longer ones planes of facets hold it that lie beside it.
+const RESTING_SHARE: f64 = 1.0 / 16.0;
 /// Steps are halved down to this share of the chosen one.
 const SMALLEST_SHARE: f64 = 1.0 / 4096.0;
 /// Steps that fall off an edge are halved down to this share: where exactly it falls matters little.
@@ -84,14 +86,12 @@ impl Motion<'_> {
         let mut cuts = 0;
         let mut bend = 0.0;
         loop {
-            if length <= REST * pace.step && pace.reach >= pace.most {
+            let rests = length <= REST * pace.step && pace.reach >= pace.most;
+            if rests && pace.step <= longest * RESTING_SHARE || self.is_too_gentle(&u, length) {
                 return Advance::Ended(Outcome::Jammed, *state);
             }
-            if self.is_too_gentle(&u, length) {
-                return Advance::Ended(Outcome::Jammed, *state);
-            }
-            let mut halve = false;
-            if fresh {
+            let mut halve = rests;
+            if fresh && !rests {
                 let before = u;
                 self.look_ahead(state, &u);
                 (u, length) = self.displacement(pace);
@@ -173,7 +173,7 @@ impl Motion<'_> {
                     return Advance::Moved(landed, length);
                 }
             }
-            pace.step *= 0.5;
+            pace.step = if rests { longest * RESTING_SHARE } else { 0.5 * pace.step };
             self.turn(&state.rotation, state.cor.truncate(), pace.step);
             self.gather(state, pace.step);
             (u, length) = self.displacement(pace);

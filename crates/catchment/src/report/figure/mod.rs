@@ -163,10 +163,16 @@ impl Picture {
 /// The numbers of a run in a line: `Sum 12.587 ± 0.023 D²·rad³  ·  16.32 % of the error box  ·  ONAA edge 0.3100  ·
 /// by transport`.
 fn headline(report: &Report) -> String {
-    let (sum, share) = (table::sum(&report.acceptance), percent(report.acceptance.fraction));
+    let found = &report.acceptance;
+    let sum = table::sum(found);
+    let share = if table::upper_end(found).is_some() {
+        String::new()
+    } else {
+        format!("  ·  {} of the error box", percent(found.fraction))
+    };
     let onaa =
         report.onaa.as_ref().map_or_else(String::new, |onaa| format!("  ·  ONAA edge {:.4}", onaa.edge));
-    format!("Sum {sum}  ·  {share} of the error box{onaa}  ·  by {}", report.method)
+    format!("Sum {sum}{share}{onaa}  ·  by {}", report.method)
 }
 
 /// Where the largest cube of a run lies; nowhere if there is none.

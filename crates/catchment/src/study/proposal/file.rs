@@ -138,7 +138,7 @@ pub(super) fn text(
         line(
             "# Where the moving half comes from: along this direction they hold each other, and nothing is in the way.",
         );
-        line(&format!("approach = \"{approach}\""));
+        line(&format!("approach = {}", approach.written()));
     }
     if seat.settle.is_some() {
         line("# As drawn they do not hold; let go they come to rest near, which is taken as mated.");
@@ -152,7 +152,7 @@ pub(super) fn text(
         }
         if let Lie::Facing { fixed, moving, turned } = judged.lie {
             line("# Where it faces in its file, which is turned to +z.");
-            line(&format!("facing = \"{}\"", [fixed, moving][k]));
+            line(&format!("facing = {}", [fixed, moving][k].written()));
             if k == 1 && turned > 0 {
                 line("# Then a turn about the approach, which brings the features together.");
                 line(&format!("rotate = [0, 0, \"{} deg\"]", u32::from(turned) * 90));

@@ -16,8 +16,8 @@
 //! D is the larger lateral extent of the facets that can touch (`contact::width`). The centre of rotation is put into the face
 //! centre, which no geometry says better. The design is read back and checked as any other before it is given.
 //!
-//! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes, need
-//! a word. A proposal with a runner-up of 0.4 of its steepness, or a weak one, is "in doubt" and says so.
+//! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes which is not 45 degrees,
+//! need a word. A proposal with a runner-up of 0.4 of its steepness, or a weak one, is "in doubt" and says so.
 
 mod candidate;
 mod cause;
@@ -47,6 +47,7 @@ use candidate::{candidate, shown_unit};
 use glam::{DMat3, DVec2};
 use halves::design_unit;
 use judge::{Judged, Refusal, judge};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// In which frames the parts are drawn.
@@ -284,6 +285,11 @@ pub fn propose(
         let taken = is_assembly.then_some(Advice::OwnFrames);
         let advice = advice.flatten().into_iter().chain(taken).collect();
         let slack = candidates.iter().map(slack);
+        // Of a cube every facing has no play: once is enough.
+        let mut said = HashSet::new();
+        let reason =
+            |why: &String| why.split_once(": ").map_or_else(|| why.clone(), |(_, reason)| reason.to_owned());
+        let tight = tight.filter(|why| said.insert(reason(why)));
         let tried = tight.chain(why).chain(slack).chain(nowhere).chain(refused).collect();
         let remedy = match cause::of_files(parts, both.halves, settings, unit) {
             Some(mistake) => Some(mistake),
@@ -309,9 +315,17 @@ pub fn propose(
 /// Parts that are drawn docked: what a lattice says of each approach; of those that hold, or that are asked for, what exact contact says.
 fn docked(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<Vec<(Way, sink::Drawn)>, Cancelled> {
     let ways = ways(both.settings.approach);
-    let looks = exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
-        (ways[k], sink::drawn(both.lattices(), ways[k], false, both.grain))
-    });
+    let look = |ways: &[Way]| {
+        exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
+            (ways[k], sink::drawn(both.lattices(), ways[k], false, both.grain))
+        })
+    };
+    let mut looks = look(&ways);
+    if both.settings.approach.is_none() {
+        let [fixed, moving] = both.lattices().map(sink::diagonals);
+        let common: Vec<Way> = fixed.into_iter().filter(|way| moving.contains(way)).collect();
+        looks.extend(look(&common).into_iter().filter(|(_, drawn)| matches!(drawn, sink::Drawn::Holds(_))));
+    }
     exec.check()?;
     let holds = looks.iter().filter_map(|(way, drawn)| match drawn {
         sink::Drawn::Holds(sunk) => Some((*way, *sunk)),
@@ -404,7 +418,14 @@ fn anywhere(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<(), Ca
 /// The steepest places, as exact contact judges them.
 fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
     let facing = both.settings.facing.map(ways);
-    let found = sink::sinks(both.lattices(), [&facing[0], &facing[1]], both.grain, exec)?;
+    let mut found = sink::sinks(both.lattices(), [&facing[0], &facing[1]], both.grain, exec)?;
+    if both.settings.facing == [None; 2] {
+        let [fixed, moving] = both.lattices().map(sink::diagonals);
+        if !fixed.is_empty() && !moving.is_empty() {
+            found.extend(sink::sinks(both.lattices(), [&fixed, &moving], both.grain, exec)?);
+            found.sort_by(|a, b| b.steep.total_cmp(&a.steep));
+        }
+    }
     let classes = sink::classes(both.lattices()[1], &found, both.grain);
     let most = classes.first().map_or(0.0, |class| class.best.steep);
     let places: Vec<(usize, sink::Sunk)> = classes

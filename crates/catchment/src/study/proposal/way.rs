@@ -1,4 +1,4 @@
-//! The six directions in which parts face and approach, and how two parts may lie to each other.
+//! The directions in which parts face and approach, and how two parts may lie to each other.
 
 use crate::connector::turn_between;
 use crate::pose::Mount;
@@ -6,18 +6,50 @@ use glam::{DMat3, DVec3};
 use std::fmt;
 use std::str::FromStr;
 
-/// A direction along an axis of a file.
+/// A direction along an axis of a file, or half way between two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Way(u8);
 
 impl Way {
-    /// All six.
+    /// The six along axes.
     pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
-    const NAMES: [&'static str; 6] = ["+x", "-x", "+y", "-y", "+z", "-z"];
+    /// The twelve half way between two axes. Each is followed by the opposite one.
+    pub(super) const DIAGONAL: [Self; 12] = [
+        Self(6),
+        Self(7),
+        Self(8),
+        Self(9),
+        Self(10),
+        Self(11),
+        Self(12),
+        Self(13),
+        Self(14),
+        Self(15),
+        Self(16),
+        Self(17),
+    ];
+    const NAMES: [&'static str; 18] = [
+        "+x", "-x", "+y", "-y", "+z", "-z", "+x+y", "-x-y", "+x-y", "-x+y", "+y+z", "-y-z", "+y-z", "-y+z",
+        "+x+z", "-x-z", "+x-z", "-x+z",
+    ];
 
-    /// As a design writes it.
+    /// `+x`, or `+y+z` for half way between two axes.
     pub const fn name(self) -> &'static str {
         Self::NAMES[self.0 as usize]
+    }
+
+    /// As a design writes it.
+    pub(super) fn written(self) -> String {
+        if self.0 < 6 {
+            return format!("\"{}\"", self.name());
+        }
+        let [x, y, z] = self.along().to_array();
+        format!("[{x}, {y}, {z}]")
+    }
+
+    /// The opposite one.
+    pub(super) const fn opposite(self) -> Self {
+        Self(self.0 ^ 1)
     }
 
     /// Whether another is the opposite one.
@@ -25,9 +57,19 @@ impl Way {
         self.0 ^ 1 == other.0
     }
 
+    /// The sum of its axes.
+    fn along(self) -> DVec3 {
+        let axis = |sign: char, name: char| {
+            let axis = DVec3::AXES[usize::from(name as u8 - b'x')];
+            if sign == '-' { -axis } else { axis }
+        };
+        let letters: Vec<char> = self.name().chars().collect();
+        letters.chunks(2).map(|one| axis(one[0], one[1])).sum()
+    }
+
     /// Unit vector.
     pub fn vector(self) -> DVec3 {
-        DVec3::AXES[usize::from(self.0 / 2)] * if self.0.is_multiple_of(2) { 1.0 } else { -1.0 }
+        if self.0 < 6 { self.along() } else { self.along().normalize() }
     }
 }
 
@@ -42,11 +84,11 @@ impl FromStr for Way {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let plain = |name: &str| name == text || name.trim_start_matches('+') == text;
-        Self::ALL.into_iter().find(|way| plain(way.name())).ok_or_else(|| {
+        Self::ALL.into_iter().chain(Self::DIAGONAL).find(|way| plain(way.name())).ok_or_else(|| {
             format!(
-                "`{}` is no direction; say one of {}",
+                "`{}` is no direction; say one of {}, or two of them, such as +y+z for half way between",
                 crate::design::shortened(text),
-                Self::NAMES.join(", ")
+                Self::NAMES[..6].join(", ")
             )
         })
     }
@@ -74,7 +116,7 @@ pub enum Lie {
 impl Lie {
     /// Each in its own frame, turned so that they lie as they are drawn in one frame: where the frames of parts are one but not their places.
     pub(super) fn as_drawn(approach: Way) -> Self {
-        let [fixed, moving] = [Way(approach.0 ^ 1), approach];
+        let [fixed, moving] = [approach.opposite(), approach];
         let lie = |turned: u8| Self::Facing { fixed, moving, turned };
         let is_one = |lie: &Self| {
             let [fixed, moving] = lie.turns();
@@ -133,20 +175,23 @@ mod tests {
 
     #[test]
     fn ways_are_read_as_they_are_written() {
-        for way in Way::ALL {
+        for way in Way::ALL.into_iter().chain(Way::DIAGONAL) {
             assert_eq!(way.name().parse(), Ok(way));
-            assert_eq!(way.vector().length(), 1.0);
+            assert!((way.vector().length() - 1.0).abs() < 1e-15);
+            assert_eq!(way.opposite().vector(), -way.vector());
         }
+        assert_eq!("y-z".parse::<Way>().map(Way::written), Ok("[0, 1, -1]".to_owned()));
+        assert_eq!(Way(1).written(), "\"-x\"");
         assert_eq!("y".parse::<Way>().map(Way::name), Ok("+y"));
         assert!("up".parse::<Way>().unwrap_err().contains("+x, -x"));
     }
 
     #[test]
     fn parts_may_lie_as_they_are_drawn() {
-        for approach in Way::ALL {
+        for approach in Way::ALL.into_iter().chain(Way::DIAGONAL) {
             let [fixed, moving] = Lie::as_drawn(approach).turns();
-            assert_eq!(fixed, moving);
-            assert_eq!(moving * approach.vector(), DVec3::NEG_Z);
+            assert!(fixed.abs_diff_eq(moving, 1e-12));
+            assert!((moving * approach.vector()).abs_diff_eq(DVec3::NEG_Z, 1e-12));
         }
     }
 

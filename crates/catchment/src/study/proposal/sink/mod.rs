@@ -12,6 +12,8 @@
 //! e ([`Grain::small`]) is half a millimetre for parts of a few centimetres. A deep hole with little play is steep, a lid that lies in a wide tray
 //! is not.
 //!
+//! Diagonal directions are looked at where both parts have walls along them ([`diagonals`]).
+//!
 //! Not promised: seats that are narrower than the fine lattice, turns that are no quarter turns, and that what is steep is what was meant.
 
 mod classes;
@@ -141,6 +143,26 @@ pub(super) fn sinks(
     let mut fine: Vec<Sunk> = fine.into_iter().flatten().collect();
     fine.sort_by(|a, b| b.steep.total_cmp(&a.steep));
     Ok(fine)
+}
+
+/// The directions half way between two axes along which a part may be entered, or may enter: parallel to walls of it, or to round ones, on two sides.
+pub(super) fn diagonals(part: &Triangles) -> Vec<Way> {
+    /// Seen from either side, walls cover at least this share of the surface, more than those of a cylinder that lies across; their normals are square to the direction up to this sine.
+    const SHARE: f64 = 0.03;
+    const SQUARE: f64 = 0.05;
+    let normals: Vec<DVec3> = part.iter().map(|[a, b, c]| (b - a).cross(c - a)).collect();
+    let all: f64 = normals.iter().map(|normal| normal.length()).sum();
+    let has_walls = |way: &Way| {
+        let along = way.vector();
+        let flat = DVec3::AXES.into_iter().find(|axis| axis.dot(along) == 0.0).unwrap_or(DVec3::Z);
+        let across = flat.cross(along);
+        let walls = normals.iter().filter(|normal| normal.dot(along).abs() <= SQUARE * normal.length());
+        let seen = walls.map(|normal| normal.dot(across));
+        let [front, back] =
+            seen.fold([0.0; 2], |[front, back], area| [front + area.max(0.0), back - area.min(0.0)]);
+        front.min(back) >= SHARE * all
+    };
+    Way::DIAGONAL.into_iter().filter(has_walls).collect()
 }
 
 /// A way in which the moving part may be turned, seen from below.

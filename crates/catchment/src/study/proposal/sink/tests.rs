@@ -109,6 +109,28 @@ fn a_turned_pin_is_found_with_its_twin() {
     assert!((classes[1].best.steep / classes[0].best.steep - 1.0).abs() < 0.05, "{classes:?}");
 }
 
+/// The same plate, drawn at 45 degrees: no axis enters its hole.
+#[test]
+fn what_is_drawn_at_45_degrees_is_found_along_diagonals() {
+    let turned = |part: &Triangles| -> Triangles {
+        let by = DMat3::from_rotation_x(std::f64::consts::FRAC_PI_4);
+        part.iter().map(|triangle| triangle.map(|p| by * p)).collect()
+    };
+    let (plate, pin) = (plate(5.3, 12.0, [3.0, -2.0]), pin([0.0, 0.0, 7.0]));
+    assert!(diagonals(&plate).is_empty() && diagonals(&pin).is_empty());
+    let (plate, pin) = (turned(&plate), turned(&pin));
+    let [fixed, moving] = [&plate, &pin].map(diagonals);
+    let names: Vec<&str> = fixed.iter().map(|way| way.name()).collect();
+    assert_eq!(names, ["+y+z", "-y-z", "+y-z", "-y+z"]);
+    let steepest =
+        |facing: [&[Way]; 2]| sinks([&plate, &pin], facing, GRAIN, &Exec::new()).unwrap().first().copied();
+    let found = steepest([&fixed, &moving]).unwrap();
+    assert!(matches!(found.lie, Lie::Facing { fixed, .. } if fixed.name() == "-y+z"), "{found:?}");
+    assert!((found.climb - 12.0).abs() < 0.1, "{found:?}");
+    let along_axes = steepest([&Way::ALL, &Way::ALL]).map_or(0.0, |sunk| sunk.steep);
+    assert!(along_axes < 0.5 * found.steep, "{along_axes} {found:?}");
+}
+
 #[test]
 fn what_two_parts_share_is_measured() {
     let fixed = block([0.0; 3], [10.0, 10.0, 10.0]);
