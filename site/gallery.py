@@ -248,7 +248,8 @@ def main() -> None:
                 NUMBERS.write_text(text + "\n", encoding="utf-8")
                 print(design.stem, flush=True)
     if len(args) == 1:
-        PAGE.write_text(page(stored), encoding="utf-8")
+        # In the order in which the numbers are stored.
+        PAGE.write_text(page(json.loads(NUMBERS.read_text(encoding="utf-8"))), encoding="utf-8")
 
 
 if __name__ == "__main__":
