@@ -347,5 +347,5 @@ fn balls_of_facets_do_not_rest_on_planes_beside_them() {
         let [coarse, fine] = followers.each_mut().map(|follower| follower.follow(&error).outcome);
         differ += usize::from(coarse != fine);
     }
-    assert!(differ <= 12, "{differ} of 200 poses end otherwise with a quarter of the step");
+    assert!(differ <= 12, "{differ} of 200 outcomes differ with a quarter of the step");
 }

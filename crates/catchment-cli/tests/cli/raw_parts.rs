@@ -1,4 +1,4 @@
-//! Two parts of a modular grid, rebuilt from its published dimensions: from raw STL files to the errors that they forgive.
+//! From raw files to the errors that two parts forgive: parts of a modular grid, rebuilt from its published dimensions, and parts drawn at 45°.
 //!
 //! ```text
 //!   ╲                     ╱    the foot of the cup, half widths 17.8, 18.6 (0.8 up), 18.6 (2.6), 20.75 mm (4.75)
@@ -50,4 +50,52 @@ fn a_grid_that_sees_nothing_is_not_taken() {
     assert!(printed.contains("descent, 400 poses"), "{printed}");
     assert!(printed.contains("end early in the error box"), "{printed}");
     assert!(!printed.contains("mated pose itself"), "{printed}");
+}
+
+/// A tapered hole of 10.6 to 12 mm in a block, and a tapered plug with a tip of 10 mm, both turned by 45° about x, the plug placed elsewhere and turned by 90° more.
+/// The tip enters within (12 − 10)/2 = 1 mm, and turned by ψ as long as 5 (cos ψ + sin ψ) ≤ 6.
+#[test]
+fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
+    const SIGNS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let obj = |rings: &[(f64, f64)], faces: &str, degrees: f64, [x, y, z]: [f64; 3]| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let mut text = String::new();
+        for (half, height) in rings {
+            for [u, v] in SIGNS.map(|signs| signs.map(|sign| sign * half)) {
+                let place = [u + x, cos * v - sin * height + y, sin * v + cos * height + z];
+                text += &format!("v {} {} {}\n", place[0], place[1], place[2]);
+            }
+        }
+        text + faces
+    };
+    // Rings of four corners each, from the outside in or from the tip up; the sides between them.
+    let sides = |from: usize, to: usize| -> String {
+        let side = |k: usize| {
+            let next = (k + 1) % 4;
+            format!("f {} {} {} {}\n", from + k, from + next, to + next, to + k)
+        };
+        (0..4).map(side).collect()
+    };
+    let socket =
+        ["f 4 3 2 1\n".to_owned(), sides(1, 5), sides(5, 13), sides(13, 9), "f 9 10 11 12\n".to_owned()];
+    let plug = ["f 4 3 2 1\n".to_owned(), sides(1, 5), sides(5, 9), "f 9 10 11 12\n".to_owned()];
+    let home = tempfile::tempdir().unwrap();
+    let hole = [(20.0, -20.0), (20.0, 0.0), (5.3, -12.0), (6.0, 0.0)];
+    let tip = [(5.0, -12.0), (5.7, 0.0), (5.7, 14.0)];
+    fs::write(home.path().join("socket.obj"), obj(&hole, &socket.concat(), 45.0, [0.0; 3])).unwrap();
+    fs::write(home.path().join("plug.obj"), obj(&tip, &plug.concat(), 135.0, [70.0, 20.0, -30.0])).unwrap();
+    let printed =
+        run(home.path(), &["place", "socket.obj", "plug.obj", "--unit=mm", "--free=x,y,yaw", "-o", "d.toml"]);
+    assert!(
+        printed.starts_with("exit 0") && printed.contains("fixed faces -y+z, moving faces +y+z"),
+        "{printed}"
+    );
+    let found = json(home.path(), &["run", "d.toml", "--samples=200", "--json"]);
+    let limit = |axis: &str| {
+        let all = found["tolerances"].as_array().unwrap();
+        all.iter().find(|one| one["axis"] == axis).unwrap()["plus"].as_f64().unwrap()
+    };
+    // D is 11.4 mm, twice the half width of the plug at the mouth of the hole.
+    assert!((limit("x") * 11.4 - 1.0).abs() < 0.01, "{found}");
+    assert!((limit("yaw").to_degrees() - 13.05).abs() < 0.1, "{found}");
 }

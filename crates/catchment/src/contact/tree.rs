@@ -133,7 +133,7 @@ impl Tree {
     }
 }
 
-/// Divides features: kinds from each other, as of most pairs of kinds nothing is asked, then where the boxes of both sides are small (surface area heuristic,
+/// Divides features: kinds from each other, as most pairs of kinds never meet, then where the boxes of both sides are small (surface area heuristic,
 /// Wald, *On fast construction of SAH-based bounding volume hierarchies*, 2007), so that long facets do not widen the boxes of short ones.
 fn halves(features: &mut [Built]) -> (&mut [Built], &mut [Built]) {
     for kind in [Kind::Ridge, Kind::Facet] {

@@ -15,7 +15,7 @@
 //!
 //! A wider list serves for longer and takes longer to make, so it is rented before it is bought (ski rental: at most about twice the least cost). Lists
 //! are made from the trees, and for some places it is kept what a wider list there would have saved. A wider list is made once that exceeds its price.
-//! Where the last list answered one question only, the next is answered by the trees, and a list is made where a second one is asked.
+//! A list that served a single query was a waste: the next query goes to the trees, and a list is made at the second query about the same pose.
 //!
 //! Prices are counts of pairs looked at, of parts in the trees and of features in lists, which take about as long each.
 //!
@@ -93,7 +93,7 @@ impl Ball {
 #[derive(Debug, Clone)]
 struct List<T> {
     ball: Ball,
-    /// Whether it has answered a second question.
+    /// Whether it has served a second query.
     is_worth_it: bool,
     pairs: Vec<(f64, T)>,
 }
@@ -103,7 +103,7 @@ struct List<T> {
 struct Level<T> {
     /// The one that was asked last at the end.
     lists: Vec<List<T>>,
-    /// About which pose something was asked last without a list.
+    /// The pose of the last query that went to the trees without a list.
     unlisted: Option<Ball>,
     /// Where a list would have saved so much; the one that was asked last at the end.
     rented: Vec<(Ball, u64)>,
@@ -145,7 +145,7 @@ impl<T> Level<T> {
         Some(moved)
     }
 
-    /// Whether a list should answer a question: one that is there, or one that is likely to answer another as well, as the last one did.
+    /// Whether a list should serve a query: one that is there, or a new one that is likely to serve another query, as the last one did.
     fn is_worth_it(&mut self, turned: &Turned<'_>, own: f64, reach: f64) -> bool {
         let holds = |ball: &Ball| ball.moved(turned, reach, 0.0).is_some();
         if let Some(list) = self.lists.iter_mut().rev().find(|list| holds(&list.ball)) {

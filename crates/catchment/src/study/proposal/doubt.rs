@@ -33,8 +33,8 @@ fn is_twin(one: &Candidate, other: &Candidate) -> bool {
     else {
         return false;
     };
-    (fixed == f || fixed.is_opposite(f))
-        && (moving == m || moving.is_opposite(m))
+    (fixed == f || fixed.opposite() == f)
+        && (moving == m || moving.opposite() == m)
         && (fixed, moving) != (f, m)
 }
 

@@ -22,6 +22,7 @@ use crate::method::descent;
 use crate::pose::{CorPose, Dof, DofSet, Mount, PoseError};
 use glam::{DMat3, DVec2};
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// A seat that is as steep as this scores one half.
 pub(super) const STEEP: f64 = 3.5;
@@ -47,18 +48,32 @@ pub(super) struct Refusal {
     /// How far they are from where they would, in the unit of the halves; infinite where no distance says it.
     pub(super) by: f64,
     pub(super) why: String,
+    /// How they were laid.
+    lie: Option<Lie>,
 }
 
 impl From<&str> for Refusal {
     fn from(why: &str) -> Self {
-        Self { by: f64::INFINITY, why: why.to_owned() }
+        Self::new(f64::INFINITY, why.to_owned())
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { why, lie, .. } = self;
+        lie.map_or(Ok(()), |lie| write!(f, "{lie}: "))?;
+        f.write_str(why)
     }
 }
 
 impl Refusal {
+    const fn new(by: f64, why: String) -> Self {
+        Self { by, why, lie: None }
+    }
+
     /// With how they were laid.
     pub(super) fn of(self, lie: Lie) -> Self {
-        Self { why: format!("{lie}: {}", self.why), ..self }
+        Self { lie: Some(lie), ..self }
     }
 }
 
@@ -183,7 +198,7 @@ pub(super) fn judge(
             let why = format!(
                 "no play: one would sink {deep} into the other if it were {cell} narrower on each side; give it some play"
             );
-            return Err(Refusal { by: 0.0, why });
+            return Err(Refusal::new(0.0, why));
         }
     }
     let at = |offset: DVec2| moving.mapped(move |p| p + offset.extend(0.0));
@@ -202,10 +217,10 @@ pub(super) fn judge(
     } else {
         if lift > MOST_APART * wide {
             let why = format!("blocked: {} above where they are drawn", told.length(lift));
-            return Err(Refusal { by: lift, why });
+            return Err(Refusal::new(lift, why));
         }
         if lift < -MOST_APART * wide {
-            return Err(Refusal { by: -lift, why: format!("drawn {} apart", told.length(-lift)) });
+            return Err(Refusal::new(-lift, format!("drawn {} apart", told.length(-lift))));
         }
     }
     let placed = at(offset);

@@ -19,6 +19,7 @@
 //! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes which is not 45 degrees,
 //! need a word. A proposal with a runner-up of 0.4 of its steepness, or a weak one, is "in doubt" and says so.
 
+mod assembled;
 mod candidate;
 mod cause;
 mod doubt;
@@ -43,6 +44,7 @@ use crate::exec::{Cancelled, Exec};
 use crate::pose::DofSet;
 use crate::problem::{Problem, ProblemError};
 use crate::terminal::shown;
+use assembled::{docked, let_down};
 use candidate::{candidate, shown_unit};
 use glam::{DMat3, DVec2};
 use halves::design_unit;
@@ -171,6 +173,8 @@ const JUDGED_STEEP: f64 = 0.3;
 struct Parts<'a> {
     halves: [&'a Half; 2],
     triangles: [sink::Triangles; 2],
+    /// Directions half way between two axes along which each may enter or be entered.
+    diagonals: [Vec<Way>; 2],
     grain: sink::Grain,
     settings: &'a Settings,
     /// How lengths are told.
@@ -179,7 +183,9 @@ struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     fn new(halves: [&'a Half; 2], grain: sink::Grain, settings: &'a Settings, told: Told) -> Self {
-        Self { halves, triangles: halves.map(sink::triangles), grain, settings, told }
+        let triangles = halves.map(sink::triangles);
+        let diagonals = triangles.each_ref().map(sink::diagonals);
+        Self { halves, triangles, diagonals, grain, settings, told }
     }
 
     fn lattices(&self) -> [&sink::Triangles; 2] {
@@ -275,9 +281,13 @@ pub fn propose(
         };
         // What is nearest to docking first, before all that is flat: what lacks nothing but play.
         refused.sort_by(|a, b| a.by.total_cmp(&b.by));
-        let (tight, refused): (Vec<Refusal>, Vec<Refusal>) =
+        let (mut tight, refused): (Vec<Refusal>, Vec<Refusal>) =
             refused.into_iter().partition(|refusal| refusal.by <= 0.0);
-        let [tight, refused] = [tight, refused].map(|list| list.into_iter().map(|refusal| refusal.why));
+        // Of a cube every facing has no play: once is enough.
+        let mut known = HashSet::new();
+        tight.retain(|refusal| known.insert(refusal.why.clone()));
+        let [tight, refused] =
+            [tight, refused].map(|list| list.into_iter().map(|refusal| refusal.to_string()));
         let nowhere =
             faces.then_some("facing each other: nowhere along the axes does one sink into the other");
         let nowhere = nowhere.filter(|_| candidates.is_empty()).map(ToOwned::to_owned);
@@ -285,11 +295,6 @@ pub fn propose(
         let taken = is_assembly.then_some(Advice::OwnFrames);
         let advice = advice.flatten().into_iter().chain(taken).collect();
         let slack = candidates.iter().map(slack);
-        // Of a cube every facing has no play: once is enough.
-        let mut said = HashSet::new();
-        let reason =
-            |why: &String| why.split_once(": ").map_or_else(|| why.clone(), |(_, reason)| reason.to_owned());
-        let tight = tight.filter(|why| said.insert(reason(why)));
         let tried = tight.chain(why).chain(slack).chain(nowhere).chain(refused).collect();
         let remedy = match cause::of_files(parts, both.halves, settings, unit) {
             Some(mistake) => Some(mistake),
@@ -312,98 +317,6 @@ pub fn propose(
     Ok(Proposal { text, problem, candidates, doubts })
 }
 
-/// Parts that are drawn docked: what a lattice says of each approach; of those that hold, or that are asked for, what exact contact says.
-fn docked(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<Vec<(Way, sink::Drawn)>, Cancelled> {
-    let ways = ways(both.settings.approach);
-    let look = |ways: &[Way]| {
-        exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
-            (ways[k], sink::drawn(both.lattices(), ways[k], false, both.grain))
-        })
-    };
-    let mut looks = look(&ways);
-    if both.settings.approach.is_none() {
-        let [fixed, moving] = both.lattices().map(sink::diagonals);
-        let common: Vec<Way> = fixed.into_iter().filter(|way| moving.contains(way)).collect();
-        looks.extend(look(&common).into_iter().filter(|(_, drawn)| matches!(drawn, sink::Drawn::Holds(_))));
-    }
-    exec.check()?;
-    let holds = looks.iter().filter_map(|(way, drawn)| match drawn {
-        sink::Drawn::Holds(sunk) => Some((*way, *sunk)),
-        _ => None,
-    });
-    let holds: Vec<(Way, sink::Sunk)> = holds.collect();
-    let found =
-        exec.each(holds.len(), usize::MAX, "seats", |k, exec| let_in(both, holds[k].0, holds[k].1, exec));
-    looked.add(found);
-    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
-    if !looked.has_seat() {
-        // A groove holds one way only, which is none to a lattice.
-        let rests = |drawn: &sink::Drawn| matches!(drawn, sink::Drawn::Flat { .. });
-        let is_asked = both.settings.frames == Frames::Assembled || both.settings.approach.is_some();
-        let flat: Vec<Way> =
-            looks.iter().filter(|(_, drawn)| is_asked || rests(drawn)).map(|(way, _)| *way).collect();
-        let found = exec.each(flat.len(), usize::MAX, "approaches", |k, _| {
-            let lie = Lie::Assembled { approach: flat[k] };
-            judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie))
-        });
-        looked.add(found);
-        rank(&mut looked.judged, both.settings.free, both.told, exec)?;
-    }
-    Ok(looks)
-}
-
-/// A place near the drawn pose, as drawn where exact contact holds there, and otherwise where it is deepest nearby.
-fn let_in(both: &Parts<'_>, way: Way, sunk: sink::Sunk, exec: &Exec) -> Result<Judged, Refusal> {
-    let lie = Lie::Assembled { approach: way };
-    let drawn = judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie));
-    let near = |found: &Judged| {
-        let lift = sunk.height + 0.5 * sunk.climb;
-        found.lift <= lift
-    };
-    if let Ok(found) = drawn
-        && near(&found)
-    {
-        let mut found = found.found(sunk, 0);
-        found.ask(both.settings.free, both.told, exec);
-        if matches!(found.seat, Some(Ok(_))) {
-            return Ok(found);
-        }
-    }
-    let lie = sunk.lie;
-    judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.told)
-        .map(|found| found.found(sunk, 0))
-        .map_err(|refusal| refusal.of(lie))
-}
-
-/// Parts that are drawn apart: let down along the approach to where they hold, however far that is; what to say of it.
-fn let_down(
-    both: &Parts<'_>,
-    looks: &[(Way, sink::Drawn)],
-    looked: &mut Looked,
-    exec: &Exec,
-) -> Result<Option<String>, Cancelled> {
-    let apart: Vec<Way> = looks
-        .iter()
-        .filter(|(_, drawn)| matches!(drawn, sink::Drawn::Apart(_)))
-        .map(|(way, _)| *way)
-        .collect();
-    let found = exec.each(apart.len(), usize::MAX, "approaches", |k, exec| {
-        let sink::Drawn::Holds(sunk) = sink::drawn(both.lattices(), apart[k], true, both.grain) else {
-            return None;
-        };
-        Some(let_in(both, apart[k], sunk, exec))
-    });
-    looked.add(found.into_iter().flatten().collect());
-    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
-    let best = looked.judged.first().filter(|best| is_seat(best)).and_then(|best| best.sunk);
-    Ok(best.map(|sunk| {
-        format!(
-            "in doubt: as drawn the parts are {} apart; the moving part slides so far along the approach to first contact",
-            both.told.length(sunk.height.abs())
-        )
-    }))
-}
-
 /// Parts in frames of their own: the places where one sinks into the other, or the shallow ones where none does.
 fn anywhere(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<(), Cancelled> {
     looked.add(sunk(both, exec)?);
@@ -420,9 +333,9 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, C
     let facing = both.settings.facing.map(ways);
     let mut found = sink::sinks(both.lattices(), [&facing[0], &facing[1]], both.grain, exec)?;
     if both.settings.facing == [None; 2] {
-        let [fixed, moving] = both.lattices().map(sink::diagonals);
+        let [fixed, moving] = &both.diagonals;
         if !fixed.is_empty() && !moving.is_empty() {
-            found.extend(sink::sinks(both.lattices(), [&fixed, &moving], both.grain, exec)?);
+            found.extend(sink::sinks(both.lattices(), [fixed, moving], both.grain, exec)?);
             found.sort_by(|a, b| b.steep.total_cmp(&a.steep));
         }
     }

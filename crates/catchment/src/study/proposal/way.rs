@@ -10,40 +10,49 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Way(u8);
 
+/// Names and vectors of all directions, each followed by its opposite: six along axes, then twelve half way between two.
+const WAYS: [(&str, [f64; 3]); 18] = [
+    ("+x", [1.0, 0.0, 0.0]),
+    ("-x", [-1.0, 0.0, 0.0]),
+    ("+y", [0.0, 1.0, 0.0]),
+    ("-y", [0.0, -1.0, 0.0]),
+    ("+z", [0.0, 0.0, 1.0]),
+    ("-z", [0.0, 0.0, -1.0]),
+    ("+x+y", [1.0, 1.0, 0.0]),
+    ("-x-y", [-1.0, -1.0, 0.0]),
+    ("+x-y", [1.0, -1.0, 0.0]),
+    ("-x+y", [-1.0, 1.0, 0.0]),
+    ("+y+z", [0.0, 1.0, 1.0]),
+    ("-y-z", [0.0, -1.0, -1.0]),
+    ("+y-z", [0.0, 1.0, -1.0]),
+    ("-y+z", [0.0, -1.0, 1.0]),
+    ("+x+z", [1.0, 0.0, 1.0]),
+    ("-x-z", [-1.0, 0.0, -1.0]),
+    ("+x-z", [1.0, 0.0, -1.0]),
+    ("-x+z", [-1.0, 0.0, 1.0]),
+];
+const AXES: u8 = 6;
+
 impl Way {
     /// The six along axes.
     pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
-    /// The twelve half way between two axes. Each is followed by the opposite one.
-    pub(super) const DIAGONAL: [Self; 12] = [
-        Self(6),
-        Self(7),
-        Self(8),
-        Self(9),
-        Self(10),
-        Self(11),
-        Self(12),
-        Self(13),
-        Self(14),
-        Self(15),
-        Self(16),
-        Self(17),
-    ];
-    const NAMES: [&'static str; 18] = [
-        "+x", "-x", "+y", "-y", "+z", "-z", "+x+y", "-x-y", "+x-y", "-x+y", "+y+z", "-y-z", "+y-z", "-y+z",
-        "+x+z", "-x-z", "+x-z", "-x+z",
-    ];
+
+    /// The twelve half way between two axes.
+    pub(super) fn diagonals() -> impl Iterator<Item = Self> {
+        (AXES..WAYS.len() as u8).map(Self)
+    }
 
     /// `+x`, or `+y+z` for half way between two axes.
     pub const fn name(self) -> &'static str {
-        Self::NAMES[self.0 as usize]
+        WAYS[self.0 as usize].0
     }
 
     /// As a design writes it.
     pub(super) fn written(self) -> String {
-        if self.0 < 6 {
+        if self.0 < AXES {
             return format!("\"{}\"", self.name());
         }
-        let [x, y, z] = self.along().to_array();
+        let [x, y, z] = WAYS[usize::from(self.0)].1;
         format!("[{x}, {y}, {z}]")
     }
 
@@ -52,24 +61,9 @@ impl Way {
         Self(self.0 ^ 1)
     }
 
-    /// Whether another is the opposite one.
-    pub(super) const fn is_opposite(self, other: Self) -> bool {
-        self.0 ^ 1 == other.0
-    }
-
-    /// The sum of its axes.
-    fn along(self) -> DVec3 {
-        let axis = |sign: char, name: char| {
-            let axis = DVec3::AXES[usize::from(name as u8 - b'x')];
-            if sign == '-' { -axis } else { axis }
-        };
-        let letters: Vec<char> = self.name().chars().collect();
-        letters.chunks(2).map(|one| axis(one[0], one[1])).sum()
-    }
-
     /// Unit vector.
     pub fn vector(self) -> DVec3 {
-        if self.0 < 6 { self.along() } else { self.along().normalize() }
+        DVec3::from_array(WAYS[usize::from(self.0)].1).normalize()
     }
 }
 
@@ -84,11 +78,11 @@ impl FromStr for Way {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let plain = |name: &str| name == text || name.trim_start_matches('+') == text;
-        Self::ALL.into_iter().chain(Self::DIAGONAL).find(|way| plain(way.name())).ok_or_else(|| {
+        Self::ALL.into_iter().chain(Self::diagonals()).find(|way| plain(way.name())).ok_or_else(|| {
             format!(
-                "`{}` is no direction; say one of {}, or two of them, such as +y+z for half way between",
+                "`{}` is not a direction; use one of {}, or two together, such as +y+z for half way between them",
                 crate::design::shortened(text),
-                Self::NAMES[..6].join(", ")
+                Self::ALL.map(Self::name).join(", ")
             )
         })
     }
@@ -175,7 +169,7 @@ mod tests {
 
     #[test]
     fn ways_are_read_as_they_are_written() {
-        for way in Way::ALL.into_iter().chain(Way::DIAGONAL) {
+        for way in Way::ALL.into_iter().chain(Way::diagonals()) {
             assert_eq!(way.name().parse(), Ok(way));
             assert!((way.vector().length() - 1.0).abs() < 1e-15);
             assert_eq!(way.opposite().vector(), -way.vector());
@@ -188,7 +182,7 @@ mod tests {
 
     #[test]
     fn parts_may_lie_as_they_are_drawn() {
-        for approach in Way::ALL.into_iter().chain(Way::DIAGONAL) {
+        for approach in Way::ALL.into_iter().chain(Way::diagonals()) {
             let [fixed, moving] = Lie::as_drawn(approach).turns();
             assert!(fixed.abs_diff_eq(moving, 1e-12));
             assert!((moving * approach.vector()).abs_diff_eq(DVec3::NEG_Z, 1e-12));

@@ -129,7 +129,7 @@ impl Motion<'_> {
         let (mut low, mut clear) = (0.0, *state);
         let (mut high, mut at) = (step, step);
         let mut bracket: Option<Bracket> = None;
-        // Whether the halves overlap is asked where the step would end, and once they did, at every length.
+        // Overlap is tested where the step would end; once the halves overlap, at every length.
         let mut wary = false;
         for _ in 0..MOST_TRIALS {
             let trial = self.attempt(state, start, at, wary);

@@ -145,10 +145,11 @@ pub(super) fn sinks(
     Ok(fine)
 }
 
-/// The directions half way between two axes along which a part may be entered, or may enter: parallel to walls of it, or to round ones, on two sides.
+/// The directions half way between two axes along which a part may enter or be entered: it has walls parallel to them, on two sides.
 pub(super) fn diagonals(part: &Triangles) -> Vec<Way> {
-    /// Seen from either side, walls cover at least this share of the surface, more than those of a cylinder that lies across; their normals are square to the direction up to this sine.
+    /// Seen from either side, walls cover at least this share of the surface: more than the strip of a cylinder whose axis lies across.
     const SHARE: f64 = 0.03;
+    /// Normals of walls are square to the direction up to this sine.
     const SQUARE: f64 = 0.05;
     let normals: Vec<DVec3> = part.iter().map(|[a, b, c]| (b - a).cross(c - a)).collect();
     let all: f64 = normals.iter().map(|normal| normal.length()).sum();
@@ -162,7 +163,7 @@ pub(super) fn diagonals(part: &Triangles) -> Vec<Way> {
             seen.fold([0.0; 2], |[front, back], area| [front + area.max(0.0), back - area.min(0.0)]);
         front.min(back) >= SHARE * all
     };
-    Way::DIAGONAL.into_iter().filter(has_walls).collect()
+    Way::diagonals().filter(has_walls).collect()
 }
 
 /// A way in which the moving part may be turned, seen from below.
