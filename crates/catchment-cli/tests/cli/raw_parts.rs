@@ -9,6 +9,7 @@
 //! Alone, x may be off by 21 − 17.8 = 3.2 mm: then the flat underside of the foot meets the rim.
 
 use crate::{designs, json, run};
+use std::fmt::Write;
 use std::fs;
 
 /// A folder with both parts, and the design that `place` writes for them.
@@ -63,7 +64,7 @@ fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
         for (half, height) in rings {
             for [u, v] in SIGNS.map(|signs| signs.map(|sign| sign * half)) {
                 let place = [u + x, cos * v - sin * height + y, sin * v + cos * height + z];
-                text += &format!("v {} {} {}\n", place[0], place[1], place[2]);
+                writeln!(text, "v {} {} {}", place[0], place[1], place[2]).unwrap();
             }
         }
         text + faces
