@@ -61,10 +61,11 @@ impl Drop for Running {
     }
 }
 
-/// Progress where no bar can be drawn: one line per tenth, of computations that take long.
+/// Progress where no bar can be drawn: one line per tenth of a stage, of computations that take long.
 struct Log {
     started: Instant,
-    /// Tenths that were reported.
+    /// The stage that was reported last, and the tenths of it.
+    stage: &'static str,
     tenths: u32,
 }
 
@@ -73,11 +74,14 @@ impl Log {
     const SILENT: Duration = Duration::from_secs(20);
 
     fn new() -> Self {
-        Self { started: Instant::now(), tenths: 0 }
+        Self { started: Instant::now(), stage: "", tenths: 0 }
     }
 
-    fn line(&mut self, fraction: f64, stage: &str) -> Option<String> {
+    fn line(&mut self, fraction: f64, stage: &'static str) -> Option<String> {
         let tenths = (fraction * 10.0) as u32;
+        if stage != self.stage {
+            (self.stage, self.tenths) = (stage, 0);
+        }
         let elapsed = self.started.elapsed();
         if tenths <= self.tenths || elapsed < Self::SILENT {
             return None;
@@ -168,6 +172,8 @@ mod tests {
         assert_eq!(log.line(0.51, "cells").as_deref(), Some("progress: 50 % after 40 s (cells)"));
         assert_eq!(log.line(0.59, "cells"), None);
         assert!(log.line(0.6, "cells").is_some() && log.line(1.0, "cells").is_some());
+        // The next stage begins anew.
+        assert_eq!(log.line(0.3, "limits").as_deref(), Some("progress: 30 % after 40 s (limits)"));
     }
 
     #[test]

@@ -293,7 +293,7 @@ fn what_a_run_claims_docks_and_hardly_more_does() {
         let problem = problem(family, free);
         let merits = run("confluence", cells, 4000).on(&problem, &Exec::new()).unwrap().merits;
         let (onaa, centred) = (merits.onaa.unwrap(), merits.centered.unwrap());
-        assert!(onaa.is_followed && centred.is_followed && onaa.edge >= centred.scale, "{family:?}");
+        assert!(onaa.is_followed && centred.sampled.is_some() && onaa.edge >= centred.scale, "{family:?}");
         assert!(centred.scale > 0.0, "{family:?}");
         let around_zero: Vec<_> =
             centred.half_widths.iter().map(|(dof, half)| (*dof, -half, *half)).collect();
@@ -363,7 +363,7 @@ fn random_poses_answer_in_the_place_of_a_grid_that_resolves_nothing() {
     // Window and limits rest on motions, with a grid or without.
     assert_eq!(answer.merits.tolerances.len(), problem.alignment().free.len());
     let centered = answer.merits.centered.as_ref().unwrap();
-    assert!(centered.is_followed && centered.scale > 0.0 && answer.merits.onaa.is_none());
+    assert!(centered.sampled.is_some() && centered.scale > 0.0 && answer.merits.onaa.is_none());
     let [lo, hi] = answer.sum_ci95().unwrap();
     assert!(lo <= answer.sum() && answer.sum() <= hi);
     let report = serde_json::to_value(answer.report()).unwrap();

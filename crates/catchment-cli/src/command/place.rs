@@ -36,7 +36,7 @@ pub(crate) struct PlaceArgs {
     /// The moving half: a mesh file
     #[arg(value_name = "MOVING", value_hint = clap::ValueHint::FilePath)]
     moving: PathBuf,
-    /// Unit of files that do not say it, and of the design: um, mm, cm, m or in
+    /// Unit of files that do not say it: um, mm, cm, m or in
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<LengthUnit>,
     /// What belongs to the fixed half beside its file: another file, or a bought part as the design has it, such as
@@ -313,7 +313,7 @@ fn unit(text: &str) -> Result<LengthUnit, String> {
         .ok_or_else(|| format!("a unit is one of {}", LengthUnit::ALL.map(LengthUnit::symbol).join(", ")))
 }
 
-/// How far a surface may move, in the unit of the design.
+/// How far a surface may move, in the unit of the files.
 fn simplify(text: &str, unit: Option<LengthUnit>) -> Result<f64, Failure> {
     let scale = Scale { width: 1.0, unit: Some(unit.unwrap_or(LengthUnit::Mm)) };
     let told = |complaint: Complaint| {

@@ -116,6 +116,8 @@ pub struct Pair {
     about_mated: OnceLock<About>,
     /// Whether its seat has no rim somewhere.
     leaks: OnceLock<bool>,
+    /// Seconds that a motion takes.
+    motion_seconds: OnceLock<f64>,
 }
 
 impl Pair {
@@ -147,6 +149,7 @@ impl Pair {
             spins: OnceLock::new(),
             about_mated: OnceLock::new(),
             leaks: OnceLock::new(),
+            motion_seconds: OnceLock::new(),
         };
         let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
         pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
@@ -169,6 +172,7 @@ impl Pair {
             pair.spins = OnceLock::new();
             pair.about_mated = OnceLock::new();
             pair.leaks = OnceLock::new();
+            pair.motion_seconds = OnceLock::new();
         }
         pair
     }
@@ -207,6 +211,11 @@ impl Pair {
     /// What becomes of a half that is let go a little off the mated pose, as `find` says, which is asked once.
     pub(crate) fn about_mated(&self, find: impl FnOnce() -> About) -> About {
         *self.about_mated.get_or_init(find)
+    }
+
+    /// Seconds that a motion takes, as `find` says, which is asked once.
+    pub(crate) fn motion_seconds(&self, find: impl FnOnce() -> f64) -> f64 {
+        *self.motion_seconds.get_or_init(find)
     }
 
     /// Whether the seat has no rim somewhere, as `find` says, which is asked once.

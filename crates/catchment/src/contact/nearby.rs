@@ -189,6 +189,11 @@ impl<'a> Nearby<'a> {
     pub(crate) fn overlaps_at(&mut self, rotation: &DMat3, position: DVec3) -> bool {
         self.turned.overlaps(rotation, position)
     }
+
+    /// What all searches of trees took until now, about: counted, in nanoseconds.
+    pub(crate) const fn took(&self) -> u64 {
+        self.turned.took()
+    }
 }
 
 /// Furthest that a unit vector is apart after the two rotations: 2 sin(θ/2).

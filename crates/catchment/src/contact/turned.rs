@@ -29,6 +29,8 @@ pub(super) struct Turned<'a> {
     /// What may touch and what may pass about where it is.
     touching: Lists<Touching>,
     passing: Lists<Passing>,
+    /// What lowering took, about, in nanoseconds.
+    lowering: u64,
 }
 
 /// Poses near which what was found is kept: a step and all that is tried for it.
@@ -58,6 +60,7 @@ impl<'a> Turned<'a> {
             near: Vec::new(),
             touching: Lists::default(),
             passing: Lists::default(),
+            lowering: 0,
         }
     }
 
@@ -154,7 +157,13 @@ impl<'a> Turned<'a> {
         let carrier = &mut self.carriers[usize::from(asked.ceiling.is_finite())];
         let carried = trees.carried(self.pair, &self.rotation, lateral, counts, asked, *carrier);
         *carrier = carried.by.map(|(_, number, _)| number).or(*carrier);
+        self.lowering += carried.took;
         carried
+    }
+
+    /// What all searches of trees took until now, about: counted, in nanoseconds.
+    pub(super) const fn took(&self) -> u64 {
+        self.lowering + self.touching.took + self.passing.took
     }
 
     /// Everything with such a gap along its normal, with the COR at `position`; a foot may lie beyond the border of its feature by `seam`. Deeper than

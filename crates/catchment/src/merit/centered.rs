@@ -29,8 +29,8 @@ pub struct CenteredBox {
     pub half_widths: Vec<(Dof, f64)>,
     /// The border of the error box stopped it: it may be larger.
     pub reaches_border: bool,
-    /// Whether it was found by following poses, so that it does not rest on cells.
-    pub is_followed: bool,
+    /// How many random poses of it were followed, all of which dock; `None` where it rests on cells.
+    pub sampled: Option<usize>,
 }
 
 /// The largest centred cube after each axis is divided by its range: `scale` = 1 is the whole error box.
@@ -88,7 +88,7 @@ fn grow_from_zero(acceptance: &Acceptance, halves: &[f64], exec: &Exec) -> Resul
         scale,
         half_widths: grid.axes.iter().zip(halves).map(|(axis, half)| (axis.dof, scale * half)).collect(),
         reaches_border: scale >= border,
-        is_followed: false,
+        sampled: None,
     })
 }
 

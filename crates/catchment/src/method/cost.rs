@@ -1,12 +1,12 @@
 //! What decisions take, estimated before they are made.
 
-use super::descent::End;
-use crate::acceptance::Outcome;
+use super::descent::{End, Follower, Settings};
+use crate::acceptance::{Domain, Outcome};
 use crate::advice::Advice;
 use crate::contact::Pair;
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::Resolution;
-use crate::pose::Dof;
+use crate::pose::PoseError;
 
 /// Seconds of one descent between simple halves, on one core: what cost estimates count in.
 pub(super) const DESCENT_SECONDS: f64 = 1e-4;
@@ -16,19 +16,26 @@ pub(super) const DESCENT_SECONDS: f64 = 1e-4;
 pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
 
 /// How many descents can be afforded, as a share of what simple halves allow: the time of a descent grows with about the cube of the
-/// number of facets, and where the trees are asked as measured.
+/// number of facets, and where trees are asked it is counted for a few.
 pub fn affordable(pair: &Pair) -> f64 {
     const SIMPLE: f64 = 64.0;
+    if pair.asks_trees() {
+        return (DESCENT_SECONDS / pair.motion_seconds(|| counted(pair))).min(1.0);
+    }
     let facets = |half: &crate::connector::Half| half.surfaces.iter().map(|s| s.facets.len()).sum::<usize>();
     let facets = (facets(&pair.fixed) + facets(&pair.moving)) as f64;
-    let listed = (SIMPLE / facets.max(SIMPLE)).powi(3);
-    let tilts = [Dof::Roll, Dof::Pitch].into_iter().any(|dof| pair.alignment.free.contains(dof));
-    if pair.asks_trees() { listed.max(by_trees(facets, tilts, pair.is_tight())) } else { listed }
+    (SIMPLE / facets.max(SIMPLE)).powi(3)
 }
 
 /// Seconds that a motion takes about, on one core.
 pub fn seconds_per_motion(pair: &Pair) -> f64 {
     DESCENT_SECONDS / affordable(pair)
+}
+
+/// How many motions take so long on one core; of however large halves a few.
+pub fn motions_in(seconds: f64, pair: &Pair) -> usize {
+    const FEWEST: f64 = 10.0;
+    (seconds / seconds_per_motion(pair)).max(FEWEST) as usize
 }
 
 /// Cells per axis that can be afforded of so many of simple halves with as many free errors, each a descent; in all no fewer than `poses`, where those are as many.
@@ -42,18 +49,30 @@ pub(super) fn affordable_cells(pair: &Pair, simple: [usize; 5], poses: usize) ->
     })
 }
 
-/// The same of halves that are searched by trees, by the number of their facets, whether motions tilt and whether the fit is tight: seconds of a motion that
-/// docks of halves of 600 facets, and the power of their number with which they grow. Grid cups of 600 and 7 000 facets, funnels of 1 000 to 100 000, a
-/// gear of 50 000, within a factor of three. What jams at once is shorter.
-fn by_trees(facets: f64, tilts: bool, is_tight: bool) -> f64 {
-    const MEASURED: f64 = 600.0;
-    let (seconds, power) = match (tilts, is_tight) {
-        (true, true) => (1e-2, 0.4),
-        (true, false) => (3e-4, 0.8),
-        (false, true) => (5e-3, 0.2),
-        (false, false) => (1.5e-4, 0.4),
-    };
-    (DESCENT_SECONDS / seconds * (MEASURED / facets).powf(power)).min(1.0)
+/// Seconds of a motion between halves that are searched by trees: what is looked at is counted for a few random poses, some of all the error box and some of a
+/// quarter of it, where as a rule all dock; the larger mean counts. The same on every machine.
+fn counted(pair: &Pair) -> f64 {
+    const SHARES: [f64; 2] = [1.0, 0.25];
+    const POSES: usize = 3;
+    const SEED: u64 = 0xc057;
+    /// After so many seconds what was seen is enough.
+    const ENOUGH: f64 = 1.0;
+    let Domain::Poses(poses) = Domain::random(&pair.alignment, POSES, SEED) else { return DESCENT_SECONDS };
+    let settings = Settings::default();
+    let mut mean = DESCENT_SECONDS;
+    for share in SHARES {
+        let mut follower = Follower::new(pair, &settings);
+        let (mut seconds, mut followed) = (0.0, 0.0);
+        for pose in &poses {
+            follower.follow(&PoseError::from_array(pose.to_array().map(|value| share * value)));
+            (seconds, followed) = (1e-9 * follower.took() as f64, followed + 1.0);
+            if seconds > ENOUGH {
+                break;
+            }
+        }
+        mean = mean.max(seconds / followed);
+    }
+    mean
 }
 
 /// Refuses what would not fit into memory, with the resolution that would.
@@ -93,15 +112,20 @@ mod tests {
     }
 
     #[test]
-    fn the_time_of_a_descent_is_the_measured_one() {
-        let milliseconds = |facets: f64, tilts: bool, is_tight: bool| {
-            1e3 * DESCENT_SECONDS / by_trees(facets, tilts, is_tight)
-        };
-        assert!((milliseconds(600.0, false, true) - 5.0).abs() < 1e-9);
-        assert!((milliseconds(600.0, true, false) - 0.3).abs() < 1e-9);
-        assert!((milliseconds(600.0, true, true) - 10.0).abs() < 1e-9);
-        // A hundred times as many facets take 100^0.4 times as long.
-        assert!((milliseconds(60_000.0, true, true) - 63.1).abs() < 0.01);
-        assert_eq!(by_trees(1.0, false, false), 1.0);
+    fn what_a_motion_takes_is_counted_and_the_same_each_time() {
+        let spec = FamilySpec::Cone(Cone { chord_error: 1e-4, ..Cone::default() });
+        let connector = Connector::of_family(&spec, Mount::X).unwrap();
+        let pair = || Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X));
+        let (one, other) = (counted(&pair()), counted(&pair()));
+        assert!(pair().asks_trees() && one > DESCENT_SECONDS);
+        assert_eq!(one.to_bits(), other.to_bits());
+    }
+
+    #[test]
+    fn a_time_has_so_many_motions_and_never_none() {
+        let connector = Connector::of_family(&FamilySpec::Cone(Cone::default()), Mount::X).unwrap();
+        let pair = Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X));
+        assert_eq!(motions_in(100.5 * seconds_per_motion(&pair), &pair), 100);
+        assert_eq!(motions_in(0.0, &pair), 10);
     }
 }

@@ -31,7 +31,7 @@ mod registry;
 pub mod transport;
 pub mod zraa;
 
-pub use cost::{affordable, ensure_fits, seconds_per_motion};
+pub use cost::{affordable, ensure_fits, motions_in, seconds_per_motion};
 pub use door::{
     ByProducts, Cost, Decide, DecideError, Decided, Doubts, Finished, Follow, Info, NotApplicable,
 };

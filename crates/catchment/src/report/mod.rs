@@ -115,7 +115,7 @@ pub use success::{
 #[cfg(all(feature = "figure", feature = "zarr"))]
 pub use sweep::Parts;
 pub use sweep::{SweepBody, SweepReport};
-pub use table::{table, table_with};
+pub use table::{first_look, table, table_with};
 pub use text::{csv, number};
 pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
 pub use trials::{TrialReport, TrialsBody, TrialsReport};

@@ -183,6 +183,9 @@ pub struct CenteredReport {
     /// Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
     #[serde(default)]
     pub followed: bool,
+    /// How many random poses of it were followed last, all of which dock.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampled: Option<usize>,
 }
 
 /// What a connector tolerates whose roll and pitch are locked.
@@ -419,7 +422,8 @@ impl From<CenteredBox> for CenteredReport {
     fn from(found: CenteredBox) -> Self {
         let bounds =
             found.half_widths.into_iter().map(|(axis, h)| Interval { axis, lo: -h, hi: h }).collect();
-        Self { edge: found.scale, bounds, reaches_border: found.reaches_border, followed: found.is_followed }
+        let (reaches_border, sampled) = (found.reaches_border, found.sampled);
+        Self { edge: found.scale, bounds, reaches_border, followed: sampled.is_some(), sampled }
     }
 }
 

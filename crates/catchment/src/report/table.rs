@@ -6,13 +6,14 @@ mod jams;
 mod seat;
 
 use super::resting::Told;
-use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, Report, ToleranceReport};
+use super::schema::{AcceptanceReport, CenteredReport, OnaaReport, Report, ToleranceReport, UprightReport};
 use super::text::{
     COLUMNS, decimals, grouped, length, line, percent, rounded, row, significant, with_error, wrapped,
 };
 use super::window;
 use crate::advice::Advice;
 use crate::design::{ConnectorSpec, Design};
+use crate::run::Upright;
 
 /// The report for people; ends with a line break.
 pub fn table(report: &Report) -> String {
@@ -238,7 +239,11 @@ fn limits(text: &mut String, report: &Report) {
     }
     match centered {
         Some(found) if found.followed => {
-            line(text, "  window: largest centred box in which every sampled pose docks");
+            let all = found.sampled.map_or_else(
+                || "every sampled pose docks".to_owned(),
+                |poses| format!("all of {} sampled poses dock", grouped(poses)),
+            );
+            line(text, &format!("  window: largest centred box in which {all}"));
         }
         Some(_) => line(text, "  window: largest centred box of accepted cells"),
         None => {}
@@ -263,6 +268,17 @@ fn limits(text: &mut String, report: &Report) {
         line(text, "  * ends at the error box, perhaps larger");
     }
     text.push('\n');
+}
+
+/// What is known long before the rest of a long run: the tolerances with roll and pitch locked, as lines.
+pub fn first_look(design: &Design, found: &Upright) -> Vec<String> {
+    let UprightReport { window, tolerances } = found.into();
+    let (locked, window_head, limit) =
+        ("with roll and pitch locked", "tolerance window", "single-axis limit");
+    let mut text =
+        format!("first look, {locked}:\n  {:<9}{window_head:>20}{limit:>25}{:>23}\n", "error", "D, rad");
+    limit_rows(&mut text, design, Some(&window), &tolerances);
+    text.lines().map(ToOwned::to_owned).collect()
 }
 
 /// A row per error; says whether the error box ends any of them.

@@ -35,7 +35,7 @@ pub(crate) use stages::correct;
 pub use answer::{Answer, Corrected};
 pub use follow::Followed;
 pub use part::{Part, PartAnswer, PartError};
-pub use plan::Plan;
+pub use plan::{Afterwards, Plan};
 pub use requirement::{Requirement, RequirementError, Verdict};
 pub use seat::{Deeper, Residual, Seating};
 pub use upright::Upright;
@@ -178,11 +178,28 @@ impl Run {
     /// # Errors
     /// See [`RunError`]; nothing is left behind.
     pub fn on(&self, problem: &Problem, exec: &Exec) -> Result<Answer, RunError> {
+        self.on_telling(problem, exec, |_| {})
+    }
+
+    /// The same; `first` is told what the connector tolerates with roll and pitch locked, which is known long before the rest.
+    ///
+    /// # Errors
+    /// See [`RunError`]; nothing is left behind.
+    pub fn on_telling(
+        &self,
+        problem: &Problem,
+        exec: &Exec,
+        first: impl FnOnce(&Upright),
+    ) -> Result<Answer, RunError> {
         let exec = &exec.anew();
         let plan = self.plan(problem)?;
         plan.ensure_fits(exec)?;
         let started = Stopwatch::start();
+        let upright = stages::upright(self, &plan, problem, exec)?;
+        if let Some(upright) = &upright {
+            first(upright);
+        }
         let decided = stages::decide(&plan, problem, exec)?;
-        stages::finish(self, &plan, problem, decided, started, exec)
+        stages::finish(self, &plan, problem, (upright, decided), started, exec)
     }
 }

@@ -169,7 +169,8 @@ impl Run {
         let method = plan.method.name();
         let acceptance = Acceptance { method, domain: plan.domain.clone(), outcomes, warnings };
         let decided = Decided::plain(acceptance, plan.method.settings_for(problem));
-        Ok(stages::finish(self, &plan, problem, decided, started, exec)?)
+        let upright = stages::upright(self, &plan, problem, exec)?;
+        Ok(stages::finish(self, &plan, problem, (upright, decided), started, exec)?)
     }
 
     /// The plan, where it can be divided.

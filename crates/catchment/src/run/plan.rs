@@ -6,8 +6,8 @@ use crate::acceptance::{Domain, Outcome};
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
 use crate::method::correction::{self, Stop};
-use crate::method::{Cost, Method, descent, ensure_fits, seconds_per_motion};
-use crate::pose::PoseError;
+use crate::method::{Cost, Decide, Method, affordable, descent, ensure_fits, motions_in, seconds_per_motion};
+use crate::pose::{DofSet, PoseError};
 use crate::problem::Problem;
 
 /// A run on a problem, with everything filled in.
@@ -23,6 +23,17 @@ pub struct Plan {
     pub heights: bool,
     /// What deciding will take.
     pub cost: Cost,
+    /// What is followed after it.
+    pub afterwards: Afterwards,
+}
+
+/// Motions that follow a decision, where exact ones can: as many as suit the halves, and no more than the time has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Afterwards {
+    /// Poses along either side of an axis for its limit.
+    pub steps: usize,
+    /// Random poses all over a box of which none may fail; as many again, and more, look for what fails.
+    pub random: usize,
 }
 
 /// One in so many parts of a budget of time is the most that the grid takes of it; random poses, which make the Sum, have the others.
@@ -33,9 +44,19 @@ const LEAST_CELLS: usize = 8;
 /// The accepted set spans at least so many cells of such a grid on one side of the mated pose, along every axis: else the grid shows next to nothing of it.
 const SPANNED: f64 = 1.5;
 
-/// Core-seconds that random poses may take in the place of such a grid, and the least and the most of them.
+/// Core-seconds that random poses take in the place of such a grid, and the most of them.
 const SAMPLED_SECONDS: f64 = 15.0;
-const SAMPLED: [f64; 2] = [200.0, 4000.0];
+const SAMPLED: usize = 4000;
+
+/// Poses on either side of an axis for the limits of simple halves, and of any halves, and the bisections after them.
+const STEPS: f64 = 48.0;
+const LEAST_STEPS: f64 = 12.0;
+const FEWEST_STEPS: f64 = 4.0;
+const BISECTIONS: f64 = 7.0;
+
+/// Core-seconds that each of about eight stages may take where nothing is said: two minutes on two cores in all. Of a budget each has this share.
+const STAGE_SECONDS: f64 = 20.0;
+const STAGE_SHARE: f64 = 0.2;
 
 impl Run {
     /// What this run will do on a problem.
@@ -86,7 +107,28 @@ impl Run {
         let sample = stop.map(|stop| correction::Settings { seed: self.seed, stop });
         let has_heights = method.by_products().contains(&"landscape");
         let heights = self.heights && is_grid && !has_heights;
-        Ok(Plan { method, domain, sample, heights, cost })
+        let afterwards = self.afterwards(problem, &method, &domain);
+        Ok(Plan { method, domain, sample, heights, cost, afterwards })
+    }
+
+    /// What is followed after the decision.
+    fn afterwards(&self, problem: &Problem, method: &Method, domain: &Domain) -> Afterwards {
+        let pair = problem.pair();
+        let seconds = match self.sample {
+            Sample::Until(Stop::Budget(budget)) => STAGE_SHARE * budget.as_secs_f64(),
+            _ => STAGE_SECONDS,
+        };
+        let in_time = motions_in(seconds, pair);
+        let sides = 2.0 * problem.alignment().free.len() as f64;
+        let steps = (STEPS * affordable(pair).sqrt()).max(LEAST_STEPS);
+        let steps_in_time = (in_time as f64 / sides - BISECTIONS).max(FEWEST_STEPS);
+        let most = method.motions().default_samples(pair).min(in_time);
+        let random = match (domain, self.sample) {
+            (Domain::Poses(poses), _) => poses.len().min(most),
+            (Domain::Grid(_), Sample::Until(Stop::Samples(samples))) => samples.min(most),
+            (Domain::Grid(_), _) => most,
+        };
+        Afterwards { steps: steps.min(steps_in_time) as usize, random }
     }
 
     /// Which poses answer: those that were asked for, or random ones where a grid that can be afforded is too coarse to resolve the accepted set.
@@ -103,10 +145,10 @@ impl Run {
         }
         let poses = match self.sample {
             Sample::Until(Stop::Samples(poses)) => return Ok(Over::Stream(poses.max(1))),
-            Sample::Until(Stop::Budget(budget)) => budget.as_secs_f64() / seconds_per_motion(pair),
-            _ => SAMPLED_SECONDS / seconds_per_motion(pair),
+            Sample::Until(Stop::Budget(budget)) => motions_in(STAGE_SHARE * budget.as_secs_f64(), pair),
+            _ => motions_in(SAMPLED_SECONDS, pair).max(method.default_samples(pair)),
         };
-        Ok(Over::Stream(poses.clamp(SAMPLED[0], SAMPLED[1]) as usize))
+        Ok(Over::Stream(poses.min(SAMPLED)))
     }
 
     /// How the window is looked for: in the proportions of the error box, with the friction of the method.
@@ -138,10 +180,9 @@ fn spans_cells(problem: &Problem, method: &Method, grid: &Grid) -> bool {
 impl Plan {
     /// Core-seconds that everything takes, about: the decision and the motions that follow it (Sum, limits, window, seat).
     pub fn seconds(&self, problem: &Problem) -> f64 {
-        /// Random poses of the window and motions of its search, as multiples of those of the Sum; motions of a limit and of the seat.
-        const WINDOW: f64 = 6.0;
-        const LIMIT: f64 = 20.0;
-        const SEAT: f64 = 40.0;
+        /// Motions of a window, as a multiple of its random poses; those of the seat and of what depends on the step.
+        const WINDOW: f64 = 3.0;
+        const OTHERS: f64 = 60.0;
         let pair = problem.pair();
         let samples = self.method.default_samples(pair) as f64;
         let drawn = self.sample.map_or(0.0, |sample| match sample.stop {
@@ -152,8 +193,14 @@ impl Plan {
             Domain::Grid(_) => self.cost.seconds,
             Domain::Poses(poses) => poses.len() as f64 * seconds_per_motion(pair),
         };
-        let sides = 2.0 * problem.alignment().free.len() as f64;
-        let motions = if samples > 0.0 { drawn + WINDOW * samples + LIMIT * sides + SEAT } else { 0.0 };
+        if samples == 0.0 {
+            return decided;
+        }
+        let free = problem.alignment().free;
+        // With roll and pitch locked once more.
+        let (sides, windows) = if free == DofSet::ALL { (16.0, 2.0) } else { (2.0 * free.len() as f64, 1.0) };
+        let Afterwards { steps, random } = self.afterwards;
+        let motions = drawn + sides * (steps as f64 + BISECTIONS) + windows * WINDOW * random as f64 + OTHERS;
         decided + motions * seconds_per_motion(pair)
     }
 

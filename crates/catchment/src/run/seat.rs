@@ -13,8 +13,8 @@ use crate::contact::told::Told;
 use crate::contact::{Pair, Play, Seat, play};
 use crate::design::{ConnectorSpec, Findings};
 use crate::exec::{Cancelled, Exec};
-use crate::method::Decide;
 use crate::method::descent::{self, End, Follower};
+use crate::method::{Decide, motions_in};
 use crate::pose::{Dof, PoseError, rotation, rotation_angle};
 use crate::problem::{Problem, ProblemError};
 use rayon::prelude::*;
@@ -58,9 +58,11 @@ pub struct Residual {
     pub most: f64,
 }
 
-/// Of so many random descents that a Sum takes, one is followed to its rest; but no fewer than show a 95 % quantile.
+/// Of so many random descents that a Sum takes, one is followed to its rest; but no fewer than show a 95 % quantile, unless these take longer than
+/// this on one core, in seconds.
 const SHARE: usize = 20;
 const FEWEST: usize = 40;
+const LONGEST: f64 = 12.0;
 /// Cells looked at for every accepted one that is wanted.
 const LOOKS: u64 = 50;
 /// Rests nearer than this are the mated pose, in D and radians: what the ends of motions leave.
@@ -78,7 +80,7 @@ impl Seating {
         exec: &Exec,
     ) -> Result<Self, Cancelled> {
         let pair = problem.pair();
-        let count = (settings.default_samples(pair) / SHARE).max(FEWEST);
+        let count = (settings.default_samples(pair) / SHARE).max(FEWEST.min(motions_in(LONGEST, pair)));
         let poses = accepted(acceptance, count as u64, seed);
         let ends: Vec<End> = exec.install(|| {
             let follow = |follower: &mut Follower<'_>, pose: &PoseError| {

@@ -1,6 +1,6 @@
 //! The stages of a run, each once.
 
-use super::plan::GRID_PART;
+use super::plan::{Afterwards, GRID_PART};
 use super::window::WindowError;
 use super::{Answer, Corrected, Over, Plan, Run, RunError, Seating, Upright, jams, window};
 use crate::acceptance::{Acceptance, Domain, Warning};
@@ -10,7 +10,7 @@ use crate::merit::Merits;
 use crate::merit::success::success;
 use crate::merit::tolerance::{Tolerance, followed};
 use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError, Stop};
-use crate::method::{Decide, Decided, Doubts, Follow, Method, affordable, descent};
+use crate::method::{Decided, Doubts, Follow, Method, descent};
 use crate::problem::Problem;
 
 /// What follows random poses and doubtful cells exactly: the method itself where it decides each pose by itself (descents would know
@@ -41,20 +41,40 @@ pub(super) fn decide(plan: &Plan, problem: &Problem, exec: &Exec) -> Result<Deci
     Ok(plan.method.decide(problem, &plan.domain, exec)?)
 }
 
-/// Poses on either side of an axis for the tolerances of simple halves, and of any halves.
-const STEPS: f64 = 48.0;
-const LEAST_STEPS: f64 = 12.0;
+/// What the connector tolerates with roll and pitch locked, where five errors are free and exact motions answer beside a grid.
+pub(super) fn upright(
+    run: &Run,
+    plan: &Plan,
+    problem: &Problem,
+    exec: &Exec,
+) -> Result<Option<Upright>, RunError> {
+    let judge = judge(&plan.method);
+    let answers = judge.own.is_some() || matches!(plan.domain, Domain::Grid(_)) && plan.sample.is_some();
+    if !(matches!(run.over, Over::Grid(_)) && answers && judge.is_descent()) {
+        return Ok(None);
+    }
+    let Afterwards { steps, random } = plan.afterwards;
+    let by = window::Effort { seed: run.seed, random, motions: &plan.method.motions() };
+    Upright::of(problem, steps, &by, &exec.part([0.0, 1.0], "roll and pitch locked"))
+}
+
+/// How the time after the decision is divided, about: up to which share the Sum, what depends on the step, limits, boxes and the seat reach.
+const SHARES: [f64; 5] = [0.15, 0.3, 0.5, 0.95, 1.0];
 
 /// Everything after the decision.
 pub(super) fn finish(
     run: &Run,
     plan: &Plan,
     problem: &Problem,
-    decided: Decided,
+    (upright, decided): (Option<Upright>, Decided),
     started: Stopwatch,
     exec: &Exec,
 ) -> Result<Answer, RunError> {
     let Decided { mut acceptance, doubts, mut by_products, settings } = decided;
+    let part = |from: f64, to: f64| exec.part([from, to], "Sum, limits, windows, seat");
+    let [sum, step, limit, boxes, all] = SHARES;
+    let [of_sum, of_step, of_limits, of_boxes, of_seat] =
+        [part(0.0, sum), part(sum, step), part(step, limit), part(limit, boxes), part(boxes, all)];
     let mut corrected = None;
     if let Domain::Grid(grid) = &plan.domain {
         if plan.heights && by_products.landscape.is_none() {
@@ -62,26 +82,28 @@ pub(super) fn finish(
         }
         if let Some(settings) = plan.sample.map(|settings| left(settings, started)) {
             let doubts = doubts.as_deref();
-            corrected = Some(correct(&plan.method, problem, grid, &acceptance, doubts, &settings, exec)?);
+            corrected = Some(correct(&plan.method, problem, grid, &acceptance, doubts, &settings, &of_sum)?);
         }
         if let Some(doubts) = &doubts {
             // Which cells are settled depends on the number of random poses, not on the time they took.
             let most = corrected.as_ref().map_or(0, |corrected| corrected.found.descents);
-            settle(&plan.method, problem, grid, &**doubts, &mut acceptance, most, exec)?;
+            settle(&plan.method, problem, grid, &**doubts, &mut acceptance, most, &of_sum)?;
         }
     }
     let judge = judge(&plan.method);
     if judge.own.is_some() || corrected.is_some() || doubts.is_some() {
-        acceptance.warnings.extend(judge.as_follow().doubt(problem, run.seed, exec)?);
+        acceptance.warnings.extend(judge.as_follow().doubt(problem, run.seed, &of_step)?);
     }
     let motions = plan.method.motions();
-    let window =
-        if run.window { Some(window::by(problem, &run.window_settings(), &motions, exec)) } else { None };
+    let window = if run.window {
+        Some(window::by(problem, &run.window_settings(), &motions, &of_boxes))
+    } else {
+        None
+    };
     if let Some(Err(WindowError::Cancelled(error))) = window {
         return Err(error.into());
     }
     let mut merits = Merits::of(&acceptance, problem.alignment(), exec)?;
-    let mut upright = None;
     if matches!(run.over, Over::Grid(_)) && (corrected.is_some() || judge.own.is_some()) {
         let grid = &match &plan.domain {
             Domain::Grid(grid) => grid.clone(),
@@ -89,9 +111,9 @@ pub(super) fn finish(
             Domain::Poses(_) => Grid::over(problem.alignment(), |_| 1),
         };
         // What follows random poses exactly can follow some along the axes, and about the largest cubes.
-        let steps = (STEPS * affordable(problem.pair()).sqrt()).max(LEAST_STEPS) as usize;
+        let Afterwards { steps, random } = plan.afterwards;
         merits.tolerances = followed(grid, steps, |poses| {
-            let decided = judge.as_follow().follow(problem, Domain::Poses(poses), exec);
+            let decided = judge.as_follow().follow(problem, Domain::Poses(poses), &of_limits);
             Ok::<_, RunError>(decided?.0.outcomes)
         })?;
         if let Domain::Poses(_) = &plan.domain {
@@ -100,15 +122,10 @@ pub(super) fn finish(
         }
         if judge.is_descent() {
             let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
-            let most = motions.default_samples(problem.pair());
-            let drawn = match &plan.domain {
-                Domain::Poses(poses) => poses.len(),
-                Domain::Grid(_) => corrected.as_ref().map_or(most, |corrected| corrected.found.descents),
-            };
-            let random = drawn.min(most);
+            let drawn = corrected.as_ref().map_or(random, |corrected| corrected.found.descents);
+            let random = random.min(drawn);
             let by = window::Effort { seed: run.seed, random, motions: &motions };
-            window::follow_cubes(&mut merits, centered, problem, grid, &by, exec)?;
-            upright = Upright::of(problem, steps, &by, exec)?;
+            window::follow_cubes(&mut merits, centered, problem, grid, &by, &of_boxes)?;
         }
     }
     let success = match &run.errors {
@@ -116,7 +133,7 @@ pub(super) fn finish(
         None => None,
     };
     let jams = if run.jams { Some(jams::by(problem, &run.jams_settings(), &motions, exec)?) } else { None };
-    let seating = Seating::of(problem, &acceptance, &motions, run.seed, exec)?;
+    let seating = Seating::of(problem, &acceptance, &motions, run.seed, &of_seat)?;
     Ok(Answer {
         problem: problem.clone(),
         run: run.clone(),

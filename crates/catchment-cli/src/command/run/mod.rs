@@ -19,8 +19,8 @@ use catchment::acceptance::Domain;
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, DofSet};
 use catchment::problem::Problem;
-use catchment::report::{UnanswerableError, figure, table_with};
-use catchment::run::{Over, Plan, Requirement, Run, RunError};
+use catchment::report::{UnanswerableError, figure, first_look, table_with};
+use catchment::run::{Over, Plan, Requirement, Run, RunError, Upright};
 use catchment::terminal::escaped;
 use clap::Args;
 
@@ -125,14 +125,21 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::with_help(message, Some(help)));
     }
     // Whoever chooses a resolution knows what it takes.
-    if args.resolution.is_none() {
-        to_stderr(&said_before(&run, &plan, &problem, running.exec.threads()));
-    }
+    let said = match args.resolution {
+        None => said_before(&run, &plan, &problem, running.exec.threads()),
+        Some(_) => Vec::new(),
+    };
+    to_stderr(&said);
     if targets.draw() {
         plan.ensure_fits(&running.exec)?;
         figure::ensure_run_fits(&plan, &running.exec)?;
     }
-    let answer = run.on(&problem, &running.exec).map_err(|error| refused(&problem, error))?;
+    let first = |upright: &Upright| {
+        if !said.is_empty() {
+            to_stderr(&first_look(problem.design(), upright));
+        }
+    };
+    let answer = run.on_telling(&problem, &running.exec, first).map_err(|error| refused(&problem, error))?;
     let report = answer.report();
     let mut notes = targets.write(&answer, &running.exec)?;
     drop(running);

@@ -22,7 +22,7 @@
 //! The answers are those of the trees: every pair whose contact lies on both features, with the same numbers. Where a list would hold more than
 //! [`MOST`] pairs, the next narrower one is the widest.
 
-use super::{Meets, Number, Turned, meeting};
+use super::{DIVIDED, ENLISTED, LISTED, Meets, Number, Turned, meeting};
 use crate::contact::candidates::{Candidate, Counts, Sieve, edges_may_touch};
 use crate::contact::nearby::chord;
 use crate::contact::overlap::Frames;
@@ -119,6 +119,8 @@ pub(in crate::contact) struct Lists<P: Pairs> {
     levels: Vec<Level<P::Two>>,
     /// The widest that is not too long.
     widest: usize,
+    /// What all of it took, about, in nanoseconds.
+    pub(in crate::contact) took: u64,
 }
 
 impl<P: Pairs> Default for Lists<P> {
@@ -131,7 +133,7 @@ impl<P: Pairs> Default for Lists<P> {
             from_trees: None,
             from_list: None,
         };
-        Self { levels: P::REACHES.iter().map(level).collect(), widest: 0 }
+        Self { levels: P::REACHES.iter().map(level).collect(), widest: 0, took: 0 }
     }
 }
 
@@ -183,15 +185,16 @@ impl<T> Level<T> {
 
 impl<P: Pairs> Lists<P> {
     /// Shows every pair within `reach` of each other, and some beyond; says whether it could, else nothing was shown.
-    fn within(&mut self, turned: &Turned<'_>, reach: f64, see: impl FnMut(&P::Two) -> bool) -> bool {
+    fn within(&mut self, turned: &Turned<'_>, reach: f64, mut see: impl FnMut(&P::Two) -> bool) -> bool {
         let fits = |level: &usize| reach <= 0.5 * P::REACHES[*level];
         let Some(level) = (self.widest..P::REACHES.len()).rev().find(fits) else { return false };
         if !self.levels[level].is_worth_it(turned, P::REACHES[level], reach) {
             return false;
         }
         let Some(moved) = self.prepare(turned, level, reach, 0.0) else { return false };
-        let mut pairs = self.levels[level].last_within(moved, reach).iter().map(|(_, two)| two);
-        pairs.any(see);
+        let pairs = self.levels[level].last_within(moved, reach);
+        let looked = pairs.iter().position(|(_, two)| see(two)).map_or(pairs.len(), |last| last + 1);
+        self.took += LISTED * looked as u64;
         true
     }
 
@@ -213,7 +216,9 @@ impl<P: Pairs> Lists<P> {
             oldest.clear();
             oldest
         };
+        let mut tried = 0;
         let mut add = |two: &P::Two| {
+            tried += 1;
             let clearance = P::clearance(turned, two, &sieve, own).filter(|clearance| *clearance <= own);
             pairs.extend(clearance.map(|clearance| (clearance, *two)));
             pairs.len() <= MOST
@@ -240,6 +245,8 @@ impl<P: Pairs> Lists<P> {
             self.levels[level].lists.clear();
             return None;
         };
+        self.took +=
+            ENLISTED * tried + if wider.is_some() { 0 } else { DIVIDED * price.saturating_sub(tried) };
         self.levels[level].price = Some(price);
         pairs.sort_unstable_by(|(a, _), (b, _)| a.total_cmp(b));
         let moved = ball.moved(turned, reach, skin);

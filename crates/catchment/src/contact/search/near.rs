@@ -7,7 +7,7 @@
 //! ```
 
 use super::lists::{Lists, Pairs, Touching};
-use super::{Number, Side, Trees, Turned, meeting, overhang};
+use super::{DIVIDED, Number, Side, Trees, Turned, meeting, overhang};
 use crate::contact::Pair;
 use crate::contact::bounds::Four;
 use crate::contact::candidates::{Counts, Sieve};
@@ -150,6 +150,7 @@ impl Trees {
                 [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
             Close { turned: &turned, position, gaps, out }.descend(&fixed, &moving);
         }
+        lists.took += DIVIDED * turned.divided.get();
         out.sort_unstable_by_key(|(number, _)| *number);
     }
 }

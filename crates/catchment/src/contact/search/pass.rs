@@ -1,7 +1,7 @@
 //! Whether halves of many facets overlap: edges and facets that come near each other, by branch and bound.
 
 use super::lists::{Lists, Passing};
-use super::{Side, Trees, Turned};
+use super::{DIVIDED, Side, Trees, Turned};
 use crate::contact::Pair;
 use crate::contact::bounds::Four;
 use crate::contact::candidates::Counts;
@@ -47,20 +47,29 @@ impl Trees {
     ) -> bool {
         let all = Counts { slack: f64::INFINITY, lowest: f64::NEG_INFINITY };
         let turned = Turned { pairs: Child::may_pass, ..Turned::new(pair, self, rotation, position, all) };
-        if let Some(found) = lists.and_then(|lists| lists.pass(&turned, 2.0 * MARGIN)) {
-            return found;
-        }
-        let frames = Frames::new(rotation, position);
+        let Some(lists) = lists else { return turned.passes() };
+        lists.pass(&turned, 2.0 * MARGIN).unwrap_or_else(|| {
+            let found = turned.passes();
+            lists.took += DIVIDED * turned.divided.get();
+            found
+        })
+    }
+}
+
+impl Turned<'_> {
+    /// Whether an edge of one half passes through a facet of the other.
+    fn passes(&self) -> bool {
+        let frames = Frames::new(&self.rotation, self.position);
         let is = |f: &Leaf, m: &Leaf| {
-            let (fixed, moving) = turned.shapes([f.shape, m.shape]);
+            let (fixed, moving) = self.shapes([f.shape, m.shape]);
             match (f.kind, m.kind) {
                 (Kind::Facet, Kind::Ridge) => frames.moving_enters(moving, m.index, fixed, f.index),
                 (Kind::Ridge, Kind::Facet) => frames.fixed_enters(fixed, f.index, moving, m.index),
                 _ => false,
             }
         };
-        let mut search = Any { turned: &turned, is, found: false };
-        if let Some(([fixed, moving], [f, m])) = &turned.roots() {
+        let mut search = Any { turned: self, is, found: false };
+        if let Some(([fixed, moving], [f, m])) = &self.roots() {
             let [fixed, moving] =
                 [(fixed, f), (moving, m)].map(|(child, four)| Side { child: *child, four, lane: 0 });
             search.descend(&fixed, &moving);

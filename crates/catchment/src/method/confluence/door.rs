@@ -56,9 +56,9 @@ impl Decide for Settings {
     /// Even, so that no cell lies exactly on a mirror plane, where two contacts carry the half at once; fewer where motions take long, but in all about as many as
     /// random poses are followed beside them.
     fn default_cells(&self, pair: &Pair) -> [usize; 5] {
-        const SIMPLE: [usize; 5] = [1000, 200, 32, 24, 20];
+        const SIMPLE: [usize; 5] = [1000, 200, 32, 24, 24];
         let cells = affordable_cells(pair, SIMPLE, descent::default_samples(pair));
-        cells.map(|cells| (cells / 4 * 4).max(4))
+        cells.map(|cells| (cells / 8 * 8).max(4))
     }
 
     fn default_samples(&self, pair: &Pair) -> usize {

@@ -12,13 +12,14 @@ use super::{Settings, run};
 use crate::acceptance::{Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::{Cancelled, Exec};
-use crate::method::affordable;
 use crate::method::correction::wilson95;
+use crate::method::{affordable, motions_in};
 
 /// Poses of simple halves: one change among them is 0.3 %, the interval of none ends at 1.3 %. A second or less.
 const SIMPLE: f64 = 300.0;
-/// Poses of any halves: the interval of no change ends at 4 %.
-const LEAST: f64 = 100.0;
+/// Poses of other halves: the interval of no change ends at 4 %; unless they take longer than this on one core, in seconds.
+const LEAST: usize = 100;
+const LONGEST: f64 = 8.0;
 
 /// The doubt that outcomes of a tight pair depend on the step, if any of the poses drawn by `seed` ends otherwise at half
 /// the step; `None` if none does, or nothing is tight.
@@ -34,7 +35,7 @@ pub fn step_dependence(
     if !pair.is_tight() {
         return Ok(None);
     }
-    let of = (SIMPLE * affordable(pair)).max(LEAST) as usize;
+    let of = ((SIMPLE * affordable(pair)) as usize).max(LEAST.min(motions_in(LONGEST, pair)));
     let poses = || Domain::random(&pair.alignment, of, seed);
     let half =
         Settings { step: settings.step / 2.0, max_steps: settings.max_steps.saturating_mul(2), ..*settings };

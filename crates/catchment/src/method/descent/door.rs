@@ -5,7 +5,7 @@ use crate::acceptance::{Acceptance, Domain, Warning};
 use crate::contact::Pair;
 use crate::exec::Exec;
 use crate::landscape::Grid;
-use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable, affordable_cells};
+use crate::method::cost::{DESCENT_SECONDS, POSE_BYTES, affordable, affordable_cells, motions_in};
 use crate::method::door::{Cost, Decide, DecideError, Decided, Finished, Follow, Info};
 use crate::method::registry::Entry;
 use crate::problem::Problem;
@@ -100,9 +100,11 @@ impl Follow for Settings {
     }
 }
 
-/// Random descents that make the Sum of a pair's grid known to a percent or so, in a second.
+/// Random descents that make the Sum of a pair's grid known to a percent or so, in a second; of large halves fewer.
 pub(in crate::method) fn default_samples(pair: &Pair) -> usize {
     const SIMPLE: f64 = 4000.0;
-    const LEAST: f64 = 200.0;
-    (SIMPLE * affordable(pair)).max(LEAST) as usize
+    /// Unless these take longer than this on one core, in seconds.
+    const LEAST: usize = 200;
+    const LONGEST: f64 = 25.0;
+    ((SIMPLE * affordable(pair)) as usize).max(LEAST.min(motions_in(LONGEST, pair)))
 }

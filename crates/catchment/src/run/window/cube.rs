@@ -12,8 +12,8 @@
 //! A cube of cells ends on their borders, and in five dimensions its corners are coarse: of the 3-D X-Face 12⁵ cells claim 0.167 where
 //! poses fail from 0.148 on.
 //!
-//! Not promised: that no pose in it fails, only that none did that was followed; they are about three times the random poses of the Sum. Nor that no larger
-//! cube lies elsewhere. Its middle is that of the cells' largest, or zero where that one is larger.
+//! Not promised: that no pose in it fails, only that none of so many random ones did ([`Effort::random`]), and none of about twice as many that looked for one.
+//! Nor that no larger cube lies elsewhere. Its middle is that of the cells' largest, or zero where that one is larger.
 
 use super::Settings;
 use super::search::Search;
@@ -31,7 +31,7 @@ use crate::problem::Problem;
 /// With which motions cubes are sought, and with how many.
 pub(in crate::run) struct Effort<'a> {
     pub(in crate::run) seed: u64,
-    /// Random poses that must not fail in a cube; twice as many motions may go before.
+    /// Random poses of a cube of which none may fail; after twice as many motions it is no longer looked for what fails otherwise.
     pub(in crate::run) random: usize,
     pub(in crate::run) motions: &'a descent::Settings,
 }
@@ -54,7 +54,7 @@ pub(in crate::run) fn follow(
         known
     } else {
         let Cube { scale, reaches_border } = about([0.0; 5], 0.0)?;
-        CenteredBox { scale, half_widths: sides(scale), reaches_border, is_followed: true }
+        CenteredBox { scale, half_widths: sides(scale), reaches_border, sampled: Some(by.random) }
     };
     let mut center = [0.0; 5];
     let of_cells = merits.onaa.take().map(|onaa| onaa.bounds);
@@ -88,7 +88,7 @@ pub(in crate::run) fn window_of(
         scale: found.scale,
         half_widths: problem.alignment().free.iter().map(|axis| (axis, half_widths[axis.index()])).collect(),
         reaches_border: search.worst().is_none(),
-        is_followed: true,
+        sampled: Some(by.random),
     }))
 }
 

@@ -206,7 +206,7 @@ impl Window {
             scale: self.scale,
             half_widths: self.axes.iter().map(|side| (side.axis, side.half_width)).collect(),
             reaches_border: self.worst.is_none(),
-            is_followed: true,
+            sampled: Some(self.certificate.motions),
         }
     }
 
@@ -252,6 +252,9 @@ const BESIDE_SHARE: usize = 20;
 const BESIDE_LEAST: usize = 2000;
 const BESIDE_MOST_SHARE: usize = 4;
 
+/// The share of the time that the window takes, about; the reaches of its errors have the rest.
+const OF_WINDOW: f64 = 0.4;
+
 /// Finds the window of a problem and certifies it.
 ///
 /// # Errors
@@ -293,7 +296,8 @@ pub(super) fn by(
         return Err(WindowError::NotDocked { outcome: home });
     }
     let mut search = Search::new(problem, space, settings.seed, motions_by);
-    let Some(Shrunk { scale, redrawn }) = search.shrink(motions, exec)? else {
+    let of_window = exec.part([0.0, OF_WINDOW], "window");
+    let Some(Shrunk { scale, redrawn }) = search.shrink(motions, &of_window)? else {
         let error = search.worst().unwrap_or_default();
         let outcome = outcome_of(&error);
         let given = settings.fixed.iter().flatten().any(|half_width| *half_width > 0.0);
@@ -310,7 +314,10 @@ pub(super) fn by(
     let hints: Vec<[f64; 5]> = search.worst_way().into_iter().collect();
     let beyond = (motions / BESIDE_SHARE).max((motions / BESIDE_MOST_SHARE).min(BESIDE_LEAST));
     let mut axes = Vec::new();
-    for axis in problem.alignment().free.iter() {
+    let free = problem.alignment().free;
+    for (number, axis) in free.iter().enumerate() {
+        let at = |number: usize| OF_WINDOW + (1.0 - OF_WINDOW) * number as f64 / free.len() as f64;
+        let exec = &exec.part([at(number), at(number + 1)], "window");
         let half_width = half_widths[axis.index()];
         let mut reach = |others: [f64; 5], from: f64| {
             let space = Space::along(problem, axis, others);

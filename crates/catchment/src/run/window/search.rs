@@ -9,8 +9,8 @@ use super::Reach;
 use super::space::{Direction, Space};
 use crate::acceptance::{Outcome, Stream};
 use crate::exec::{Cancelled, Exec};
-use crate::method::affordable;
 use crate::method::descent::{self, Follower};
+use crate::method::{affordable, motions_in};
 use crate::pose::PoseError;
 use crate::problem::Problem;
 use rayon::prelude::*;
@@ -26,19 +26,25 @@ const LOOKS_ALONE: usize = 64;
 /// No fewer of halves whose motions take long.
 const LEAST_LOOKS_ALONE: usize = 16;
 const LOOKS_BESIDE: usize = 4;
-/// Moves per batch, and how many in a row that find nothing end the search.
+/// Moves per batch, of halves whose motions take long fewer: what one batch finds spares the next one looks; and how many in a row that find nothing end
+/// the search.
 const BATCH: usize = 64;
+const LEAST_BATCH: f64 = 8.0;
 const QUIET: usize = 512;
 /// The same of halves whose motions take long.
-const LEAST_QUIET: f64 = 128.0;
+const LEAST_QUIET: usize = 128;
+/// Core-seconds that moves, and looks along the directions of one error beside the others, take at most: of halves whose motions take very long fewer are tried.
+const LONGEST: f64 = 10.0;
 /// The window is so much smaller than the nearest pose that was seen to fail.
 const MARGIN: f64 = 1e-3;
+const MOST_MARGIN: f64 = 0.1;
 /// Windows that are tried before it is given up.
 pub(super) const WINDOWS: usize = 50;
 /// Below this scale, as a share of the largest, there is no window.
 const NONE: f64 = 1e-4;
 /// Random poses between two looks at whether one failed.
 const CERTIFIED_AT_ONCE: usize = 4096;
+const CERTIFIED_WHERE_SPENT: usize = 64;
 /// Beyond so many batches of moves what is found is good enough; the certificate has the last word.
 const MOST_BATCHES: u64 = 200;
 
@@ -134,16 +140,24 @@ impl<'a> Search<'a> {
     }
 
     /// Looks for what fails, and makes the window smaller until no random pose of it does. None where poses fail however small it is, or lie all
-    /// over ([`Self::worst`] has one of them), and where it is no larger than asked for. Once it has taken enough motions, no random poses are drawn any more.
+    /// over ([`Self::worst`] has one of them), and where it is no larger than asked for. Once it has taken enough motions, random poses alone look for what
+    /// fails, and the window gets smaller by more each time.
     pub(super) fn shrink(&mut self, motions: usize, exec: &Exec) -> Result<Option<Shrunk>, Cancelled> {
         self.directions(exec)?;
+        let mut margin = MARGIN;
         for redrawn in 0..WINDOWS {
-            self.moves(exec)?;
+            let is_spent = self.followed > self.most;
+            if is_spent {
+                margin = (2.0 * margin).min(MOST_MARGIN);
+            } else {
+                self.moves(exec)?;
+            }
             if !self.has_room() {
                 return Ok(None);
             }
-            let scale = self.window(MARGIN);
-            if self.followed > self.most || !self.certify([0.0, scale], motions, redrawn, exec)? {
+            let scale = self.window(margin);
+            let at_once = if is_spent { CERTIFIED_WHERE_SPENT } else { CERTIFIED_AT_ONCE };
+            if !self.certify([0.0, scale], (motions, at_once), redrawn, exec)? {
                 return Ok(Some(Shrunk { scale, redrawn }));
             }
         }
@@ -173,7 +187,9 @@ impl<'a> Search<'a> {
             let both = hints.iter().flat_map(|u| [1.0, -1.0].map(|sign| self.facing(u, sign)));
             let hinted: Vec<Direction> = both.filter_map(|u| self.space.onto_surface(u)).collect();
             self.try_batches(&hinted, from, LOOKS_BESIDE, exec)?;
-            self.try_batches(&all, from, LOOKS_BESIDE, exec)?;
+            let most = motions_in(LONGEST, self.problem.pair()).div_ceil(LOOKS_BESIDE);
+            let some: Vec<Direction> = all.iter().copied().step_by(all.len().div_ceil(most).max(1)).collect();
+            self.try_batches(&some, from, LOOKS_BESIDE, exec)?;
             for round in 0..WINDOWS {
                 let to = self.window(SHARP);
                 if to <= from {
@@ -181,7 +197,7 @@ impl<'a> Search<'a> {
                 }
                 self.moves(exec)?;
                 let to = self.window(SHARP).max(from);
-                if !self.certify([from, to], motions, round, exec)? {
+                if !self.certify([from, to], (motions, CERTIFIED_AT_ONCE), round, exec)? {
                     break;
                 }
             }
@@ -198,17 +214,20 @@ impl<'a> Search<'a> {
     /// Moves about the nearest pose that fails, and elsewhere, until many in a row find none nearer.
     fn moves(&mut self, exec: &Exec) -> Result<(), Cancelled> {
         let mut quiet = 0;
-        let enough = (QUIET as f64 * affordable(self.problem.pair()).sqrt()).max(LEAST_QUIET) as usize;
+        let pair = self.problem.pair();
+        let least = LEAST_QUIET.min(motions_in(LONGEST, pair));
+        let enough = ((QUIET as f64 * affordable(pair).sqrt()) as usize).max(least);
+        let batch = BATCH.min(enough);
         let last = self.batches + MOST_BATCHES;
         while quiet < enough && self.batches < last && self.has_room() && self.followed < self.most {
             let random = self.random.branch(self.batches);
             self.batches += 1;
             let all: Vec<Direction> =
-                (0..BATCH as u64).filter_map(|k| self.moved(random.branch(k))).collect();
+                (0..batch as u64).filter_map(|k| self.moved(random.branch(k))).collect();
             let before = self.scale();
             self.try_all(&all, [0.0, INSIDE * before], 1, exec)?;
             exec.report(quiet as f64 / enough as f64, "moves about the worst pose");
-            quiet = if self.scale() < before { 0 } else { quiet + BATCH };
+            quiet = if self.scale() < before { 0 } else { quiet + batch };
         }
         Ok(())
     }
@@ -265,8 +284,12 @@ impl<'a> Search<'a> {
         exec: &Exec,
     ) -> Result<(), Cancelled> {
         let whole = self.space.border() - from;
-        for (number, batch) in all.chunks(BATCH).enumerate() {
-            exec.report((number * BATCH) as f64 / all.len() as f64, "directions");
+        let at_once = (BATCH as f64 * affordable(self.problem.pair()).sqrt()).max(LEAST_BATCH) as usize;
+        for (number, batch) in all.chunks(at_once).enumerate() {
+            exec.report((number * at_once) as f64 / all.len() as f64, "directions");
+            if self.followed > self.most {
+                break;
+            }
             let to = if self.nearest.is_some() { INSIDE * self.scale() } else { self.space.border() };
             if to > from && self.has_room() {
                 let share = (looks as f64 * (to - from) / whole).ceil() as usize;
@@ -327,12 +350,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Follows random poses all over the window of this scale, of what grows beyond another one, a stream of their own for every round; where one fails,
-    /// the nearest failing pose is sought from it on, and true is returned.
+    /// Follows random poses all over the window of this scale, of what grows beyond another one, a stream of their own for every round; where one fails
+    /// of so many at once, the nearest failing pose is sought from it on, and true is returned.
     fn certify(
         &mut self,
         [from, scale]: [f64; 2],
-        motions: usize,
+        (motions, at_once): (usize, usize),
         round: usize,
         exec: &Exec,
     ) -> Result<bool, Cancelled> {
@@ -340,7 +363,7 @@ impl<'a> Search<'a> {
         let random = self.random.branch(BRANCH).branch(round as u64);
         let mut done = 0;
         while done < motions {
-            let until = motions.min(done + CERTIFIED_AT_ONCE);
+            let until = motions.min(done + at_once);
             let (pair, settings, space) = (self.problem.pair(), &self.settings, &self.space);
             let widths = space.half_widths(scale);
             let fails = |follower: &mut Follower<'_>, k: usize| -> Result<Option<Direction>, Cancelled> {

@@ -8,7 +8,7 @@
 //!
 //! Not promised: that the cause is the only one.
 
-use super::halves::design_unit;
+use super::halves::file_unit;
 use super::sink::{Drawn, Grain, Triangles, together};
 use super::{PartFile, Settings, Way};
 use crate::advice::Advice;
@@ -194,7 +194,7 @@ pub(super) fn inches(halves: [&Half; 2], settings: &Settings, scale: f64) -> Opt
         (high - low).max_element() * scale
     });
     let longest = longest[0].max(longest[1]);
-    (design_unit(settings) == LengthUnit::Mm && longest < SHORT).then(|| {
+    (file_unit(settings) == LengthUnit::Mm && longest < SHORT).then(|| {
         format!(
             "the larger part is {} mm long: is the file in inches? Then it is {} mm long",
             number(longest),

@@ -1,6 +1,6 @@
 //! The design file of a proposal: what every line is, and why it says what it says.
 
-use super::halves::{design_unit, says_its_unit};
+use super::halves::{design_unit, file_unit, says_its_unit};
 use super::judge::{Judged, Seat};
 use super::way::Lie;
 use super::{Beside, PartFile, Settings};
@@ -68,7 +68,7 @@ fn element(beside: &Beside, unit: LengthUnit) -> String {
 
 /// What draws a half: its file, or a list of parts that begins with it.
 fn drawn(part: &PartFile, with: &[Beside], settings: &Settings) -> Vec<String> {
-    let unit = design_unit(settings);
+    let unit = file_unit(settings);
     let is_step = FileSpec::new(&part.path, 1.0).is_step();
     let meshed = is_step.then(|| MESHED.to_owned());
     if with.is_empty() {

@@ -1,5 +1,6 @@
 //! The halves of a proposal: a file each, and what belongs to it, in the unit of the design.
 
+use super::candidate::shown_unit;
 use super::{Beside, PartFile, ProposalError, Settings, file};
 use crate::connector::{Half, Side, of_half};
 use crate::design::{ConnectorSpec, FileSpec, FileUnit, Findings, HalfSpec, LengthUnit, SourceText};
@@ -71,17 +72,26 @@ fn specs(parts: &[PartFile; 2], settings: &Settings, place: &Path) -> Result<[Ha
 
 /// A file as a half.
 fn mesh(part: &PartFile, settings: &Settings) -> HalfSpec {
-    let mut spec = FileSpec::new(&part.path, 1.0);
+    let unit = design_unit(settings).metres();
+    let scale = file_unit(settings).metres() / unit;
+    let mut spec = FileSpec::new(&part.path, scale);
     if says_its_unit(&part.path) {
-        (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / design_unit(settings).metres());
+        (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit);
     }
-    spec.treatment.simplify = settings.simplify;
+    spec.treatment.simplify = settings.simplify.map(|most| scale * most);
     HalfSpec::Mesh(spec)
 }
 
-/// The unit of the design.
-pub(super) fn design_unit(settings: &Settings) -> LengthUnit {
+/// The unit of files that do not say theirs.
+pub(super) fn file_unit(settings: &Settings) -> LengthUnit {
     settings.unit.unwrap_or(LengthUnit::Mm)
+}
+
+/// The unit of the design, in which answers are given: millimetres where files are in metres, unless parts are written in the unit of the files beside them.
+pub(super) fn design_unit(settings: &Settings) -> LengthUnit {
+    let unit = file_unit(settings);
+    let has_parts = settings.with.iter().flatten().any(|beside| matches!(beside, Beside::Part(_)));
+    if has_parts { unit } else { shown_unit(unit) }
 }
 
 /// Whether a file says its unit itself.

@@ -73,13 +73,13 @@ pub struct Settings {
     pub approach: Option<Way>,
     /// Where the fixed and the moving half face, of parts in frames of their own.
     pub facing: [Option<Way>; 2],
-    /// The unit of files that do not say theirs, and of the design; millimetres without it.
+    /// The unit of files that do not say theirs; millimetres without it. The design has the same, but millimetres for files in metres.
     pub unit: Option<LengthUnit>,
     /// Errors that are free; whichever the seat holds without it.
     pub free: Option<DofSet>,
     /// The name of the design.
     pub name: Option<String>,
-    /// How far the surface of a file may move so that it is described with fewer triangles, in the unit of the design.
+    /// How far the surface of a file may move so that it is described with fewer triangles, in `unit`.
     pub simplify: Option<f64>,
     /// What belongs to the fixed and to the moving half beside its file.
     pub with: [Vec<Beside>; 2],
