@@ -104,16 +104,16 @@ mod tests {
             let connector = Connector::of_family(&spec, Mount::X).unwrap();
             affordable(&Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X)))
         };
-        // Hundreds of facets take a millisecond: by the cube of their number it would be a tenth of a second and more.
+        // Of a thousand facets from all the error box 42 ms were measured: by the cube of their number it would be 300 ms and more.
         let (coarse, fine) = (share(1e-2), share(1e-5));
         assert!(coarse > fine, "{coarse} {fine}");
         let milliseconds = |share: f64| 1e3 * DESCENT_SECONDS / share;
-        assert!((0.2..5.0).contains(&milliseconds(fine)), "{}", milliseconds(fine));
+        assert!((20.0..80.0).contains(&milliseconds(fine)), "{}", milliseconds(fine));
     }
 
     #[test]
     fn what_a_motion_takes_is_counted_and_the_same_each_time() {
-        let spec = FamilySpec::Cone(Cone { chord_error: 1e-4, ..Cone::default() });
+        let spec = FamilySpec::Cone(Cone { chord_error: 1e-5, ..Cone::default() });
         let connector = Connector::of_family(&spec, Mount::X).unwrap();
         let pair = || Pair::new(&connector, &Alignment::new(DofSet::ALL, Mount::X));
         let (one, other) = (counted(&pair()), counted(&pair()));

@@ -54,9 +54,11 @@ const LEAST_STEPS: f64 = 12.0;
 const FEWEST_STEPS: f64 = 4.0;
 const BISECTIONS: f64 = 7.0;
 
-/// Core-seconds that each of about eight stages may take where nothing is said: two minutes on two cores in all. Of a budget each has this share.
+/// Core-seconds that each of about eight stages may take where nothing is said: two minutes on two cores in all. Of a budget each has this share, and some
+/// seconds in any case.
 const STAGE_SECONDS: f64 = 20.0;
 const STAGE_SHARE: f64 = 0.2;
+const LEAST_STAGE_SECONDS: f64 = 2.0;
 
 impl Run {
     /// What this run will do on a problem.
@@ -115,7 +117,9 @@ impl Run {
     fn afterwards(&self, problem: &Problem, method: &Method, domain: &Domain) -> Afterwards {
         let pair = problem.pair();
         let seconds = match self.sample {
-            Sample::Until(Stop::Budget(budget)) => STAGE_SHARE * budget.as_secs_f64(),
+            Sample::Until(Stop::Budget(budget)) => {
+                (STAGE_SHARE * budget.as_secs_f64()).max(LEAST_STAGE_SECONDS)
+            }
             _ => STAGE_SECONDS,
         };
         let in_time = motions_in(seconds, pair);

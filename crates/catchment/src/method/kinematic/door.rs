@@ -47,7 +47,7 @@ impl Decide for Kinematic {
     }
 
     fn default_cells(&self, _: &Pair) -> [usize; 5] {
-        [1000, 200, 48, 32, 20]
+        [1000, 200, 48, 32, 24]
     }
 
     fn cost(&self, _: &Problem, grid: &Grid) -> Cost {

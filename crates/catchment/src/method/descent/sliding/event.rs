@@ -8,8 +8,8 @@
 //!     │      ╲        passed
 //! ```
 //!
-//! What is met is landed on within its tolerance, from either side. What is lost is left on the far side of its border, so
-//! that it is not felt again. At every length the step is made anew: direction at its own middle, then corrected.
+//! What is met is landed on within its tolerance, on the open side of 0 where it can be: edges that are nearly parallel and overlap by 10⁻⁹ D seem to pass
+//! through each other's facets. What is lost is left on the far side of its border, so that it is not felt again. At every length the step is made anew: direction at its own middle, then corrected.
 
 use super::super::motion::{Motion, State};
 use super::super::projection::Vector;
@@ -47,10 +47,10 @@ pub(super) enum Reached {
 
 /// What came of a step of some length.
 enum Trial {
-    /// Nothing met, nothing lost.
-    Clear(State),
-    /// A contact overlaps, or one that carries is lost.
-    Passed(State, Event),
+    /// Nothing met, nothing lost; and whether it was asked if the halves overlap, which they do not.
+    Clear(State, bool),
+    /// A contact overlaps, or one that carries is lost; and the same.
+    Passed(State, Event, bool),
     /// The contacts that carry cannot be kept.
     Failed,
     /// The halves overlap, and no contact in reach explains it.
@@ -117,7 +117,7 @@ impl Bracket {
     /// Whether a step that ends where the event's function has this value ends on the event.
     fn lands(&self, value: f64) -> bool {
         match self.event.kind {
-            Kind::Met => value.abs() <= LANDING,
+            Kind::Met => (-1.5 * LANDING..=LANDING).contains(&value),
             Kind::Lost => (-0.5 * FAR_SIDE..0.5 * FAR_SIDE).contains(&value),
         }
     }
@@ -134,30 +134,30 @@ impl Motion<'_> {
         for _ in 0..MOST_TRIALS {
             let trial = self.attempt(state, start, at, wary);
             let ends = match &trial {
-                Trial::Clear(next) => match &bracket {
+                Trial::Clear(next, _) => match &bracket {
                     Some(b) => b.event.kind == Kind::Met && b.lands(self.value(&b.event, next)),
                     None => at >= high,
                 },
-                Trial::Passed(next, event) => {
+                Trial::Passed(next, event, _) => {
                     event.kind == Kind::Lost && self.value(event, next) >= -0.5 * FAR_SIDE
                 }
                 Trial::Failed | Trial::Overlaps => false,
             };
             match trial {
-                Trial::Clear(next) | Trial::Passed(next, _) if ends => {
-                    if wary || !self.overlaps(&next) {
+                Trial::Clear(next, tested) | Trial::Passed(next, _, tested) if ends => {
+                    if tested || !self.overlaps(&next) {
                         return Reached::At(next, at);
                     }
                     (low, clear, high, bracket, wary) = (0.0, *state, at, None, true);
                 }
-                Trial::Clear(next) => {
+                Trial::Clear(next, _) => {
                     (low, clear) = (at, next);
                     if let Some(bracket) = &mut bracket {
                         let value = self.value(&bracket.event, &next);
                         bracket.clear_at(value);
                     }
                 }
-                Trial::Passed(next, event) => {
+                Trial::Passed(next, event, _) => {
                     let value = self.value(&event, &next);
                     high = at;
                     match &mut bracket {
@@ -230,7 +230,7 @@ impl Motion<'_> {
     fn value(&self, event: &Event, state: &State) -> f64 {
         let contact = self.pair.contact(&event.contact, &event.meeting, &state.rotation, state.cor);
         match event.kind {
-            Kind::Met => contact.gap + 0.5 * LANDING,
+            Kind::Met => contact.gap - 0.5 * LANDING,
             Kind::Lost => self.hold(&contact, &event.meeting, state) + 0.5 * FAR_SIDE,
         }
     }
@@ -270,7 +270,7 @@ impl Motion<'_> {
         let closed = closed.min(self.horizon(at).1);
         let reach = if self.pair.asks_trees() { closed.min(DEEPEST_MET) } else { closed };
         if let Some(event) = self.first_met(state, &next, reach) {
-            return Trial::Passed(next, event);
+            return Trial::Passed(next, event, false);
         }
         // Only of what was not looked at it is asked whether it overlaps.
         let wary = wary || reach < closed;
@@ -281,10 +281,10 @@ impl Motion<'_> {
             (self.hold(&contact, &meeting, &next), event)
         });
         match holds.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(hold, _)| *hold < 0.0) {
-            Some((hold, event)) if hold < -FAR_SIDE => Trial::Passed(next, event),
+            Some((hold, event)) if hold < -FAR_SIDE => Trial::Passed(next, event, false),
             _ if wary && self.overlaps(&next) => Trial::Overlaps,
-            Some((_, event)) => Trial::Passed(next, event),
-            None => Trial::Clear(next),
+            Some((_, event)) => Trial::Passed(next, event, wary),
+            None => Trial::Clear(next, wary),
         }
     }
 
