@@ -131,27 +131,6 @@ fn a_lid_as_large_as_its_recess_is_told() {
     assert!(told.starts_with("exit 0"), "{told}");
 }
 
-/// The same of a box that is taller than its lid is thick, into which the lid may fall on edge: 50 mm deep, and a recess of 2 mm.
-#[test]
-fn a_lid_as_large_as_the_recess_of_a_tall_box_is_told() {
-    let square = |half: f64| [[-half, -half], [half, -half], [half, half], [-half, half]];
-    let [inner, recess, outer] = [36.0, 37.0, 39.0].map(square);
-    let ring = |outer: [[f64; 2]; 4], inner: [[f64; 2]; 4]| -> Vec<[[f64; 2]; 4]> {
-        let wall = |k: usize| [outer[k], outer[(k + 1) % 4], inner[(k + 1) % 4], inner[k]];
-        (0..4).map(wall).collect()
-    };
-    let (low, high) = (ring(outer, inner), ring(outer, recess));
-    let walls = low.iter().map(|wall| (&wall[..], [0.0, 50.0], flat as fn([f64; 2], f64) -> _));
-    let rim = high.iter().map(|wall| (&wall[..], [50.0, 52.0], flat as fn([f64; 2], f64) -> _));
-    let floor = (&outer[..], [-3.0, 0.0], flat as fn([f64; 2], f64) -> _);
-    let solid: Vec<Prism<'_>> = std::iter::once(floor).chain(walls).chain(rim).collect();
-    let lid = (&recess[..], [0.0, 2.0], flat as fn([f64; 2], f64) -> _);
-    let home = two_parts(&obj(&solid), &obj(&[lid]));
-    let printed = run(home.path(), &TWO).unbroken();
-    let cause = printed.split("no play: ").nth(1).unwrap_or_default();
-    assert!(printed.starts_with("exit 2") && cause.contains("2 mm into the other"), "{printed}");
-}
-
 /// Mistakes in the files that leave no seat: each is named, with what to do.
 #[test]
 fn mistakes_in_the_files_are_named() {

@@ -93,11 +93,9 @@ const CELLS: f64 = 160.0;
 const MOST_CELL: f64 = 1.6;
 /// Points of the moving part that are looked at.
 const MOST_POINTS: usize = 2500;
-/// Basins of one view that are kept, and of all; and of views that would have none of these: a lid hardly sinks into its recess, but may fall far into the box
-/// when it stands on edge.
+/// Basins of one view that are kept, and of all.
 const OF_ONE: usize = 6;
 const MOST: usize = 100;
-const OF_OTHERS: usize = 20;
 
 /// Turns a part over: heights of its underside are heights of its top.
 pub(super) const UPSIDE_DOWN: DMat3 = DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::NEG_Z);
@@ -137,13 +135,7 @@ pub(super) fn sinks(
     exec.check()?;
     let mut found: Vec<Sunk> = found.into_iter().flatten().collect();
     found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
-    let others = found.split_off(found.len().min(MOST));
-    let most = found.len() + OF_OTHERS;
-    for other in others {
-        if found.len() < most && found.iter().all(|known| known.lie != other.lie) {
-            found.push(other);
-        }
-    }
+    found.truncate(MOST);
     let fine = exec.each(found.len(), usize::MAX, "places", |k, exec| {
         if exec.is_cancelled() { None } else { refine::refined([fixed, moving], found[k], cell, grain) }
     });
