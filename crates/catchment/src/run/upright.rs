@@ -12,7 +12,7 @@
 //! Not promised: more than [`window`](super::window) promises of as many random poses. Lengths in D, angles in radians.
 
 use super::RunError;
-use super::window::{Effort, Settings, window_of};
+use super::window::{Effort, Settings, window_of, within};
 use crate::acceptance::Domain;
 use crate::exec::Exec;
 use crate::landscape::Grid;
@@ -68,6 +68,6 @@ impl Upright {
             ..Settings::default()
         };
         let window = window_of(&problem, &settings, by, exec)?;
-        Ok(window.map(|window| Self { tolerances, window }))
+        Ok(window.map(|window| Self { window: within(window, &tolerances), tolerances }))
     }
 }

@@ -26,7 +26,7 @@ mod space;
 #[cfg(test)]
 mod tests;
 
-pub(super) use cube::{Effort, follow as follow_cubes, window_of};
+pub(super) use cube::{Effort, follow as follow_cubes, window_of, within};
 
 use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
