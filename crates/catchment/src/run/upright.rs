@@ -68,6 +68,6 @@ impl Upright {
             ..Settings::default()
         };
         let window = window_of(&problem, &settings, by, exec)?;
-        Ok(window.map(|window| Self { window: within(window, &tolerances), tolerances }))
+        Ok(window.map(|window| Self { window: within(&window, &tolerances), tolerances }))
     }
 }

@@ -57,7 +57,7 @@ pub(in crate::run) fn follow(
         let Cube { scale, reaches_border } = about([0.0; 5], 0.0)?;
         CenteredBox { scale, half_widths: sides(scale), reaches_border, sampled: Some(by.random) }
     };
-    let centered = within(centered, &merits.tolerances);
+    let centered = within(&centered, &merits.tolerances);
     let mut center = [0.0; 5];
     let of_cells = merits.onaa.take().map(|onaa| onaa.bounds);
     for (axis, lo, hi) in of_cells.iter().flatten() {
@@ -76,14 +76,14 @@ pub(in crate::run) fn follow(
 }
 
 /// The box, made smaller where one of its errors alone does not dock as far as it reaches.
-pub(in crate::run) fn within(found: CenteredBox, limits: &[Tolerance]) -> CenteredBox {
+pub(in crate::run) fn within(found: &CenteredBox, limits: &[Tolerance]) -> CenteredBox {
     let share = |limit: &Tolerance| {
         let half_width = found.half_widths.iter().find(|(axis, _)| *axis == limit.dof)?.1;
         (half_width > limit.symmetric()).then(|| limit.symmetric() / half_width)
     };
     let share = limits.iter().filter_map(share).fold(1.0, f64::min);
     let half_widths = found.half_widths.iter().map(|(axis, half)| (*axis, share * half)).collect();
-    CenteredBox { scale: share * found.scale, half_widths, ..found }
+    CenteredBox { scale: share * found.scale, half_widths, ..*found }
 }
 
 /// The largest box in the proportions of `settings`, by as many motions as a cube; `None` where there is none.
