@@ -2,17 +2,18 @@
 
 use crate::args::DesignArgs;
 use crate::asked::AskedArgs;
+use crate::command::run::{LONG, time};
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::FileArgs;
+use crate::output::{FileArgs, to_stderr};
 use crate::setting::number;
 use catchment::pose::PoseError;
 use catchment::poses::parse_sizes;
 use catchment::problem::Problem;
 use catchment::report::schema::{Timing, WarningReport};
 use catchment::report::{WindowReport, csv};
-use catchment::run::window::{Settings, Window, WindowError, run as find};
+use catchment::run::window::{Settings, Window, WindowError, run as find, seconds as expected};
 use clap::Args;
 use std::time::Instant;
 
@@ -65,6 +66,14 @@ pub(crate) fn run(args: &WindowArgs) -> Result<ExitStatus, Failure> {
     let form = WindowReport::new(problem.design(), &Window::form(&problem), Vec::new(), None);
     args.asked.check(&form)?;
     let running = args.exec.start()?;
+    let seconds = expected(&problem, &settings) / running.exec.threads() as f64;
+    if seconds > LONG {
+        let free = problem.alignment().free.len();
+        to_stderr(&[format!(
+            "{free} errors on these halves: about {} (--motions N draws that many random poses)",
+            time(seconds)
+        )]);
+    }
     let found = find(&problem, &settings, &running.exec).map_err(refused)?;
     let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
     drop(running);

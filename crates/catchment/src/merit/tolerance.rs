@@ -86,7 +86,7 @@ fn along(acceptance: &Acceptance, grid: &Grid, number: usize) -> Option<Toleranc
 }
 
 /// Bisections of the step between a pose that docks and one that does not.
-const BISECTIONS: i32 = 7;
+pub(crate) const BISECTIONS: i32 = 7;
 
 /// One side of an axis while it is looked at.
 struct Side {

@@ -16,7 +16,7 @@ pub(super) const DESCENT_SECONDS: f64 = 1e-4;
 pub(super) const POSE_BYTES: u64 = (2 * size_of::<End>() + size_of::<Outcome>()) as u64;
 
 /// How many descents can be afforded, as a share of what simple halves allow: the time of a descent grows with about the cube of the
-/// number of facets, and where trees are asked it is counted for a few.
+/// number of facets, and where trees are searched it is counted on a few motions.
 pub fn affordable(pair: &Pair) -> f64 {
     const SIMPLE: f64 = 64.0;
     if pair.asks_trees() {
@@ -32,7 +32,7 @@ pub fn seconds_per_motion(pair: &Pair) -> f64 {
     DESCENT_SECONDS / affordable(pair)
 }
 
-/// How many motions take so long on one core; of however large halves a few.
+/// How many motions take this time on one core, and no fewer than ten.
 pub fn motions_in(seconds: f64, pair: &Pair) -> usize {
     const FEWEST: f64 = 10.0;
     (seconds / seconds_per_motion(pair)).max(FEWEST) as usize

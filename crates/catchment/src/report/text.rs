@@ -163,6 +163,8 @@ mod tests {
         assert_eq!(with_error(2.391_34, [2.380, 2.403_44]), "2.391 ± 0.013");
         assert_eq!(with_error(31.42, [30.0, 32.0]), "31.4 ± 1.5");
         assert_eq!(with_error(2.0, [1.5, 2.1]), "2.00 ± 0.50");
+        // Half of it would be more than the number itself.
+        assert_eq!(with_error(0.002_053, [0.001_66, 0.004_772]), "0.001660 … 0.004772");
         assert_eq!(with_error(0.0, [0.0, 0.000_961]), "0.00000 ± 0.00097");
     }
 

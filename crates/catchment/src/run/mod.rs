@@ -178,14 +178,14 @@ impl Run {
     /// # Errors
     /// See [`RunError`]; nothing is left behind.
     pub fn on(&self, problem: &Problem, exec: &Exec) -> Result<Answer, RunError> {
-        self.on_telling(problem, exec, |_| {})
+        self.on_with(problem, exec, |_| {})
     }
 
-    /// The same; `first` is told what the connector tolerates with roll and pitch locked, which is known long before the rest.
+    /// The same; `first` receives what the connector tolerates with roll and pitch locked, which is known long before the rest.
     ///
     /// # Errors
     /// See [`RunError`]; nothing is left behind.
-    pub fn on_telling(
+    pub fn on_with(
         &self,
         problem: &Problem,
         exec: &Exec,

@@ -5,6 +5,7 @@ use super::{Over, Run, RunError, Sample, jams, window};
 use crate::acceptance::{Domain, Outcome};
 use crate::exec::{Exec, OutOfBudget};
 use crate::landscape::{Grid, Landscape, Resolution};
+use crate::merit::tolerance::BISECTIONS;
 use crate::method::correction::{self, Stop};
 use crate::method::{Cost, Decide, Method, affordable, descent, ensure_fits, motions_in, seconds_per_motion};
 use crate::pose::{DofSet, PoseError};
@@ -48,14 +49,13 @@ const SPANNED: f64 = 1.5;
 const SAMPLED_SECONDS: f64 = 15.0;
 const SAMPLED: usize = 4000;
 
-/// Poses on either side of an axis for the limits of simple halves, and of any halves, and the bisections after them.
+/// Poses on either side of an axis for the limits of simple halves, of other halves, and where even these would take too long.
 const STEPS: f64 = 48.0;
 const LEAST_STEPS: f64 = 12.0;
 const FEWEST_STEPS: f64 = 4.0;
-const BISECTIONS: f64 = 7.0;
 
-/// Core-seconds that each of about eight stages may take where nothing is said: two minutes on two cores in all. Of a budget each has this share, and some
-/// seconds in any case.
+/// Core-seconds that each of about eight stages may take by default: two minutes on two cores in all. Of a budget each has this share, and no less than some
+/// seconds: a budget of seconds on slow halves is exceeded.
 const STAGE_SECONDS: f64 = 20.0;
 const STAGE_SHARE: f64 = 0.2;
 const LEAST_STAGE_SECONDS: f64 = 2.0;
@@ -125,12 +125,11 @@ impl Run {
         let in_time = motions_in(seconds, pair);
         let sides = 2.0 * problem.alignment().free.len() as f64;
         let steps = (STEPS * affordable(pair).sqrt()).max(LEAST_STEPS);
-        let steps_in_time = (in_time as f64 / sides - BISECTIONS).max(FEWEST_STEPS);
+        let steps_in_time = (in_time as f64 / sides - f64::from(BISECTIONS)).max(FEWEST_STEPS);
         let most = method.motions().default_samples(pair).min(in_time);
-        let random = match (domain, self.sample) {
-            (Domain::Poses(poses), _) => poses.len().min(most),
-            (Domain::Grid(_), Sample::Until(Stop::Samples(samples))) => samples.min(most),
-            (Domain::Grid(_), _) => most,
+        let random = match domain {
+            Domain::Poses(poses) => poses.len().min(most),
+            Domain::Grid(_) => most,
         };
         Afterwards { steps: steps.min(steps_in_time) as usize, random }
     }
@@ -204,7 +203,10 @@ impl Plan {
         // With roll and pitch locked once more.
         let (sides, windows) = if free == DofSet::ALL { (16.0, 2.0) } else { (2.0 * free.len() as f64, 1.0) };
         let Afterwards { steps, random } = self.afterwards;
-        let motions = drawn + sides * (steps as f64 + BISECTIONS) + windows * WINDOW * random as f64 + OTHERS;
+        let motions = drawn
+            + sides * (steps as f64 + f64::from(BISECTIONS))
+            + windows * WINDOW * random as f64
+            + OTHERS;
         decided + motions * seconds_per_motion(pair)
     }
 

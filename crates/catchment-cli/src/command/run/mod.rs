@@ -20,7 +20,7 @@ use catchment::landscape::Resolution;
 use catchment::pose::{Dof, DofSet};
 use catchment::problem::Problem;
 use catchment::report::{UnanswerableError, figure, first_look, table_with};
-use catchment::run::{Over, Plan, Requirement, Run, RunError, Upright};
+use catchment::run::{Over, Plan, Requirement, Run, RunError, Sample, Upright};
 use catchment::terminal::escaped;
 use clap::Args;
 
@@ -139,7 +139,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
             to_stderr(&first_look(problem.design(), upright));
         }
     };
-    let answer = run.on_telling(&problem, &running.exec, first).map_err(|error| refused(&problem, error))?;
+    let answer = run.on_with(&problem, &running.exec, first).map_err(|error| refused(&problem, error))?;
     let report = answer.report();
     let mut notes = targets.write(&answer, &running.exec)?;
     drop(running);
@@ -161,7 +161,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
 }
 
 /// What takes longer than this is said before it begins, in seconds.
-const LONG: f64 = 20.0;
+pub(super) const LONG: f64 = 20.0;
 
 /// How long it will take, and what would be faster.
 fn said_before(run: &Run, plan: &Plan, problem: &Problem, threads: usize) -> Vec<String> {
@@ -191,11 +191,13 @@ fn said_before(run: &Run, plan: &Plan, problem: &Problem, threads: usize) -> Vec
         let fewer = time(wall(&plan, &fewer));
         said = format!("{said}; {named} alone: about {fewer} (--free {})", names.join(","));
     }
-    vec![said, "--budget 30s takes fewer poses, --samples N that many".to_owned()]
+    let fewer = "--budget 30s takes fewer poses, --samples N that many".to_owned();
+    // Whoever gave one of them knows them.
+    std::iter::once(said).chain((run.sample == Sample::ByMethod).then_some(fewer)).collect()
 }
 
 /// Seconds as one says them.
-fn time(seconds: f64) -> String {
+pub(super) fn time(seconds: f64) -> String {
     if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
 }
 

@@ -32,7 +32,7 @@ use crate::acceptance::Outcome;
 use crate::exec::{Cancelled, Exec};
 use crate::merit::centered::CenteredBox;
 use crate::method::descent::{self, FrictionOutOfRange, Touch};
-use crate::method::{affordable, seconds_per_motion};
+use crate::method::{affordable, motions_in, seconds_per_motion};
 use crate::pose::{Dof, PoseError};
 use crate::problem::Problem;
 use search::{Search, Shrunk, WINDOWS};
@@ -252,6 +252,11 @@ const BESIDE_SHARE: usize = 20;
 const BESIDE_LEAST: usize = 2000;
 const BESIDE_MOST_SHARE: usize = 4;
 
+/// Core-seconds that the search for the window takes at most, and that for the reach of one error, before random poses alone look on: halves whose motions take
+/// a quarter of a second are answered in minutes.
+const SEARCH_SECONDS: f64 = 120.0;
+const REACH_SECONDS: f64 = 15.0;
+
 /// The share of the time that the window takes, about; the reaches of its errors have the rest.
 const OF_WINDOW: f64 = 0.4;
 
@@ -295,7 +300,8 @@ pub(super) fn by(
     if home != Outcome::Aligned {
         return Err(WindowError::NotDocked { outcome: home });
     }
-    let mut search = Search::new(problem, space, settings.seed, motions_by);
+    let most = |seconds: f64| motions_in(seconds, problem.pair());
+    let mut search = Search::new(problem, space, settings.seed, motions_by).within(most(SEARCH_SECONDS));
     let of_window = exec.part([0.0, OF_WINDOW], "window");
     let Some(Shrunk { scale, redrawn }) = search.shrink(motions, &of_window)? else {
         let error = search.worst().unwrap_or_default();
@@ -312,7 +318,7 @@ pub(super) fn by(
     let half_widths = search.space().half_widths(scale);
     let mut followed = search.followed();
     let hints: Vec<[f64; 5]> = search.worst_way().into_iter().collect();
-    let beyond = (motions / BESIDE_SHARE).max((motions / BESIDE_MOST_SHARE).min(BESIDE_LEAST));
+    let beyond = beyond(motions);
     let mut axes = Vec::new();
     let free = problem.alignment().free;
     for (number, axis) in free.iter().enumerate() {
@@ -321,7 +327,8 @@ pub(super) fn by(
         let half_width = half_widths[axis.index()];
         let mut reach = |others: [f64; 5], from: f64| {
             let space = Space::along(problem, axis, others);
-            let mut search = Search::new(problem, space, settings.seed, motions_by);
+            let mut search =
+                Search::new(problem, space, settings.seed, motions_by).within(most(REACH_SECONDS));
             let reach = search.reach(from, &hints, beyond, exec)?;
             followed += search.followed();
             Ok::<_, Cancelled>(reach)
@@ -338,6 +345,24 @@ pub(super) fn by(
     let tightest = tightest.min_by(|a, b| spare(a).total_cmp(&spare(b))).map(|side| side.axis);
     let worst = search.worst().map(|error| Worst::of(problem, error, motions_by));
     Ok(Window { settings: settings.clone(), axes, scale, worst, tightest, certificate, motions: followed })
+}
+
+/// Random poses beyond a window of which so many were drawn in it.
+fn beyond(motions: usize) -> usize {
+    (motions / BESIDE_SHARE).max((motions / BESIDE_MOST_SHARE).min(BESIDE_LEAST))
+}
+
+/// Core-seconds that it takes, to within a factor of two or three: motions as counted for grids of three and five errors.
+pub fn seconds(problem: &Problem, settings: &Settings) -> f64 {
+    /// Per direction of {−1, 0, 1}ⁿ: looks along it, and bisections where it fails. Per error: its reach.
+    const DIRECTION: usize = 12;
+    const ERROR: usize = 250;
+    let pair = problem.pair();
+    let motions = settings.motions.unwrap_or_else(|| default_motions(problem));
+    let errors = problem.alignment().free.len();
+    let search = (DIRECTION * (3usize.pow(errors as u32) - 1)).min(motions_in(SEARCH_SECONDS, pair));
+    let reaches = ERROR.min(motions_in(REACH_SECONDS, pair)) + beyond(motions);
+    (search + motions + errors * reaches) as f64 * seconds_per_motion(pair)
 }
 
 /// Chance that is allowed of a wrong certificate after so many windows that failed.
