@@ -12,10 +12,6 @@
 use super::kerf::{KerfError, compensated};
 use super::outline::Polygon;
 use super::{Geometry, Latch};
-use dxf::entities::{Circle, Entity, EntityType, LwPolyline};
-use dxf::enums::{AcadVersion, Units};
-use dxf::tables::Layer;
-use dxf::{Color, Drawing, LwPolylineVertex, Point};
 use glam::DVec2;
 use std::fmt::Write;
 
@@ -25,8 +21,13 @@ pub const PART: &str = "PART";
 pub const CUT: &str = "CUT";
 /// Colours of the two, in `AutoCAD`'s palette: white or black, and red.
 const COLOURS: [u8; 2] = [7, 1];
-/// Flag of a closed polyline.
-const CLOSED: i32 = 1;
+/// What stands before the entities of a drawing: `AutoCAD` 2000, in mm, one layer. In place of `{seed}`, `{layer}` and `{colour}` stand the next free handle in
+/// hexadecimal, the layer's name and its colour.
+const HEAD: &str = include_str!("head.dxf");
+/// And after them.
+const FOOT: &str = "  0\nENDSEC\n  0\nSECTION\n  2\nOBJECTS\n  0\nENDSEC\n  0\nEOF\n";
+/// Handle of the first entity, after those of the head.
+const FIRST_HANDLE: usize = 0x11;
 /// Width of the lines of an SVG, in mm: thin, and still seen on a screen. Cutters go by the middle, and by the colour.
 const HAIRLINE: f64 = 0.1;
 /// Room around the drawing, in mm.
@@ -49,12 +50,6 @@ pub enum DrawingError {
     /// The cut line does not exist.
     #[error(transparent)]
     Kerf(#[from] KerfError),
-    /// The DXF could not be written.
-    #[error("cannot write the DXF: {0}")]
-    Dxf(#[from] dxf::DxfError),
-    /// It is no text.
-    #[error("cannot write the DXF: it is no text")]
-    Text(#[from] std::string::FromUtf8Error),
 }
 
 impl Sheet {
@@ -85,36 +80,21 @@ impl Sheet {
     }
 
     /// The sheet as DXF (`AutoCAD` 2000), on one CAD layer. The same sheet gives the same bytes: no date, no random numbers.
-    ///
-    /// # Errors
-    /// None that is known: it is written into memory.
-    #[expect(clippy::default_trait_access, reason = "only dxf itself depends on the crate of the type")]
-    pub fn dxf(&self, layer: &str) -> Result<String, DrawingError> {
-        let mut drawing = Drawing::new();
-        drawing.header.version = AcadVersion::R2000;
-        drawing.header.default_drawing_units = Units::Millimeters;
-        drawing.header.fingerprint_guid = Default::default();
-        drawing.header.version_guid = Default::default();
+    pub fn dxf(&self, layer: &str) -> String {
+        let mut entities: Vec<Entity> = vec![Entity::polyline(&self.outline)];
+        entities.extend(self.holes.iter().map(|(middle, diameter)| Entity::circle(*middle, 0.5 * diameter)));
         let colour = COLOURS[usize::from(layer == CUT)];
-        drawing.add_layer(Layer {
-            name: layer.to_owned(),
-            color: Color::from_index(colour),
-            ..Layer::default()
-        });
-        let mut add = |specific: EntityType| {
-            let mut entity = Entity::new(specific);
-            layer.clone_into(&mut entity.common.layer);
-            drawing.add_entity(entity);
-        };
-        let vertex = |p: &DVec2| LwPolylineVertex { x: p.x, y: p.y, ..LwPolylineVertex::default() };
-        let vertices = self.outline.iter().map(vertex).collect();
-        add(EntityType::LwPolyline(LwPolyline { flags: CLOSED, vertices, ..LwPolyline::default() }));
-        for (middle, diameter) in &self.holes {
-            add(EntityType::Circle(Circle::new(Point::new(middle.x, middle.y, 0.0), 0.5 * diameter)));
+        let seed = format!("{:X}", FIRST_HANDLE + entities.len());
+        let mut text = HEAD.replace("{seed}", &seed).replace("{layer}", layer);
+        text = text.replace("{colour}", &colour.to_string());
+        for (k, entity) in entities.iter().enumerate() {
+            let common = [(0, entity.name.to_owned()), (5, format!("{:X}", FIRST_HANDLE + k))];
+            let on_layer = [(100, "AcDbEntity".to_owned()), (8, layer.to_owned()), (370, whole(0))];
+            for (code, value) in common.iter().chain(&on_layer).chain(&entity.pairs) {
+                let _ = writeln!(text, "{code:>3}\n{value}");
+            }
         }
-        let mut bytes = Vec::new();
-        drawing.save(&mut bytes)?;
-        Ok(without_dates(&String::from_utf8(bytes)?))
+        (text + FOOT).replace('\n', "\r\n")
     }
 
     /// The sheet as SVG, a unit to the mm, thin lines in red.
@@ -154,29 +134,49 @@ pub fn files(latch: &Latch, geometry: &Geometry) -> Result<Vec<(String, Vec<u8>)
     let mut files = Vec::new();
     for sheet in Sheet::all(latch, geometry) {
         let cut = sheet.cut(latch.kerf)?;
-        files.push((format!("{}.dxf", sheet.name), sheet.dxf(PART)?.into_bytes()));
-        files.push((format!("{}-cut.dxf", sheet.name), cut.dxf(CUT)?.into_bytes()));
+        files.push((format!("{}.dxf", sheet.name), sheet.dxf(PART).into_bytes()));
+        files.push((format!("{}-cut.dxf", sheet.name), cut.dxf(CUT).into_bytes()));
         files.push((format!("{}-cut.svg", sheet.name), cut.svg().into_bytes()));
     }
     Ok(files)
 }
 
-/// The DXF without the header's times: variables `$TD…`, each two pairs of lines.
-fn without_dates(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().collect();
-    let mut kept = String::with_capacity(text.len());
-    let mut pairs = lines.chunks_exact(2).peekable();
-    while let Some(pair) = pairs.next() {
-        if pair[1].starts_with("$TD") {
-            pairs.next();
-            continue;
-        }
-        for line in pair {
-            kept.push_str(line);
-            kept.push_str("\r\n");
+/// A DXF entity: its name, and pairs of group code and value.
+struct Entity {
+    name: &'static str,
+    pairs: Vec<(u16, String)>,
+}
+
+impl Entity {
+    /// A closed polyline.
+    fn polyline(corners: &[DVec2]) -> Self {
+        const CLOSED: usize = 1;
+        let mut pairs =
+            vec![(100, "AcDbPolyline".to_owned()), (90, whole(corners.len())), (70, whole(CLOSED))];
+        pairs.extend(corners.iter().flat_map(|p| [(10, real(p.x)), (20, real(p.y))]));
+        Self { name: "LWPOLYLINE", pairs }
+    }
+
+    fn circle(middle: DVec2, radius: f64) -> Self {
+        let numbers = [(10, middle.x), (20, middle.y), (30, 0.0), (40, radius)];
+        let pairs = std::iter::once((100, "AcDbCircle".to_owned()));
+        Self {
+            name: "CIRCLE",
+            pairs: pairs.chain(numbers.map(|(code, value)| (code, real(value)))).collect(),
         }
     }
-    kept
+}
+
+/// A whole number as DXF has it.
+fn whole(value: usize) -> String {
+    format!("{value:>6}")
+}
+
+/// A number to 12 places, without trailing zeros but for one after the point.
+fn real(value: f64) -> String {
+    let text = format!("{value:.12}");
+    let text = text.trim_end_matches('0');
+    if text.ends_with('.') { format!("{text}0") } else { text.to_owned() }
 }
 
 #[cfg(test)]
@@ -187,31 +187,48 @@ mod tests {
         Latch { dowel: Some(4.0), ..Latch::default() }
     }
 
+    /// Group codes and values of a drawing, entity by entity.
+    fn entities(text: &str) -> Vec<Vec<(u16, &str)>> {
+        let lines: Vec<&str> = text.lines().collect();
+        let pairs =
+            lines.as_chunks::<2>().0.iter().map(|[code, value]| (code.trim().parse().unwrap(), *value));
+        let all: Vec<(u16, &str)> = pairs.skip_while(|(_, value)| *value != "ENTITIES").skip(1).collect();
+        let parts = all.chunk_by(|_, (code, _)| *code != 0).map(<[_]>::to_vec);
+        parts.take_while(|entity| entity[0].1 != "ENDSEC").collect()
+    }
+
     #[test]
     fn a_dxf_reads_back_as_what_was_drawn() {
         let latch = latch();
         let geometry = Geometry::of(&latch).unwrap();
         for sheet in Sheet::all(&latch, &geometry) {
-            let text = sheet.dxf(PART).unwrap();
-            assert_eq!(text, sheet.dxf(PART).unwrap(), "the same bytes");
-            assert!(!text.contains("$TDCREATE") && text.contains("$INSUNITS"));
-            let read = Drawing::load(&mut text.as_bytes()).unwrap();
-            let mut holes = 0;
-            for entity in read.entities() {
-                match &entity.specific {
-                    EntityType::LwPolyline(line) => {
-                        assert!(line.flags == CLOSED && line.vertices.len() == sheet.outline.len());
-                        let off = line.vertices.iter().zip(&sheet.outline);
-                        assert!(off.map(|(v, p)| (v.x - p.x).abs().max((v.y - p.y).abs())).all(|d| d < 1e-9));
-                    }
-                    EntityType::Circle(circle) => {
-                        holes += 1;
-                        assert!(circle.radius == 2.0);
-                    }
-                    other => panic!("{other:?}"),
-                }
+            let text = sheet.dxf(PART);
+            assert!(!text.contains("$TDCREATE") && text.contains("$INSUNITS") && !text.contains('{'));
+            assert!(text.lines().count() % 2 == 0 && text.ends_with("EOF\r\n"));
+            let found = entities(&text);
+            let [line, holes @ ..] = &found[..] else { panic!() };
+            let numbers = |entity: &[(u16, &str)], code: u16| -> Vec<f64> {
+                let of_code = entity.iter().filter(|(c, _)| *c == code);
+                of_code.map(|(_, value)| value.trim().parse().unwrap()).collect()
+            };
+            assert!(line[0].1 == "LWPOLYLINE" && numbers(line, 70) == [1.0]);
+            assert_eq!(numbers(line, 90), [sheet.outline.len() as f64]);
+            let corners = numbers(line, 10).into_iter().zip(numbers(line, 20));
+            assert_eq!(corners.clone().count(), sheet.outline.len());
+            for ((x, y), p) in corners.zip(&sheet.outline) {
+                assert!((x - p.x).abs().max((y - p.y).abs()) < 1e-9);
             }
-            assert_eq!(holes, 2);
+            assert_eq!(holes.len(), 2);
+            for (hole, (middle, diameter)) in holes.iter().zip(&sheet.holes) {
+                assert!(hole[0].1 == "CIRCLE" && numbers(hole, 40) == [0.5 * diameter]);
+                assert!((numbers(hole, 10)[0] - middle.x).abs() < 1e-9);
+                assert!(hole.contains(&(8, PART)));
+            }
+            // Handles are unique, and the head says the next free one.
+            let handles: Vec<usize> =
+                found.iter().map(|one| usize::from_str_radix(one[1].1, 16).unwrap()).collect();
+            assert_eq!(handles, [0x11, 0x12, 0x13]);
+            assert!(text.contains("$HANDSEED\r\n  5\r\n14\r\n"));
         }
     }
 

@@ -50,6 +50,7 @@ mod difference;
 pub mod draw;
 mod faces;
 mod friction;
+mod glyphs;
 mod heights;
 mod hold;
 mod jams;

@@ -2,8 +2,8 @@
 
 use super::FigureError;
 use super::draw::colour::Rgb;
+use super::glyphs::outlined;
 use resvg::{tiny_skia, usvg};
-use std::sync::{Arc, OnceLock};
 
 /// Larger pictures are refused: this is already a poster.
 const LARGEST_SIDE: f32 = 20_000.0;
@@ -31,23 +31,11 @@ pub(super) fn cells(width: usize, height: usize, colours: &[Rgb]) -> Result<Vec<
     encode(width, height, false, &data)
 }
 
-fn fonts() -> Arc<usvg::fontdb::Database> {
-    static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
-    let load = || {
-        let mut fonts = usvg::fontdb::Database::new();
-        fonts.load_font_data(dejavu::sans::regular().to_vec());
-        fonts.load_font_data(dejavu::sans::bold().to_vec());
-        Arc::new(fonts)
-    };
-    Arc::clone(FONTS.get_or_init(load))
-}
-
 /// Draws an SVG of this room.
 pub(super) fn render(svg: &str, scale: f32) -> Result<Vec<u8>, FigureError> {
     let fails = |reason: String| FigureError::Encode { reason };
-    let options =
-        usvg::Options { fontdb: fonts(), font_family: "DejaVu Sans".to_owned(), ..usvg::Options::default() };
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|e| fails(e.to_string()))?;
+    let tree =
+        usvg::Tree::from_str(&outlined(svg)?, &usvg::Options::default()).map_err(|e| fails(e.to_string()))?;
     let (width, height) = (tree.size().width() * scale, tree.size().height() * scale);
     if !(width <= LARGEST_SIDE && height <= LARGEST_SIDE) {
         return Err(fails(format!(
