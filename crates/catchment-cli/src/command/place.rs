@@ -24,6 +24,7 @@ use std::path::{Component, Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  \
     catchment place socket.stl plug.stl --unit mm -o design.toml --figure pair.png\n  \
+    catchment place both.stl --unit mm -o design.toml            both halves in one file\n  \
     catchment place base.obj tool.obj --unit m --drawn assembled --approach=-z -o design.toml\n  \
     catchment place plate.3mf plate.3mf --facing-fixed +y        the same part twice; the design on stdout\n  \
     catchment place block.stl plate.stl --unit mm --with-moving 'sphere = { radius = 6 }, at = [21, 0, 8]'\n  \
@@ -33,9 +34,9 @@ pub(crate) struct PlaceArgs {
     /// The fixed half: a file of meshes, or a STEP file, which Python meshes (docs/parts.md)
     #[arg(value_name = "FIXED", value_hint = clap::ValueHint::FilePath)]
     fixed: PathBuf,
-    /// The moving half: a mesh file
+    /// The moving half: a mesh file. Without it the first file holds both halves as separate bodies, of which the larger is fixed
     #[arg(value_name = "MOVING", value_hint = clap::ValueHint::FilePath)]
-    moving: PathBuf,
+    moving: Option<PathBuf>,
     /// Unit of files that do not say it: um, mm, cm, m or in
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<LengthUnit>,
@@ -103,6 +104,13 @@ enum Drawn {
     Facing,
 }
 
+impl PlaceArgs {
+    /// The files of the fixed and the moving half.
+    fn files(&self) -> [&Path; 2] {
+        [&self.fixed, self.moving.as_ref().unwrap_or(&self.fixed)]
+    }
+}
+
 /// Candidates that are told.
 const TOLD: usize = 3;
 /// A score that is worth telling.
@@ -116,16 +124,20 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         figure::ensure_fits(0, &running.exec)?;
     }
     let place = args.output.as_deref().unwrap_or_else(|| Path::new("design.toml"));
-    let absent: Vec<String> = [&args.fixed, &args.moving]
-        .iter()
-        .filter(|path| !path.exists())
-        .map(|path| shown(path).to_string())
-        .collect();
+    let files = args.files();
+    let mut absent: Vec<String> =
+        files.iter().filter(|path| !path.exists()).map(|path| shown(path).to_string()).collect();
+    absent.dedup();
     if !absent.is_empty() {
         let help = "name two files: STL, OBJ, PLY, 3MF or STEP".to_owned();
         return Err(Failure::with_help(format!("there is no file {}", absent.join(", nor ")), Some(help)));
     }
-    let parts = [part(&args.fixed, place)?, part(&args.moving, place)?];
+    let mut parts = [part(files[0], place)?, part(files[1], place)?];
+    if args.moving.is_none() {
+        // The larger one is fixed.
+        parts[0].body = Some(1);
+        parts[1].body = Some(2);
+    }
     settings.with = [beside(&args.with_fixed, place)?, beside(&args.with_moving, place)?];
     running.may_be_left();
     let found = propose(&parts, &settings, place, &running.exec).map_err(refused)?;
@@ -143,7 +155,7 @@ pub(crate) fn run(args: &PlaceArgs) -> Result<ExitStatus, Failure> {
         Some(path) => write_file(path, found.text.as_bytes(), args.force)?,
         None => to_stdout(&found.text)?,
     }
-    to_stderr(&told(&found, &args.moving));
+    to_stderr(&told(&found, args.moving.as_deref()));
     Ok(ExitStatus::Done)
 }
 
@@ -152,7 +164,7 @@ fn files(args: &PlaceArgs) -> Result<Option<&'static str>, Failure> {
     const KINDS: [&str; 2] = ["svg", "png"];
     check_apart(args.output.as_deref(), args.figure.as_deref())?;
     for path in args.output.iter().chain(&args.figure) {
-        for part in [&args.fixed, &args.moving] {
+        for part in args.files() {
             check_apart(Some(path), Some(part))?;
         }
         for said in args.with_fixed.iter().chain(&args.with_moving).filter(|said| is_file(said)) {
@@ -228,13 +240,16 @@ fn is_file(said: &str) -> bool {
 }
 
 /// What was chosen, what came next, and what to look at.
-fn told(found: &Proposal, moving: &Path) -> Vec<String> {
+fn told(found: &Proposal, moving: Option<&Path>) -> Vec<String> {
     let design = found.problem.design();
     let unit = design.unit.unwrap_or(LengthUnit::Mm);
     let head = format!("width D {}, taken from the facets that can touch", shown_length(design.width, unit));
+    let (moving, other) = match moving {
+        Some(path) => (shown(path).to_string(), "swap the files"),
+        None => ("the smaller body".to_owned(), "give each half a file of its own"),
+    };
     let halves = format!(
-        "moving {} (pose errors and the centre of rotation are those of this half; if the other half moves, swap the files)",
-        shown(moving)
+        "moving {moving} (pose errors and the centre of rotation are those of this half; if the other half moves, {other})"
     );
     let rows: Vec<_> = found.candidates.iter().filter(|one| one.score >= WORTH).take(TOLD).cloned().collect();
     let told = rows
@@ -291,7 +306,11 @@ fn part(path: &Path, place: &Path) -> Result<PartFile, Failure> {
             Some(help),
         ));
     };
-    Ok(PartFile { path: path.to_owned(), written: written.replace(std::path::MAIN_SEPARATOR, "/") })
+    Ok(PartFile {
+        path: path.to_owned(),
+        written: written.replace(std::path::MAIN_SEPARATOR, "/"),
+        body: None,
+    })
 }
 
 /// The way from a folder to a file.

@@ -154,9 +154,13 @@ fn mistakes_in_the_files_are_named() {
     ]);
     let told = refused(&two, &plug(7.0, [0.0, 8.0]), &["--drawn=facing"]);
     assert!(
-        told.contains("the file of the fixed half holds 2 separate bodies") && told.contains("Split"),
+        told.contains("the file of the fixed half holds 2 separate bodies: if both halves are in it, give that file alone"),
         "{told}"
     );
+    // Alone it must hold two.
+    let home = two_parts(&plug(7.0, [0.0, 8.0]), "");
+    let told = run(home.path(), &["place", "fixed.obj", "--unit=mm"]).unbroken();
+    assert!(told.starts_with("exit 2") && told.contains("there is no body 2: the file holds 1"), "{told}");
 }
 
 /// Inches that are read as millimetres make parts of a few millimetres.

@@ -8,6 +8,7 @@
 //!
 //! Alone, x may be off by 21 − 17.8 = 3.2 mm: then the flat underside of the foot meets the rim.
 
+use crate::prisms::Unbroken;
 use crate::{designs, json, run};
 use std::fmt::Write;
 use std::fs;
@@ -99,4 +100,68 @@ fn what_is_drawn_at_45_degrees_docks_within_its_closed_form() {
     // D is 11.4 mm, twice the half width of the plug at the mouth of the hole.
     assert!((limit("x") * 11.4 - 1.0).abs() < 0.01, "{found}");
     assert!((limit("yaw").to_degrees() - 13.05).abs() < 0.1, "{found}");
+}
+
+/// Files in metres: the design and every answer are in millimetres. The grid cup again, a thousandth as large in its files.
+#[test]
+fn what_is_drawn_in_metres_is_answered_in_millimetres() {
+    let home = tempfile::tempdir().unwrap();
+    for (from, to) in [("grid-baseplate.stl", "plate.obj"), ("grid-cup.stl", "cup.obj")] {
+        let bytes = fs::read(designs().join("meshes").join(from)).unwrap();
+        let mut text = String::new();
+        for triangle in bytes[84..].chunks_exact(50) {
+            for corner in triangle[12..48].chunks_exact(12) {
+                let number = |k: usize| f32::from_le_bytes(corner[4 * k..4 * k + 4].try_into().unwrap());
+                let [x, y, z] = [0, 1, 2].map(|k| f64::from(number(k)) / 1000.0);
+                writeln!(text, "v {x} {y} {z}").unwrap();
+            }
+            text.push_str("f -3 -2 -1\n");
+        }
+        fs::write(home.path().join(to), text).unwrap();
+    }
+    let place = ["place", "plate.obj", "cup.obj", "--unit=m", "--free=x,y,yaw", "-o", "d.toml"];
+    let printed = run(home.path(), &place);
+    assert!(printed.starts_with("exit 0") && printed.contains("width D 41.5 mm"), "{printed}");
+    let design = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    assert!(design.contains("width = 41.5") && design.contains("unit = \"mm\""), "{design}");
+    assert!(design.contains("unit = \"m\" # of the file"), "{design}");
+    let told = run(home.path(), &["check", "d.toml"]);
+    assert!(told.contains("41.5 mm"), "{told}");
+}
+
+/// Both halves in one file, as an assembly is exported: the body with the larger box is the fixed half, and the design takes each by its number.
+#[test]
+fn one_file_may_hold_both_halves() {
+    let home = tempfile::tempdir().unwrap();
+    let [plate, cup] = ["grid-baseplate.stl", "grid-cup.stl"]
+        .map(|name| fs::read(designs().join("meshes").join(name)).unwrap()[84..].to_vec());
+    let count = u32::try_from((plate.len() + cup.len()) / 50).unwrap();
+    let both = [vec![0; 80], count.to_le_bytes().to_vec(), plate, cup].concat();
+    fs::write(home.path().join("both.stl"), both).unwrap();
+    let printed =
+        run(home.path(), &["place", "both.stl", "--unit=mm", "--free=x,y,yaw", "-o", "d.toml"]).unbroken();
+    assert!(printed.starts_with("exit 0") && printed.contains("moving the smaller body"), "{printed}");
+    assert!(printed.contains("holds") && !printed.contains("more than two"), "{printed}");
+    let design = fs::read_to_string(home.path().join("d.toml")).unwrap();
+    let halves: Vec<&str> = design.split("\n[connector.").collect();
+    assert!(halves[1].contains("\nbody = 1\n") && halves[2].contains("\nbody = 2\n"), "{design}");
+    // The baseplate is the smaller one: it comes to the cup as the cup comes to it.
+    let two = ["place", "cup.stl", "plate.stl", "--unit=mm", "--free=x,y,yaw", "-o", "two.toml"];
+    for (from, to) in [("grid-cup.stl", "cup.stl"), ("grid-baseplate.stl", "plate.stl")] {
+        fs::copy(designs().join("meshes").join(from), home.path().join(to)).unwrap();
+    }
+    assert!(run(home.path(), &two).starts_with("exit 0"));
+    fs::write(home.path().join("poses.csv"), "x_mm,yaw_deg\n1,0\n-2,3\n6,0\n").unwrap();
+    let ends = |design: &str| run(home.path(), &["outcome", design, "--poses", "poses.csv"]);
+    let of_two = ends("two.toml");
+    assert!(of_two.starts_with("exit 0") && of_two.contains("aligned"), "{of_two}");
+    assert_eq!(ends("d.toml"), of_two);
+    // Of one of them there is no third.
+    let third = design.replace("body = 2", "body = 3");
+    fs::write(home.path().join("third.toml"), third).unwrap();
+    let refused = run(home.path(), &["check", "third.toml"]).unbroken();
+    assert!(
+        refused.starts_with("exit 2") && refused.contains("there is no body 3: the file holds 2"),
+        "{refused}"
+    );
 }

@@ -143,6 +143,10 @@ impl Hash {
             self.text("meshed");
             self.text(&meshed.sha256);
         }
+        if let Some(body) = file.treatment.body {
+            self.text("body");
+            self.count(u64::from(body));
+        }
         if let Some(tolerance) = file.treatment.simplify {
             self.text("simplified");
             self.number(tolerance);
@@ -324,6 +328,8 @@ mod tests {
             mesh(simplified(1e-3), Repairs::default()),
             mesh(simplified(2e-3), Repairs::default()),
             mesh(simplified(1e-3), repaired),
+            mesh(Treatment { body: Some(1), ..Treatment::DEFAULT }, Repairs::default()),
+            mesh(Treatment { body: Some(2), ..Treatment::DEFAULT }, Repairs::default()),
         ];
         assert!((0..all.len()).all(|i| (0..i).all(|j| all[i] != all[j])));
     }

@@ -77,6 +77,7 @@ impl<'t> Walk<'t> {
                 repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(Treatment::DEFAULT.repair),
                 simplify: self.reader.number(section, &keys::SIMPLIFY, scale),
                 deflection: self.reader.number(section, &keys::DEFLECTION, scale),
+                body: self.reader.whole(section, &keys::BODY),
             };
             let file = self.file(section, &way, &keys::MESH_UNIT, scale);
             self.deflection_of(section, &keys::DEFLECTION, file.as_ref());
@@ -87,7 +88,7 @@ impl<'t> Walk<'t> {
         } else {
             "a half of parts, whose meshes are repaired where they need it"
         };
-        for key in [&keys::REPAIR, &keys::SIMPLIFY] {
+        for key in [&keys::REPAIR, &keys::SIMPLIFY, &keys::BODY] {
             self.not_its_own(section, key, exact, "a mesh");
         }
         let owner = if way == keys::PIECES {

@@ -19,6 +19,9 @@ pub struct Treatment {
     /// How far the facets may be off that stand for the curved faces of a STEP file, in D; `None`: 0.0002 of the part's largest side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deflection: Option<f64>,
+    /// Which of the separate bodies of the file it is, counted from 1, the largest box first; `None`: all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<u32>,
 }
 
 const fn yes() -> bool {
@@ -27,9 +30,9 @@ const fn yes() -> bool {
 
 impl Treatment {
     /// Repaired where needed, not simplified.
-    pub const DEFAULT: Self = Self { repair: true, simplify: None, deflection: None };
+    pub const DEFAULT: Self = Self { repair: true, simplify: None, deflection: None, body: None };
     /// Taken as it is, or refused.
-    pub const AS_IT_IS: Self = Self { repair: false, simplify: None, deflection: None };
+    pub const AS_IT_IS: Self = Self { repair: false, simplify: None, deflection: None, body: None };
 
     /// Whether it is the default.
     pub fn is_default(&self) -> bool {

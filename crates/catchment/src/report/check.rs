@@ -303,7 +303,8 @@ fn half(half: &HalfSpec) -> String {
 fn mesh(file: &FileSpec) -> String {
     let bodies = file.content.as_ref().map_or(1, |content| content.bodies);
     let united = if bodies > 1 { format!(", the union of {bodies} bodies") } else { String::new() };
-    format!("mesh {}{united}", crate::terminal::shown(&file.path))
+    let body = file.treatment.body.map_or_else(String::new, |body| format!(", body {body}"));
+    format!("mesh {}{body}{united}", crate::terminal::shown(&file.path))
 }
 
 /// The parts of a half, those that are alike together; and how round what is round is.

@@ -108,7 +108,7 @@ impl Indexed {
 }
 
 /// Joins corners within `tolerance` of each other. The first corner met gives the coordinates.
-fn weld(triangles: &[Triangle], tolerance: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+pub(super) fn weld(triangles: &[Triangle], tolerance: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     /// No vertex, or no further one in its cell.
     const NONE: u32 = u32::MAX;
     let pitch = tolerance.max(f64::MIN_POSITIVE);

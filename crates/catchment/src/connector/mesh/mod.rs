@@ -13,6 +13,7 @@
 //!
 //! Not promised: holes are not closed, and coplanar overlaps of separate shells are not looked for.
 
+mod bodies;
 mod check;
 mod crossing;
 pub(in crate::connector) mod cut;
@@ -156,6 +157,8 @@ pub(super) fn half(
     treatment: Treatment,
 ) -> Result<Ready, Vec<MeshProblem>> {
     check_scale(scale)?;
+    let bodies = bodies::chosen(bodies, treatment.body)?;
+    let treatment = Treatment { body: None, ..treatment };
     let corners = bodies.iter().flatten().flat_map(|triangle| triangle.corners);
     let width = implausible_width(corners.map(|c| c * scale));
     let (ready, mut problems) = match part(bodies, scale, treatment) {
@@ -178,6 +181,7 @@ pub(super) fn part(
     treatment: Treatment,
 ) -> Result<Ready, Vec<MeshProblem>> {
     check_scale(scale)?;
+    let bodies = bodies::chosen(bodies, treatment.body)?;
     let count = bodies.iter().map(Vec::len).sum::<usize>();
     if count > most_read(treatment) {
         return Err(vec![too_many(treatment, count as u64)]);

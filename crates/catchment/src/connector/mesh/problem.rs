@@ -186,6 +186,14 @@ pub enum MeshProblem {
     /// A file without triangles.
     #[error("the file holds no triangles")]
     NoTriangles,
+    /// A body that the file does not have.
+    #[error("there is no body {number}: the file holds {count}, numbered from the largest, which is 1")]
+    NoSuchBody {
+        /// The number that was asked for.
+        number: u32,
+        /// How many there are.
+        count: usize,
+    },
     /// A coordinate that is no number.
     #[error("{place} has a corner that is not finite, {at}")]
     NotFinite {

@@ -148,6 +148,9 @@ keys! {
     SIMPLIFY = key(Table::Half, "simplify", Kind::DrawnLength(Range::new(1e-6, 0.05, "D")),
         "Describes the mesh with fewer triangles: how far its surface may move, as in \"0.01 mm\"; bare in the unit of the design. \
          With it a file may have 5 million triangles.");
+    /// `body` of a half
+    BODY = key(Table::Half, "body", Kind::Whole { min: 1, max: 256 },
+        "Which of the separate bodies of a mesh file is the half, where a file holds both halves: 1 is the largest. Without it: all of them.");
     /// `deflection` of a half
     DEFLECTION = key(Table::Half, "deflection", Kind::DrawnLength(Range::new(1e-6, 0.1, "D")),
         "How far the facets may be off that stand for the curved faces of a STEP file, as in \"0.01 mm\"; bare in the unit of the design. \

@@ -3,13 +3,13 @@
 //! ```text
 //!   meets nothing            ──▶ passes through: a stop is missing
 //!   meets, and slides off    ──▶ flat: magnets or pins are missing
-//!   blocked all ways         ──▶ interlock: a thread, a snap, an undercut, or so many mm of interference
+//!   blocked all ways         ──▶ interlock: a thread of this lead; a snap, an undercut or an interference of so many mm; something else
 //! ```
 //!
 //! Not promised: that the cause is the only one.
 
 use super::halves::file_unit;
-use super::sink::{Drawn, Grain, Triangles, together};
+use super::sink::{self, Drawn, Grain, Triangles, together};
 use super::{PartFile, Settings, Way};
 use crate::advice::Advice;
 use crate::connector::Half;
@@ -54,8 +54,13 @@ pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
 }
 
 /// The cause, of what comes of each approach, and what helps.
-pub(super) fn of(looks: &[(Way, Drawn)], told: Told) -> (String, Option<Advice>) {
-    let text = words(looks, told);
+pub(super) fn of(
+    parts: [&Triangles; 2],
+    looks: &[(Way, Drawn)],
+    grain: Grain,
+    told: Told,
+) -> (String, Option<Advice>) {
+    let text = words(parts, looks, grain, told);
     let stops = |drawn: &Drawn| matches!(drawn, Drawn::Flat { .. } | Drawn::Passes);
     let holds = |drawn: &Drawn| matches!(drawn, Drawn::Holds(_));
     let is_part_missing =
@@ -64,7 +69,7 @@ pub(super) fn of(looks: &[(Way, Drawn)], told: Told) -> (String, Option<Advice>)
 }
 
 /// The cause in words.
-fn words(looks: &[(Way, Drawn)], told: Told) -> String {
+fn words(parts: [&Triangles; 2], looks: &[(Way, Drawn)], grain: Grain, told: Told) -> String {
     if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Holds(_))) {
         return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
     }
@@ -95,16 +100,38 @@ fn words(looks: &[(Way, Drawn)], told: Told) -> String {
         );
     }
     let blocked = looks.iter().filter_map(|(way, drawn)| match drawn {
-        Drawn::Blocked(by) => Some((*by, way)),
+        Drawn::Blocked(by) => Some((*by, *way)),
         _ => None,
     });
-    match blocked.min_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((by, way)) => format!(
-            "as drawn the parts interlock: no straight way along an axis brings them together. Nearest is approach {way}, {} short. A thread, a snap, an \
-             undercut or an interference?",
+    let blocked: Vec<(f64, Way)> = blocked.collect();
+    let Some((by, way)) = blocked.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return "as drawn the parts do not meet".to_owned();
+    };
+    let mut lines = Way::ALL.into_iter().filter(|way| way.vector().max_element() > 0.0);
+    if let Some((way, lead)) = lines.find_map(|way| sink::lead(parts, way, grain).map(|lead| (way, lead))) {
+        let hand = if lead > 0.0 { "right" } else { "left" };
+        return format!(
+            "as drawn the parts are screwed together: a {hand}-handed thread along {way} that moves about {} per turn. No straight way along an axis brings them \
+             together: what docks is a part without its thread",
+            told.length(lead.abs())
+        );
+    }
+    let ways = blocked.iter().map(|(_, way)| *way);
+    let snaps = ways.filter_map(|way| sink::undercut(parts, way, grain).map(|undercut| (undercut, way)));
+    match snaps.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((undercut, way)) => format!(
+            "as drawn the parts interlock: along {way} walls would have to give way by {}: a snap, an undercut or an interference. Both halves are rigid here: \
+             draw the catch as it is when it is bent, or leave it out",
+            told.length(undercut)
+        ),
+        None if looks.len() == 1 => format!(
+            "as drawn, approach {way}: the moving part meets the fixed one {} before it is where it is drawn",
             told.length(by)
         ),
-        None => "as drawn the parts do not meet".to_owned(),
+        None => format!(
+            "as drawn the parts interlock: no straight way along an axis brings them together. Nearest is approach {way}, {} short",
+            told.length(by)
+        ),
     }
 }
 
@@ -116,7 +143,10 @@ pub(super) fn of_files(
     scale: f64,
 ) -> Option<String> {
     let [fixed, moving] = halves;
-    if settings.with.iter().all(Vec::is_empty) && parts[0].written == parts[1].written {
+    if settings.with.iter().all(Vec::is_empty)
+        && parts[0].written == parts[1].written
+        && parts[0].body == parts[1].body
+    {
         return Some("both halves are the same file: name the file of the other half".to_owned());
     }
     if is_same(fixed, moving) && settings.with.iter().all(Vec::is_empty) {
@@ -126,7 +156,7 @@ pub(super) fn of_files(
         let count = bodies(half);
         if with.is_empty() && count > 1 {
             return Some(format!(
-                "the file of the {whose} half holds {count} separate bodies: if both halves are in it, split it into a file for each \
+                "the file of the {whose} half holds {count} separate bodies: if both halves are in it, give that file alone; of more than two bodies split it \
                  (MeshLab: Split in Connected Components; PrusaSlicer: Split to objects)"
             ));
         }

@@ -73,12 +73,15 @@ fn drawn(part: &PartFile, with: &[Beside], settings: &Settings) -> Vec<String> {
     let meshed = is_step.then(|| MESHED.to_owned());
     if with.is_empty() {
         let (mesh, stated) = named(part, unit);
+        let body = part.body.map(|body| {
+            format!("# Of the separate bodies in it this one, the largest first.\nbody = {body}")
+        });
         let stated = stated.map(|unit| unit + " # of the file, which does not say it");
         let fewer = settings.simplify.map(|most| {
             let most = quoted(&format!("{most} {}", unit.symbol()));
             format!("# Described with fewer triangles: its surface may move so far.\nsimplify = {most}")
         });
-        return [Some(mesh), meshed, stated, fewer].into_iter().flatten().collect();
+        return [Some(mesh), body, meshed, stated, fewer].into_iter().flatten().collect();
     }
     let open = "# The file, and what belongs to it, in its coordinates.\nparts = [".to_owned();
     let file = element(&Beside::File(part.clone()), unit);
@@ -110,7 +113,8 @@ pub(super) fn text(
     let length = |value: f64| number(value * scale, ROUNDED * width);
     let name = settings.name.clone().unwrap_or_else(|| {
         let [fixed, moving] = parts.each_ref().map(|part| stem(&part.path));
-        format!("{moving} on {fixed}").chars().take(crate::design::keys::LONGEST_LINE).collect()
+        let both = if parts[0].body.is_some() { fixed } else { format!("{moving} on {fixed}") };
+        both.chars().take(crate::design::keys::LONGEST_LINE).collect()
     });
     let mut text = String::new();
     let mut line = |words: &str| {

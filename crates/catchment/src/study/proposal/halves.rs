@@ -41,6 +41,14 @@ pub(super) fn read(
     Ok(halves)
 }
 
+/// Whether one file holds both halves, and more than these.
+pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &Settings, exec: &Exec) -> bool {
+    let [one, other] = parts;
+    let third = PartFile { body: Some(3), ..one.clone() };
+    let is_one_file = one.written == other.written && one.body.is_some();
+    is_one_file && of_half(&mesh(&third, settings), Side::Fixed, exec).is_ok()
+}
+
 /// What is wrong with both files alike is said of the first alone.
 fn said_once(mut findings: Findings) -> Findings {
     let mut said = HashSet::new();
@@ -78,6 +86,7 @@ fn mesh(part: &PartFile, settings: &Settings) -> HalfSpec {
     if says_its_unit(&part.path) {
         (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit);
     }
+    spec.treatment.body = part.body;
     spec.treatment.simplify = settings.simplify.map(|most| scale * most);
     HalfSpec::Mesh(spec)
 }

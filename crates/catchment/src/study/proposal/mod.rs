@@ -101,6 +101,8 @@ pub struct PartFile {
     pub path: PathBuf,
     /// How the design names it: relative to the folder of the design.
     pub written: String,
+    /// Which of its bodies, the largest first, where it holds several; all of them without a number.
+    pub body: Option<u32>,
 }
 
 /// A design that docks two parts.
@@ -257,9 +259,10 @@ pub fn propose(
                 doubts.push(doubt);
             }
             // Of frames of their own it says nothing.
-            why = (may_be_assembly || !may_be(Frames::Facing)).then(|| cause::of(&looks, told));
+            why = (may_be_assembly || !may_be(Frames::Facing))
+                .then(|| cause::of(both.lattices(), &looks, both.grain, told));
             let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::Drawn::Flat { .. }));
-            flat = are_flat.then(|| cause::of(&looks, told));
+            flat = are_flat.then(|| cause::of(both.lattices(), &looks, both.grain, told));
         }
     }
     let is_assembly = frame == cause::Frame::Assembly;
@@ -310,6 +313,11 @@ pub fn propose(
         && score * NEARLY > best.score()
     {
         doubts.push(told);
+    }
+    if halves::are_more_than_two(parts, settings, exec) {
+        doubts.push(
+            "in doubt: the file holds more than two separate bodies; the two largest were taken".to_owned(),
+        );
     }
     doubts.extend(cause::inches(both.halves, settings, unit));
     let (text, problem) = error_box::designed(parts, settings, (best, seat), unit, place, exec)?;

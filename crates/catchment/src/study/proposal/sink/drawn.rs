@@ -142,7 +142,13 @@ fn volume(part: &Triangles) -> f64 {
 }
 
 /// Where each column of a lattice crosses a part.
-fn columns(part: &Triangles, turn: &DMat3, first: DVec2, cell: f64, counts: [usize; 2]) -> Vec<Vec<f64>> {
+pub(super) fn columns(
+    part: &Triangles,
+    turn: &DMat3,
+    first: DVec2,
+    cell: f64,
+    counts: [usize; 2],
+) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new(); counts[0] * counts[1]];
     for corners in part.iter().map(|corners| corners.map(|p| *turn * p)) {
         let plan = corners.map(|p: DVec3| (p.truncate() - first) / cell);
@@ -172,7 +178,7 @@ fn columns(part: &Triangles, turn: &DMat3, first: DVec2, cell: f64, counts: [usi
 }
 
 /// The length that lies in both of two columns: between the first and second crossing, the third and fourth, and so on.
-fn common(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn common(a: &[f64], b: &[f64]) -> f64 {
     let pairs = |column: &[f64]| -> Vec<[f64; 2]> { column.as_chunks::<2>().0.to_vec() };
     let (a, b) = (pairs(a), pairs(b));
     a.iter().flat_map(|a| b.iter().map(|b| (a[1].min(b[1]) - a[0].max(b[0])).max(0.0))).sum()

@@ -1,6 +1,8 @@
 //! Heights of a part over a fine lattice in plan view, and the few points of it that decide where it touches first.
 
 use glam::{DMat3, DVec2, DVec3};
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Highest z over a lattice; −∞ where there is nothing.
 pub(super) struct HeightMap {
@@ -135,6 +137,28 @@ impl HeightMap {
         Self { z, ..*self }
     }
 
+    /// Every point as high as the highest of those up to `reach` points around it.
+    pub(super) fn dilated(&self, reach: usize) -> Self {
+        let [wide, deep] = self.counts;
+        let mut rows = vec![NOTHING; wide * deep];
+        for (held, row) in rows.chunks_exact_mut(wide).zip(self.z.chunks_exact(wide)) {
+            for (i, held) in held.iter_mut().enumerate() {
+                let around = &row[i.saturating_sub(reach)..wide.min(i + reach + 1)];
+                *held = around.iter().copied().fold(NOTHING, f32::max);
+            }
+        }
+        let mut z = rows.clone();
+        for j in 0..deep {
+            for other in j.saturating_sub(reach)..deep.min(j + reach + 1) {
+                let from = &rows[other * wide..other * wide + wide];
+                for (held, z) in z[j * wide..j * wide + wide].iter_mut().zip(from) {
+                    *held = held.max(*z);
+                }
+            }
+        }
+        Self { z, ..*self }
+    }
+
     /// Whether two say the same up to `level`, measured from their highest points.
     pub(super) fn is_like(&self, other: &Self, level: f32) -> bool {
         if self.counts != other.counts {
@@ -185,13 +209,36 @@ pub(super) struct Offsets {
     pub(super) before: DVec2,
 }
 
-/// h over all offsets, of the fixed part in phases and of points of a moving one with so many points in a row and a column.
-pub(super) fn heights(fixed: &Phases, points: &[Point], counts: [usize; 2]) -> Offsets {
+/// Whether the part seen from below, `shift` points beside the fixed one and `height` above it, would overlap it: by all points of both.
+pub(super) fn overlaps(fixed: &HeightMap, below: &HeightMap, shift: [isize; 2], height: f32) -> bool {
+    /// Rows far from each other come first: most of what overlaps does so along a side.
+    const STRIDE: usize = 16;
+    let range = |k: usize| {
+        let from = (-shift[k]).max(0);
+        let to = (fixed.counts[k] as isize - shift[k]).min(below.counts[k] as isize);
+        from as usize..to.max(from) as usize
+    };
+    let (columns, rows) = (range(0), range(1));
+    let row_overlaps = |row: usize| {
+        let of = |map: &HeightMap, i: isize, j: isize| j as usize * map.counts[0] + i as usize;
+        let [i, j] = [columns.start as isize, row as isize];
+        let under = &fixed.z[of(fixed, i + shift[0], j + shift[1])..][..columns.len()];
+        let over = &below.z[of(below, i, j)..][..columns.len()];
+        under.iter().zip(over).fold(NOTHING, |most, (f, m)| most.max(*f + *m)) > height
+    };
+    !columns.is_empty() && (0..STRIDE).any(|first| rows.clone().skip(first).step_by(STRIDE).any(row_overlaps))
+}
+
+/// h over all offsets, of the fixed part in phases as groups of points of the moving one see it, and of a moving one with so many points in a row and a column.
+pub(super) fn heights(groups: &[(&Phases, &[Point])], counts: [usize; 2]) -> Offsets {
     let sub = SUB as u32;
     let before = counts.map(|count| count.div_ceil(SUB));
-    let size = [0, 1].map(|k| fixed.counts[k] + before[k] + 1);
+    let of_fixed = groups.first().map_or([0; 2], |(fixed, _)| fixed.counts);
+    let size = [0, 1].map(|k| of_fixed[k] + before[k] + 1);
     let mut z = vec![NOTHING; size[0] * size[1]];
-    for ([i, j], m) in points {
+    for (fixed, ([i, j], m)) in
+        groups.iter().flat_map(|(fixed, points)| points.iter().map(move |point| (fixed, point)))
+    {
         let phase = ((j % sub) * sub + i % sub) as usize;
         // The offset number a brings this point to the cell a − before + i / SUB.
         let [a, b] = [before[0] - (i / sub) as usize, before[1] - (j / sub) as usize];
@@ -208,57 +255,108 @@ pub(super) fn heights(fixed: &Phases, points: &[Point], counts: [usize; 2]) -> O
 /// A point of the moving part: where it is on its lattice, and its height, negated.
 pub(super) type Point = ([u32; 2], f32);
 
-/// The points of a height map that decide first contact: of each block of `block` × `block` points the highest, and where it holds a
-/// step those that reach farthest to the four sides of the highest level.
-pub(super) fn deciding(map: &HeightMap, block: usize, step: f32) -> Vec<Point> {
+/// What a block of points holds.
+enum Block {
+    Nothing,
+    /// Its points are level, and this is the highest.
+    Level(Point),
+    /// It holds a step.
+    Stepped,
+}
+
+/// The block with these columns and rows; of one with a step, to `points` the highest point, and those that reach farthest to the four sides of the highest
+/// level.
+fn block(map: &HeightMap, [is, js]: [Range<usize>; 2], step: f32, points: &mut Vec<Point>) -> Block {
     let [wide, deep] = map.counts;
-    let mut points: Vec<Point> = Vec::new();
-    for (bj, bi) in (0..deep.div_ceil(block)).flat_map(|bj| (0..wide.div_ceil(block)).map(move |bi| (bj, bi)))
-    {
-        let (is, js) = (bi * block..wide.min(bi * block + block), bj * block..deep.min(bj * block + block));
-        // A step may lie between two blocks, or at the border of the map.
-        let inside = is.start > 0 && js.start > 0 && is.end < wide && js.end < deep;
-        let (mut top, mut bottom, mut at) = (NOTHING, if inside { f32::INFINITY } else { NOTHING }, [0, 0]);
-        for j in js.start.saturating_sub(1)..deep.min(js.end + 1) {
-            for i in is.start.saturating_sub(1)..wide.min(is.end + 1) {
-                let z = map.z[j * wide + i];
-                bottom = bottom.min(z);
-                if z > top && is.contains(&i) && js.contains(&j) {
-                    (top, at) = (z, [i, j]);
-                }
+    // A step may lie between two blocks, or at the border of the map.
+    let inside = is.start > 0 && js.start > 0 && is.end < wide && js.end < deep;
+    let (mut top, mut bottom, mut at) = (NOTHING, if inside { f32::INFINITY } else { NOTHING }, [0, 0]);
+    for j in js.start.saturating_sub(1)..deep.min(js.end + 1) {
+        for i in is.start.saturating_sub(1)..wide.min(is.end + 1) {
+            let z = map.z[j * wide + i];
+            bottom = bottom.min(z);
+            if z > top && is.contains(&i) && js.contains(&j) {
+                (top, at) = (z, [i, j]);
             }
         }
-        if top == NOTHING {
-            continue;
+    }
+    let of = |[i, j]: [usize; 2]| ([i as u32, j as u32], map.z[j * wide + i]);
+    if top == NOTHING {
+        return Block::Nothing;
+    }
+    if top - bottom <= step {
+        return Block::Level(of(at));
+    }
+    points.push(of(at));
+    let level = top - step;
+    let high = js.flat_map(|j| is.clone().map(move |i| [i, j])).filter(|[i, j]| map.z[j * wide + i] >= level);
+    let mut ends = [at; 4];
+    for [i, j] in high {
+        if i < ends[0][0] {
+            ends[0] = [i, j];
         }
-        let of = |[i, j]: [usize; 2], z: f32| ([i as u32, j as u32], z);
-        points.push(of(at, top));
-        if top - bottom > step {
-            let level = top - step;
-            let high = js
-                .flat_map(|j| is.clone().map(move |i| [i, j]))
-                .filter(|[i, j]| map.z[j * wide + i] >= level);
-            let mut ends = [at; 4];
-            for [i, j] in high {
-                if i < ends[0][0] {
-                    ends[0] = [i, j];
-                }
-                if i > ends[1][0] {
-                    ends[1] = [i, j];
-                }
-                if j < ends[2][1] {
-                    ends[2] = [i, j];
-                }
-                if j > ends[3][1] {
-                    ends[3] = [i, j];
-                }
-            }
-            for (k, end) in ends.iter().enumerate() {
-                if *end != at && !ends[..k].contains(end) {
-                    points.push(of(*end, map.z[end[1] * wide + end[0]]));
-                }
-            }
+        if i > ends[1][0] {
+            ends[1] = [i, j];
+        }
+        if j < ends[2][1] {
+            ends[2] = [i, j];
+        }
+        if j > ends[3][1] {
+            ends[3] = [i, j];
+        }
+    }
+    for (k, end) in ends.iter().enumerate() {
+        if *end != at && !ends[..k].contains(end) {
+            points.push(of(*end));
+        }
+    }
+    Block::Stepped
+}
+
+/// The columns and rows of blocks of this side.
+fn blocks([wide, deep]: [usize; 2], side: usize) -> impl Iterator<Item = [Range<usize>; 2]> {
+    let parts = move |count: usize| (0..count).step_by(side).map(move |k| k..count.min(k + side));
+    parts(deep).flat_map(move |js| parts(wide).map(move |is| [is, js.clone()]))
+}
+
+/// The points of a height map that decide first contact: a few of every block of this side.
+pub(super) fn deciding(map: &HeightMap, side: usize, step: f32) -> Vec<Point> {
+    let mut points = Vec::new();
+    for ranges in blocks(map.counts, side) {
+        if let Block::Level(point) = block(map, ranges, step, &mut points) {
+            points.push(point);
         }
     }
     points
 }
+
+/// The same by the side of the block that a point stands for: level blocks are large, and a point at the middle of one meets the highest of what is under all of
+/// it, lest a rim that is narrower falls between two points. Those that stand for themselves have the side 1.
+pub(super) fn deciding_blocks(map: &HeightMap, [small, large]: [usize; 2], step: f32) -> Groups {
+    let (mut points, mut aside) = (Vec::new(), Vec::new());
+    let middle = |[is, js]: &[Range<usize>; 2], z: f32| {
+        ([is.start.midpoint(is.end) as u32, js.start.midpoint(js.end) as u32], z)
+    };
+    let mut found = Groups::new();
+    for outer in blocks(map.counts, large) {
+        aside.clear();
+        match block(map, outer.clone(), step, &mut aside) {
+            Block::Nothing => {}
+            Block::Level((_, z)) => found.entry(large).or_default().push(middle(&outer, z)),
+            Block::Stepped => {
+                let [is, js] = &outer;
+                for [i, j] in blocks([is.len(), js.len()], small) {
+                    let inner = [is.start + i.start..is.start + i.end, js.start + j.start..js.start + j.end];
+                    if let Block::Level((_, z)) = block(map, inner.clone(), step, &mut points) {
+                        found.entry(small).or_default().push(middle(&inner, z));
+                    }
+                }
+            }
+        }
+    }
+    found.insert(1, points);
+    found
+}
+
+/// Points by the side of the block that each stands for.
+pub(super) type Groups = BTreeMap<usize, Vec<Point>>;

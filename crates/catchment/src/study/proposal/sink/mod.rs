@@ -20,17 +20,20 @@ mod classes;
 mod drawn;
 mod flood;
 mod height;
+mod interlock;
 mod refine;
 
 pub(super) use classes::classes;
 pub(super) use drawn::{Drawn, drawn, together};
+pub(super) use interlock::{lead, undercut};
 
 use super::way::{Lie, Way};
 use crate::connector::Half;
 use crate::exec::{Cancelled, Exec};
-use flood::basins;
+use flood::{Basin, basins};
 use glam::{DMat3, DVec2, DVec3};
-use height::{HeightMap, Phases, Point, SUB, deciding, heights};
+use height::{Groups, HeightMap, Offsets, Phases, SUB, deciding, deciding_blocks, heights, overlaps};
+use std::collections::BTreeMap;
 
 /// A part as triangles.
 pub(super) type Triangles = Vec<[DVec3; 3]>;
@@ -93,6 +96,8 @@ const CELLS: f64 = 160.0;
 const MOST_CELL: f64 = 1.6;
 /// Points of the moving part that are looked at.
 const MOST_POINTS: usize = 2500;
+/// Basins of one view of which it is asked whether all points see them.
+const MOST_ASKED: usize = 400;
 /// Basins of one view that are kept, and of all.
 const OF_ONE: usize = 6;
 const MOST: usize = 100;
@@ -118,17 +123,13 @@ pub(super) fn sinks(
     let found = exec.each(facing[0].len(), usize::MAX, "facings", |k, exec| {
         let way = facing[0][k];
         let turn = Lie::Facing { fixed: way, moving: way, turned: 0 }.turns()[0];
-        let top = HeightMap::whole(fixed, &turn, cell / SUB as f64, SUB);
-        let first = top.first;
-        // Worn, no narrow hole is missed; thickened, no thin wall.
-        let worn = Phases::of(&top.eroded(SUB / 2));
-        let maps = [worn, Phases::of(&top.thickened(fixed, &turn))];
+        let mut tops = Tops::of(fixed, &turn, cell);
         let mut found = Vec::new();
         for view in &views {
             if exec.is_cancelled() {
                 break;
             }
-            found.extend(seen(way, first, &maps, view, cell, grain));
+            found.extend(tops.seen(way, view, cell, grain));
         }
         found
     });
@@ -171,7 +172,7 @@ struct View {
     way: Way,
     turned: u8,
     bottom: HeightMap,
-    points: Vec<Point>,
+    points: Groups,
 }
 
 /// The ways in which the moving part may be turned; of those that look alike from below the first.
@@ -189,39 +190,96 @@ fn views(moving: &Triangles, ways: &[Way], cell: f64, exec: &Exec) -> Result<Vec
         if views.iter().any(|view| view.way == way && view.bottom.is_like(&bottom, level)) {
             continue;
         }
-        let mut block = SUB;
-        let points = loop {
-            let points = deciding(&bottom, block, level);
-            if points.len() <= MOST_POINTS || block > 4 * SUB {
-                break points;
-            }
-            block += 1;
-        };
+        let points = looked_at(&bottom, level);
         views.push(View { way, turned, bottom, points });
     }
     Ok(views)
 }
 
-/// The basins of one view, on the first lattice.
-fn seen(way: Way, first: DVec2, maps: &[Phases; 2], view: &View, cell: f64, grain: Grain) -> Vec<Sunk> {
-    let lie = Lie::Facing { fixed: way, moving: view.way, turned: view.turned };
-    let mut found: Vec<Sunk> = Vec::new();
-    for phases in maps {
-        let h = heights(phases, &view.points, view.bottom.counts);
-        for basin in basins(&h.z, h.wide, grain.least_climb() as f32).into_iter().take(2 * OF_ONE) {
-            let cells = DVec2::new((basin.at % h.wide) as f64, (basin.at / h.wide) as f64) - h.before;
-            let offset = first - view.bottom.first + cell * cells;
-            if found.iter().any(|other| (other.offset - offset).abs().max_element() < 2.0 * cell) {
-                continue;
-            }
-            let climb = f64::from(basin.climb);
-            let height = f64::from(h.z[basin.at]);
-            found.push(Sunk { lie, offset, height, climb, play: 0.0, is_loose: false, steep: 0.0, cell });
-        }
+/// The points that are looked at: some of every block of a cell, or of larger ones where these are too many.
+fn looked_at(bottom: &HeightMap, level: f32) -> Groups {
+    /// How many times as large level blocks are.
+    const LARGE: usize = 4;
+    let all = deciding(bottom, SUB, level);
+    if all.len() <= MOST_POINTS {
+        return Groups::from([(1, all)]);
     }
-    found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
-    found.truncate(OF_ONE);
-    found
+    let mut side = SUB;
+    loop {
+        let groups = deciding_blocks(bottom, [side, LARGE * side], level);
+        if groups.values().map(Vec::len).sum::<usize>() <= MOST_POINTS || side >= 4 * SUB {
+            return groups;
+        }
+        side += side / 2;
+    }
+}
+
+/// The fixed part from above.
+struct Tops {
+    first: DVec2,
+    /// Worn, no narrow hole is missed; thickened, no thin wall.
+    maps: [HeightMap; 2],
+    phases: [Phases; 2],
+    /// As high as the highest point of a block of this side.
+    dilated: BTreeMap<usize, [Phases; 2]>,
+}
+
+impl Tops {
+    fn of(fixed: &Triangles, turn: &DMat3, cell: f64) -> Self {
+        let top = HeightMap::whole(fixed, turn, cell / SUB as f64, SUB);
+        let first = top.first;
+        let maps = [top.eroded(SUB / 2), top.thickened(fixed, turn)];
+        let phases = maps.each_ref().map(Phases::of);
+        Self { first, maps, phases, dilated: BTreeMap::new() }
+    }
+
+    /// h over all offsets, of both maps. What stands for a block meets the highest point under all of it.
+    fn heights(&mut self, view: &View) -> [Offsets; 2] {
+        for side in view.points.keys().filter(|side| **side > 1) {
+            let dilated = |map: &HeightMap| Phases::of(&map.dilated(side / 2));
+            self.dilated.entry(*side).or_insert_with(|| self.maps.each_ref().map(dilated));
+        }
+        [0, 1].map(|k| {
+            let groups = view.points.iter().map(|(side, points)| {
+                let phases = self.dilated.get(side).unwrap_or(&self.phases);
+                (&phases[k], points.as_slice())
+            });
+            heights(&groups.collect::<Vec<_>>(), view.bottom.counts)
+        })
+    }
+
+    /// The basins of one view, on the first lattice.
+    fn seen(&mut self, way: Way, view: &View, cell: f64, grain: Grain) -> Vec<Sunk> {
+        let lie = Lie::Facing { fixed: way, moving: view.way, turned: view.turned };
+        let heights = self.heights(view);
+        let mut found: Vec<Sunk> = Vec::new();
+        for (map, h) in self.maps.iter().zip(&heights) {
+            let mut places = basins(&h.z, h.wide, grain.least_climb() as f32);
+            // Of few points a rim may be missed: what they do not see is no basin.
+            if view.points.len() > 1 {
+                places.truncate(MOST_ASKED);
+                let is_one = |basin: &Basin| {
+                    let at = [basin.at % h.wide, basin.at / h.wide];
+                    let shift = [0, 1].map(|k| (at[k] as isize - h.before[k] as isize) * SUB as isize);
+                    !overlaps(map, &view.bottom, shift, h.z[basin.at] + 0.5 * basin.climb)
+                };
+                places = places.into_iter().filter(is_one).take(2 * OF_ONE).collect();
+            }
+            for basin in places.into_iter().take(2 * OF_ONE) {
+                let cells = DVec2::new((basin.at % h.wide) as f64, (basin.at / h.wide) as f64) - h.before;
+                let offset = self.first - view.bottom.first + cell * cells;
+                if found.iter().any(|other| (other.offset - offset).abs().max_element() < 2.0 * cell) {
+                    continue;
+                }
+                let climb = f64::from(basin.climb);
+                let height = f64::from(h.z[basin.at]);
+                found.push(Sunk { lie, offset, height, climb, play: 0.0, is_loose: false, steep: 0.0, cell });
+            }
+        }
+        found.sort_by(|a, b| b.climb.total_cmp(&a.climb));
+        found.truncate(OF_ONE);
+        found
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::height::NOTHING;
 use super::*;
 
 /// A box from corner to corner.
-fn block([x0, y0, z0]: [f64; 3], [x1, y1, z1]: [f64; 3]) -> Triangles {
+pub(super) fn block([x0, y0, z0]: [f64; 3], [x1, y1, z1]: [f64; 3]) -> Triangles {
     let p = |k: usize| {
         DVec3::new(
             if k & 1 == 0 { x0 } else { x1 },
@@ -40,9 +40,9 @@ fn pin([x, y, z]: [f64; 3]) -> Triangles {
     block([x - 5.0, y - 5.0, z], [x + 5.0, y + 5.0, z + 24.0])
 }
 
-const GRAIN: Grain = Grain { small: 0.5 };
+pub(super) const GRAIN: Grain = Grain { small: 0.5 };
 
-fn down() -> Way {
+pub(super) fn down() -> Way {
     "-z".parse().unwrap()
 }
 
