@@ -77,7 +77,7 @@ impl<'t> Walk<'t> {
                 repair: self.reader.flag(section, &keys::REPAIR).unwrap_or(Treatment::DEFAULT.repair),
                 simplify: self.reader.number(section, &keys::SIMPLIFY, scale),
                 deflection: self.reader.number(section, &keys::DEFLECTION, scale),
-                body: self.reader.whole(section, &keys::BODY),
+                body: self.reader.whole(section, &keys::BODY).and_then(|body| u16::try_from(body).ok()),
             };
             let file = self.file(section, &way, &keys::MESH_UNIT, scale);
             self.deflection_of(section, &keys::DEFLECTION, file.as_ref());

@@ -21,7 +21,7 @@ pub struct Treatment {
     pub deflection: Option<f64>,
     /// Which of the separate bodies of the file it is, counted from 1, the largest box first; `None`: all of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub body: Option<u32>,
+    pub body: Option<u16>,
 }
 
 const fn yes() -> bool {

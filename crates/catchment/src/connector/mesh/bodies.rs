@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 /// A file with fewer bodies.
 pub(super) fn chosen(
     bodies: Vec<Vec<Triangle>>,
-    number: Option<u32>,
+    number: Option<u16>,
 ) -> Result<Vec<Vec<Triangle>>, Vec<MeshProblem>> {
     let Some(number) = number else { return Ok(bodies) };
     let mut apart: Vec<Vec<Triangle>> = bodies.into_iter().flat_map(apart).collect();

@@ -190,7 +190,7 @@ pub enum MeshProblem {
     #[error("there is no body {number}: the file holds {count}, numbered from the largest, which is 1")]
     NoSuchBody {
         /// The number that was asked for.
-        number: u32,
+        number: u16,
         /// How many there are.
         count: usize,
     },

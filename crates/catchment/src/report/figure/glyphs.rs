@@ -31,6 +31,7 @@ pub(super) fn outlined(svg: &str) -> Result<String, FigureError> {
 
 /// The path of a text, with its other attributes.
 fn path(text: &Node<'_, '_>, face: &Face<'_>, to: &mut String) {
+    const LAID_OUT: [&str; 5] = ["x", "y", "font-size", "text-anchor", "font-weight"];
     let number = |name: &str| text.attribute(name).and_then(|value| value.parse().ok()).unwrap_or(0.0);
     let [x, y, size]: [f64; 3] = ["x", "y", "font-size"].map(number);
     let scale = size / f64::from(face.units_per_em());
@@ -45,7 +46,6 @@ fn path(text: &Node<'_, '_>, face: &Face<'_>, to: &mut String) {
         face.outline_glyph(glyph, &mut Outline { to, x: x + scale * (at - before), y, scale });
     }
     to.push('"');
-    const LAID_OUT: [&str; 5] = ["x", "y", "font-size", "text-anchor", "font-weight"];
     for attribute in text.attributes().filter(|one| !LAID_OUT.contains(&one.name())) {
         // Writing to a String cannot fail.
         let _ = write!(to, " {}=\"{}\"", attribute.name(), attribute.value());
@@ -137,7 +137,7 @@ mod tests {
         [xs.clone().fold(f64::INFINITY, f64::min), xs.fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// H of DejaVu Sans: 1540 of 2048 units wide, its stems from 201 to 1339; at 20.48 a unit is a hundredth.
+    /// H of `DejaVu` Sans: 1540 of 2048 units wide, its stems from 201 to 1339; at 20.48 a unit is a hundredth.
     #[test]
     fn glyphs_stand_where_the_font_says() {
         for (anchor, origin) in [("start", 100.0), ("middle", 100.0 - 7.70), ("end", 100.0 - 15.40)] {

@@ -102,7 +102,7 @@ pub struct PartFile {
     /// How the design names it: relative to the folder of the design.
     pub written: String,
     /// Which of its bodies, the largest first, where it holds several; all of them without a number.
-    pub body: Option<u32>,
+    pub body: Option<u16>,
 }
 
 /// A design that docks two parts.

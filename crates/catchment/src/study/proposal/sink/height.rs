@@ -213,17 +213,18 @@ pub(super) struct Offsets {
 pub(super) fn overlaps(fixed: &HeightMap, below: &HeightMap, shift: [isize; 2], height: f32) -> bool {
     /// Rows far from each other come first: most of what overlaps does so along a side.
     const STRIDE: usize = 16;
+    // Of the moving one along an axis, and where the first of them is over the fixed one.
     let range = |k: usize| {
-        let from = (-shift[k]).max(0);
-        let to = (fixed.counts[k] as isize - shift[k]).min(below.counts[k] as isize);
-        from as usize..to.max(from) as usize
+        let [ahead, behind] = [shift[k].max(0).unsigned_abs(), shift[k].min(0).unsigned_abs()];
+        let to = (fixed.counts[k] + behind).saturating_sub(ahead).min(below.counts[k]);
+        (behind..to.max(behind), ahead)
     };
-    let (columns, rows) = (range(0), range(1));
+    let ((columns, first_column), (rows, first_row)) = (range(0), range(1));
     let row_overlaps = |row: usize| {
-        let of = |map: &HeightMap, i: isize, j: isize| j as usize * map.counts[0] + i as usize;
-        let [i, j] = [columns.start as isize, row as isize];
-        let under = &fixed.z[of(fixed, i + shift[0], j + shift[1])..][..columns.len()];
-        let over = &below.z[of(below, i, j)..][..columns.len()];
+        let under = (row - rows.start + first_row) * fixed.counts[0] + first_column;
+        let under = &fixed.z[under..under + columns.len()];
+        let over = row * below.counts[0];
+        let over = &below.z[over + columns.start..over + columns.end];
         under.iter().zip(over).fold(NOTHING, |most, (f, m)| most.max(*f + *m)) > height
     };
     !columns.is_empty() && (0..STRIDE).any(|first| rows.clone().skip(first).step_by(STRIDE).any(row_overlaps))

@@ -87,8 +87,8 @@ pub(in crate::study::proposal) fn lead(parts: [&Triangles; 2], way: Way, grain: 
             return None;
         }
         let nearest = (1..=steps).flat_map(|k| [k, -k]).find(|k| does_fit(*k))?;
-        let last = (1..).map(|k| nearest + nearest.signum() * k).find(|k| !does_fit(*k))? - nearest.signum();
-        Some(0.5 * (raised(nearest) + raised(last)))
+        let onward = (1..=2 * steps).map(|k| nearest + nearest.signum() * k).take_while(|k| does_fit(*k));
+        Some(0.5 * (raised(nearest) + raised(onward.last().unwrap_or(nearest))))
     };
     let (ahead, back) = (fits(FRAC_PI_2)?, fits(-FRAC_PI_2)?);
     // Raised as much without a turn it does not fit.

@@ -260,7 +260,7 @@ impl Tops {
                 places.truncate(MOST_ASKED);
                 let is_one = |basin: &Basin| {
                     let at = [basin.at % h.wide, basin.at / h.wide];
-                    let shift = [0, 1].map(|k| (at[k] as isize - h.before[k] as isize) * SUB as isize);
+                    let shift = [0, 1].map(|k| (at[k] as f64 - h.before[k]) as isize * SUB.cast_signed());
                     !overlaps(map, &view.bottom, shift, h.z[basin.at] + 0.5 * basin.climb)
                 };
                 places = places.into_iter().filter(is_one).take(2 * OF_ONE).collect();
