@@ -89,7 +89,7 @@ impl Sheet {
         text = text.replace("{colour}", &colour.to_string());
         for (k, entity) in entities.iter().enumerate() {
             let common = [(0, entity.name.to_owned()), (5, format!("{:X}", FIRST_HANDLE + k))];
-            let on_layer = [(100, "AcDbEntity".to_owned()), (8, layer.to_owned()), (370, whole(0))];
+            let on_layer = [(100, "AcDbEntity".to_owned()), (8, layer.to_owned()), (370, short(0))];
             for (code, value) in common.iter().chain(&on_layer).chain(&entity.pairs) {
                 let _ = writeln!(text, "{code:>3}\n{value}");
             }
@@ -152,7 +152,7 @@ impl Entity {
     fn polyline(corners: &[DVec2]) -> Self {
         const CLOSED: usize = 1;
         let mut pairs =
-            vec![(100, "AcDbPolyline".to_owned()), (90, whole(corners.len())), (70, whole(CLOSED))];
+            vec![(100, "AcDbPolyline".to_owned()), (90, long(corners.len())), (70, short(CLOSED))];
         pairs.extend(corners.iter().flat_map(|p| [(10, real(p.x)), (20, real(p.y))]));
         Self { name: "LWPOLYLINE", pairs }
     }
@@ -167,9 +167,14 @@ impl Entity {
     }
 }
 
-/// A whole number as DXF has it.
-fn whole(value: usize) -> String {
+/// A whole number of two bytes as DXF has it.
+fn short(value: usize) -> String {
     format!("{value:>6}")
+}
+
+/// And one of four.
+fn long(value: usize) -> String {
+    format!("{value:>9}")
 }
 
 /// A number to 12 places, without trailing zeros but for one after the point.
