@@ -189,7 +189,7 @@ pub enum MeshProblem {
     /// A body that the file does not have.
     #[error("there is no body {number}: the file holds {count}, numbered from the largest, which is 1")]
     NoSuchBody {
-        /// The number that was asked for.
+        /// The number of the body that the design takes.
         number: u16,
         /// How many there are.
         count: usize,

@@ -96,7 +96,7 @@ const CELLS: f64 = 160.0;
 const MOST_CELL: f64 = 1.6;
 /// Points of the moving part that are looked at.
 const MOST_POINTS: usize = 2500;
-/// Basins of one view of which it is asked whether all points see them.
+/// Basins of one view that are compared with all points.
 const MOST_ASKED: usize = 400;
 /// Basins of one view that are kept, and of all.
 const OF_ONE: usize = 6;
