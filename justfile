@@ -15,7 +15,7 @@ test *filter:
 
 # rates beside the judges and beside stored ones; every bench asserts its result; just bench --store keeps new ones
 bench *filter:
-    cargo bench --locked -p catchment -- {{ filter }}
+    cargo bench --locked -p catchment-core -- {{ filter }}
 
 # the program, optimised: just run run designs/v-face.toml
 run *arguments:

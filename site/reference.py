@@ -7,7 +7,7 @@
     design-file.md   every key of a design file, from `catchment schema`, which the one table of keys makes
     fields.md        every field of the JSON reports with its type (site/report_fields.py)
     python.md        every public name of the Python package, from its files (site/python_reference.py)
-    measurements.md  rates that the benches stored (crates/catchment/benches/rates.json)
+    measurements.md  rates that the benches stored (crates/catchment-core/benches/rates.json)
 """
 
 import json
@@ -109,7 +109,7 @@ program printed for this page: *number* is a float, and *null* says that nothing
 
 
 def measurements() -> str:
-    stored = json.loads((ROOT / "crates/catchment/benches/rates.json").read_text(encoding="utf-8"))
+    stored = json.loads((ROOT / "crates/catchment-core/benches/rates.json").read_text(encoding="utf-8"))
     text = f"""# Measurements
 
 {MADE}What `cargo bench -- --store` stored last, a table for each bench, with the machine and the commit it was measured on. `cargo bench` prints today's beside them, and every

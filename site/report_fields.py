@@ -93,8 +93,8 @@ def structs() -> tuple[dict[str, str], dict[str, str]]:
     """Of the library's sources: the body of every struct by its name, those of reports first, and the name of the struct of every kind of report."""
     bodies: dict[str, str] = {}
     kinds: dict[str, str] = {}
-    source = ROOT / "crates/catchment/src"
-    files = sorted(source.rglob("*.rs"), key=lambda path: ("report" not in path.parts, "figure" in path.parts or "page" in path.parts, str(path)))
+    crates = [ROOT / "crates" / name / "src" for name in ("catchment-report", "catchment-core", "catchment-study")]
+    files = [file for crate in crates for file in sorted(crate.rglob("*.rs"), key=lambda path: ("figure" in path.parts or "page" in path.parts, str(path)))]
     for path in files:
         text = path.read_text(encoding="utf-8")
         for name, body in re.findall(r"^pub(?:\([a-z]+\))? struct (\w+)(?:<[^>]*>)? \{\n(.*?)^\}", text, re.M | re.S):

@@ -1,13 +1,13 @@
 // Builds the viewer into the folder of the library that ships it; with --compare says whether what lies there is what is built.
 //
-//     node build.mjs             src/*.ts ──▶ ../crates/catchment/src/report/page/bundle/{viewer.js, worker.js, painter.js, viewer.css}
+//     node build.mjs             src/*.ts ──▶ ../crates/catchment-report/src/page/bundle/{viewer.js, worker.js, painter.js, viewer.css}
 //     node build.mjs --compare   exit code 1 unless the same bytes lie there
 import { build } from "esbuild";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
-const bundle = here("../crates/catchment/src/report/page/bundle/");
+const bundle = here("../crates/catchment-report/src/page/bundle/");
 const compare = process.argv.includes("--compare");
 const shared = { bundle: true, minify: true, write: false, target: "es2022", legalComments: "none", charset: "ascii", logLevel: "warning" };
 const banner = "/* catchment viewer; holds three.js, MIT, Copyright 2010-2026 three.js authors */";

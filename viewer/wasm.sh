@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-bundle=crates/catchment/src/report/page/bundle/motions.wasm.z
+bundle=crates/catchment-report/src/page/bundle/motions.wasm.z
 work=$PWD/target/wasm
 target=wasm32-unknown-unknown
 cannot() { printf 'wasm: %s\n' "$1" >&2; exit 3; }

@@ -4,7 +4,8 @@ use crate::problem::Problem;
 use crate::refusal::Refusal;
 use crate::told::PNG_SCALE;
 use crate::work::{How, work};
-use catchment::report::table;
+use catchment::report::figure::Drawn;
+use catchment::report::{Report, save, save_group, table};
 use catchment::run::{self, Part, PartAnswer, Run};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -52,12 +53,12 @@ fn read(run: &str) -> Result<Run, Refusal> {
 impl Answer {
     /// The report, as the command line prints it.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        self.inner.report().to_json().map_err(|error| Refusal::from(error).raise(py))
+        Report::of_answer(&self.inner).to_json().map_err(|error| Refusal::from(error).raise(py))
     }
 
     /// The report for eyes.
     fn table(&self) -> String {
-        table(&self.inner.report())
+        table(&Report::of_answer(&self.inner))
     }
 
     /// The code of every outcome, the first axis fastest: 1 aligned, 2 jammed, 3 missed, 4 undecided.
@@ -77,14 +78,16 @@ impl Answer {
 
     /// The requirements that are not met, as sentences.
     fn unmet(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        let verdicts = self.inner.verdicts().map_err(|error| Refusal::from(error).raise(py))?;
+        let verdicts = Report::of_answer(&self.inner)
+            .verdicts(&self.inner.run.requirements)
+            .map_err(|error| Refusal::from(error).raise(py))?;
         Ok(verdicts.iter().filter(|verdict| !verdict.met).map(ToString::to_string).collect())
     }
 
     /// Every picture: its name, SVG and PNG.
     fn draw(&self, py: Python<'_>, how: How) -> PyResult<Vec<(&'static str, String, Vec<u8>)>> {
         work(py, &how, |exec| {
-            let drawn = self.inner.draw(exec)?.pictures;
+            let drawn = Drawn::of(&self.inner, exec)?.pictures;
             let encoded = drawn.into_iter().map(|(name, picture)| {
                 exec.check()?;
                 Ok((name, picture.svg().to_owned(), picture.png(PNG_SCALE)?))
@@ -97,9 +100,9 @@ impl Answer {
     fn save(&self, py: Python<'_>, path: PathBuf, how: How) -> PyResult<()> {
         work(py, &how, |exec| {
             if path.extension().is_some_and(|ending| ending == "zarr") {
-                Ok(self.inner.save_group(&path, exec)?)
+                Ok(save_group(&self.inner, &path, exec)?)
             } else {
-                Ok(self.inner.save(&path, exec).map(drop)?)
+                Ok(save(&self.inner, &path, exec).map(drop)?)
             }
         })
     }

@@ -6,7 +6,7 @@ use catchment::landscape::Resolution;
 use catchment::method::correction::Stop;
 use catchment::method::{Method, REGISTRY};
 use catchment::poses::Distribution;
-use catchment::report::UnanswerableError;
+use catchment::report::{UnanswerableError, check_requirements};
 use catchment::run::{Over, Requirement, Run, Sample};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
@@ -153,7 +153,7 @@ impl Problem {
         let plan = || -> Result<String, Refusal> {
             let run = asked.run(&self.inner, &expected)?;
             run.plan(&self.inner)?;
-            run.check_requirements(&self.inner).map_err(|error| match error {
+            check_requirements(&run, &self.inner).map_err(|error| match error {
                 UnanswerableError::Run(error) => error.into(),
                 error @ UnanswerableError::Requirement { .. } => Refusal::argument("require", error),
             })?;

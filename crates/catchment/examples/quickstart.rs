@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, reason = "an example tells what it found")]
 
 use catchment::prelude::*;
+use catchment::report;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let problem = Problem::open(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/v-face.toml"))?;
@@ -11,6 +12,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let end = problem.follow(&PoseError { x: 0.2, pitch: 0.1, ..PoseError::default() });
     println!("x = 0.2 D, pitch = 0.1 rad ends {}", end.outcome.name());
     println!("ONAA edge {:.2}", answer.onaa().map_or(0.0, |onaa| onaa.edge));
-    answer.save(std::env::temp_dir().join("catchment-quickstart"), &Exec::new())?;
+    report::save(&answer, std::env::temp_dir().join("catchment-quickstart"), &Exec::new())?;
     Ok(())
 }

@@ -61,7 +61,7 @@
 //! assert!(answer.onaa().is_some_and(|onaa| (onaa.edge - 0.3).abs() < 0.03));
 //!
 //! // 5. For people, in their own units.
-//! let table = report::table(&answer.report());
+//! let table = report::table(&Report::of_answer(&answer));
 //! assert!(table.contains("mm") && table.contains('°'), "{table}");
 //!
 //! // 6. Another method enters by the same door; its settings have names.
@@ -108,24 +108,11 @@
 //! sees the centres of its cells and nothing between. Doubts about a result travel inside it, as
 //! [`acceptance::Warning`]s. The file `docs/limits.md` of the source tree has the whole list.
 
-pub mod acceptance;
-pub mod advice;
-pub mod budget;
-pub mod connector;
-pub mod contact;
-pub mod design;
-pub mod exec;
-pub mod landscape;
-pub mod merit;
-pub mod method;
-pub mod polytope;
-pub mod pose;
-pub mod poses;
 pub mod prelude;
-pub mod problem;
-pub mod report;
-pub mod run;
-pub mod study;
-pub mod suggest;
-pub mod terminal;
-pub mod xml;
+
+pub use catchment_core::{
+    acceptance, advice, budget, connector, contact, design, exec, landscape, merit, method, polytope, pose,
+    poses, problem, run, suggest, terminal, xml,
+};
+pub use catchment_report as report;
+pub use catchment_study as study;

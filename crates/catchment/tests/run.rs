@@ -11,7 +11,7 @@ use catchment::method::{Method, REGISTRY, descent};
 use catchment::pose::{Dof, DofSet, PoseError};
 use catchment::poses::Distribution;
 use catchment::problem::Problem;
-use catchment::report::UnanswerableError;
+use catchment::report::{Report, UnanswerableError, check_requirements};
 use catchment::run::{Answer, Over, Part, PartAnswer, PartError, Run, RunError, Sample};
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ fn run(method: &str, cells: usize, samples: usize) -> Run {
 
 /// The report without what differs between equal runs.
 fn told(answer: &Answer) -> Value {
-    let mut report = serde_json::to_value(answer.report()).unwrap();
+    let mut report = serde_json::to_value(Report::of_answer(answer)).unwrap();
     report["timing"] = Value::Null;
     report
 }
@@ -60,7 +60,7 @@ fn every_registered_method_enters_the_same_way() {
         assert_eq!(answer.by_products.partition.is_some(), partition, "{method}");
         let watersheds = method.by_products().contains(&"watersheds");
         assert_eq!(answer.by_products.watersheds.is_some(), watersheds, "{method}");
-        assert_eq!(answer.report().watersheds.is_some(), watersheds, "{method}");
+        assert_eq!(Report::of_answer(&answer).watersheds.is_some(), watersheds, "{method}");
         if let Some(landscape) = &answer.by_products.landscape {
             assert!(method.by_products().contains(&"landscape") && landscape.heights.len() == 36);
         }
@@ -189,7 +189,7 @@ proptest! {
 fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
     let asks = |method: &str, requirement: &str| {
         let run = Run { requirements: vec![requirement.parse().unwrap()], ..run(method, 8, 0) };
-        run.check_requirements(&planar())
+        check_requirements(&run, &planar())
     };
     // A partition has a section of its own, a flood has basins; no other report has.
     assert!(asks("partition", "partition.sum >= 0.1").is_ok());
@@ -202,7 +202,8 @@ fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
         requirements: ["partition.sum >= 0.1", "onaa.edge >= 0.9"].map(|r| r.parse().unwrap()).to_vec(),
         ..run("partition", 8, 0)
     };
-    let verdicts = run.on(&planar(), &Exec::new()).unwrap().verdicts().unwrap();
+    let answer = run.on(&planar(), &Exec::new()).unwrap();
+    let verdicts = Report::of_answer(&answer).verdicts(&run.requirements).unwrap();
     assert_eq!(verdicts.iter().map(|verdict| verdict.met).collect::<Vec<_>>(), [true, false]);
 }
 
@@ -210,7 +211,7 @@ fn a_requirement_is_refused_where_no_report_can_answer_it_and_only_there() {
 fn a_grid_outside_its_own_sample_is_a_doubt_and_so_is_no_sample() {
     let kinds = |run: Run| {
         let answer = run.on(&problem(Family::Pyramid, DofSet::ALL), &Exec::new()).unwrap();
-        assert_eq!(answer.sum(), answer.report().acceptance.sum);
+        assert_eq!(answer.sum(), Report::of_answer(&answer).acceptance.sum);
         answer.warnings()
     };
     // Five cells per axis of flooding are far off, and a thousand exact poses show it.
@@ -366,6 +367,6 @@ fn random_poses_answer_in_the_place_of_a_grid_that_resolves_nothing() {
     assert!(centered.sampled.is_some() && centered.scale > 0.0 && answer.merits.onaa.is_none());
     let [lo, hi] = answer.sum_ci95().unwrap();
     assert!(lo <= answer.sum() && answer.sum() <= hi);
-    let report = serde_json::to_value(answer.report()).unwrap();
+    let report = serde_json::to_value(Report::of_answer(&answer)).unwrap();
     assert_eq!(report["acceptance"]["cells"], 20);
 }

@@ -12,7 +12,7 @@ use catchment::landscape::Resolution;
 use catchment::pose::Dof;
 use catchment::report::folder::{StudyFolder, encode};
 use catchment::report::schema::Timing;
-use catchment::report::{SlicesReport, figure};
+use catchment::report::{SlicesReport, figure, save_slices};
 use catchment::study::slices::{Settings, SlicesError, ensure_fits, run as compute};
 use catchment::terminal::escaped;
 use clap::Args;
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &SlicesArgs) -> Result<ExitStatus, Failure> {
     if let Some(folder) = &folder {
         let picture = figure::slice_matrix(design, problem.connector(), &found)?;
         let pictures = encode(&[(folder.name, picture)], exec)?;
-        let groups = |folder: &Path| found.save_groups(folder, &problem, &report, exec);
+        let groups = |folder: &Path| save_slices(&found, folder, &problem, &report, exec);
         let said = folder.write(&json, &report.records(), pictures, exec, groups)?;
         written(folder.path);
         notes.push(format!("{said}, {} Zarr groups", found.slices.len()));

@@ -19,7 +19,7 @@ use catchment::acceptance::Domain;
 use catchment::landscape::Resolution;
 use catchment::pose::{Dof, DofSet};
 use catchment::problem::Problem;
-use catchment::report::{UnanswerableError, figure, first_look, table_with};
+use catchment::report::{self, Report, UnanswerableError, figure, first_look, table_with};
 use catchment::run::{Over, Plan, Requirement, Run, RunError, Sample, Upright};
 use catchment::terminal::escaped;
 use clap::Args;
@@ -107,7 +107,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         jams: args.jams,
         window: args.window,
     };
-    run.check_requirements(&problem).map_err(|error| match error {
+    report::check_requirements(&run, &problem).map_err(|error| match error {
         UnanswerableError::Run(error) => refused(&problem, error),
         UnanswerableError::Requirement { requirement, error } => {
             Failure::with_help(format!("--require '{requirement}': {error}"), None)
@@ -140,7 +140,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
         }
     };
     let answer = run.on_with(&problem, &running.exec, first).map_err(|error| refused(&problem, error))?;
-    let report = answer.report();
+    let report = Report::of_answer(&answer);
     let mut notes = targets.write(&answer, &running.exec)?;
     drop(running);
     let printed = if args.json {
@@ -148,7 +148,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitStatus, Failure> {
     } else {
         to_stdout(&table_with(&report, advice::flags))
     };
-    let verdicts = answer.verdicts()?;
+    let verdicts = report.verdicts(&answer.run.requirements)?;
     let status = if verdicts.iter().all(|verdict| verdict.met) {
         printed?;
         ExitStatus::Done

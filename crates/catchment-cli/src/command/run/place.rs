@@ -3,11 +3,11 @@
 use crate::failure::Failure;
 use crate::output::written;
 use catchment::exec::Exec;
-use catchment::report::Target;
 use catchment::report::figure::Drawn;
 use catchment::report::folder::{POSES, REPORT, RESULT, StudyFolder};
 use catchment::report::set::Kind;
 use catchment::report::write;
+use catchment::report::{self, Target};
 use catchment::run::Answer;
 use catchment::terminal::shown;
 use clap::Args;
@@ -96,27 +96,27 @@ impl Targets<'_> {
 
     /// Writes everything and says what was written.
     pub(super) fn write(&self, answer: &Answer, exec: &Exec) -> Result<Vec<String>, Failure> {
-        let drawn = if self.draw() { answer.draw(exec)? } else { Drawn::default() };
+        let drawn = if self.draw() { Drawn::of(answer, exec)? } else { Drawn::default() };
         let mut notes = drawn.left_out.clone();
         for target in &self.0 {
             notes.push(match target {
                 Target::Pictures(path) => {
-                    let saved = answer.save_pictures(path, &drawn, exec)?;
+                    let saved = report::save_pictures(path, &drawn, exec)?;
                     written(path);
                     format!("wrote {} pictures as PNG and SVG into {}", saved.pictures, shown(path))
                 }
                 Target::Group(path) => {
-                    answer.save_group(path, exec)?;
+                    report::save_group(answer, path, exec)?;
                     written(path);
                     format!("wrote {}", shown(path))
                 }
                 Target::Set(path, kind) => {
-                    answer.save_set(path, *kind, exec)?;
+                    report::save_set(answer, path, *kind, exec)?;
                     written(path);
                     format!("wrote {}", shown(path))
                 }
                 Target::Folder(path) => {
-                    let pictures = answer.save_drawn(path, &drawn, exec)?.pictures;
+                    let pictures = report::save_drawn(answer, path, &drawn, exec)?.pictures;
                     written(path);
                     let place = shown(path);
                     let set = if answer.grid().is_some() { RESULT } else { POSES };

@@ -1,0 +1,374 @@
+//! The one result type: what becomes of every pose error.
+//!
+//! ```text
+//!   aligned     contact brings the halves to the mated pose
+//!   jammed      they come to rest in contact elsewhere
+//!   missed      no contact, or they slide off each other
+//!   undecided   the budget ran out: never silent
+//! ```
+//!
+//! Every method fills an [`Acceptance`], so that any two can be compared cell by cell.
+
+mod random;
+
+use crate::advice::Advice;
+use crate::design::Alignment;
+use crate::landscape::Grid;
+use crate::pose::{Dof, PoseError};
+use crate::problem::Problem;
+pub use random::Stream;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What becomes of one pose error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[repr(u8)]
+pub enum Outcome {
+    /// Contact brings the halves to the mated pose.
+    Aligned = 1,
+    /// At rest in contact elsewhere.
+    Jammed = 2,
+    /// No contact, or slid off.
+    Missed = 3,
+    /// The budget ran out.
+    Undecided = 4,
+}
+
+impl Outcome {
+    /// All four, in the order of their codes.
+    pub const ALL: [Self; 4] = [Self::Aligned, Self::Jammed, Self::Missed, Self::Undecided];
+
+    /// The lower-case name used in files and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Aligned => "aligned",
+            Self::Jammed => "jammed",
+            Self::Missed => "missed",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// Why a pose did not dock, where that can be told from where it ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reason {
+    /// Jammed: a layer rests on, or stands against, a layer of the other half that is not its partner.
+    Crossed,
+}
+
+impl Reason {
+    /// Why a motion that ended with this outcome at this pose error did not dock, if that can be told.
+    pub fn of(problem: &Problem, outcome: Outcome, end: &PoseError) -> Option<Self> {
+        let crossed = outcome == Outcome::Jammed && problem.may_cross() && problem.pair().crosses(end);
+        crossed.then_some(Self::Crossed)
+    }
+
+    /// The lower-case name used in files and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Crossed => "crossed",
+        }
+    }
+}
+
+/// Which pose errors were tried.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Domain {
+    /// The centre of every cell of a grid.
+    Grid(Grid),
+    /// Listed poses.
+    Poses(Vec<PoseError>),
+}
+
+impl Domain {
+    /// How many poses; `None` if the number overflows.
+    pub fn checked_len(&self) -> Option<usize> {
+        match self {
+            Self::Grid(grid) => grid.checked_len(),
+            Self::Poses(poses) => Some(poses.len()),
+        }
+    }
+
+    /// How many poses.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Grid(grid) => grid.len(),
+            Self::Poses(poses) => poses.len(),
+        }
+    }
+
+    /// Whether there is no pose.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The pose error number `k`, in the order of the outcomes.
+    ///
+    /// # Panics
+    /// When a list has no pose number `k`.
+    pub fn pose(&self, k: usize) -> PoseError {
+        match self {
+            Self::Grid(grid) => grid.pose(k),
+            Self::Poses(poses) => poses[k],
+        }
+    }
+
+    /// `count` poses drawn independently and uniformly from the error box of `alignment`. Pose k depends on `seed`
+    /// and k alone: a longer list starts with the shorter one.
+    pub fn random(alignment: &Alignment, count: usize, seed: u64) -> Self {
+        let stream = Stream::new(seed);
+        let pose = |k: usize| {
+            let number = |dof: Dof| stream.uniform((Dof::ALL.len() * k + dof.index()) as u64);
+            let mut error = [0.0; 5];
+            for dof in alignment.free.iter() {
+                error[dof.index()] = alignment.half_range(dof) * (2.0 * number(dof) - 1.0);
+            }
+            PoseError::from_array(error)
+        };
+        Self::Poses((0..count).map(pose).collect())
+    }
+}
+
+/// A doubt about a result, carried inside the report.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Warning {
+    /// The accepted set reaches the border of the error box: part of it may lie outside.
+    TouchesBorder {
+        /// Names of the axes at whose border it does.
+        axes: Vec<String>,
+    },
+    /// Some poses were not decided.
+    Undecided {
+        /// How many.
+        cells: usize,
+    },
+    /// Some of the random motions that the Sum comes from were not decided.
+    UndecidedSample {
+        /// How many.
+        motions: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// The method's direction is quantised by the grid, so its border does not converge to the true one.
+    FloodingBias,
+    /// Accepted cells lie on level ground, such as the rim of a hole, where nothing slides.
+    LevelGround {
+        /// How many.
+        cells: usize,
+        /// Of so many accepted ones.
+        of: usize,
+    },
+    /// Motion that leaves the error box was not followed.
+    CutOff,
+    /// The measure of the accepted cells lies outside the interval of the Sum from random exact descents.
+    OutsideSample {
+        /// Measure of the accepted cells, Dᵃ·radᵇ.
+        sum_grid: f64,
+        /// 95 % interval of the Sum, Dᵃ·radᵇ.
+        ci95: [f64; 2],
+    },
+    /// No random poses were followed: the Sum is the measure of the accepted cells, right or not.
+    NoInterval,
+    /// Cells that the method could not decide by itself, and that were too many to be followed exactly.
+    Ambiguous {
+        /// How many.
+        cells: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// Some of the motions that the result rests on end otherwise when their steps are halved.
+    StepDependence {
+        /// Random poses whose outcome changed.
+        changed: usize,
+        /// Of how many.
+        of: usize,
+        /// 95 % interval of the share that changes.
+        ci95: [f64; 2],
+    },
+    /// Numbers of the dissertation's own conventions, fitted to its tables; not physics.
+    DissertationConventions,
+    /// The mated pose is not inside the accepted set.
+    MatedPoseNotAccepted,
+    /// Cells are undecided, for this reason.
+    Open {
+        /// The reason, in a sentence.
+        text: String,
+    },
+    /// Anything else a reader must know, in a sentence.
+    Note {
+        /// The sentence.
+        text: String,
+    },
+}
+
+impl Warning {
+    /// What helps against it, where something does.
+    pub const fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::TouchesBorder { .. } => Some(Advice::EnlargeErrors),
+            Self::FloodingBias | Self::LevelGround { .. } => Some(Advice::Method("descent")),
+            Self::NoInterval => Some(Advice::Samples),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TouchesBorder { axes } => write!(
+                f,
+                "the accepted set reaches the border of the error box along {}: enlarge [errors] to see all of it",
+                axes.join(", ")
+            ),
+            Self::Undecided { cells } => {
+                let (poses, their) = if *cells == 1 { ("pose", "its") } else { ("poses", "their") };
+                write!(f, "{cells} {poses} undecided: {their} motion could not be followed to its end")
+            }
+            Self::UndecidedSample { motions, of } => write!(
+                f,
+                "{motions} of {of} random motions could not be followed to their end: the Sum counts them as not accepted, its \
+                 interval reaches to where they are"
+            ),
+            Self::FloodingBias => write!(
+                f,
+                "flooding follows grid directions only: its Sum may be several percent off at any resolution, and \
+                 far more on a coarse grid; descent is exact at every pose"
+            ),
+            Self::LevelGround { cells, of } => write!(
+                f,
+                "{cells} of {of} accepted cells lie on level ground above the seat, where nothing slides: flooding drains them all \
+                 the same, and its Sum is too large by them at least"
+            ),
+            Self::CutOff => write!(
+                f,
+                "poses whose motion leaves the error box were not followed beyond it on this grid: they count as \
+                 missed at a border of x or y, as jammed at one of an angle"
+            ),
+            Self::OutsideSample { sum_grid, ci95: [lo, hi] } => write!(
+                f,
+                "the accepted cells measure {sum_grid:.4}, outside the 95 % interval {lo:.4} … {hi:.4}: the grid is too \
+                 coarse or its method biased; slices and pictures rest on it, the Sum, ONAA, centred edge and tolerances do not"
+            ),
+            Self::NoInterval => write!(
+                f,
+                "the Sum is the measure of the accepted cells, without an interval; random poses, followed \
+                 exactly, give an unbiased Sum with one"
+            ),
+            Self::Ambiguous { cells, of } => write!(
+                f,
+                "{cells} of {of} cells are ambiguous, too many to follow each exactly: slices and pictures rest \
+                 on the method's guess there, the Sum with its interval, ONAA, centred edge and tolerances do not"
+            ),
+            Self::StepDependence { changed, of, ci95: [lo, hi] } => write!(
+                f,
+                "{changed} of {of} random poses end otherwise when the steps of their motion are halved ({:.1} … {:.1} % of all \
+                 poses, 95 %): the fit is tight, and the numbers are no better than that",
+                100.0 * lo,
+                100.0 * hi
+            ),
+            Self::DissertationConventions => {
+                write!(
+                    f,
+                    "the dissertation preset uses conventions fitted to its tables; not for design decisions"
+                )
+            }
+            Self::MatedPoseNotAccepted => {
+                write!(
+                    f,
+                    "the mated pose itself is not accepted: the grid is too coarse, or the pair does not hold there"
+                )
+            }
+            Self::Open { text } | Self::Note { text } => f.write_str(text),
+        }
+    }
+}
+
+/// Outcome of every pose error tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Acceptance {
+    /// Name of the method that decided.
+    pub method: &'static str,
+    /// What was tried.
+    pub domain: Domain,
+    /// One outcome per cell or pose, in the order of the domain.
+    pub outcomes: Vec<Outcome>,
+    /// Doubts.
+    pub warnings: Vec<Warning>,
+}
+
+impl Acceptance {
+    /// How many poses met each outcome, in the order of [`Outcome::ALL`].
+    pub fn counts(&self) -> [usize; 4] {
+        // So many outcomes can be counted in a byte each, which the compiler does for many at once.
+        const PIECE: usize = u8::MAX as usize;
+        let mut counts = [0; 4];
+        for piece in self.outcomes.chunks(PIECE) {
+            for (count, outcome) in counts.iter_mut().zip(Outcome::ALL) {
+                let equal = piece.iter().fold(0u8, |sum, o| sum.wrapping_add(u8::from(*o == outcome)));
+                *count += usize::from(equal);
+            }
+        }
+        counts
+    }
+
+    /// Whether each pose is accepted.
+    pub fn accepted(&self) -> impl ExactSizeIterator<Item = bool> + '_ {
+        self.outcomes.iter().map(|o| *o == Outcome::Aligned)
+    }
+
+    /// The grid, if a grid was tried.
+    pub const fn grid(&self) -> Option<&Grid> {
+        match &self.domain {
+            Domain::Grid(grid) => Some(grid),
+            Domain::Poses(_) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose::{DofSet, Mount};
+
+    fn drawn(count: usize, seed: u64) -> Vec<PoseError> {
+        let alignment = Alignment::new(DofSet::ALL.without(Dof::Roll), Mount::X);
+        match Domain::random(&alignment, count, seed) {
+            Domain::Poses(poses) => poses,
+            Domain::Grid(_) => Vec::new(),
+        }
+    }
+
+    #[test]
+    fn random_poses_fill_the_error_box_evenly() {
+        const COUNT: usize = 20_000;
+        let poses = drawn(COUNT, 7);
+        let alignment = Alignment::new(DofSet::ALL, Mount::X);
+        for dof in Dof::ALL {
+            let values: Vec<f64> =
+                poses.iter().map(|p| p.to_array()[dof.index()] / alignment.half_range(dof)).collect();
+            let moment = |f: &dyn Fn(f64) -> f64| values.iter().map(|v| f(*v)).sum::<f64>() / COUNT as f64;
+            if dof == Dof::Roll {
+                assert!(values.iter().all(|v| *v == 0.0));
+                continue;
+            }
+            assert!(values.iter().all(|v| (-1.0..1.0).contains(v)));
+            // Mean 0 and mean square 1/3 of a uniform variable; five standard errors √(1/3n) and √(4/45n).
+            assert!(moment(&|v| v).abs() < 5.0 * (1.0 / (3.0 * COUNT as f64)).sqrt());
+            assert!((moment(&|v| v * v) - 1.0 / 3.0).abs() < 5.0 * (4.0 / (45.0 * COUNT as f64)).sqrt());
+            // Neighbouring poses are not correlated; the product of two has variance 1/9.
+            let lag = values.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / COUNT as f64;
+            assert!(lag.abs() < 5.0 / (3.0 * (COUNT as f64).sqrt()));
+        }
+    }
+
+    #[test]
+    fn a_random_pose_depends_on_seed_and_number_alone() {
+        assert_eq!(drawn(100, 1)[..10], drawn(10, 1));
+        assert!(drawn(10, 1).iter().zip(drawn(10, 2)).all(|(a, b)| *a != b));
+    }
+}

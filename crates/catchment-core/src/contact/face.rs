@@ -1,0 +1,75 @@
+//! Where the face centre is when the design does not say: both halves moved so that they first touch with their face centres together.
+//!
+//! ```text
+//!        ┌───────┐  moving                         z   top of the fixed half          ─┐
+//!        │  ┌──┐ │                                     ·  face centre                  │ what they share
+//!      ──┘╲╱    └┘                                     bottom of the moving half, mated ─┘
+//!   ────╲    ╱───── fixed
+//! ```
+//!
+//! Its height is half way between the bottom of the moving half, lowered without any error until it first touches, and the top of the fixed one.
+//! Where the halves are drawn assembled, it stands in the middle of the box around what both have in that band, in plan view; halves
+//! that are drawn facing have it on their z axis.
+//!
+//! Not promised: that the halves hold where they first touch, which [`mated`](super::mated) asks.
+
+use super::Pair;
+use super::mated::{CONTACT_TOLERANCE, MatedProblem};
+use crate::connector::{Connector, Half};
+use crate::design::{Alignment, ConnectorSpec, Drawn, OwnSpec};
+use crate::pose::{DofSet, Mount};
+use glam::{DVec2, DVec3};
+
+/// How far from where they first touch halves may be drawn that are drawn docked, in D: more than any play or press fit.
+pub(crate) const MOST_APART: f64 = 0.05;
+
+/// What speaks against halves that are drawn docked: that they are not.
+pub fn misdrawn(connector: &Connector, spec: &ConnectorSpec) -> Option<MatedProblem> {
+    let ConnectorSpec::Own(OwnSpec { drawn: Drawn::Assembled { .. }, .. }) = spec else { return None };
+    let gap = connector.origin.apart?;
+    if gap > MOST_APART {
+        Some(MatedProblem::DrawnApart { gap })
+    } else {
+        (gap < -MOST_APART).then_some(MatedProblem::DrawnDeeper { overlap: -gap })
+    }
+}
+
+/// The halves of `own`, moved to their common face centre where the design leaves that open; as they are where they pass each other by.
+pub fn found(connector: Connector, own: &OwnSpec) -> Connector {
+    if !own.is_face_unknown() {
+        return connector;
+    }
+    // The height without any error does not depend on the alignment problem.
+    let pair = Pair::new(&connector, &Alignment::new(DofSet::EMPTY, Mount::X));
+    let lift = pair.mated_height();
+    if !lift.is_finite() {
+        return connector;
+    }
+    let given = matches!(own.drawn, Drawn::Assembled { face_center: Some(_), .. });
+    let center = if given { DVec3::ZERO } else { center(&connector, own.drawn, lift) };
+    connector.moved(-center, DVec3::new(0.0, 0.0, lift) - center, -lift)
+}
+
+/// The face centre with the moving half lifted by `lift`.
+fn center(connector: &Connector, drawn: Drawn, lift: f64) -> DVec3 {
+    let Connector { fixed, moving, .. } = connector;
+    let ([_, top], [bottom, _]) = (fixed.span(), moving.span());
+    // Flat on flat they share a plane.
+    let (bottom, top) = (bottom + lift - CONTACT_TOLERANCE, top + CONTACT_TOLERANCE);
+    let lateral = match drawn {
+        Drawn::Facing => DVec2::ZERO,
+        Drawn::Assembled { .. } => {
+            let within = |half: &Half, lift: f64| {
+                let points = half.surfaces.iter().flat_map(|surface| &surface.vertices);
+                let shared = points.filter(|p| (bottom..=top).contains(&(p.z + lift)));
+                let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+                shared.fold(none, |[low, high], p| [low.min(p.truncate()), high.max(p.truncate())])
+            };
+            let ([a, b], [c, d]) = (within(fixed, 0.0), within(moving, lift));
+            // Halves that touch have something in the band, and share some of it.
+            let middle = a.max(c).midpoint(b.min(d));
+            if middle.is_finite() { middle } else { DVec2::ZERO }
+        }
+    };
+    lateral.extend(bottom.midpoint(top))
+}

@@ -1,0 +1,308 @@
+//! The height of first contact, and what touches there.
+//!
+//! ```text
+//!        ┆ moving half, lowered along −z from far above
+//!     ╲__▼__╱      h(q) = z of the COR when the first point touches
+//!     ╲     ╱           = upper envelope of  fixed ⊕ (−R·moving)
+//!      ╲___╱
+//! ```
+//!
+//! At a fixed rotation R the envelope is piecewise linear in the lateral position: its pieces come from a
+//! corner of one half on a facet of the other, or from two crossing edges. [`brute`] writes that definition
+//! down in plain loops and judges every fast path.
+//!
+//! Two rules decide about planes and borders that both halves share, in the plane and in space alike. *Heights* are those of closed solids: what lies
+//! over a border, or beyond it by rounding, touches. *Overlap* is that of open ones ([`Nearby::overlaps`]): a point inside both proves it, and surfaces
+//! that fall together do not.
+
+mod bounds;
+pub mod brute;
+mod candidates;
+mod cone;
+mod crease;
+mod element;
+mod envelope;
+pub mod face;
+mod feature;
+mod hold;
+mod layers;
+pub mod mated;
+#[cfg(test)]
+#[path = "../../benches/meshes/mod.rs"]
+pub(crate) mod meshes;
+mod mirror;
+mod nearby;
+mod overlap;
+mod plan;
+mod play;
+mod raster;
+pub mod relief;
+mod search;
+mod seat;
+pub mod settle;
+mod shape;
+mod side_by_side;
+#[cfg(test)]
+mod tests;
+pub mod told;
+mod tree;
+mod turned;
+mod walls;
+pub mod width;
+
+pub(crate) use candidates::FLUSH;
+pub use element::Meeting;
+pub use envelope::Envelope;
+pub(crate) use feature::Sets;
+pub use feature::{Feature, Features, Kind as FeatureKind, Lie};
+pub use mirror::Mirror;
+pub use nearby::Nearby;
+pub(crate) use nearby::chord;
+pub use play::play_on;
+pub use play::{Play, play};
+pub(crate) use seat::CORE as SEAT_CORE;
+pub use seat::Seat;
+pub use side_by_side::SideBySide;
+
+use crate::connector::{Connector, Half};
+use crate::design::Alignment;
+use crate::pose::{CorPose, DofSet};
+use glam::{DMat3, DVec2, DVec3};
+use mated::About;
+use search::Trees;
+use shape::Shape;
+use std::sync::OnceLock;
+use turned::Turned;
+
+/// From this product of their numbers of facets on, halves have trees, and heights and motions ask them: pins in holes that fit tightly move 1.6 times as
+/// fast with trees at 150 × 150 facets, 2.5 times at 300 × 300, and 0.8 times at 20 × 20.
+const MANY: usize = 300 * 300;
+const MANY_WHERE_TIGHT: usize = 100 * 100;
+/// From this one on grids ask the trees, too: below it a list of all that can carry, which serves all cells of a rotation, is as fast.
+const MOST_LISTED: usize = 3000 * 3000;
+
+/// Facets of a half.
+fn facets(half: &Half) -> usize {
+    half.surfaces.iter().map(|surface| surface.facets.len()).sum()
+}
+
+/// Whether halves with this product of their numbers of facets have trees.
+const fn has_trees(count: usize, is_tight: bool) -> bool {
+    count >= if is_tight { MANY_WHERE_TIGHT } else { MANY }
+}
+
+/// A connector whose moving half is given from the COR: ready for heights.
+#[derive(Debug, Clone)]
+pub struct Pair {
+    /// The fixed half in the world frame.
+    pub fixed: Half,
+    /// The moving half, mounted, seen from the COR.
+    pub moving: Half,
+    /// The alignment problem it was built for.
+    pub alignment: Alignment,
+    fixed_shapes: Vec<Shape>,
+    moving_shapes: Vec<Shape>,
+    /// Of halves of [`MANY`] facets, or [`MANY_WHERE_TIGHT`].
+    trees: Option<Trees>,
+    /// Whether all that can carry at a rotation is listed for a grid.
+    lists: bool,
+    mirrors: Vec<Mirror>,
+    tight: bool,
+    mated_height: f64,
+    homing: OnceLock<bool>,
+    /// How far the seat reaches by yaw alone, either way, in radians.
+    spins: OnceLock<[f64; 2]>,
+    /// What becomes of a half that is a little off.
+    about_mated: OnceLock<About>,
+    /// Whether its seat has no rim somewhere.
+    leaks: OnceLock<bool>,
+    /// Seconds that a motion takes.
+    motion_seconds: OnceLock<f64>,
+}
+
+impl Pair {
+    /// Places the COR of `alignment` into the moving half.
+    pub fn new(connector: &Connector, alignment: &Alignment) -> Self {
+        let face_from_cor = DVec3::new(0.0, 0.0, alignment.center_of_rotation);
+        let fixed = connector.fixed.clone();
+        let moving = connector.moving.mapped(|p| p + face_from_cor);
+        let shapes = |half: &Half| -> Vec<Shape> { half.surfaces.iter().map(Shape::new).collect() };
+        let (fixed_shapes, moving_shapes) = (shapes(&fixed), shapes(&moving));
+        let count = facets(&fixed) * facets(&moving);
+        let lists = count < MOST_LISTED;
+        let mirrors = mirror::of(&fixed, &moving);
+        let tight = walls::are_close(&fixed_shapes, &moving_shapes, alignment);
+        let trees = has_trees(count, tight).then(|| Trees::over(&fixed_shapes, &moving_shapes));
+        let (alignment, mated_height, homing) = (alignment.clone(), f64::NEG_INFINITY, OnceLock::new());
+        let mut pair = Self {
+            fixed,
+            moving,
+            alignment,
+            fixed_shapes,
+            moving_shapes,
+            trees,
+            lists,
+            mirrors,
+            tight,
+            mated_height,
+            homing,
+            spins: OnceLock::new(),
+            about_mated: OnceLock::new(),
+            leaks: OnceLock::new(),
+            motion_seconds: OnceLock::new(),
+        };
+        let aligned = CorPose { lateral: DVec2::ZERO, rotation: DMat3::IDENTITY };
+        pair.mated_height = pair.height(&aligned).unwrap_or(f64::NEG_INFINITY);
+        pair
+    }
+
+    /// The same halves where other errors are free.
+    #[must_use]
+    pub(crate) fn with_free(&self, free: DofSet) -> Self {
+        let mut pair = self.clone();
+        pair.alignment.free = free;
+        pair.tight = walls::are_close(&pair.fixed_shapes, &pair.moving_shapes, &pair.alignment);
+        if !has_trees(facets(&pair.fixed) * facets(&pair.moving), pair.tight) {
+            pair.trees = None;
+        } else if pair.trees.is_none() {
+            pair.trees = Some(Trees::over(&pair.fixed_shapes, &pair.moving_shapes));
+        }
+        if free != self.alignment.free {
+            pair.homing = OnceLock::new();
+            pair.spins = OnceLock::new();
+            pair.about_mated = OnceLock::new();
+            pair.leaks = OnceLock::new();
+            pair.motion_seconds = OnceLock::new();
+        }
+        pair
+    }
+
+    /// Whether the halves have so many facets that what may touch is searched anew for every cell of a grid, not listed.
+    pub(crate) fn is_large(&self) -> bool {
+        self.searched().is_some()
+    }
+
+    /// Whether motions ask trees for what may touch.
+    pub(crate) const fn asks_trees(&self) -> bool {
+        self.trees.is_some()
+    }
+
+    /// The trees, where there is too much to list for a grid.
+    fn searched(&self) -> Option<&Trees> {
+        self.trees.as_ref().filter(|_| !self.lists)
+    }
+
+    /// The same halves without trees: motions list what may touch.
+    #[cfg(test)]
+    pub(crate) fn without_trees(&self) -> Self {
+        Self { trees: None, lists: true, ..self.clone() }
+    }
+
+    /// Whether all motion near the mated pose leads to it, as `find` says, which is asked once.
+    pub(crate) fn is_homing(&self, find: impl FnOnce() -> bool) -> bool {
+        *self.homing.get_or_init(find)
+    }
+
+    /// How far the seat reaches by yaw alone, either way, in radians: as `find` says, which is asked once.
+    pub(crate) fn spins(&self, find: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
+        *self.spins.get_or_init(find)
+    }
+
+    /// What becomes of a half that is let go a little off the mated pose, as `find` says, which is asked once.
+    pub(crate) fn about_mated(&self, find: impl FnOnce() -> About) -> About {
+        *self.about_mated.get_or_init(find)
+    }
+
+    /// Seconds that a motion takes, as `find` says, which is asked once.
+    pub(crate) fn motion_seconds(&self, find: impl FnOnce() -> f64) -> f64 {
+        *self.motion_seconds.get_or_init(find)
+    }
+
+    /// Whether the seat has no rim somewhere, as `find` says, which is asked once.
+    pub(crate) fn leaks(&self, find: impl FnOnce() -> bool) -> bool {
+        *self.leaks.get_or_init(find)
+    }
+
+    /// h₀, the z of the COR at first contact without any error, in D; −∞ where the halves pass each other by.
+    pub const fn mated_height(&self) -> f64 {
+        self.mated_height
+    }
+
+    /// The reflections that map the pair onto itself: poses that are images of each other have the same fate.
+    pub fn mirrors(&self) -> &[Mirror] {
+        &self.mirrors
+    }
+
+    /// Whether steep walls of the two halves face each other closely when mated, as a peg's and its hole's do: what is
+    /// inside can only move as its contacts let it, one after another.
+    pub fn is_tight(&self) -> bool {
+        self.tight
+    }
+
+    /// z of the COR at first contact, in D; `None` where the halves pass each other by.
+    pub fn height(&self, pose: &CorPose) -> Option<f64> {
+        Turned::height_at(self, pose)
+    }
+
+    /// The same two features as in `before`, seen as planes and lines without borders, at another pose.
+    pub fn contact(&self, before: &Contact, meeting: &Meeting, rotation: &DMat3, position: DVec3) -> Contact {
+        let [fixed, moving] = meeting.shapes.map(|s| s as usize);
+        meeting.at(before, &self.fixed_shapes[fixed], &self.moving_shapes[moving], rotation, position)
+    }
+
+    /// The pair near a pose that will move on by small steps, asked with up to this `slack` and `reach`: see
+    /// [`Nearby::turn`].
+    pub fn nearby(&self, slack: f64, reach: f64) -> Nearby<'_> {
+        Nearby::new(self, slack, reach)
+    }
+
+    /// The pair for heights at poses some of which are within `reach` of each other, in the ρ-metric.
+    pub fn about(&self, reach: f64) -> Nearby<'_> {
+        Nearby::new(self, reach / self.alignment.rotation_length, reach)
+    }
+
+    /// The pair at one rotation: heights for any lateral position.
+    pub fn at_rotation(&self, rotation: DMat3) -> Envelope<'_> {
+        Envelope::new(self, &rotation)
+    }
+}
+
+/// Evenly spaced coordinates: `first + step·k`, k in `0..count`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// The first coordinate.
+    pub first: f64,
+    /// Distance between neighbours.
+    pub step: f64,
+    /// How many.
+    pub count: usize,
+}
+
+impl Lattice {
+    /// The k-th coordinate.
+    pub fn at(&self, k: usize) -> f64 {
+        self.first + self.step * k as f64
+    }
+}
+
+/// A point where the halves touch, or nearly do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Distance along the normal, in D; 0 when touching, negative when the halves overlap by rounding.
+    pub gap: f64,
+    /// Unit normal, from the fixed half to the moving one.
+    pub normal: DVec3,
+    /// The touching point of the fixed half, in the world frame.
+    pub point: DVec3,
+}
+
+impl Contact {
+    /// Gradient of the height of first contact where this is the only contact: `[∂h/∂x, ∂h/∂y]` (D/D) of the COR's
+    /// lateral position and `∂h/∂ω` (D/rad) of a turn about the COR in world axes.
+    ///
+    /// `∂h/∂x = −n_x/n_z`, `∂h/∂y = −n_y/n_z`, `∂h/∂ω = −(r × n)/n_z` with r from the COR to the contact.
+    pub fn gradient(&self, cor: DVec3) -> ([f64; 2], DVec3) {
+        let n = self.normal;
+        ([-n.x / n.z, -n.y / n.z], -(self.point - cor).cross(n) / n.z)
+    }
+}

@@ -1,0 +1,204 @@
+//! What may touch near a moving half that moves on by small steps.
+//!
+//! ```text
+//!   collect about (R₀, c₀)          turn to (R, c): only the candidates are tried
+//!        ╭───────────╮              valid while   |R − R₀| ≤ skin                        (chord)
+//!        │   · ·     │                            |c − c₀| + radius·|R − R₀| ≤ shift     (any point of the half)
+//!        │  ·   R,c  │
+//!        ╰───────────╯              else collected anew about (R, c)
+//! ```
+//!
+//! The answers are those of a list collected at every pose, bit for bit: see [`super::candidates`].
+
+use super::brute::SEAM;
+use super::candidates::{Candidates, Counts, FLUSH, ROUNDING, Sieve, Window};
+use super::element::Meeting;
+use super::search::Gaps;
+use super::turned::Turned;
+use super::{Contact, Pair};
+use crate::pose::{CorPose, PoseError};
+use glam::{DMat3, DVec2, DVec3};
+
+/// Contacts that pull down are looked for up to this slope (sine, 30°): a tilted plug hooks under the lip of a slot.
+/// Facets that lean further back belong to the undersides of the halves, which only motions that hook under them look for ([`Nearby::look_under`]).
+const OVERHANG: f64 = 0.5;
+/// The same with undersides: all normals, and their rounding.
+const ANY: f64 = 2.0;
+
+/// What is announced to a motion of halves of many facets, in D, and as a share of what its step may meet.
+pub(super) const MET: f64 = 1e-4;
+const SHARE_MET: f64 = 0.01;
+
+/// Skin and shift in units of the widest slack and reach: longer lists against more collecting. Flat around its optimum.
+const SKIN: f64 = 1.0;
+
+/// The pair near one pose: what can touch, also walls and features that a small turn may bring into contact.
+#[derive(Debug, Clone)]
+pub struct Nearby<'a> {
+    turned: Turned<'a>,
+    candidates: Candidates,
+    /// Slack and reach that are asked for as a rule: collected at least.
+    slack: f64,
+    reach: f64,
+    /// Largest distance of a moving vertex from the COR.
+    radius: f64,
+    /// How far down normals of contacts may point: minus their z-component.
+    overhang: f64,
+    collected: Option<Collected>,
+}
+
+/// Where the candidates were collected, and for which questions.
+#[derive(Debug, Clone, Copy)]
+struct Collected {
+    rotation: DMat3,
+    lateral: DVec2,
+    slack: f64,
+    reach: f64,
+}
+
+impl<'a> Nearby<'a> {
+    /// For questions with up to this slack and reach; see [`Nearby::turn`].
+    pub(super) fn new(pair: &'a Pair, slack: f64, reach: f64) -> Self {
+        let vertices = pair.moving_shapes.iter().flat_map(|s| &s.vertices);
+        let radius = vertices.map(|v| v.length()).fold(0.0, f64::max);
+        let (turned, candidates) = (Turned::new(pair), Candidates::default());
+        Self { turned, candidates, slack, reach, radius, overhang: OVERHANG, collected: None }
+    }
+
+    /// Forgets where it was: what follows does not depend on what was before.
+    pub fn leave(&mut self) {
+        (self.overhang, self.collected) = (OVERHANG, None);
+    }
+
+    /// Looks for contacts with undersides as well, until [`Nearby::leave`]; says whether it did not before. What is told at a pose is told anew by
+    /// the next [`Nearby::turn`].
+    pub fn look_under(&mut self) -> bool {
+        let is_new = self.overhang < ANY;
+        (self.overhang, self.collected) = (ANY, self.collected.filter(|_| !is_new));
+        is_new
+    }
+
+    /// Moves on to a rotation, for questions about the COR at `lateral` alone: keeps what is within `reach` of
+    /// touching there in plan view, also walls and features that support a normal only within `slack` radians: what a
+    /// motion that turns by up to `slack` may meet.
+    pub fn turn(&mut self, rotation: &DMat3, lateral: DVec2, slack: f64, reach: f64) {
+        let slack = slack.max(ROUNDING);
+        let counts = Counts { slack, lowest: -self.overhang };
+        if let Some(trees) = &self.turned.pair.trees {
+            return self.turned.turn_trees(rotation, trees, counts);
+        }
+        let holds = self.collected.is_some_and(|c| {
+            let turn = chord(&c.rotation, rotation);
+            slack <= c.slack
+                && turn <= SKIN * c.slack
+                && reach + lateral.distance(c.lateral) + self.radius * turn <= (1.0 + SKIN) * c.reach
+        });
+        if !holds {
+            let (slack, reach) = (slack.max(self.slack), reach.max(self.reach));
+            // Both features may overshoot their borders by a seam.
+            let window = Window { lateral, reach: (1.0 + SKIN) * reach + 2.0 * SEAM };
+            let sieve = Sieve { slack, lowest: -self.overhang, skin: SKIN * slack, window: Some(window) };
+            self.candidates.collect(self.turned.pair, rotation, &sieve);
+            self.collected = Some(Collected { rotation: *rotation, lateral, slack, reach });
+        }
+        self.turned.turn(rotation, &self.candidates, counts);
+    }
+
+    /// Where a half lowered from `ceiling`, not from far above, is stopped; and whether something above the ceiling
+    /// would have stopped it earlier. A half that has slid under an overhang, or beside a wall, is there.
+    pub fn height_below(&mut self, lateral: DVec2, ceiling: f64) -> (Option<f64>, bool) {
+        self.turned.height_below(lateral, ceiling)
+    }
+
+    /// The same, sooner where it is above what is `expected`.
+    pub(crate) fn height_about(
+        &mut self,
+        lateral: DVec2,
+        ceiling: f64,
+        expected: f64,
+    ) -> (Option<f64>, bool) {
+        self.turned.height_about(lateral, ceiling, expected)
+    }
+
+    /// The height of first contact at a pose error, in D; `None` where the halves pass each other by. Cheap where the last one was near.
+    pub fn height(&mut self, error: &PoseError) -> Option<f64> {
+        let lateral = self.go_to(error);
+        self.height_below(lateral, f64::INFINITY).0
+    }
+
+    /// Whether the height of first contact at a pose error is above `level`, in D: cheaper than the height where it is.
+    pub fn is_above(&mut self, error: &PoseError, level: f64) -> bool {
+        let lateral = self.go_to(error);
+        self.turned.is_stopped_above(lateral, level)
+    }
+
+    /// Whether the halves touch at a pose error, however deep, and do not pass each other by: cheaper than the height.
+    pub fn touches(&mut self, error: &PoseError) -> bool {
+        self.is_above(error, f64::NEG_INFINITY)
+    }
+
+    /// Turns to a pose error, for heights; returns where the COR is.
+    fn go_to(&mut self, error: &PoseError) -> DVec2 {
+        let alignment = &self.turned.pair.alignment;
+        let pose = CorPose::from_error(error, alignment.center_of_rotation, alignment.free);
+        self.turn(&pose.rotation, pose.lateral, FLUSH, 0.0);
+        pose.lateral
+    }
+
+    /// Everything that touches, or is closer than `reach` along its normal, with the COR at `position`. Of halves of many facets, where a
+    /// step's reach holds thousands, what is nearer than 10⁻⁴ D, or a hundredth of it, counts alone: the rest is met on the way.
+    pub fn contacts(&mut self, position: DVec3, reach: f64, out: &mut Vec<(Contact, Meeting)>) {
+        let reach =
+            if self.turned.pair.trees.is_some() { reach.min((SHARE_MET * reach).max(MET)) } else { reach };
+        out.clear();
+        self.turned.contacts(position, Gaps::within(reach), SEAM, |contact| out.push(contact));
+    }
+
+    /// As [`Nearby::contacts`], counting also what touches beyond the border of its feature by up to `seam`, in D.
+    pub fn contacts_within(
+        &mut self,
+        position: DVec3,
+        reach: f64,
+        seam: f64,
+        out: &mut Vec<(Contact, Meeting)>,
+    ) {
+        out.clear();
+        self.turned.contacts(position, Gaps::within(reach), seam, |contact| out.push(contact));
+    }
+
+    /// As [`Nearby::contacts_within`], only what overlaps by more than `touching`, and by up to `reach`.
+    pub(crate) fn overlaps_within(
+        &mut self,
+        position: DVec3,
+        [touching, reach]: [f64; 2],
+        seam: f64,
+        out: &mut Vec<(Contact, Meeting)>,
+    ) {
+        out.clear();
+        let gaps = Gaps { deep: reach, front: -touching };
+        self.turned.contacts(position, gaps, seam, |contact| out.push(contact));
+    }
+
+    /// Whether the halves overlap with the COR at `position`, by more than touching.
+    pub fn overlaps(&mut self, position: DVec3) -> bool {
+        let rotation = self.turned.rotation;
+        self.turned.overlaps(&rotation, position)
+    }
+
+    /// The same with the moving half at another rotation.
+    pub(crate) fn overlaps_at(&mut self, rotation: &DMat3, position: DVec3) -> bool {
+        self.turned.overlaps(rotation, position)
+    }
+
+    /// What all searches of trees took until now, about: counted, in nanoseconds.
+    pub(crate) const fn took(&self) -> u64 {
+        self.turned.took()
+    }
+}
+
+/// Furthest that a unit vector is apart after the two rotations: 2 sin(θ/2).
+pub(crate) fn chord(a: &DMat3, b: &DMat3) -> f64 {
+    let d = *a - *b;
+    let squares = d.x_axis.length_squared() + d.y_axis.length_squared() + d.z_axis.length_squared();
+    (0.5 * squares).sqrt()
+}

@@ -1,0 +1,64 @@
+//! What a person wrote, typed: the connector they mean and the alignment problem it has to solve.
+//!
+//! ```text
+//! design.toml ──load──▶ text ──read──▶ DesignFile { design, sources }
+//!                              └─────▶ Problems: all of them, each with line, column and advice
+//! ```
+//!
+//! A [`Design`] is resolved: units are gone (lengths in D, angles in radians), defaults are filled in, every
+//! number has been checked. Geometry is built from it by the next room, [`crate::connector`], which is also
+//! where geometry is judged: this room does not know whether halves fit.
+//!
+//! One table, [`keys`], says what a design file may contain; the reader, the JSON schema for editors
+//! ([`json_schema`]) and the commented starting points ([`template`]) all come from it.
+
+mod alignment;
+mod complaint;
+mod content;
+mod digest;
+mod docked;
+mod edit;
+pub mod family;
+mod finding;
+pub mod keys;
+mod load;
+mod model;
+mod name;
+mod overrides;
+mod part;
+mod placed;
+mod problem;
+mod quantity;
+mod read;
+mod read_half;
+mod reader;
+mod schema;
+mod section;
+mod template;
+#[cfg(test)]
+mod tests;
+mod treatment;
+
+pub use crate::suggest::nearest;
+pub use alignment::Alignment;
+pub use complaint::{Complaint, Dimension};
+pub use content::hex;
+pub use content::{Contents, MeshContent, Meshed};
+pub use docked::Docked;
+pub use edit::{key_path, with_key};
+pub use family::{Family, FamilySpec};
+pub use finding::{FilesInMemory, Finding, Findings, Found, SourceText};
+pub use load::{LoadError, load};
+pub use model::{ConnectorSpec, Design, HalfSpec, LengthUnit, OwnSpec, WidthFrom};
+pub use name::Parameter;
+pub use overrides::parse_dofs;
+pub use part::{FileSpec, FileUnit, OutlineSpec, PartSpec, ShapeSpec};
+pub use placed::{Drawn, Placement};
+pub use problem::{Problem, Problems, Sources, line_column};
+pub use quantity::shortened;
+pub use quantity::{Quantity, Scale, Unit};
+pub use read::{DesignFile, LARGEST_FILE, read};
+pub(crate) use read::{Width, read_as};
+pub use schema::json_schema;
+pub use template::template;
+pub use treatment::{Repairs, Treatment};

@@ -1,0 +1,184 @@
+//! The resolved design: no units, no defaults left open.
+
+use super::{Alignment, Drawn, Family, FamilySpec, FileSpec, MeshContent, PartSpec, Placement};
+use crate::pose::DofSet;
+use serde::{Deserialize, Serialize};
+
+/// A checked design: lengths in D, angles in radians.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Design {
+    /// What the person called it.
+    pub name: String,
+    /// The two halves.
+    pub connector: ConnectorSpec,
+    /// D in `unit`; 1 for a dimensionless design.
+    pub width: f64,
+    /// The unit of `width`; `None` for a dimensionless design.
+    pub unit: Option<LengthUnit>,
+    /// The alignment problem.
+    pub alignment: Alignment,
+}
+
+impl Design {
+    /// A family with its defaults, free in `free`.
+    pub fn of_family(family: Family, free: DofSet) -> Self {
+        let alignment = Alignment { free, ..Alignment::default_for(Some(family)) };
+        let connector = ConnectorSpec::Family(FamilySpec::new(family));
+        Self { name: family.name().to_owned(), connector, width: 1.0, unit: None, alignment }
+    }
+}
+
+/// A unit of length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LengthUnit {
+    /// Micrometre.
+    Um,
+    /// Millimetre.
+    Mm,
+    /// Centimetre.
+    Cm,
+    /// Metre.
+    M,
+    /// Inch, 25.4 mm.
+    In,
+}
+
+impl LengthUnit {
+    /// Every unit, small to large but for the inch.
+    pub const ALL: [Self; 5] = [Self::Um, Self::Mm, Self::Cm, Self::M, Self::In];
+
+    /// Metres in one of this unit.
+    pub const fn metres(self) -> f64 {
+        match self {
+            Self::Um => 1e-6,
+            Self::Mm => 1e-3,
+            Self::Cm => 1e-2,
+            Self::M => 1.0,
+            Self::In => 0.0254,
+        }
+    }
+
+    /// The symbol written after a number.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Um => "um",
+            Self::Mm => "mm",
+            Self::Cm => "cm",
+            Self::M => "m",
+            Self::In => "in",
+        }
+    }
+}
+
+/// Where the geometry comes from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[expect(clippy::large_enum_variant, reason = "a design has one")]
+pub enum ConnectorSpec {
+    /// A built-in family.
+    Family(FamilySpec),
+    /// The person's own halves.
+    Own(OwnSpec),
+}
+
+/// The person's own halves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OwnSpec {
+    /// z of the face centre in the frame of each half that faces +z, in D; `None`: found from where they first touch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face_height: Option<f64>,
+    /// In which frames they are drawn.
+    #[serde(default, skip_serializing_if = "Drawn::is_facing")]
+    pub drawn: Drawn,
+    /// Where D comes from.
+    #[serde(default, skip_serializing_if = "WidthFrom::is_written")]
+    pub width_from: WidthFrom,
+    /// Whether the mated pose is where the halves come to rest that are let go as drawn.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub settle: bool,
+    /// The fixed half.
+    pub fixed: HalfSpec,
+    /// The moving half.
+    pub moving: HalfSpec,
+    /// How the fixed half is placed.
+    #[serde(default, skip_serializing_if = "Placement::is_none")]
+    pub fixed_placement: Placement,
+    /// How the moving half is placed.
+    #[serde(default, skip_serializing_if = "Placement::is_none")]
+    pub moving_placement: Placement,
+}
+
+/// Where D comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WidthFrom {
+    /// The design says it, or is dimensionless.
+    #[default]
+    Written,
+    /// The larger lateral extent of the facets that can touch.
+    Touching,
+    /// As little as the size of the parts allows; what can touch is smaller.
+    Size,
+}
+
+impl WidthFrom {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+    fn is_written(&self) -> bool {
+        *self == Self::Written
+    }
+}
+
+impl OwnSpec {
+    /// Two halves drawn facing +z, their face centres on the z axis at `face_height`.
+    pub const fn new(face_height: f64, fixed: HalfSpec, moving: HalfSpec) -> Self {
+        let (drawn, none) = (Drawn::Facing, Placement::NONE);
+        let face_height = Some(face_height);
+        Self {
+            face_height,
+            drawn,
+            width_from: WidthFrom::Written,
+            settle: false,
+            fixed,
+            moving,
+            fixed_placement: none,
+            moving_placement: none,
+        }
+    }
+
+    /// Whether where the face centre is has to be found.
+    pub const fn is_face_unknown(&self) -> bool {
+        match self.drawn {
+            Drawn::Facing => self.face_height.is_none(),
+            Drawn::Assembled { .. } => true,
+        }
+    }
+}
+
+/// One half of the person's own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HalfSpec {
+    /// Convex pieces, each a list of vertices, in D.
+    Pieces(Vec<Vec<[f64; 3]>>),
+    /// A closed triangle mesh in a file.
+    Mesh(FileSpec),
+    /// Parts, each at a place of its own, whose union is the half.
+    Parts(Vec<PartSpec>),
+    /// Triangles that a program gave in memory, in D. The design says only what they were, not the triangles.
+    Memory {
+        /// What they were.
+        content: MeshContent,
+    },
+}
+
+impl HalfSpec {
+    /// The files that it comes from, in order.
+    pub(super) fn files_mut(&mut self) -> Vec<&mut FileSpec> {
+        match self {
+            Self::Mesh(file) => vec![file],
+            Self::Parts(parts) => parts.iter_mut().filter_map(|part| part.shape.file_mut()).collect(),
+            Self::Pieces(_) | Self::Memory { .. } => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Numbers with units: `"5 mm"`, `"30 deg"`, `"0.5 rad"`, `"0.2 D"`.
+//!
+//! A bare number is in D or radians. A length with a unit becomes a number of D through the width of the
+//! design, which only a design with a unit has.
+
+use super::complaint::{Complaint, Dimension};
+use super::{Design, LengthUnit};
+use crate::suggest::nearest;
+use std::fmt;
+use std::str::FromStr;
+
+/// What a number is measured in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unit {
+    /// Nothing written: D for lengths, radians for angles.
+    Bare,
+    /// The width of the connector.
+    D,
+    /// A length in the outside world.
+    Length(LengthUnit),
+    /// Degrees.
+    Degrees,
+    /// Radians.
+    Radians,
+}
+
+/// Every unit with the ways to write it; the first is the one in messages.
+const UNITS: [(Unit, &[&str]); 8] = [
+    (Unit::D, &["D"]),
+    (Unit::Length(LengthUnit::Um), &["um", "µm", "μm"]),
+    (Unit::Length(LengthUnit::Mm), &["mm"]),
+    (Unit::Length(LengthUnit::Cm), &["cm"]),
+    (Unit::Length(LengthUnit::M), &["m"]),
+    (Unit::Length(LengthUnit::In), &["in", "inch"]),
+    (Unit::Degrees, &["deg", "°"]),
+    (Unit::Radians, &["rad"]),
+];
+
+impl Unit {
+    fn named(name: &str) -> Option<Self> {
+        UNITS.iter().find(|(_, names)| names.contains(&name)).map(|(unit, _)| *unit)
+    }
+
+    fn symbol(self) -> &'static str {
+        UNITS.iter().find(|(unit, _)| *unit == self).map_or("", |(_, names)| names[0])
+    }
+}
+
+/// A finite number and its unit, as a person wrote it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// The number.
+    pub value: f64,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.unit {
+            Unit::Bare => write!(f, "{}", self.value),
+            unit => write!(f, "{} {}", self.value, unit.symbol()),
+        }
+    }
+}
+
+impl FromStr for Quantity {
+    type Err = Complaint;
+
+    fn from_str(text: &str) -> Result<Self, Complaint> {
+        let text = text.trim();
+        let is_unit = |c: char| c.is_alphabetic() || c == '°';
+        let number = text.trim_end_matches(is_unit);
+        let unit = &text[number.len()..];
+        let not_a_quantity = || Complaint::NotAQuantity { text: shortened(text) };
+        if number.trim().is_empty() {
+            return Err(not_a_quantity());
+        }
+        let value: f64 = number.trim().parse().map_err(|_| not_a_quantity())?;
+        if !value.is_finite() {
+            return Err(Complaint::NotFinite { text: shortened(text) });
+        }
+        if unit.is_empty() {
+            return Ok(Self { value, unit: Unit::Bare });
+        }
+        let unit = Unit::named(unit).ok_or_else(|| Complaint::UnknownUnit {
+            unit: shortened(unit),
+            meant: nearest(unit, UNITS.iter().flat_map(|(_, names)| names.iter().copied())),
+        })?;
+        Ok(Self { value, unit })
+    }
+}
+
+/// The first 40 characters without control characters: messages quote input of any size and kind.
+pub fn shortened(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let printable = |c: char| if c.is_control() { '\u{FFFD}' } else { c };
+    let mut short: String = text.chars().take(LONGEST).map(printable).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        short.push('…');
+    }
+    short
+}
+
+/// What turns lengths into D.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// D in `unit`, or in the nameless unit that a dimensionless design is drawn in.
+    pub width: f64,
+    /// The unit of the design.
+    pub unit: Option<LengthUnit>,
+}
+
+impl Quantity {
+    /// The length in D; bare numbers are D.
+    ///
+    /// # Errors
+    /// An angle, or a unit in a design that has none.
+    pub fn length_d(self, scale: &Scale) -> Result<f64, Complaint> {
+        match (self.unit, scale.unit) {
+            (Unit::Bare | Unit::D, _) => Ok(self.value),
+            (Unit::Length(unit), Some(design)) => {
+                Ok(self.value * (unit.metres() / (design.metres() * scale.width)))
+            }
+            (Unit::Length(_), None) => Err(Complaint::UnitInDimensionlessDesign { text: self.to_string() }),
+            (Unit::Degrees | Unit::Radians, _) => {
+                Err(Complaint::WrongDimension { text: self.to_string(), wanted: Dimension::Length })
+            }
+        }
+    }
+
+    /// The width of a design whose unit is `unit`, in that unit.
+    ///
+    /// # Errors
+    /// An angle, a length in D, or a unit in a design that has none.
+    pub fn width(self, unit: Option<LengthUnit>) -> Result<f64, Complaint> {
+        match self.unit {
+            Unit::D => Err(Complaint::WidthInD),
+            _ => self.length_d(&Scale { width: 1.0, unit }),
+        }
+    }
+
+    /// The length in D; bare numbers are in the unit the halves are drawn in.
+    ///
+    /// # Errors
+    /// As [`Quantity::length_d`].
+    pub fn drawn_length_d(self, scale: &Scale) -> Result<f64, Complaint> {
+        match self.unit {
+            Unit::Bare => Ok(self.value / scale.width),
+            _ => self.length_d(scale),
+        }
+    }
+
+    /// The angle in radians; bare numbers are radians.
+    ///
+    /// # Errors
+    /// A length.
+    pub fn angle_rad(self) -> Result<f64, Complaint> {
+        match self.unit {
+            Unit::Bare | Unit::Radians => Ok(self.value),
+            Unit::Degrees => Ok(self.value.to_radians()),
+            Unit::D | Unit::Length(_) => {
+                Err(Complaint::WrongDimension { text: self.to_string(), wanted: Dimension::Angle })
+            }
+        }
+    }
+}
+
+impl Design {
+    /// What turns lengths into D in this design.
+    pub const fn scale(&self) -> Scale {
+        Scale { width: self.width, unit: self.unit }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_6;
+
+    const MM50: Scale = Scale { width: 50.0, unit: Some(LengthUnit::Mm) };
+
+    fn quantity(text: &str) -> Quantity {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn lengths_become_d() {
+        for (text, d) in [("5 mm", 0.1), ("5mm", 0.1), ("0.5 cm", 0.1), ("2 in", 1.016), ("-0.3", -0.3)] {
+            // One multiplication and one division: a few units in the last place.
+            let got = quantity(text).length_d(&MM50).unwrap();
+            assert!((got - d).abs() < 4.0 * f64::EPSILON, "{text}: {got}");
+        }
+        assert_eq!(quantity("1e-1 D").length_d(&MM50), Ok(0.1));
+        assert_eq!(quantity("5").drawn_length_d(&MM50), Ok(0.1));
+    }
+
+    #[test]
+    fn angles_become_radians() {
+        assert_eq!(quantity("30 deg").angle_rad(), Ok(30f64.to_radians()));
+        assert_eq!(quantity("30°").angle_rad(), Ok(30f64.to_radians()));
+        assert_eq!(quantity("0.5 rad").angle_rad(), Ok(0.5));
+        assert!((quantity("30deg").angle_rad().unwrap() - FRAC_PI_6).abs() < 2.0 * f64::EPSILON);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let complaint = |text: &str| text.parse::<Quantity>().unwrap_err();
+        assert!(matches!(complaint("5 mmm"), Complaint::UnknownUnit { meant: Some("mm"), .. }));
+        assert!(matches!(complaint("5 furlong"), Complaint::UnknownUnit { meant: None, .. }));
+        assert!(matches!(complaint("mm"), Complaint::NotAQuantity { .. }));
+        assert!(matches!(complaint("1e999 mm"), Complaint::NotFinite { .. }));
+        assert!(matches!(complaint("5,5 mm"), Complaint::NotAQuantity { .. }));
+        let bare = Scale { width: 1.0, unit: None };
+        assert!(matches!(quantity("5 mm").length_d(&bare), Err(Complaint::UnitInDimensionlessDesign { .. })));
+        assert!(matches!(quantity("5 deg").length_d(&MM50), Err(Complaint::WrongDimension { .. })));
+        assert!(matches!(quantity("5 D").angle_rad(), Err(Complaint::WrongDimension { .. })));
+    }
+}

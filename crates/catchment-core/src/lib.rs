@@ -1,0 +1,26 @@
+//! From a design file to its area of acceptance: the rooms that compute. The crate `catchment` is what programs use.
+//!
+//! ```text
+//! design ─▶ xml ─▶ poses ─▶ connector ─▶ contact ─▶ problem ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ run
+//! ```
+//!
+//! Lengths are in D, the connector's width; angles are in radians. Nothing here asks the system for anything, but through [`exec`].
+
+pub mod acceptance;
+pub mod advice;
+pub mod budget;
+pub mod connector;
+pub mod contact;
+pub mod design;
+pub mod exec;
+pub mod landscape;
+pub mod merit;
+pub mod method;
+pub mod polytope;
+pub mod pose;
+pub mod poses;
+pub mod problem;
+pub mod run;
+pub mod suggest;
+pub mod terminal;
+pub mod xml;

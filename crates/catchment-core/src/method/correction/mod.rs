@@ -1,0 +1,239 @@
+//! An unbiased Sum with a 95 % interval: the answer of a grid method, corrected by a sample of exact descents.
+//!
+//! ```text
+//!   grid method            strata s, share p_s           poses drawn at random in each stratum, followed exactly
+//!   ┌─────────────┐        ┌─────────────┐
+//!   │ ░░░████░░░░ │        │ 000122210000│              stratum  share  aligned
+//!   │ ░░██████░░░ │  ──▶   │ 001233321000│   ──▶           0      .6      0 / 400       sum = V · Σ p_s·a_s
+//!   │ ░░░████░░░░ │        │ 000122210000│                 1      .1     37 / 900
+//!   └─────────────┘        └─────────────┘                 …
+//! ```
+//!
+//! The Sum is the measure of the accepted set in the *continuous* error box. Where the grid method is sure, hardly
+//! any pose fares otherwise, and few descents show it; most go where the border runs. Whatever the grid says, right or
+//! wrong, the Sum is unbiased ([`Corrected::ci95`] says how): a bad grid only makes the interval wide.
+//!
+//! Pose j of stratum s is a function of the seed, s and j alone. A cell of the stratum is drawn by its rank, then a pose
+//! in the cell. Undecided poses are not in the Sum; they widen the interval upwards.
+//!
+//! Not promised: the interval is for one result. With [`Stop::Tolerance`] the sampling ends by what was seen, which
+//! makes the stated interval miss a little more often than with a number fixed beforehand.
+
+mod interval;
+mod schedule;
+mod settle;
+mod strata;
+#[cfg(test)]
+mod tests;
+
+pub use interval::{Z95, wilson95};
+pub use schedule::{FAINT, Stop};
+pub use settle::{ambiguous, settle};
+pub use strata::{ByFraction, ByNeighbours, MOST_STRATA, Stratify};
+
+use crate::acceptance::{Domain, Outcome, Stream};
+use crate::contact::Pair;
+use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
+use crate::landscape::Grid;
+use crate::method::{DecideError, descent};
+use crate::pose::{Dof, PoseError};
+pub use interval::{Seen, Whole};
+use rayon::prelude::*;
+pub use schedule::{Batch, allot, next};
+use serde::{Deserialize, Serialize};
+use strata::Strata;
+
+/// What changes the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Seed of the random poses.
+    pub seed: u64,
+    /// When to stop.
+    pub stop: Stop,
+}
+
+/// Why there is no corrected Sum.
+#[derive(Debug, thiserror::Error)]
+pub enum CorrectionError {
+    /// The tolerance is no share.
+    #[error("a tolerance of {share} cannot be reached; give a share of the Sum above 0, such as 0.01")]
+    Tolerance {
+        /// What was given.
+        share: f64,
+    },
+    /// What follows the poses refuses.
+    #[error(transparent)]
+    Follow(Box<DecideError>),
+    /// A grid without cells has no poses to draw.
+    #[error("the grid has no cells")]
+    NoCells,
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<DecideError> for CorrectionError {
+    fn from(error: DecideError) -> Self {
+        match error {
+            DecideError::OutOfBudget(error) => Self::OutOfBudget(error),
+            DecideError::Cancelled(error) => Self::Cancelled(error),
+            error => Self::Follow(Box::new(error)),
+        }
+    }
+}
+
+/// What was seen in one stratum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stratum {
+    /// What it holds.
+    pub name: String,
+    /// Its share of the error box, in [0, 1]; exact.
+    pub share: f64,
+    /// Poses followed in it.
+    pub descents: usize,
+    /// How many of them aligned.
+    pub aligned: usize,
+    /// How many could not be followed to their end.
+    pub undecided: usize,
+    /// Estimated share of its poses that align, in [0, 1]: the mean over batches, near `aligned / descents`.
+    pub accepted: f64,
+}
+
+/// An unbiased Sum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corrected {
+    /// Measure of the accepted set, Dᵃ·radᵇ.
+    pub sum: f64,
+    /// Its 95 % interval; undecided poses widen it upwards.
+    pub ci95: [f64; 2],
+    /// `sum` as a share of the error box, in [0, 1].
+    pub fraction: f64,
+    /// Share of the error box whose poses fare otherwise than their cells, accepted or not, in [0, 1]; and its 95 % interval.
+    pub differing: f64,
+    /// See [`Corrected::differing`].
+    pub differing_ci95: [f64; 2],
+    /// Poses followed.
+    pub descents: usize,
+    /// How many poses drawn evenly over the whole box would have told as much; infinite where no doubt was seen.
+    pub plain_descents: f64,
+    /// The strata that have cells.
+    pub strata: Vec<Stratum>,
+}
+
+/// Corrects the answer over `grid`, parted into strata `by`, with exact descents.
+///
+/// # Errors
+/// See [`CorrectionError`].
+pub fn correct(
+    pair: &Pair,
+    grid: &Grid,
+    by: &impl Stratify,
+    settings: &Settings,
+    descents: &descent::Settings,
+    exec: &Exec,
+) -> Result<Corrected, CorrectionError> {
+    estimate(grid, by, settings, exec, |poses, exec| {
+        Ok(descent::run(pair, Domain::Poses(poses), descents, exec)?.0.outcomes)
+    })
+}
+
+/// The same for anything that decides poses: `decide` gives one outcome per pose, which must depend on that pose alone.
+///
+/// # Errors
+/// See [`CorrectionError`].
+pub fn estimate(
+    grid: &Grid,
+    by: &impl Stratify,
+    settings: &Settings,
+    exec: &Exec,
+    mut decide: impl FnMut(Vec<PoseError>, &Exec) -> Result<Vec<Outcome>, CorrectionError>,
+) -> Result<Corrected, CorrectionError> {
+    let Settings { seed, stop } = *settings;
+    if let Stop::Tolerance(share) = stop
+        && (share <= 0.0 || share.is_nan())
+    {
+        return Err(CorrectionError::Tolerance { share });
+    }
+    if grid.is_empty() {
+        return Err(CorrectionError::NoCells);
+    }
+    let strata = Strata::count(by, grid.len(), exec)?;
+    let present: Vec<usize> = (0..strata.len()).filter(|s| strata.cells(*s) > 0).collect();
+    let share = |s: &usize| Seen::new(strata.cells(*s) as f64 / grid.len() as f64);
+    let mut seen: Vec<Seen> = present.iter().map(share).collect();
+    let started = Stopwatch::start();
+    let mut total = 0;
+    let mut whole = Whole::of(&seen, total);
+    while let Some(batch) = schedule::next(stop, total, present.len(), started.elapsed(), &whole) {
+        let given = schedule::allot(batch.poses, &seen);
+        let numbered: Vec<(usize, usize)> = (0..present.len())
+            .flat_map(|k| (seen[k].descents..seen[k].descents + given[k]).map(move |j| (k, j)))
+            .collect();
+        let poses = exec.install(|| {
+            let pose = |(k, j): &(usize, usize)| {
+                exec.check()?;
+                Ok(draw(grid, &strata, present[*k], seed, *j))
+            };
+            numbered.par_iter().map(pose).collect::<Result<_, Cancelled>>()
+        })?;
+        let now = schedule::progress(stop, total, started.elapsed(), &whole);
+        let share = batch.poses as f64 / (total + batch.poses) as f64;
+        let part = exec.part([now, if total == 0 { now } else { now / (1.0 - share) }], "random descents");
+        let outcomes = decide(poses, &part)?;
+        let mut counts = vec![[0; 2]; present.len()];
+        for ((k, _), outcome) in numbered.iter().zip(outcomes) {
+            counts[*k][0] += usize::from(outcome == Outcome::Aligned);
+            counts[*k][1] += usize::from(outcome == Outcome::Undecided);
+        }
+        for ((stratum, given), counts) in seen.iter_mut().zip(given).zip(counts) {
+            stratum.add(batch.poses, given, counts);
+        }
+        total += batch.poses;
+        whole = Whole::of(&seen, total);
+        if batch.last {
+            break;
+        }
+    }
+    let measure = grid.measure();
+    let against = |(s, seen): (&usize, &Seen)| if strata.accepts(*s) { seen.reversed(total) } else { *seen };
+    let differing = Whole::of(&present.iter().zip(&seen).map(against).collect::<Vec<_>>(), total);
+    Ok(Corrected {
+        sum: whole.fraction * measure,
+        ci95: whole.ci95.map(|share| share * measure),
+        fraction: whole.fraction,
+        differing: differing.fraction,
+        differing_ci95: differing.ci95,
+        descents: total,
+        plain_descents: whole.plain,
+        strata: present
+            .iter()
+            .zip(&seen)
+            .map(|(s, seen)| Stratum {
+                name: strata.name(*s),
+                share: seen.share,
+                descents: seen.descents,
+                aligned: seen.aligned,
+                undecided: seen.undecided,
+                accepted: seen.shares(total)[0],
+            })
+            .collect(),
+    })
+}
+
+/// Pose `j` of a stratum: a cell of it, each as likely as any other, and a pose in the cell.
+fn draw<S: Stratify>(grid: &Grid, strata: &Strata<S>, stratum: usize, seed: u64, j: usize) -> PoseError {
+    const NUMBERS: usize = 1 + Dof::ALL.len();
+    let stream = Stream::new(seed).branch(stratum as u64);
+    let number = |k: usize| stream.uniform((NUMBERS * j + k) as u64);
+    let cells = strata.cells(stratum);
+    let rank = ((number(0) * cells as f64) as u64).min(cells.saturating_sub(1));
+    let cell = grid.cell(strata.cell(stratum, rank));
+    let mut error = [0.0; Dof::ALL.len()];
+    for (axis, k) in grid.axes.iter().zip(cell) {
+        error[axis.dof.index()] = axis.lo + axis.step() * (k as f64 + number(1 + axis.dof.index()));
+    }
+    PoseError::from_array(error)
+}

@@ -1,0 +1,113 @@
+//! Pose errors as people write them: one on a line, tables of them, and how they are distributed.
+//!
+//! ```text
+//!   x=0.2,pitch=10 deg       one pose error                     parse_pose          ──▶ PoseError
+//!
+//!   part, x_mm, pitch_deg    a table: x, y, roll, pitch, yaw,   PoseTable::parse    ──▶ PoseError per row,
+//!   A17,   2.5,        10    other columns carried through                              columns carried through
+//!
+//!   trial, x_mm, outcome     what a robot saw             TriedTable::parse   ──▶ Tried per row
+//!
+//!   x=5,y=5  0..45:2.25 deg  how many, which angles       parse_counts, parse_angles
+//!
+//!   x=1 mm,yaw=2 deg         how large errors are expected      Distribution::normal, Distribution::uniform
+//!
+//!   [[robot]] sigma = { … }  robots, and how their errors       read_robots         ──▶ Robot { name, errors: Spread }
+//!                            spread: a TOML file
+//!
+//!   [dynamics] speed = …     how fast, heavy, slippery: laws    read_dynamics       ──▶ Dynamics
+//! ```
+//!
+//! Bare numbers are in D and radians. x and y are the offset of the moving face centre, unless [`OffsetsAt`] says the
+//! centre of rotation. A text is read whole or refused with everything that is wrong with it ([`Findings`]), each
+//! [`Finding`] with its bytes in the text.
+//!
+//! Not promised: that a pose can be reached, or that the halves meet there. Only what the design locks, and what no
+//! sensible unit would give, is refused.
+
+pub mod covariance;
+mod distribution;
+pub(crate) mod dynamics;
+mod fields;
+mod header;
+mod lists;
+mod offsets;
+mod robots;
+mod rows;
+mod table;
+mod terms;
+mod text;
+mod tried;
+mod written;
+
+pub use covariance::Matrix;
+pub use distribution::{Distribution, parse_sizes};
+pub use dynamics::{Circumstance, Dynamics, Law, parse_draw, read_dynamics};
+pub use lists::{MOST_ANGLES, parse_angles, parse_counts, parse_length};
+pub use offsets::OffsetsAt;
+pub use robots::{MOST_ROBOTS, Moments, NotACovariance, Robot, Spread, read_robots};
+pub use rows::check_rows;
+pub use table::{MOST_POSES, PoseTable};
+pub use terms::parse_pose;
+pub use text::{LARGEST_TEXT, TextError, read_text};
+pub use tried::{Observed, Tried, TriedTable};
+
+use crate::design::{Finding, Findings};
+use std::ops::Range;
+
+/// Most objections that are spelled out.
+const MOST_OBJECTIONS: usize = 20;
+
+/// What is wrong, before it is known where.
+#[derive(Debug, Clone, PartialEq)]
+struct Fault {
+    message: String,
+    help: Option<String>,
+}
+
+impl Fault {
+    fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self { message: message.into(), help: Some(help.into()) }
+    }
+}
+
+/// Objections as they are found, of which only the first are kept.
+#[derive(Debug, Default)]
+struct Found {
+    list: Vec<Finding>,
+    omitted: usize,
+}
+
+impl Found {
+    /// Adds one; `span` is asked for only if it is kept.
+    fn push(&mut self, fault: Fault, span: impl FnOnce() -> Option<Range<usize>>) {
+        if self.list.len() < MOST_OBJECTIONS {
+            let Fault { message, help } = fault;
+            self.list.push(Finding { message, help, span: span() });
+        } else {
+            self.omitted += 1;
+        }
+    }
+
+    /// Refuses if anything was found.
+    fn refuse(mut self) -> Result<(), Findings> {
+        if self.list.is_empty() {
+            return Ok(());
+        }
+        self.list.sort_by_key(|objection| objection.span.as_ref().map(|span| span.start));
+        Err(Findings { source: None, list: self.list, omitted: self.omitted })
+    }
+}
+
+/// The first characters, none of which steers a terminal or hides.
+fn shortened(text: &str) -> String {
+    const LONGEST: usize = 40;
+    text.chars().take(LONGEST).map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
+}
+
+/// Whether a character is a control character or one that shows nothing: a byte order mark, a blank without width, a
+/// mark that turns the direction of writing.
+fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
+}

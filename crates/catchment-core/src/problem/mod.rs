@@ -1,0 +1,193 @@
+//! The alignment problem as one owned value: what every front end starts from.
+//!
+//! ```text
+//!   design file ──▶ Draft ──(meshes loaded, halves built, mated pose checked once)──▶ Problem
+//!   values in memory ─────────────────────────────────────────────────────────────────┘
+//!                                                     geometry · alignment · mirrors · doubts · digest
+//! ```
+//!
+//! A [`Problem`] holds everything that an answer depends on but the method and its settings. It is cheap to clone, can be
+//! sent to any thread, and never changes: whoever wants another centre of rotation makes another problem. Its
+//! [`digest`](Problem::digest) is a SHA-256 of all that may change an answer, the contents of meshes included and names, units and paths left out,
+//! so that two problems with equal digests have equal answers.
+//!
+//! What keeps a problem from being built is one error type with every place in the file ([`ProblemError`]).
+//!
+//! Not promised: that the mated pose holds against errors larger than the probes of [`crate::contact::mated`]. Lengths in D,
+//! angles in radians.
+
+mod draft;
+mod measure;
+mod memory;
+mod misfit;
+mod places;
+#[cfg(test)]
+mod tests;
+
+pub use draft::Draft;
+pub use places::findings;
+
+use crate::connector::{Connector, Side};
+use crate::contact::mated::MatedProblem;
+use crate::contact::{Mirror, Pair};
+use crate::design::{Alignment, ConnectorSpec, Design, FamilySpec, Findings, LoadError, SourceText, hex};
+use crate::exec::Exec;
+use crate::pose::Dof;
+use glam::DVec3;
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+/// An alignment problem, ready to be decided.
+#[derive(Clone)]
+pub struct Problem(Arc<Inner>);
+
+struct Inner {
+    draft: Draft,
+    connector: Connector,
+    pair: Pair,
+    doubts: Vec<MatedProblem>,
+    digest: String,
+}
+
+/// Why there is no problem to decide.
+#[derive(Debug, thiserror::Error)]
+pub enum ProblemError {
+    /// There is no text.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// Something is wrong with what the design says, with its geometry, or with its mated pose.
+    #[error(transparent)]
+    Findings(#[from] Findings),
+}
+
+impl Problem {
+    /// The problem of a design file.
+    ///
+    /// # Errors
+    /// The file or a mesh cannot be read, or everything that is wrong with them, each with its place.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ProblemError> {
+        Draft::open(path.as_ref())?.build()
+    }
+
+    /// The problem of a design, such as one that a study changed.
+    ///
+    /// # Errors
+    /// Everything that is wrong with its geometry or its mated pose.
+    pub fn of(design: Design) -> Result<Self, ProblemError> {
+        Draft::from(design).build()
+    }
+
+    /// This problem with another design, such as one with its centre of rotation elsewhere. Where the halves stay as they are they
+    /// are not built again, and no file is read.
+    ///
+    /// # Errors
+    /// Everything that is wrong with its geometry or its mated pose.
+    pub fn with(&self, design: Design) -> Result<Self, ProblemError> {
+        let own = self.design();
+        // Where halves settle depends on the alignment.
+        let settles = matches!(&design.connector, ConnectorSpec::Own(own) if own.settle);
+        if !settles && design.connector == own.connector && design.alignment.mount == own.alignment.mount {
+            return Draft::from(design).with_halves(self.connector().clone(), &Exec::new());
+        }
+        Draft::from(design).beside(&self.0.draft).build()
+    }
+
+    fn assembled(draft: Draft, connector: Connector, pair: Pair, doubts: Vec<MatedProblem>) -> Self {
+        // What the meshes held is known by now, so that there is a digest.
+        // Known of every design whose halves were built.
+        let digest = draft.design().digest().map_or_else(String::new, |digest| hex(&digest));
+        Self(Arc::new(Inner { draft, connector, pair, doubts, digest }))
+    }
+
+    /// The design, resolved.
+    pub fn design(&self) -> &Design {
+        self.0.draft.design()
+    }
+
+    /// The text it was read from, if it was read from one.
+    pub fn source(&self) -> Option<&SourceText> {
+        self.0.draft.source()
+    }
+
+    /// Everything but the geometry that an answer depends on.
+    pub fn alignment(&self) -> &Alignment {
+        &self.design().alignment
+    }
+
+    /// The two halves.
+    pub fn connector(&self) -> &Connector {
+        &self.0.connector
+    }
+
+    /// The halves, ready for contact.
+    pub fn pair(&self) -> &Pair {
+        &self.0.pair
+    }
+
+    /// The reflections that map the pair onto itself.
+    pub fn mirrors(&self) -> &[Mirror] {
+        self.pair().mirrors()
+    }
+
+    /// What speaks against the mated pose without making it impossible.
+    pub fn doubts(&self) -> &[MatedProblem] {
+        &self.0.doubts
+    }
+
+    /// SHA-256, in hexadecimal digits, of everything that may change an answer.
+    pub fn digest(&self) -> &str {
+        &self.0.digest
+    }
+
+    /// Whether a layer of the moving half can meet one that is not its partner: the halves come in layers, and an error leads out of
+    /// their plane.
+    pub fn may_cross(&self) -> bool {
+        let out_of_plane = [Dof::Y, Dof::Roll, Dof::Yaw];
+        self.design().family_spec().is_some_and(FamilySpec::is_layered)
+            && out_of_plane.into_iter().any(|dof| self.alignment().free.contains(dof))
+    }
+
+    /// A point of a half, given in its frame (of the moving half from its face centre, mounted), in the half's own coordinates, in D: those in
+    /// which it was drawn, or, for a family, from the face centre of a half that faces up.
+    pub fn drawn(&self, side: Side, point: DVec3) -> DVec3 {
+        match (&self.design().connector, side) {
+            (ConnectorSpec::Own(_), _) => self.connector().origin.drawn(side, point),
+            (ConnectorSpec::Family(_), Side::Fixed) => point,
+            (ConnectorSpec::Family(_), Side::Moving) => self.alignment().mount.apply(point),
+        }
+    }
+
+    /// What helps against one of the doubts of its mated pose, beside what the doubt says itself.
+    pub(crate) fn advice(&self, doubt: &MatedProblem) -> Option<String> {
+        misfit::advice(self.connector(), self.pair(), self.design(), doubt)
+    }
+
+    /// This problem, refused for a reason that another room found, at the key it is about.
+    pub fn refused(&self, place: &str, message: String, help: Option<String>) -> Findings {
+        self.0.draft.clone().refused(place, message, help)
+    }
+}
+
+impl fmt::Debug for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Problem")
+            .field("name", &self.design().name)
+            .field("digest", &self.digest())
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    //! Problems to try things on.
+
+    use crate::design::{Design, Family};
+    use crate::pose::DofSet;
+    use crate::problem::Problem;
+
+    /// A family with its defaults, free in `free`.
+    pub(crate) fn problem(family: Family, free: DofSet) -> Problem {
+        Problem::of(Design::of_family(family, free)).unwrap()
+    }
+}

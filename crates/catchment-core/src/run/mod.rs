@@ -1,0 +1,205 @@
+//! One run: from a problem to its area of acceptance and what that is worth.
+//!
+//! ```text
+//!   Run ──plan──▶ decide ──▶ correct ──▶ settle ──▶ merits ──▶ Answer
+//!        grid,     every     random      cells in    Sum, ONAA,   everything that was found:
+//!        costs,    cell by   poses,      doubt,      tolerances,  whoever prints, draws or
+//!        refusals  the       followed    followed    success      stores it decides nothing
+//!                  method    exactly     exactly
+//! ```
+//!
+//! A [`Run`] is all that changes an answer beside the problem: method, resolution, random poses, errors to expect, requirements. It
+//! is data: written as JSON, read back, compared, sent to another machine. [`Run::on`] computes it; the same run on the
+//! same problem gives the same bits, whatever [`Exec`] says about threads, except where [`Stop::Budget`] lets the clock say how
+//! many poses are drawn, and how far the grid comes.
+//!
+//! A run over listed poses ([`Over::Stream`]) or by a method that decides each pose by itself can be divided over machines: [`part`].
+//!
+//! Not promised: what the method does not promise. Lengths in D, angles in radians.
+//!
+//! [`Stop::Budget`]: crate::method::correction::Stop::Budget
+
+mod answer;
+mod follow;
+pub mod jams;
+pub mod part;
+mod plan;
+mod requirement;
+pub mod rests;
+mod seat;
+mod stages;
+mod upright;
+pub mod window;
+pub use stages::correct;
+
+pub use answer::{Answer, Corrected};
+pub use follow::Followed;
+pub use part::{Part, PartAnswer, PartError};
+pub use plan::{Afterwards, Plan};
+pub use requirement::{Requirement, RequirementError, Verdict};
+pub use seat::{Deeper, Residual, Seating};
+pub use upright::Upright;
+
+use crate::design::Findings;
+use crate::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
+use crate::landscape::{LandscapeError, Resolution, ResolutionError};
+use crate::merit::MeritError;
+use crate::merit::success::Distribution;
+use crate::method::correction::{CorrectionError, Stop};
+use crate::method::{DecideError, Method, NotApplicable};
+use crate::problem::Problem;
+use jams::JamsError;
+use serde::{Deserialize, Serialize};
+
+/// Everything that changes an answer, beside the problem.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Run {
+    /// Decides the cells.
+    pub method: Method,
+    /// Which poses are decided.
+    pub over: Over,
+    /// Random poses that correct the Sum of a grid.
+    pub sample: Sample,
+    /// Seed of all random poses.
+    pub seed: u64,
+    /// Errors that a robot makes: adds the success probability.
+    pub errors: Option<Distribution>,
+    /// What must hold of the report.
+    pub requirements: Vec<Requirement>,
+    /// Keep the heights over the grid, also where the method needs none.
+    pub heights: bool,
+    /// Look for the places where motions rest that do not dock, by [`jams`].
+    pub jams: bool,
+    /// Look for the largest box of errors that all dock, by [`window`].
+    pub window: bool,
+}
+
+/// Which poses are decided.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Over {
+    /// The centres of the cells of a grid over the error box.
+    Grid(Resolution),
+    /// So many poses drawn uniformly from the error box; pose k depends on the seed and k alone.
+    Stream(usize),
+}
+
+impl Default for Over {
+    fn default() -> Self {
+        Self::Grid(Resolution::default())
+    }
+}
+
+/// How many random poses correct the Sum of a grid.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sample {
+    /// What the method does when nothing is said.
+    #[default]
+    ByMethod,
+    /// None: the Sum is that of the grid.
+    None,
+    /// Until this says so.
+    Until(Stop),
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            over: Over::default(),
+            sample: Sample::default(),
+            seed: 1,
+            errors: None,
+            requirements: Vec::new(),
+            heights: false,
+            jams: false,
+            window: false,
+        }
+    }
+}
+
+/// Why a run gives no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The mated pose does not hold.
+    #[error(transparent)]
+    NotHeld(#[from] Findings),
+    /// The method is not made for the design.
+    #[error(transparent)]
+    NotApplicable(#[from] NotApplicable),
+    /// The resolution does not suit the free errors.
+    #[error(transparent)]
+    Resolution(#[from] ResolutionError),
+    /// The method gave up.
+    #[error(transparent)]
+    Decide(DecideError),
+    /// The Sum could not be corrected.
+    #[error(transparent)]
+    Correction(#[from] CorrectionError),
+    /// There are no heights.
+    #[error(transparent)]
+    Landscape(#[from] LandscapeError),
+    /// There are no figures of merit.
+    #[error(transparent)]
+    Merit(#[from] MeritError),
+    /// There are no jams to tell.
+    #[error(transparent)]
+    Jams(#[from] JamsError),
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<DecideError> for RunError {
+    fn from(error: DecideError) -> Self {
+        match error {
+            DecideError::NotApplicable(error) => Self::NotApplicable(error),
+            DecideError::OutOfBudget(error) => Self::OutOfBudget(error),
+            DecideError::Cancelled(error) => Self::Cancelled(error),
+            error => Self::Decide(error),
+        }
+    }
+}
+
+impl Run {
+    /// A run by a method, with the defaults of everything else.
+    pub fn by(method: Method) -> Self {
+        Self { method, ..Self::default() }
+    }
+
+    /// Computes the run. Many of them at once: by [`Exec::each`], and not as tasks of one pool of `rayon`, whose waiting threads begin one
+    /// inside of another until the stack is full.
+    ///
+    /// # Errors
+    /// See [`RunError`]; nothing is left behind.
+    pub fn on(&self, problem: &Problem, exec: &Exec) -> Result<Answer, RunError> {
+        self.on_with(problem, exec, |_| {})
+    }
+
+    /// The same; `first` receives what the connector tolerates with roll and pitch locked, which is known long before the rest.
+    ///
+    /// # Errors
+    /// See [`RunError`]; nothing is left behind.
+    pub fn on_with(
+        &self,
+        problem: &Problem,
+        exec: &Exec,
+        first: impl FnOnce(&Upright),
+    ) -> Result<Answer, RunError> {
+        let exec = &exec.anew();
+        let plan = self.plan(problem)?;
+        plan.ensure_fits(exec)?;
+        let started = Stopwatch::start();
+        let upright = stages::upright(self, &plan, problem, exec)?;
+        if let Some(upright) = &upright {
+            first(upright);
+        }
+        let decided = stages::decide(&plan, problem, exec)?;
+        stages::finish(self, &plan, problem, (upright, decided), started, exec)
+    }
+}

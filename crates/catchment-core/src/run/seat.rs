@@ -1,0 +1,281 @@
+//! What the seat is like, and how far off docked halves come to rest: the repeatability that engineers ask for.
+//!
+//! ```text
+//!   play       how far off a half may rest and lie as deep, per error      [`crate::contact::play`]
+//!   residual   how far off accepted poses do come to rest, per error       random accepted poses, followed to their end
+//! ```
+//!
+//! Not promised: the poses are drawn evenly from the accepted set, not from the errors that a robot makes. Lengths in D, angles in radians.
+
+use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
+use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem};
+use crate::contact::told::Told;
+use crate::contact::{Pair, Play, Seat, play};
+use crate::design::{ConnectorSpec, Findings};
+use crate::exec::{Cancelled, Exec};
+use crate::method::descent::{self, End, Follower};
+use crate::method::{Decide, motions_in};
+use crate::pose::{Dof, PoseError, rotation, rotation_angle};
+use crate::problem::{Problem, ProblemError};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// The seat, and what comes to rest in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Seating {
+    /// How far above its mated height a half may lie and be seated, in D.
+    pub depth: f64,
+    /// How far off it may rest and lie as deep, per free error that matters; no less than what docked poses were seen to use.
+    pub play: Vec<Play>,
+    /// Accepted poses that were followed until they had come to rest.
+    pub poses: usize,
+    /// How far off they rested, per free error that matters; empty if there were none.
+    pub residual: Vec<Residual>,
+    /// The deepest of them, if it lay deeper than the mated pose, which then is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deeper: Option<Deeper>,
+}
+
+/// A place of rest below the mated pose, in the same seat.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Deeper {
+    /// How much deeper, in D.
+    pub sinks: f64,
+    /// Where.
+    pub error: PoseError,
+}
+
+/// How far off docked poses rest along one error, whichever way. D or radians.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// Which error.
+    pub axis: Dof,
+    /// Mean.
+    pub mean: f64,
+    /// 95 % of the poses rest nearer.
+    pub p95: f64,
+    /// The farthest.
+    pub most: f64,
+}
+
+/// Of so many random descents that a Sum takes, one is followed to its rest; but no fewer than show a 95 % quantile, unless these take longer than
+/// this on one core, in seconds.
+const SHARE: usize = 20;
+const FEWEST: usize = 40;
+const LONGEST: f64 = 12.0;
+/// Cells looked at for every accepted one that is wanted.
+const LOOKS: u64 = 50;
+/// Rests nearer than this are the mated pose, in D and radians: what the ends of motions leave.
+const NONE: f64 = 1e-4;
+/// The poses have random numbers of their own.
+const BRANCH: u64 = 0x5ea7;
+
+impl Seating {
+    /// The seat of a problem, and where accepted poses come to rest in it.
+    pub(super) fn of(
+        problem: &Problem,
+        acceptance: &Acceptance,
+        settings: &descent::Settings,
+        seed: u64,
+        exec: &Exec,
+    ) -> Result<Self, Cancelled> {
+        let pair = problem.pair();
+        let count = (settings.default_samples(pair) / SHARE).max(FEWEST.min(motions_in(LONGEST, pair)));
+        let poses = accepted(acceptance, count as u64, seed);
+        let ends: Vec<End> = exec.install(|| {
+            let follow = |follower: &mut Follower<'_>, pose: &PoseError| {
+                exec.check()?;
+                Ok(follower.rest(pose))
+            };
+            poses.par_iter().map_init(|| Follower::new(pair, settings), follow).collect::<Result<_, _>>()
+        })?;
+        let seat = Seat::new(pair);
+        let docked: Vec<End> = ends.into_iter().filter(|end| end.outcome == Outcome::Aligned).collect();
+        let offs: Vec<[f64; 5]> = docked.iter().map(|end| seat.off(&end.error).to_array()).collect();
+        let mut play = play(pair);
+        // What rests there is play, wherever it was looked for.
+        for play in &mut play {
+            let rests = offs.iter().map(|off| off[play.axis.index()]).filter(|off| off.abs() > NONE);
+            play.minus = rests.clone().fold(play.minus, |most, off| most.max(-off));
+            play.plus = rests.fold(play.plus, f64::max);
+        }
+        let residual = match offs.len() {
+            0 => Vec::new(),
+            _ => play.iter().map(|play| Residual::of(play.axis, &offs)).collect(),
+        };
+        let deeper = Deeper::of(pair, &docked);
+        Ok(Self { depth: pair.alignment.docked.depth, play, poses: offs.len(), residual, deeper })
+    }
+
+    /// With every place that the seating of a problem has, and numbers that mean nothing.
+    pub fn form(problem: &Problem) -> Self {
+        let play = play(problem.pair());
+        let residual = play.iter().map(|play| Residual { axis: play.axis, mean: 0.0, p95: 0.0, most: 0.0 });
+        Self { depth: 0.0, poses: 0, residual: residual.collect(), play, deeper: None }
+    }
+
+    /// The doubts that it raises: halves that rest farther off than the seat was found to allow.
+    pub fn warnings(&self, problem: &Problem) -> Vec<Warning> {
+        let docked = &problem.alignment().docked;
+        let far =
+            self.residual.iter().filter(|residual| residual.most > 1.01 * docked.most_play(residual.axis));
+        let told = Told::of(problem.design());
+        let far = far.map(|residual| Warning::Note {
+            text: format!(
+                "docked halves rest up to {} off in {}: say in [docked] how much of that counts",
+                told.amount(residual.axis, residual.most),
+                residual.axis.name()
+            ),
+        });
+        let deeper = self.deeper.iter().map(|Deeper { sinks, error }| Warning::Note {
+            text: format!(
+                "the mated pose does not hold: docked halves rest {} deeper, at {}; draw the halves so that this is the mated pose",
+                told.length(*sinks),
+                told.error(error)
+            ),
+        });
+        let leaks = Seat::new(problem.pair()).leaks().then(|| Warning::Note {
+            text: format!(
+                "the seat leaks: its rim is lower than docked.depth, {} above the mated pose, so every motion is followed until it rests; \
+                 give a smaller depth if only what is in the hollow is docked",
+                told.length(docked.depth)
+            ),
+        });
+        far.chain(deeper).chain(leaks).collect()
+    }
+}
+
+impl Deeper {
+    /// The deepest of these places of rest, if it is below the mated pose by more than drawings are rounded.
+    fn of(pair: &Pair, rests: &[End]) -> Option<Self> {
+        let sinks = |end: &End| Some((pair.mated_height() - end.height?, end.error));
+        let (sinks, error) = rests.iter().filter_map(sinks).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (sinks > CONTACT_TOLERANCE).then_some(Self { sinks, error })
+    }
+}
+
+impl Residual {
+    fn of(axis: Dof, offs: &[[f64; 5]]) -> Self {
+        let mut off: Vec<f64> = offs.iter().map(|off| off[axis.index()].abs()).collect();
+        off.sort_by(f64::total_cmp);
+        let rank = (0.95 * off.len() as f64).ceil() as usize;
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        Self { axis, mean, p95: off[rank.saturating_sub(1)], most: off[off.len() - 1] }
+    }
+}
+
+/// Up to `count` random poses from accepted cells, or from accepted poses.
+fn accepted(acceptance: &Acceptance, count: u64, seed: u64) -> Vec<PoseError> {
+    let stream = Stream::new(seed).branch(BRANCH);
+    let of = acceptance.outcomes.len();
+    let pick = |k: u64| {
+        let number = |j: u64| stream.uniform(6 * k + j);
+        let cell = ((number(0) * of as f64) as usize).min(of.saturating_sub(1));
+        if acceptance.outcomes.get(cell) != Some(&Outcome::Aligned) {
+            return None;
+        }
+        let Domain::Grid(grid) = &acceptance.domain else { return Some(acceptance.domain.pose(cell)) };
+        let mut error = grid.pose(cell).to_array();
+        for (axis, j) in grid.axes.iter().zip(1..) {
+            error[axis.dof.index()] += axis.step() * (number(j) - 0.5);
+        }
+        Some(PoseError::from_array(error))
+    };
+    (0..LOOKS * count).filter_map(pick).take(count as usize).collect()
+}
+
+impl Problem {
+    /// Where a half let go without any error comes to rest: where it began, if the mated pose is one.
+    pub fn settled(&self) -> End {
+        Follower::new(self.pair(), &descent::Settings::default()).rest(&PoseError::default())
+    }
+
+    /// This problem, unless its mated pose does not hold.
+    ///
+    /// # Errors
+    /// As [`Problem::ensure_held`].
+    pub fn checked(self) -> Result<Self, ProblemError> {
+        self.ensure_held()?;
+        Ok(self)
+    }
+
+    /// Refuses a mated pose that does not hold: no motion ends in it, so that an area of acceptance around it says nothing.
+    ///
+    /// # Errors
+    /// It does not hold, with how far away the half comes to rest.
+    pub fn ensure_held(&self) -> Result<(), Findings> {
+        let (message, advice) = match self.doubts().iter().find(|doubt| is_unstable(doubt)) {
+            Some(doubt) => (self.sentence(doubt), self.advice(doubt)),
+            None => match self.fallen() {
+                Some(message) => (message, None),
+                None => return Ok(()),
+            },
+        };
+        Err(self.refused("alignment.free", message, advice))
+    }
+
+    /// What speaks against the mated pose, as sentences: with where the half settles instead, if it does not hold.
+    pub fn objections(&self) -> Vec<String> {
+        let mut said = self.said();
+        if !self.doubts().iter().any(is_unstable) {
+            said.extend(self.fallen());
+        }
+        said
+    }
+
+    /// The doubts, in the unit of the design.
+    fn said(&self) -> Vec<String> {
+        self.doubts().iter().map(|doubt| self.sentence(doubt)).collect()
+    }
+
+    /// A doubt as a sentence; where the mated pose does not hold, with the distance to where the half comes to rest and the remedy.
+    fn sentence(&self, doubt: &MatedProblem) -> String {
+        let told = Told::of(self.design());
+        let said = doubt.told(told);
+        if !is_unstable(doubt) {
+            return said;
+        }
+        let End { outcome, error, height } = self.settled();
+        if outcome == Outcome::Missed {
+            return format!(
+                "{said}. Released without an error the half runs off: draw the halves so that they hold each other where they are mated"
+            );
+        }
+        if error.to_array().into_iter().all(|part| part.abs() <= CONTACT_TOLERANCE) {
+            return format!(
+                "{said}. Released without an error the half balances, and any push lets it fall: draw the halves so that they are mated where they rest"
+            );
+        }
+        let turn = rotation_angle(&rotation(error.roll, error.pitch, error.yaw));
+        let sinks = height.map_or(0.0, |height| self.pair().mated_height() - height);
+        let takes = match &self.design().connector {
+            ConnectorSpec::Own(own) if !own.settle => {
+                "draw the halves in that pose, or take it as mated: settle = true in [connector]"
+            }
+            ConnectorSpec::Own(_) => "draw the halves in that pose",
+            ConnectorSpec::Family(_) => "lock what moves there, or move the centre of rotation",
+        };
+        format!(
+            "{said}. Released without an error the half comes to rest {} and {} away, {} deeper, at {}: {takes}",
+            told.length(error.x.hypot(error.y)),
+            told.amount(Dof::Yaw, turn),
+            told.length(sinks),
+            told.error(&error),
+        )
+    }
+
+    /// That halves which are a little off come to rest below the seat, if they do.
+    fn fallen(&self) -> Option<String> {
+        let fall = descent::fall(self.pair())?;
+        let told = Told::of(self.design());
+        Some(format!(
+            "{}: draw the halves so that they are mated where they rest, or lock the degree of freedom in which they tip",
+            fall.told(told)
+        ))
+    }
+}
+
+/// Whether the mated pose does not hold.
+const fn is_unstable(doubt: &MatedProblem) -> bool {
+    matches!(doubt, MatedProblem::NotMinimum { .. })
+}

@@ -1,0 +1,382 @@
+//! A design file that was checked: the design as it is understood, or everything that is wrong with it.
+
+use super::envelope::{Body, Envelope};
+use super::text::{self, line};
+use catchment_core::connector::Origin;
+use catchment_core::design::{
+    ConnectorSpec, Design, Drawn, FileSpec, Finding, Findings, HalfSpec, OutlineSpec, OwnSpec,
+};
+use catchment_core::design::{PartSpec, ShapeSpec, SourceText, WidthFrom};
+use catchment_core::pose::{Dof, DofSet, PoseError};
+use catchment_core::problem::Problem;
+use glam::{DAffine3, DVec3};
+use serde::Serialize;
+
+/// What a check has to say, with its head.
+pub type CheckReport = Envelope<CheckBody>;
+
+/// What a check has to say.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CheckBody {
+    /// The file.
+    pub file: String,
+    /// Whether nothing is wrong with it.
+    pub ok: bool,
+    /// The design, resolved: lengths in D, angles in radians; only where nothing is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub design: Option<Design>,
+    /// Where the face centre and the centre of rotation are in the coordinates in which each half is drawn; only of own halves in which
+    /// nothing is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawing: Option<DrawingReport>,
+    /// Whether both halves have the same shape; only where nothing is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ungendered: Option<bool>,
+    /// What is wrong, in the order of its places.
+    pub problems: Vec<ProblemReport>,
+    /// How many more problems there are.
+    pub omitted: usize,
+}
+
+/// Where what the answers are about is in the coordinates of the files.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DrawingReport {
+    /// In those of the fixed half.
+    pub fixed: DrawnReport,
+    /// In those of the moving half.
+    pub moving: DrawnReport,
+    /// How far apart the halves are drawn along the approach, in D, where they were moved to where they first touch.
+    pub apart: Option<f64>,
+    /// The error at which they came to rest that were let go as drawn, in D and radians, where that is taken as mated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settled: Option<PoseError>,
+}
+
+/// Places in the coordinates in which a half is drawn: those of its mesh file; of parts, the unit of the design; of
+/// pieces and of triangles in memory, D.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DrawnReport {
+    /// The face centre.
+    pub face_center: [f64; 3],
+    /// The centre of rotation, in the mated pose.
+    pub center_of_rotation: [f64; 3],
+    /// Unit vector along which errors in x are counted.
+    pub x: [f64; 3],
+    /// Unit vector along which errors in y are counted.
+    pub y: [f64; 3],
+}
+
+impl DrawingReport {
+    fn of(origin: &Origin, center_of_rotation: f64) -> Self {
+        let drawn = |frame: &DAffine3| {
+            let back = frame.inverse();
+            let place = |z: f64| back.transform_point3(DVec3::new(0.0, 0.0, z)).to_array();
+            // No −0, and no 1e-17 beside a 1.
+            let along =
+                |axis| back.transform_vector3(axis).normalize_or_zero().map(|c| rounded(c) + 0.0).to_array();
+            DrawnReport {
+                face_center: place(0.0),
+                // In front of the moving face, which faces down.
+                center_of_rotation: place(-center_of_rotation),
+                x: along(DVec3::X),
+                y: along(DVec3::Y),
+            }
+        };
+        Self {
+            fixed: drawn(&origin.fixed),
+            moving: drawn(&origin.moving),
+            apart: origin.apart,
+            settled: origin.settled,
+        }
+    }
+}
+
+/// Something wrong with a design file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ProblemReport {
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// Where, if it has a place in the file.
+    pub place: Option<Place>,
+}
+
+/// A place in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Place {
+    /// Its line, from 1.
+    pub line: usize,
+    /// Its column in characters, from 1.
+    pub column: usize,
+    /// From its first byte to behind its last.
+    pub bytes: [usize; 2],
+}
+
+impl Body for CheckBody {
+    const KIND: &'static str = "check";
+}
+
+impl CheckReport {
+    /// Of a problem with nothing wrong.
+    pub fn good(problem: &Problem) -> Self {
+        let design = problem.design();
+        let body = CheckBody {
+            file: shown(problem.source()),
+            ok: true,
+            design: Some(design.clone()),
+            drawing: matches!(design.connector, ConnectorSpec::Own(_))
+                .then(|| DrawingReport::of(&problem.connector().origin, design.alignment.center_of_rotation)),
+            ungendered: Some(problem.connector().ungendered(design.alignment.mount)),
+            problems: Vec::new(),
+            omitted: 0,
+        };
+        Self::of(body, Vec::new(), None)
+    }
+
+    /// Of everything that is wrong with a file.
+    pub fn bad(findings: &Findings) -> Self {
+        let source = findings.source.as_ref();
+        let problem = |finding: &Finding| ProblemReport {
+            message: finding.message.clone(),
+            help: finding.help.clone(),
+            place: finding.span.as_ref().zip(source).map(|(span, source)| {
+                let (line, column) = source.line_column(span.start);
+                Place { line, column, bytes: [span.start, span.end] }
+            }),
+        };
+        let body = CheckBody {
+            file: shown(source),
+            ok: false,
+            design: None,
+            drawing: None,
+            ungendered: None,
+            problems: findings.list.iter().map(problem).collect(),
+            omitted: findings.omitted,
+        };
+        Self::of(body, Vec::new(), None)
+    }
+
+    /// The design as understood, degrees and lengths in its own unit beside D; or the problems, a line each.
+    pub fn table(&self) -> String {
+        let mut text = String::new();
+        if let Some(design) = &self.design {
+            line(&mut text, &format!("{}: no problems", self.file));
+            understood(&mut text, design, self.drawing.as_ref(), self.ungendered == Some(true));
+        }
+        for problem in &self.problems {
+            let place = problem.place.map_or_else(String::new, |p| format!("{}:{}:", p.line, p.column));
+            line(&mut text, &format!("{}:{place} {}", self.file, problem.message));
+        }
+        if self.omitted > 0 {
+            line(&mut text, &format!("and {} more", self.omitted));
+        }
+        text
+    }
+}
+
+/// The name of a file.
+fn shown(source: Option<&SourceText>) -> String {
+    source.map_or_else(String::new, |source| source.path.display().to_string())
+}
+
+fn understood(text: &mut String, design: &Design, drawing: Option<&DrawingReport>, ungendered: bool) {
+    let alignment = &design.alignment;
+    let length = |d: f64| match design.unit {
+        Some(unit) => format!("{} D = {} {}", text::rounded(d), rounded(d * design.width), unit.symbol()),
+        None => format!("{d} D"),
+    };
+    let mut row = |name: &str, value: &str| line(text, &format!("  {name:<20}{value}"));
+    row("name", &design.name);
+    match &design.connector {
+        ConnectorSpec::Family(spec) => {
+            row("connector", &format!("{}, H/D = {}", spec.family().name(), spec.aspect_ratio()));
+        }
+        ConnectorSpec::Own(own) => {
+            for (name, spec) in [("fixed half", &own.fixed), ("moving half", &own.moving)] {
+                row(name, &half(spec));
+                if let Some(told) = spec.meshing_told(design) {
+                    row("", &told);
+                }
+                if let Some(done) = spec.repairs_told(design) {
+                    row("", &done);
+                }
+            }
+            let round = [&own.fixed, &own.moving].into_iter().filter_map(chord_error).reduce(f64::max);
+            if let Some(error) = round {
+                row("round parts", &format!("facets inside of them, by at most {}", length(error)));
+            }
+        }
+    }
+    if let Some(DrawingReport { fixed, moving, apart, settled }) = drawing {
+        let point = |p: [f64; 3]| {
+            let [x, y, z] = p.map(|c| rounded(c) + 0.0);
+            format!("({x}, {y}, {z})")
+        };
+        let mut places = |name: &str, fixed: [f64; 3], moving: [f64; 3]| {
+            row(name, &format!("{} as the fixed half is drawn,", point(fixed)));
+            row("", &format!("{} as the moving half is drawn", point(moving)));
+        };
+        places("face centre", fixed.face_center, moving.face_center);
+        places("centre of rotation", fixed.center_of_rotation, moving.center_of_rotation);
+        let along = format!("{} and {} as the fixed half is drawn", direction(fixed.x), direction(fixed.y));
+        row("errors in x and y", &format!("along {along}"));
+        let is_assembled =
+            matches!(&design.connector, ConnectorSpec::Own(OwnSpec { drawn: Drawn::Assembled { .. }, .. }));
+        let moved = apart.filter(|apart| is_assembled && rounded(apart.abs()) > 0.0);
+        if let Some(apart) = moved {
+            let way = if apart > 0.0 { "apart" } else { "into each other" };
+            row("drawn", &format!("{} {way}, moved to where they first touch", length(rounded(apart.abs()))));
+        }
+        if let Some(error) = settled {
+            // What is less is how well the rest is known.
+            let counts = |(_, off): &(Dof, f64)| off.abs() > 1e-5;
+            let amount = |(dof, off): (Dof, f64)| match design.unit {
+                _ if dof.is_rotation() => format!("{} {:.3} deg", dof.name(), off.to_degrees()),
+                Some(unit) => {
+                    let off = text::length(off * design.width, design.width);
+                    format!("{} {off} {}", dof.name(), unit.symbol())
+                }
+                None => format!("{} {off:.5} D", dof.name()),
+            };
+            let parts = Dof::ALL.into_iter().zip(error.to_array()).filter(counts);
+            let parts: Vec<String> = parts.map(amount).collect();
+            let off = if parts.is_empty() { "at rest as drawn".to_owned() } else { parts.join(", ") };
+            row("settled", &format!("{off}, which is taken as mated"));
+        }
+    }
+    row("halves", if ungendered { "alike (ungendered)" } else { "different" });
+    let unit = design.unit.map_or("(dimensionless)", |unit| unit.symbol());
+    let from = match &design.connector {
+        ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Touching, .. }) => {
+            ", taken from the facets that can touch"
+        }
+        ConnectorSpec::Own(OwnSpec { width_from: WidthFrom::Size, .. }) => {
+            ", as little as the size of the parts allows: what can touch is smaller"
+        }
+        _ => "",
+    };
+    row("width D", &format!("{} {unit}{from}", design.width));
+    row("free", &names(alignment.free));
+    if !alignment.dont_care.is_empty() {
+        row("does not matter", &names(alignment.dont_care));
+    }
+    row(
+        "centre of rotation",
+        &format!("{} in front of the face centre", length(alignment.center_of_rotation)),
+    );
+    row("rotation length", &length(alignment.rotation_length));
+    if alignment.symmetry > 1 {
+        row("symmetry", &format!("{}-fold", alignment.symmetry));
+    }
+    for dof in alignment.free.iter() {
+        let half_range = alignment.half_range(dof);
+        let range = if dof.is_rotation() {
+            format!("{} deg", rounded(half_range.to_degrees()))
+        } else {
+            length(half_range)
+        };
+        row(&format!("error in {}", dof.name()), &format!("up to {range}"));
+    }
+}
+
+/// A unit vector by its name, if it has one.
+fn direction(vector: [f64; 3]) -> String {
+    let axis = ["x", "y", "z"].into_iter().zip(vector).find(|(_, c)| c.abs() == 1.0);
+    if let Some((name, c)) = axis {
+        return format!("{}{name}", if c > 0.0 { "+" } else { "-" });
+    }
+    let [x, y, z] = vector;
+    format!("({x:.4}, {y:.4}, {z:.4})")
+}
+
+fn half(half: &HalfSpec) -> String {
+    match half {
+        HalfSpec::Pieces(pieces) if pieces.len() == 1 => "1 convex piece".to_owned(),
+        HalfSpec::Pieces(pieces) => format!("{} convex pieces", pieces.len()),
+        HalfSpec::Mesh(file) => mesh(file),
+        HalfSpec::Parts(parts) => parts_of(parts),
+        HalfSpec::Memory { content } => format!("{} triangles in memory", content.triangles),
+    }
+}
+
+fn mesh(file: &FileSpec) -> String {
+    let bodies = file.content.as_ref().map_or(1, |content| content.bodies);
+    let united = if bodies > 1 { format!(", the union of {bodies} bodies") } else { String::new() };
+    let body = file.treatment.body.map_or_else(String::new, |body| format!(", body {body}"));
+    format!("mesh {}{body}{united}", catchment_core::terminal::shown(&file.path))
+}
+
+/// The parts of a half, those that are alike together; and how round what is round is.
+fn parts_of(parts: &[PartSpec]) -> String {
+    let mut kinds: Vec<(String, usize)> = Vec::new();
+    for part in parts {
+        let kind = match &part.shape {
+            ShapeSpec::Mesh(file) => mesh(file),
+            ShapeSpec::Pieces(_) => "convex pieces".to_owned(),
+            ShapeSpec::Sphere { .. } => "ball".to_owned(),
+            ShapeSpec::Cone { radius, top_radius, .. } if radius == top_radius => "cylinder".to_owned(),
+            ShapeSpec::Cone { .. } => "cone".to_owned(),
+            ShapeSpec::Box { .. } => "box".to_owned(),
+            ShapeSpec::Profile { outline: OutlineSpec::Corners(_), .. } => "profile".to_owned(),
+            ShapeSpec::Profile { outline: OutlineSpec::File(file), .. } => {
+                let left_out = match file.content.as_ref().map_or(0, |content| content.hidden) {
+                    0 => String::new(),
+                    1 => " (1 hidden entity left out)".to_owned(),
+                    hidden => format!(" ({hidden} hidden entities left out)"),
+                };
+                format!("profile {}{left_out}", catchment_core::terminal::shown(&file.path))
+            }
+        };
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((kind, 1)),
+        }
+    }
+    let told = |(kind, count): (String, usize)| if count == 1 { kind } else { format!("{count} × {kind}") };
+    kinds.into_iter().map(told).collect::<Vec<_>>().join(", ")
+}
+
+/// Largest distance between what is round in a half and its facets, in D.
+fn chord_error(half: &HalfSpec) -> Option<f64> {
+    let HalfSpec::Parts(parts) = half else { return None };
+    parts.iter().filter_map(|part| part.shape.chord_error()).reduce(f64::max)
+}
+
+fn names(set: DofSet) -> String {
+    set.iter().map(Dof::name).collect::<Vec<_>>().join(", ")
+}
+
+/// Without the last digits, which the conversion of units leaves.
+fn rounded(value: f64) -> f64 {
+    const DIGITS: f64 = 1e9;
+    (value * DIGITS).round() / DIGITS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use catchment_core::problem::Draft;
+
+    fn problem(name: &str, place: &str) -> Problem {
+        let draft = Draft::read(SourceText::new(place, "[connector]\nfamily = \"pyramid\"\n")).unwrap();
+        let named = draft.change("name", |design| Ok(Design { name: name.to_owned(), ..design }));
+        named.and_then(Draft::build).unwrap()
+    }
+
+    #[test]
+    fn names_in_a_check_are_harmless() {
+        let text = CheckReport::good(&problem("evil\u{1b}[2J\nname", "a\u{7}.toml")).table();
+        assert!(text.starts_with("a?.toml: no problems\n  name                evil?[2J?name\n"), "{text}");
+        assert!(!text.contains(|c: char| c.is_control() && c != '\n'));
+        assert!(text.contains("  error in pitch      up to 90 deg\n"), "{text}");
+    }
+
+    #[test]
+    fn problems_are_told_with_their_places() {
+        let source = Some(SourceText::new("d.toml", "a = 1\nb = 2\nkey = 4\n"));
+        let list = vec![Finding::new("no such key", None).at(Some(18..19)), Finding::new("empty", None)];
+        let report = CheckReport::bad(&Findings { source, list, omitted: 2 });
+        assert_eq!(report.table(), "d.toml:3:7: no such key\nd.toml: empty\nand 2 more\n");
+    }
+}

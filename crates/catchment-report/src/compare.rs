@@ -1,0 +1,202 @@
+//! Two acceptances beside each other, wherever they come from.
+//!
+//! ```text
+//!   a stored result ──▶ read ─────────┐
+//!   a problem and a run ──▶ decided ──┼──▶ the cells that both have ──▶ overlap, confusions, distances, picture
+//!   (over the other's cells)          ┘
+//! ```
+
+use super::comparison::{Compared as Side, ComparisonReport};
+use super::folder::RESULT;
+use super::schema::Timing;
+use super::zarr::{self, ZarrError};
+use super::{Report, figure};
+use catchment_core::acceptance::Acceptance;
+use catchment_core::exec::{Exec, Stopwatch};
+use catchment_core::landscape::{Grid, Resolution, ResolutionError};
+use catchment_core::merit::MeritError;
+use catchment_core::merit::comparison::{Comparison, ComparisonError, Paired};
+use catchment_core::problem::Problem;
+use catchment_core::run::{Over, Run, RunError};
+use catchment_study::agreement::even_cells;
+use std::path::{Path, PathBuf};
+
+/// One of the two.
+#[derive(Debug)]
+pub enum Subject {
+    /// A result that was stored: its folder or its group.
+    Stored(PathBuf),
+    /// A problem to be decided; the resolution of the run is not asked.
+    Fresh {
+        /// Where it comes from, for people.
+        source: String,
+        /// The problem.
+        problem: Box<Problem>,
+        /// How it is decided.
+        run: Box<Run>,
+    },
+}
+
+/// Why the two cannot be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum CompareError {
+    /// A stored result cannot be read.
+    #[error(transparent)]
+    Zarr(#[from] ZarrError),
+    /// A resolution does not suit a problem.
+    #[error("{subject}: {error}")]
+    Resolution {
+        /// Where the problem comes from.
+        subject: String,
+        /// Why not.
+        error: ResolutionError,
+    },
+    /// A problem has no answer.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// They have nothing in common.
+    #[error("cannot compare {first} with {second}: {error}")]
+    Apart {
+        /// Where the first comes from.
+        first: String,
+        /// Where the second comes from.
+        second: String,
+        /// Why not.
+        error: ComparisonError,
+    },
+    /// A figure of merit cannot be computed.
+    #[error(transparent)]
+    Merit(#[from] MeritError),
+    /// The accepted sets cannot be compared.
+    #[error(transparent)]
+    Comparison(#[from] ComparisonError),
+    /// The picture would not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] catchment_core::exec::OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] catchment_core::exec::Cancelled),
+}
+
+/// The comparison, and its picture where there is something to draw.
+#[derive(Debug)]
+pub struct Found {
+    /// What it has to say.
+    pub report: ComparisonReport,
+    /// Where the two differ, if asked for; or why that cannot be drawn.
+    pub picture: Option<Result<figure::Picture, figure::FigureError>>,
+}
+
+/// Compares two subjects. Problems are decided over the cells of a stored result where there is one, else over `resolution`, else
+/// over an even number of cells that exact descent affords.
+///
+/// # Errors
+/// See [`CompareError`].
+pub fn compare(
+    subjects: [Subject; 2],
+    resolution: Option<Resolution>,
+    picture: bool,
+    exec: &Exec,
+) -> Result<Found, CompareError> {
+    let started = Stopwatch::start();
+    // Stored results first: their grid is what a problem is decided on.
+    let mut sides: [Option<(Side, Acceptance)>; 2] = [None, None];
+    for (side, subject) in sides.iter_mut().zip(&subjects) {
+        if let Subject::Stored(path) = subject {
+            let (report, acceptance) = zarr::read(&group(path), exec)?;
+            *side = Some((Side { source: path.display().to_string(), report }, acceptance));
+        }
+    }
+    let stored = sides.iter().flatten().find_map(|(side, _)| as_resolution(&side.report));
+    let cells = resolution.or(stored).unwrap_or_default();
+    if picture {
+        // The cells that both have are no more than those of either.
+        let grids =
+            subjects.iter().filter_map(|subject| planned(subject, cells)).collect::<Result<Vec<_>, _>>()?;
+        let fits = grids.iter().map(|grid| figure::ensure_grid_fits(grid, exec));
+        fits.reduce(Result::or).unwrap_or(Ok(()))?;
+    }
+    let mut decided = Vec::with_capacity(2);
+    for (k, (side, subject)) in sides.into_iter().zip(subjects).enumerate() {
+        let part = exec.part([0.5 * k as f64, 0.5 * (k + 1) as f64], "comparing");
+        decided.push(match (side, subject) {
+            (Some(stored), _) => stored,
+            (None, Subject::Fresh { source, problem, run }) => decide(source, &problem, &run, cells, &part)?,
+            (None, Subject::Stored(path)) => {
+                return Err(ZarrError::Content { path, reason: "it was not read".to_owned() }.into());
+            }
+        });
+    }
+    let [(first, a), (second, b)] = &decided[..] else {
+        return Err(MeritError::NotAGrid.into());
+    };
+    let paired = Paired::of(a, b).map_err(|error| CompareError::Apart {
+        first: first.source.clone(),
+        second: second.source.clone(),
+        error,
+    })?;
+    let comparison = Comparison::of(&paired, &first.report.design.alignment, exec)?;
+    if let (true, Some(grid)) = (picture, paired.first.grid()) {
+        // Of two stored results nothing was known before.
+        figure::ensure_grid_fits(grid, exec)?;
+    }
+    let picture = picture.then(|| {
+        let names = names([first, second]);
+        let names = names.each_ref().map(String::as_str);
+        figure::difference(&first.report.design, &paired, &comparison, names)
+    });
+    let timing = Timing { total_s: started.seconds(), threads: exec.threads() };
+    let sides = [first.clone(), second.clone()];
+    let report = ComparisonReport::new(sides, &paired, comparison, Some(timing));
+    Ok(Found { report, picture })
+}
+
+/// The Zarr group that a path stands for: the one in the folder of a run, or the path itself.
+pub fn group(path: &Path) -> PathBuf {
+    let inside = path.join(RESULT);
+    if inside.is_dir() { inside } else { path.to_owned() }
+}
+
+/// The cells of a stored result, for a problem beside it.
+fn as_resolution(report: &Report) -> Option<Resolution> {
+    report.axes.iter().try_fold(Resolution::default(), |all, axis| all.with(axis.axis, axis.cells).ok())
+}
+
+/// The grid that a problem will be decided on; `None` of a stored result.
+fn planned(subject: &Subject, cells: Resolution) -> Option<Result<Grid, CompareError>> {
+    let Subject::Fresh { source, problem, .. } = subject else { return None };
+    Some(grid_of(source, problem, cells))
+}
+
+fn grid_of(source: &str, problem: &Problem, cells: Resolution) -> Result<Grid, CompareError> {
+    cells
+        .grid(problem.alignment(), &even_cells(problem))
+        .map_err(|error| CompareError::Resolution { subject: source.to_owned(), error })
+}
+
+/// Decides a problem, as a run does.
+fn decide(
+    source: String,
+    problem: &Problem,
+    run: &Run,
+    cells: Resolution,
+    exec: &Exec,
+) -> Result<(Side, Acceptance), CompareError> {
+    let grid = grid_of(&source, problem, cells)?;
+    let answer = Run { over: Over::Grid(Resolution::of(&grid)), ..run.clone() }.on(problem, exec)?;
+    let mut report = Report::of_answer(&answer);
+    report.timing = None;
+    Ok((Side { source, report }, answer.acceptance))
+}
+
+/// What tells the two apart: the methods of one design, else the designs, else the files.
+fn names(sides: [&Side; 2]) -> [String; 2] {
+    let [a, b] = sides.map(|side| &side.report);
+    if a.design == b.design && a.method != b.method {
+        return [a, b].map(|report| report.method.clone());
+    }
+    if a.design.name != b.design.name {
+        return [a, b].map(|report| format!("{} by {}", report.design.name, report.method));
+    }
+    sides.map(|side| format!("{} by {}", side.source, side.report.method))
+}

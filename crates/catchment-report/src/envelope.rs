@@ -1,0 +1,162 @@
+//! The one head of every JSON that is printed or stored.
+//!
+//! ```text
+//!   { "schema": 3, "catchment": "0.1.0", "kind": "run",     which layout, who wrote it, what it tells
+//!     … fields of the kind, at the top level …
+//!     "warnings": […], "timing": … }                        doubts; the only part that differs between equal runs
+//! ```
+//!
+//! [`SCHEMA`] rises when a field changes its meaning or goes away, for all kinds together. New fields may appear
+//! under the same number, and new kinds of warnings: a reader ignores fields that it does not know. This program
+//! reads the layouts from [`OLDEST`] on; a newer one is refused.
+
+use super::schema::{Timing, WarningReport};
+use super::version::Version;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::ops::{Deref, DerefMut};
+
+/// Version of the layout that is written.
+pub const SCHEMA: u32 = 3;
+
+/// The oldest layout that is read: 3 added `kind`, and a run of 2 lacks nothing else.
+pub const OLDEST: u32 = 2;
+
+/// What a report of one kind holds beside its head.
+pub trait Body {
+    /// Its name in `kind`.
+    const KIND: &'static str;
+}
+
+/// A report: its head, and a body whose fields stand beside it. `report.design` is `report.body.design`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Envelope<T> {
+    /// Version of the program that wrote it.
+    pub catchment: Version,
+    /// The fields of its kind.
+    pub body: T,
+    /// Doubts.
+    pub warnings: Vec<WarningReport>,
+    /// How long it took; null where nothing was measured.
+    pub timing: Option<Timing>,
+}
+
+impl<T: Body> Envelope<T> {
+    /// A report of this program.
+    pub fn of(body: T, warnings: Vec<WarningReport>, timing: Option<Timing>) -> Self {
+        Self { catchment: Version::own(), body, warnings, timing }
+    }
+}
+
+impl<T: Body + Serialize> Envelope<T> {
+    /// The report as indented JSON, ending with a line break. Characters that could steer a terminal are escaped.
+    ///
+    /// # Errors
+    /// None at present: every field has a JSON form.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string_pretty(self).map(|text| escaped(text) + "\n")
+    }
+}
+
+/// JSON with `\u` and a number for every character that could steer a terminal; they stand in strings alone.
+fn escaped(json: String) -> String {
+    let raw = |c: char| c != '\n' && catchment_core::terminal::steers(c);
+    if !json.contains(raw) {
+        return json;
+    }
+    let mut text = String::with_capacity(json.len());
+    for c in json.chars() {
+        if raw(c) {
+            text.extend(c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")));
+        } else {
+            text.push(c);
+        }
+    }
+    text
+}
+
+impl<T: Body + for<'de> Deserialize<'de>> Envelope<T> {
+    /// Reads a report back. Fields that are not known are ignored.
+    ///
+    /// # Errors
+    /// Where the text is no report of this kind, or of a layout that this program does not read.
+    pub fn from_json(text: &str) -> Result<Self, serde_json::Error> {
+        serde_json::from_str(text)
+    }
+}
+
+impl<T> Deref for Envelope<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.body
+    }
+}
+
+impl<T> DerefMut for Envelope<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.body
+    }
+}
+
+impl<T: Body + Serialize> Serialize for Envelope<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Written<'a, T> {
+            schema: u32,
+            catchment: &'a Version,
+            kind: &'static str,
+            #[serde(flatten)]
+            body: &'a T,
+            warnings: &'a [WarningReport],
+            timing: &'a Option<Timing>,
+        }
+        let Self { catchment, body, warnings, timing } = self;
+        Written { schema: SCHEMA, catchment, kind: T::KIND, body, warnings, timing }.serialize(serializer)
+    }
+}
+
+impl<'de, T: Body + Deserialize<'de>> Deserialize<'de> for Envelope<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        struct Read<T> {
+            // Refused as soon as it is met: what follows may be of any form.
+            #[serde(rename = "schema")]
+            _schema: Known,
+            catchment: Version,
+            kind: Option<String>,
+            #[serde(flatten)]
+            body: T,
+            #[serde(default)]
+            warnings: Vec<WarningReport>,
+            timing: Option<Timing>,
+        }
+        let Read { catchment, kind, body, warnings, timing, .. } = Read::<T>::deserialize(deserializer)?;
+        match kind {
+            Some(kind) if kind != T::KIND => {
+                let shown = catchment_core::terminal::escaped(&kind);
+                Err(D::Error::custom(format_args!("it is a report of `{shown}`, not of `{}`", T::KIND)))
+            }
+            _ => Ok(Self { catchment, body, warnings, timing }),
+        }
+    }
+}
+
+/// The number of a layout that this program reads.
+struct Known;
+
+impl<'de> Deserialize<'de> for Known {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match u32::deserialize(deserializer)? {
+            OLDEST..=SCHEMA => Ok(Self),
+            newer if newer > SCHEMA => Err(D::Error::custom(format_args!(
+                "it was written by a newer version of catchment: its schema is {newer}, this one reads up to {SCHEMA}; \
+                 update catchment, or compute the result again with this one"
+            ))),
+            older => Err(D::Error::custom(format_args!(
+                "its schema is {older}, this version of catchment reads from {OLDEST} to {SCHEMA}; compute the result \
+                 again"
+            ))),
+        }
+    }
+}

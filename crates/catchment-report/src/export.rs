@@ -1,0 +1,48 @@
+//! A drop test that was written for other engines: what it was, and where it lies.
+
+use super::envelope::{Body, Envelope};
+use super::schema::WarningReport;
+use super::text::line;
+use catchment_core::design::Design;
+use catchment_core::pose::PoseError;
+use serde::Serialize;
+
+/// What was exported, with its head.
+pub type ExportReport = Envelope<ExportBody>;
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExportBody {
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// The settings of the drop test.
+    pub settings: serde_json::Value,
+    /// The pose error that it starts from, D and rad.
+    pub start: PoseError,
+    /// The MJCF file.
+    pub mjcf: String,
+    /// The SDF file.
+    pub sdf: String,
+    /// How many meshes lie beside it.
+    pub meshes: usize,
+}
+
+impl Body for ExportBody {
+    const KIND: &'static str = "export";
+}
+
+impl ExportReport {
+    /// Of files that were written, with the doubts about their design.
+    pub fn new(body: ExportBody, warnings: Vec<WarningReport>) -> Self {
+        Self::of(body, warnings, None)
+    }
+
+    /// The files, a line each.
+    pub fn table(&self) -> String {
+        let mut text = String::new();
+        for file in [&self.mjcf, &self.sdf] {
+            line(&mut text, file);
+        }
+        text
+    }
+}

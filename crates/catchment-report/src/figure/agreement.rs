@@ -1,0 +1,31 @@
+//! How each two methods of a design agree.
+
+use super::Picture;
+use super::number_map::{Colouring, Digits, NumberMap, NumberSheet, number_maps};
+use crate::{Agreement, AgreementReport};
+
+/// Draws how each two methods of a design agree: left the share of cells, right the overlap of the accepted sets.
+pub fn agreement(report: &AgreementReport) -> Picture {
+    let names: Vec<String> = report.results().map(|(name, _)| name.to_owned()).collect();
+    let map = |title, of: fn(&Agreement) -> f64| NumberMap {
+        title,
+        rows: &names,
+        columns: &names,
+        values: report.agreement.iter().map(|row| row.iter().map(of).collect()).collect(),
+        digits: Digits::Decimals(4),
+        marks: Vec::new(),
+        // Agreement of half the cells is no better than chance.
+        colouring: Colouring::Deficit([0.5, 1.0]),
+    };
+    let cells: Vec<String> = report.cells.iter().map(ToString::to_string).collect();
+    let story = [format!("every method that applies, on {} cells", cells.join(" × "))];
+    let sheet =
+        NumberSheet { title: &report.design.name, story: &story, cell: [76.0, 40.0], least_width: 560.0 };
+    number_maps(
+        &sheet,
+        &[
+            map("share of the cells that both accept or both reject", |a| a.agreement),
+            map("Jaccard: accepted by both, of all that one accepts", |a| a.jaccard),
+        ],
+    )
+}

@@ -1,0 +1,377 @@
+//! Trials of a plan over what docks: one panel for each value of the errors that do not lie across.
+
+use super::super::plan::PlanPointReport;
+use super::super::text::percent;
+use super::super::{PlanReport, TriedReport, ValidationReport};
+use super::Picture;
+use super::draw::axis::{Frame, Scale, Units, short};
+use super::draw::colour::{self, Rgb, hex, mix};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline, width_of};
+use catchment_core::acceptance::Outcome;
+use catchment_core::design::Design;
+use catchment_core::pose::{Dof, PoseError};
+use catchment_core::poses::Observed;
+use catchment_study::plan::{CELLS, Panel};
+
+/// A trial that fared otherwise than predicted.
+const WRONG: &str = "#c62f2f";
+/// Docked, and did not.
+const DOCKED: &str = "#123a5c";
+const FAILED: &str = "#8a4b00";
+/// Size of a panel, in SVG units; of one error alone it is low.
+const SIDE: f64 = 250.0;
+const LOW: f64 = 70.0;
+/// Panels beside each other.
+const PER_ROW: usize = 3;
+/// Between panels, beside and below.
+const BESIDE: f64 = 74.0;
+const BELOW: f64 = 72.0;
+
+/// What a pose is drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shape {
+    Docks,
+    Fails,
+    Either,
+    NotMade,
+}
+
+/// A pose to draw.
+struct Mark {
+    error: PoseError,
+    shape: Shape,
+    wrong: bool,
+}
+
+/// Draws the poses of a plan, and what is predicted of them.
+pub fn plan(report: &PlanReport, panels: &[Panel]) -> Picture {
+    let of = |point: &PlanPointReport| Mark {
+        error: point.error,
+        shape: match (point.either, point.docks()) {
+            (true, _) => Shape::Either,
+            (false, true) => Shape::Docks,
+            (false, false) => Shape::Fails,
+        },
+        wrong: false,
+    };
+    let marks: Vec<Mark> = report.points.iter().map(of).collect();
+    let counts = &report.plan;
+    let story = format!(
+        "{} trials at {} poses: {} decide, {} nearer to the border than the robot's accuracy",
+        counts.trials, counts.poses, counts.deciding, counts.either
+    );
+    let words = [
+        (Shape::Docks, false, "should dock"),
+        (Shape::Fails, false, "should not"),
+        (Shape::Either, false, "may go either way"),
+    ];
+    draw(&report.design, &story, &marks, panels, &words)
+}
+
+/// Draws what was seen of trials over what was predicted.
+pub fn validation(report: &ValidationReport, panels: &[Panel]) -> Picture {
+    let of = |trial: &TriedReport| Mark {
+        error: trial.point.error,
+        shape: match trial.observed {
+            None => Shape::NotMade,
+            Some(Observed::Aligned) => Shape::Docks,
+            Some(Observed::AlignedElsewhere) if report.design.alignment.symmetry > 1 => Shape::Docks,
+            Some(_) => Shape::Fails,
+        },
+        wrong: trial.disagrees,
+    };
+    let marks: Vec<Mark> = report.trials.iter().map(of).collect();
+    let agreement = &report.agreement;
+    let agreed = agreement.share.map_or_else(String::new, |share| {
+        let [low, high] = agreement.ci95.map(percent);
+        format!(
+            "; {} of {} as predicted, {} ({low} … {high})",
+            agreement.agreed,
+            agreement.trials,
+            percent(share)
+        )
+    });
+    let story = format!("{}{agreed}", report.verdict.name());
+    let words = [
+        (Shape::Docks, false, "docked"),
+        (Shape::Fails, false, "did not"),
+        (Shape::Fails, true, "otherwise than predicted"),
+        (Shape::NotMade, false, "not made"),
+    ];
+    draw(&report.design, &story, &marks, panels, &words)
+}
+
+fn draw(
+    design: &Design,
+    story: &str,
+    marks: &[Mark],
+    panels: &[Panel],
+    words: &[(Shape, bool, &str)],
+) -> Picture {
+    let units = Units::of(design);
+    let [left, top] = [70.0, 118.0];
+    let height = if panels.iter().any(|panel| panel.across.len() > 1) { SIDE } else { LOW };
+    let (columns, rows) = (panels.len().clamp(1, PER_ROW), panels.len().div_ceil(PER_ROW).max(1));
+    let wide = left + columns as f64 * (SIDE + BESIDE) - BESIDE + 30.0;
+    let met: Vec<_> = words
+        .iter()
+        .filter(|(shape, wrong, _)| {
+            marks.iter().any(|mark| if *wrong { mark.wrong } else { mark.shape == *shape })
+        })
+        .collect();
+    let note = note(panels);
+    let legend = 150.0 + met.iter().map(|(.., words)| 40.0 + width_of(words, LABEL)).sum::<f64>();
+    let width =
+        [story, note].map(|words| width_of(words, LABEL) + 48.0).into_iter().fold(wide.max(legend), f64::max);
+    let mut svg = Svg::new(width, top + rows as f64 * (height + BELOW) - 22.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, story);
+    key(&mut svg, &met, panels.iter().any(|panel| !panel.is_projection()), note);
+    for (number, panel) in panels.iter().enumerate() {
+        let rect = Rect {
+            x: left + (number % PER_ROW) as f64 * (SIDE + BESIDE),
+            y: top + (number / PER_ROW) as f64 * (height + BELOW),
+            w: SIDE,
+            h: height,
+        };
+        one(&mut svg, panel, marks, &units, rect);
+    }
+    Picture::of(svg)
+}
+
+/// How the poses lie to what is drawn under them, where that is not plain to see.
+fn note(panels: &[Panel]) -> &'static str {
+    let is_near = |panel: &Panel| panel.others.iter().any(|(_, ends)| Panel::middle(*ends).1.is_some());
+    if panels.iter().any(Panel::is_projection) {
+        "projections: the errors that a panel does not show differ from pose to pose, and no region belongs to all of them"
+    } else if panels.iter().any(is_near) {
+        "a slice lies at the middle of its poses, which are within the robot's accuracy of it"
+    } else {
+        ""
+    }
+}
+
+fn key(svg: &mut Svg, met: &[&(Shape, bool, &str)], has_region: bool, note: &str) {
+    let (mut x, y) = (24.0, 74.0);
+    if has_region {
+        let shade = hex(region());
+        svg.rect(
+            Rect { x, y: y - 10.0, w: 14.0, h: 12.0 },
+            &format!(r#"fill="{shade}" stroke="{SOFT}" stroke-width="0.5""#),
+        );
+        svg.text([x + 20.0, y], LABEL, Anchor::Start, INK, "docks, exactly");
+        x += 40.0 + width_of("docks, exactly", LABEL);
+    }
+    for (shape, wrong, words) in met {
+        mark(svg, [x + 5.0, y - 4.0], *shape, *wrong);
+        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, words);
+        x += 36.0 + width_of(words, LABEL);
+    }
+    svg.text([24.0, y + 18.0], LABEL, Anchor::Start, SOFT, note);
+}
+
+/// The errors that a panel does not show: `yaw = 20°`, `yaw = 20° ± 0.3°`, and of a projection `yaw −5 … 12 deg`.
+fn beside(panel: &Panel, units: &Units) -> String {
+    let words = |(axis, ends): &(Dof, [f64; 2])| {
+        let shown = |value: f64| short(value * units.factor(*axis));
+        if panel.is_projection() {
+            let unit = if axis.is_rotation() { "deg" } else { units.symbol() };
+            return format!("{} {} … {} {unit}", axis.name(), shown(ends[0]), shown(ends[1]));
+        }
+        let (middle, off) = Panel::middle(*ends);
+        let unit = if axis.is_rotation() { "°".to_owned() } else { format!(" {}", units.symbol()) };
+        let off = off.map_or_else(String::new, |off| format!(" ± {}{unit}", shown(off)));
+        units.value(*axis, middle) + &off
+    };
+    panel.others.iter().map(words).collect::<Vec<_>>().join(", ")
+}
+
+/// The shade of what docks: light, so that marks show.
+fn region() -> Rgb {
+    const LIGHT: f64 = 0.62;
+    mix(colour::outcome(Outcome::Aligned), [0xff, 0xff, 0xff], LIGHT)
+}
+
+fn one(svg: &mut Svg, panel: &Panel, marks: &[Mark], units: &Units, rect: Rect) {
+    let nothing = || Scale::new(String::new(), 0.0, 1.0, false);
+    let scale = |k: usize| {
+        panel.across.get(k).map_or_else(nothing, |(axis, [lo, hi])| {
+            let factor = units.factor(*axis);
+            Scale::new(units.label(*axis), lo * factor, hi * factor, axis.is_rotation())
+        })
+    };
+    let planar = panel.across.len() > 1;
+    let frame = Frame { rect, x: scale(0), y: scale(1) };
+    let (others, size) = (beside(panel, units), if panel.is_projection() { TICK } else { LABEL });
+    svg.text([rect.x, rect.y - 8.0], size, Anchor::Start, INK, &others);
+    if !panel.is_projection() {
+        svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
+    }
+    svg.begin_clip(rect);
+    cells(svg, panel, rect);
+    let value = |error: &PoseError, axis: Dof| error.to_array()[axis.index()] * units.factor(axis);
+    // Wrong ones on top.
+    for wrong in [false, true] {
+        for found in panel.poses.iter().map(|k| &marks[*k]).filter(|found| found.wrong == wrong) {
+            let place = |k: usize| panel.across.get(k).map(|(axis, _)| value(&found.error, *axis));
+            let x = frame.px(place(0).unwrap_or(0.0));
+            let y = place(1).map_or(rect.y + 0.5 * rect.h, |y| frame.py(y));
+            mark(svg, [x, y], found.shape, found.wrong);
+        }
+    }
+    svg.end();
+    if planar {
+        frame.draw(svg);
+    } else {
+        frame.below(svg);
+        frame.outline(svg);
+    }
+}
+
+/// What docks: runs of cells, row by row.
+fn cells(svg: &mut Svg, panel: &Panel, rect: Rect) {
+    let rows = panel.cells.len() / CELLS;
+    if rows == 0 {
+        return;
+    }
+    let [w, h] = [rect.w / CELLS as f64, rect.h / rows as f64];
+    let mut data = String::new();
+    for (row, cells) in panel.cells.chunks(CELLS).enumerate() {
+        let y = rect.y + rect.h - (row + 1) as f64 * h;
+        let mut from = None;
+        for column in 0..=CELLS {
+            let docks = cells.get(column).copied().unwrap_or(false);
+            match (from, docks) {
+                (None, true) => from = Some(column),
+                (Some(start), false) => {
+                    let [x0, x1] = [start, column].map(|k| rect.x + k as f64 * w);
+                    let corners = [[x0, y], [x1, y], [x1, y + h], [x0, y + h]];
+                    data.push_str(&polyline(corners, true));
+                    from = None;
+                }
+                _ => {}
+            }
+        }
+    }
+    let fill = hex(region());
+    svg.path(&data, &format!(r#"fill="{fill}" stroke="{fill}" stroke-width="0.5" {JOIN}"#));
+}
+
+/// ● docks, × does not, ◇ may go either way, ○ not made; ringed where it fared otherwise than predicted.
+fn mark(svg: &mut Svg, [x, y]: [f64; 2], shape: Shape, wrong: bool) {
+    const SIZE: f64 = 3.6;
+    match shape {
+        Shape::Docks => {
+            svg.circle([x, y], SIZE, &format!(r##"fill="{DOCKED}" stroke="#ffffff" stroke-width="0.7""##));
+        }
+        Shape::Fails => {
+            let style = format!(r#"stroke="{FAILED}" stroke-width="2" {JOIN}"#);
+            let s = 0.85 * SIZE;
+            svg.line([x - s, y - s], [x + s, y + s], &style);
+            svg.line([x - s, y + s], [x + s, y - s], &style);
+        }
+        Shape::Either => {
+            let s = 1.3 * SIZE;
+            let [n, e, z, w] = [y - s, x + s, y + s, x - s];
+            let data = format!("M{x:.2} {n:.2}L{e:.2} {y:.2}L{x:.2} {z:.2}L{w:.2} {y:.2}Z");
+            svg.path(&data, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="1.1" {JOIN}"##));
+        }
+        Shape::NotMade => {
+            svg.circle([x, y], SIZE, &format!(r#"fill="none" stroke="{SOFT}" stroke-width="0.9""#));
+        }
+    }
+    if wrong {
+        svg.circle([x, y], 1.9 * SIZE, &format!(r#"fill="none" stroke="{WRONG}" stroke-width="1.6""#));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::schema::testing::design;
+    use catchment_core::exec::Exec;
+    use catchment_core::method::descent;
+    use catchment_core::poses::{OffsetsAt, Tried};
+    use catchment_core::problem::Problem;
+    use catchment_study::plan::{Pattern, Settings, panels, run};
+    use catchment_study::validate;
+
+    #[test]
+    fn plans_and_verdicts_are_drawn() {
+        let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
+        let accuracy = PoseError { x: 0.03, pitch: 0.06, ..PoseError::default() };
+        let pattern = Pattern::Grid { steps: [Some(7), None, None, Some(5), None], max: [None; 5] };
+        let found = run(&problem, &Settings::new(pattern, accuracy), &Exec::new()).unwrap();
+        let poses: Vec<PoseError> = found.points.iter().map(|point| point.error).collect();
+        let motions = descent::Settings::default();
+        let slices = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
+        assert_eq!((slices.len(), slices[0].poses.len(), slices[0].cells.len()), (1, 35, CELLS * CELLS));
+        let report = PlanReport::new(problem.design(), &found, OffsetsAt::Face, Vec::new(), None);
+        let picture = plan(&report, &slices);
+        look("plan", &picture);
+        assert!(picture.svg().contains("35 trials at 35 poses") && !picture.svg().contains("NaN"));
+        let observed = |k: usize| [Some(Observed::Aligned), Some(Observed::Jammed), None][k % 3];
+        let tried = |(k, error): (usize, &PoseError)| Tried {
+            trial: k as u64 + 1,
+            line: 1,
+            error: *error,
+            observed: observed(k),
+            predicted: None,
+        };
+        let tried: Vec<Tried> = poses.iter().enumerate().map(tried).collect();
+        let judged =
+            validate::run(&problem, &tried, &validate::Settings::new(accuracy), &Exec::new()).unwrap();
+        let report = ValidationReport::new(problem.design(), &judged, OffsetsAt::Face, Vec::new(), None);
+        let picture = validation(&report, &slices);
+        look("validation", &picture);
+        assert!(picture.svg().contains("inconsistent; ") && picture.svg().contains("not made"));
+        // Every disagreement is ringed once, and once more in the key.
+        assert_eq!(picture.svg().matches(WRONG).count(), report.disagreements.len() + 1);
+    }
+
+    /// Poses of many yaws were drawn over the slice of the nearest of four: blue under crosses, grey under dots.
+    #[test]
+    fn poses_are_drawn_over_their_own_slice_or_over_none() {
+        let free = [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect();
+        let problem = Problem::of(design(free)).unwrap();
+        let accuracy = PoseError { x: 0.03, y: 0.03, yaw: 0.02, ..PoseError::default() };
+        let drawn = |yaws: &[f64]| {
+            let pose = |(k, yaw): (usize, &f64)| PoseError {
+                x: 0.1 * (k % 5) as f64,
+                y: 0.07 * (k % 7) as f64,
+                yaw: *yaw,
+                ..PoseError::default()
+            };
+            let poses: Vec<PoseError> = yaws.iter().enumerate().map(pose).collect();
+            let motions = descent::Settings::default();
+            let found = panels(&problem, &poses, &accuracy, &motions, &Exec::new()).unwrap();
+            let marks: Vec<Mark> =
+                poses.iter().map(|error| Mark { error: *error, shape: Shape::Docks, wrong: false }).collect();
+            let words = [(Shape::Docks, false, "should dock")];
+            (draw(problem.design(), "a story", &marks, &found, &words), found)
+        };
+        let region = format!(r#"fill="{}""#, hex(region()));
+        let dots = |picture: &Picture| picture.svg().matches(&format!(r#"fill="{DOCKED}""#)).count();
+        // As recorded: about three angles, each within the accuracy of its slice.
+        let yaws: Vec<f64> = (0..30).map(|k| 0.3 * f64::from(k % 3) + 0.0005 * f64::from(k)).collect();
+        let (picture, found) = drawn(&yaws);
+        look("plan-near", &picture);
+        assert_eq!(found.iter().map(|panel| panel.poses.len()).collect::<Vec<_>>(), [10, 10, 10]);
+        for panel in &found {
+            let (middle, off) = Panel::middle(panel.others[0].1);
+            let far = |k: &usize| (yaws[*k] - middle).abs() > accuracy.yaw;
+            assert!(off.is_some_and(|off| off <= accuracy.yaw) && !panel.poses.iter().any(far));
+        }
+        assert!(picture.svg().contains("yaw = 0.39° ± 0.39°") && picture.svg().contains(&region));
+        assert_eq!(dots(&picture), 30 + 1);
+        // Thirty angles: all poses over each pair of errors, and no region.
+        let yaws: Vec<f64> = (0..30).map(|k| 0.05 * f64::from(k)).collect();
+        let (picture, found) = drawn(&yaws);
+        look("plan-projected", &picture);
+        assert!(found.len() == 3 && found.iter().all(Panel::is_projection));
+        assert!(picture.svg().contains("yaw 0 … 83.1 deg") && picture.svg().contains("projections: "));
+        assert!(!picture.svg().contains(&region) && !picture.svg().contains("docks, exactly"));
+        assert_eq!(dots(&picture), 3 * 30 + 1);
+    }
+}

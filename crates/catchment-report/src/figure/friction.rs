@@ -1,0 +1,186 @@
+//! What friction takes of what docks without it, and what sticks first.
+//!
+//! ```text
+//!   100 % ──●──●           every point is a share of the poses that dock without friction: those that dock still. Poses that dock only
+//!    95 % ┄┄┄┄┄╲┄          with friction are in the table and not in the curve, on which the critical friction is read off.
+//!           ┊   ●──●
+//!           critical
+//! ```
+
+use super::Picture;
+use super::draw::axis::short;
+use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
+use super::draw::colour::{CURVES, Rgb, hex};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
+use crate::{FrictionReport, ShareReport, StickingReport};
+
+/// Colour of the static test.
+const STATIC: Rgb = [0x5f, 0x6b, 0x7a];
+/// Pairs of features that are drawn.
+const SHOWN: usize = 5;
+
+/// Draws which share of what docks without friction docks still, and beside it the features on which the first poses stick.
+pub fn friction(report: &FrictionReport) -> Picture {
+    let (left, top, size) = (78.0, 112.0, [400.0, 300.0]);
+    let bars = Rect { x: 540.0, y: top, w: 380.0, h: size[1] };
+    let mut svg = Svg::new(bars.x + bars.w + 30.0, top + size[1] + 56.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
+    let marked = report.kept.iter().find(|kept| kept.share == MARKED);
+    let story = marked.map_or_else(String::new, |kept| {
+        let [lo, hi] = kept.ci95.map(|friction| report.up_to(friction));
+        let share = short(100.0 * kept.share);
+        if kept.is_top {
+            format!(
+                "{share} % of what docks without friction docks beyond {}, the largest that was tried",
+                short(kept.friction)
+            )
+        } else {
+            let friction = kept.friction;
+            format!("{share} % of what docks without friction docks up to a friction of {friction:.3} ({lo} … {hi})")
+        }
+    });
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
+    let (lines, words) = (lines(report), format!("{} %", short(100.0 * MARKED)));
+    Chart {
+        rect: Rect { x: left, y: top, w: size[0], h: size[1] },
+        x_label: "coefficient of friction",
+        spacing: Spacing::Even,
+        y_label: "of what docks without friction [%]",
+        lines: &lines,
+        mark: marked.filter(|kept| !kept.is_top).map(|kept| Mark {
+            x: kept.friction,
+            y: Some(100.0 * kept.share),
+            words: &words,
+        }),
+    }
+    .draw(&mut svg);
+    legend(&mut svg, &lines, [left, top - 18.0]);
+    sticking(&mut svg, report, bars);
+    Picture::of(svg)
+}
+
+/// The share of what docks without friction whose critical friction is marked.
+const MARKED: f64 = 0.95;
+
+/// The poses that dock without friction and still dock, and those that the static test says do, as shares of the first.
+fn lines(report: &FrictionReport) -> Vec<Line> {
+    let percent = |share: f64| 100.0 * share;
+    let base = report.curve.first().map_or(0, |rung| rung.aligned.count);
+    let rungs = || report.curve.iter().filter(|_| base > 0);
+    let still = rungs().map(|rung| {
+        let kept = ShareReport::of(base - rung.lost, base);
+        Point { x: rung.friction, y: percent(kept.share), interval: Some(kept.ci95.map(percent)) }
+    });
+    let by_statics = rungs().map(|rung| Point {
+        x: rung.friction,
+        y: percent(rung.static_docks as f64 / base as f64),
+        interval: None,
+    });
+    vec![
+        Line { name: "static test".to_owned(), colour: STATIC, points: by_statics.collect() },
+        Line { name: "docks still, followed".to_owned(), colour: CURVES[0], points: still.collect() },
+    ]
+}
+
+/// A bar for each pair of features, and its words above.
+fn sticking(svg: &mut Svg, report: &FrictionReport, rect: Rect) {
+    let first = &report.sticks_first;
+    if first.features.is_empty() {
+        return;
+    }
+    let head = format!("what sticks first, in {} poses", first.poses);
+    svg.text([rect.x, rect.y - 18.0], LABEL, Anchor::Start, INK, &head);
+    let each = rect.h / SHOWN as f64;
+    for (k, pair) in first.features.iter().take(SHOWN).enumerate() {
+        let y = rect.y + each * k as f64;
+        for (line, words) in words(pair).iter().enumerate() {
+            svg.text(
+                [rect.x, y + 12.0 + 14.0 * line as f64],
+                TICK,
+                Anchor::Start,
+                SOFT,
+                &fitting(words, rect.w),
+            );
+        }
+        let bar = Rect { x: rect.x, y: y + 33.0, w: (pair.share * (rect.w - 50.0)).max(0.5), h: 12.0 };
+        let colour = hex(CURVES[0]);
+        svg.rect(bar, &format!(r#"fill="{colour}" fill-opacity="0.75" stroke="none""#));
+        let percent = format!("{} %", short(100.0 * pair.share));
+        svg.text([bar.x + bar.w + 6.0, bar.y + 10.0], LABEL, Anchor::Start, INK, &percent);
+    }
+}
+
+fn words(pair: &StickingReport) -> [String; 2] {
+    [format!("moving half: {}", pair.moving.name), format!("on the fixed half's {}", pair.fixed.name)]
+}
+
+/// As much of the words as fits.
+fn fitting(words: &str, width: f64) -> String {
+    if width_of(words, TICK) <= width {
+        return words.to_owned();
+    }
+    let mut short: String = words.to_owned();
+    while short.pop().is_some() && width_of(&short, TICK) + width_of("…", TICK) > width {}
+    short + "…"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::schema::testing::design;
+    use catchment_core::exec::Exec;
+    use catchment_core::pose::Dof;
+    use catchment_core::problem::Problem;
+    use catchment_study::friction::{Settings, run};
+
+    /// The curve was that of all poses that dock, those among them that dock only with friction, under a mark that counts the lost alone.
+    fn the_curve_is_that_of_the_mark(report: &FrictionReport, picture: &Picture) {
+        let document = resvg::usvg::roxmltree::Document::parse(picture.svg()).unwrap();
+        let number = |node: &resvg::usvg::roxmltree::Node, name| -> f64 {
+            node.attribute(name).unwrap().parse().unwrap()
+        };
+        let colour = hex(CURVES[0]);
+        let dots = document
+            .descendants()
+            .filter(|node| node.has_tag_name("circle") && node.attribute("fill") == Some(colour.as_str()));
+        let heights: Vec<f64> = dots.map(|node| number(&node, "cy")).collect();
+        let base = report.curve[0].aligned.count as f64;
+        let kept: Vec<f64> = report.curve.iter().map(|rung| (base - rung.lost as f64) / base).collect();
+        assert_eq!(heights.len(), kept.len());
+        let last = kept.len() - 1;
+        assert!(kept[last] < 0.95 && kept[0] == 1.0, "{kept:?}");
+        let per_share = (heights[last] - heights[0]) / (kept[0] - kept[last]);
+        for (height, share) in heights.iter().zip(&kept) {
+            assert!((height - heights[0] - (1.0 - share) * per_share).abs() < 0.02, "{heights:?} {kept:?}");
+        }
+        // The dashed level stands where the curve has 95 %.
+        let dashed = document.descendants().filter(|node| node.attribute("stroke-dasharray").is_some());
+        let level: Vec<f64> = dashed
+            .filter(|node| number(node, "y1") == number(node, "y2"))
+            .map(|node| number(&node, "y1") - heights[0])
+            .collect();
+        assert!(level.len() == 1 && (level[0] - 0.05 * per_share).abs() < 0.02, "{level:?} {per_share}");
+    }
+
+    #[test]
+    fn the_curve_and_what_sticks_are_drawn() {
+        let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
+        let settings = Settings { motions: Some(200), ..Settings::default() };
+        let found = run(&problem, &settings, &Exec::new()).unwrap();
+        let mut report = FrictionReport::new(problem.design(), &found, Vec::new(), None);
+        let picture = friction(&report);
+        look("friction", &picture);
+        assert!(picture.svg().contains("what sticks first") && picture.svg().contains("static test"));
+        assert!(!picture.svg().contains("NaN"));
+        the_curve_is_that_of_the_mark(&report, &picture);
+        let told = report.table();
+        assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+        assert!(told.contains("from a friction of"), "{told}");
+        // An interval that ends at the largest friction that was tried is open there.
+        for kept in &mut report.kept {
+            (kept.friction, kept.ci95, kept.is_top) = (0.276, [0.044, 0.5], false);
+        }
+        assert!(friction(&report).svg().contains("a friction of 0.276 (0.044 … beyond 0.5)"));
+    }
+}

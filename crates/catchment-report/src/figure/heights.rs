@@ -1,0 +1,121 @@
+//! The height of first contact over two errors, with contours and the border of the accepted set.
+
+use super::draw::axis::{Frame, Units};
+use super::draw::colour::{self, Rgb};
+use super::draw::svg::{Anchor, JOIN, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::map::{self, Map};
+use super::{FigureError, Picture, headline};
+use crate::Report;
+use catchment_core::acceptance::Acceptance;
+use catchment_core::pose::{Dof, PoseError};
+
+/// Draws the heights over a pair of errors, the others at the values of `at`, under the numbers of the `report`;
+/// `acceptance` has the border, over the grid of the run or a finer one of the pair alone. `height` gives z of the COR at first
+/// contact, in D, for a cell of the grid; not finite where the halves pass each other by.
+///
+/// # Errors
+/// A pair that the grid does not have, listed poses instead of a grid, no contact anywhere in the slice.
+pub fn heights(
+    report: &Report,
+    acceptance: &Acceptance,
+    height: &dyn Fn(usize) -> f64,
+    pair: [Dof; 2],
+    at: &PoseError,
+) -> Result<Picture, FigureError> {
+    let (design, story) = (&report.design, headline(report));
+    let units = Units::of(design);
+    let map = Map::of(acceptance, pair, at)?;
+    let side = 400.0;
+    let (width, total) = ((width_of(&story, LABEL) + 48.0).max(580.0), 578.0);
+    let mut svg = Svg::new(width, total);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    let fixed = map.fixed(&units);
+    let place = if fixed.is_empty() { String::new() } else { format!(" at {fixed}") };
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
+    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &format!("height of first contact{place}"));
+    let rect = Rect { x: 70.0, y: 92.0, w: side, h: side };
+    panel(&mut svg, &map, rect, &units, height)?;
+    let y = total - 22.0;
+    svg.line([70.0, y - 4.0], [94.0, y - 4.0], r#"stroke="white" stroke-width="4""#);
+    svg.line([70.0, y - 4.0], [94.0, y - 4.0], r#"stroke="black" stroke-width="1.8""#);
+    svg.text([101.0, y], LABEL, Anchor::Start, super::draw::svg::INK, "border of the accepted set");
+    Ok(Picture::of(svg))
+}
+
+/// The map itself with its colour bar, which needs about 60 to the right.
+pub(super) fn panel(
+    svg: &mut Svg,
+    map: &Map,
+    rect: Rect,
+    units: &Units,
+    height: &dyn Fn(usize) -> f64,
+) -> Result<(), FigureError> {
+    let field: Vec<f64> = map.slice.cells.iter().map(|i| height(*i) * units.lengths()).collect();
+    let finite = || field.iter().copied().filter(|h| h.is_finite());
+    let (lo, hi) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), h| (lo.min(h), hi.max(h)));
+    if lo > hi {
+        return Err(FigureError::Empty { what: "the halves touch nowhere in this slice" });
+    }
+    let span = (hi - lo).max(1e-9 * units.lengths());
+    let paint = |h: &f64| -> Rgb {
+        if h.is_finite() { colour::sequential((h - lo) / span) } else { colour::NOTHING }
+    };
+    let colours: Vec<Rgb> = field.iter().map(paint).collect();
+    let frame: Frame = map.frame(rect, units);
+    map.paint(svg, &frame, &colours)?;
+    let shape = [map.slice.axes[0].cells, map.slice.axes[1].cells];
+    let scale = units.length("z", lo / units.lengths(), (lo + span) / units.lengths());
+    svg.begin_clip(rect);
+    for level in scale.ticks(14) {
+        let style = r##"fill="none" stroke="#ffffff" stroke-opacity="0.55" stroke-width="0.8""##;
+        svg.path(&map::contour(&frame, shape, &field, level), style);
+    }
+    let border = map.border(&frame);
+    svg.path(&border, &format!(r##"fill="none" stroke="#ffffff" stroke-width="4" {JOIN}"##));
+    svg.path(&border, &format!(r##"fill="none" stroke="#000000" stroke-width="1.8" {JOIN}"##));
+    svg.end();
+    frame.draw(svg);
+    let label = scale.label.clone();
+    map::colour_bar(svg, &frame, scale)?;
+    svg.text([rect.x + rect.w + 14.0, rect.y - 8.0], LABEL, Anchor::Start, super::draw::svg::INK, &label);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{look, report_of};
+    use super::*;
+    use crate::schema::testing::{blob, design};
+
+    /// A bowl with a second dip beside it, and no contact in one corner.
+    pub(crate) fn bowl(x: f64, pitch: f64) -> f64 {
+        if x + pitch > 2.0 {
+            return f64::NEG_INFINITY;
+        }
+        (0.5 * x.abs() + 0.3 * (pitch + 0.4 * x).abs()).min(0.25 + (x - 0.8).hypot(pitch - 1.0))
+    }
+
+    #[test]
+    fn a_bowl_has_contours_and_a_border() {
+        let design = design([Dof::X, Dof::Pitch].into_iter().collect());
+        let acceptance = blob(&design, 100);
+        let grid = acceptance.grid().unwrap();
+        let height = |i: usize| bowl(grid.pose(i).x, grid.pose(i).pitch);
+        let pair = [Dof::X, Dof::Pitch];
+        let report = report_of(&design, &acceptance);
+        let picture = heights(&report, &acceptance, &height, pair, &PoseError::default()).unwrap();
+        look("heights", &picture);
+        assert!(picture.svg().contains("z [mm]"));
+        let nothing = heights(&report, &acceptance, &|_| f64::NEG_INFINITY, pair, &PoseError::default());
+        assert!(matches!(nothing, Err(FigureError::Empty { .. })));
+    }
+
+    #[test]
+    fn a_flat_height_is_drawn_too() {
+        let design = design([Dof::X, Dof::Pitch].into_iter().collect());
+        let acceptance = blob(&design, 10);
+        let report = report_of(&design, &acceptance);
+        let pair = [Dof::X, Dof::Pitch];
+        assert!(heights(&report, &acceptance, &|_| 0.25, pair, &PoseError::default()).is_ok());
+    }
+}

@@ -1,0 +1,281 @@
+//! What a half withstands: forces sideways over their direction, torques as bars.
+
+use super::draw::colour::{CURVES, hex};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, TITLE, polyline};
+use super::{FigureError, Picture};
+use crate::text::significant;
+use crate::{HoldReport, WithstoodReport};
+
+/// The middle of the polar chart, and its radius.
+const MIDDLE: [f64; 2] = [250.0, 330.0];
+const RADIUS: f64 = 180.0;
+/// The bars.
+const BARS: Rect = Rect { x: 590.0, y: 150.0, w: 300.0, h: 360.0 };
+/// Rings of the polar chart, at most.
+const RINGS: f64 = 4.0;
+/// What lies beyond so many times the median of what is finite is drawn at the rim, so that the rest can be seen.
+const BEYOND: f64 = 4.0;
+/// Shares of the preload below this are nothing: rounding.
+const NOTHING: f64 = 1e-6;
+
+/// A column of the report: its name, the values over directions and over torques, colour and stroke.
+struct Column {
+    name: &'static str,
+    /// Infinite for any; `None` where it was not asked.
+    of: fn(&Two) -> Option<f64>,
+    colour: usize,
+    dashed: bool,
+}
+
+/// Without friction, and with it.
+type Two = [Option<WithstoodReport>; 2];
+
+const COLUMNS: [Column; 4] = [
+    Column { name: "guided", of: |two| two[0].map(|of| any(of.guided)), colour: 0, dashed: true },
+    Column { name: "free", of: |two| two[0].map(|of| any(of.free)), colour: 0, dashed: false },
+    Column { name: "guided, friction", of: |two| two[1].map(|of| any(of.guided)), colour: 1, dashed: true },
+    Column { name: "free, friction", of: |two| two[1].map(|of| any(of.free)), colour: 1, dashed: false },
+];
+
+/// A number for what is withstood.
+fn any(value: Option<f64>) -> f64 {
+    value.unwrap_or(f64::INFINITY)
+}
+
+/// Draws what a half withstands over the direction of the force, and torques beside it.
+///
+/// # Errors
+/// If nothing that is free can be pushed.
+pub fn hold(report: &HoldReport) -> Result<Picture, FigureError> {
+    if report.sideways.is_empty() && report.torques.is_empty() {
+        return Err(FigureError::Empty { what: "no free error can be pushed" });
+    }
+    let mut svg = Svg::new(BARS.x + BARS.w + 110.0, 580.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
+    let preload = report.preload_n.map_or_else(|| "F".to_owned(), |n| format!("{} N", significant(n)));
+    let friction = report.settings.friction;
+    let with = if friction > 0.0 { format!(", friction {friction}") } else { String::new() };
+    let story = format!("what it withstands where it rests, pressed on by {preload} along −z{with}");
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
+    legend(&mut svg, friction > 0.0);
+    polar(&mut svg, report);
+    bars(&mut svg, report);
+    Ok(Picture::of(svg))
+}
+
+fn style(column: &Column) -> String {
+    let dash = if column.dashed { r#" stroke-dasharray="5 4""# } else { "" };
+    let colour = hex(CURVES[column.colour % CURVES.len()]);
+    format!(r#"fill="none" stroke="{colour}" stroke-width="2"{dash} {JOIN}"#)
+}
+
+fn legend(svg: &mut Svg, rough: bool) {
+    let mut x = 24.0;
+    for column in COLUMNS.iter().take(if rough { 4 } else { 2 }) {
+        svg.line([x, 74.0], [x + 26.0, 74.0], &style(column));
+        svg.text([x + 32.0, 78.0], LABEL - 0.5, Anchor::Start, INK, column.name);
+        x += 150.0;
+    }
+}
+
+/// What is drawn at the rim of a chart: a round number above all that is finite and not far beyond the others.
+fn rim(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.filter(|value| *value > NOTHING && value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let Some(median) = values.get(values.len() / 2) else { return 1.0 };
+    let most = values.iter().copied().filter(|value| *value <= BEYOND * median).fold(0.0, f64::max);
+    let unit = 10f64.powf((most / RINGS).log10().floor());
+    let step = [1.0, 2.0, 2.5, 5.0, 10.0].map(|k| k * unit).into_iter().find(|step| RINGS * step >= most);
+    let step = step.unwrap_or(10.0 * unit);
+    (most / step - NOTHING).ceil() * step
+}
+
+fn polar(svg: &mut Svg, report: &HoldReport) {
+    let [cx, cy] = MIDDLE;
+    let scale = report.preload_n.unwrap_or(1.0);
+    let unit = if report.preload_n.is_some() { "N" } else { "F" };
+    svg.text(
+        [cx, cy - RADIUS - 36.0],
+        LABEL,
+        Anchor::Middle,
+        INK,
+        &format!("sideways forces that it withstands [{unit}]"),
+    );
+    let sides: Vec<(f64, Two)> =
+        report.sideways.iter().map(|side| (side.direction_rad, [side.smooth, side.rough])).collect();
+    if sides.is_empty() {
+        svg.text([cx, cy], LABEL, Anchor::Middle, SOFT, "x and y are locked");
+        return;
+    }
+    let finite = sides.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two)));
+    let rim = rim(finite);
+    let at = |direction: f64, value: f64| {
+        let r = RADIUS * (value / rim).min(1.0);
+        [cx + r * direction.cos(), cy - r * direction.sin()]
+    };
+    let grid = r##"fill="none" stroke="#d5dbe2" stroke-width="1""##;
+    let rings =
+        (1..).map(|k: u32| f64::from(k) * ring(rim)).take_while(|ring| *ring <= rim * (1.0 + NOTHING));
+    for value in rings {
+        svg.circle(MIDDLE, RADIUS * value / rim, grid);
+        let place = [cx + 4.0, cy - RADIUS * value / rim - 3.0];
+        svg.haloed(place, TICK - 1.0, Anchor::Start, SOFT, &significant_short(value * scale));
+    }
+    svg.line([cx - RADIUS, cy], [cx + RADIUS, cy], grid);
+    svg.line([cx, cy - RADIUS], [cx, cy + RADIUS], grid);
+    svg.text([cx + RADIUS + 8.0, cy + 4.0], LABEL, Anchor::Start, INK, "x");
+    svg.text([cx, cy - RADIUS - 10.0], LABEL, Anchor::Middle, INK, "y");
+    let mut beyond = false;
+    for column in &COLUMNS {
+        let values: Vec<(f64, f64)> =
+            sides.iter().filter_map(|(direction, two)| Some((*direction, (column.of)(two)?))).collect();
+        beyond |= values.iter().any(|(_, value)| *value > rim * (1.0 + NOTHING));
+        if sides.len() > 2 {
+            let points = values.iter().map(|(direction, value)| at(*direction, *value));
+            svg.path(&polyline(points, true), &style(column));
+        } else {
+            for (direction, value) in &values {
+                svg.line(MIDDLE, at(*direction, *value), &style(column));
+                svg.circle(at(*direction, *value), 3.5, &style(column));
+            }
+        }
+    }
+    if beyond {
+        svg.text(
+            [cx, cy + RADIUS + 26.0],
+            TICK,
+            Anchor::Middle,
+            SOFT,
+            "drawn at the rim: more than that, or any",
+        );
+    }
+    weakest(svg, report, at);
+}
+
+/// The weakest direction of what decides: free, with friction where it was asked for.
+fn weakest(svg: &mut Svg, report: &HoldReport, at: impl Fn(f64, f64) -> [f64; 2]) {
+    let found = report.weakest.rough_free.or(report.weakest.smooth_free);
+    let (Some(side), Some(force)) = (found, report.least_force) else { return };
+    let place = at(side.direction_rad, force);
+    svg.circle(place, 5.0, &format!(r##"fill="#ffffff" stroke="{INK}" stroke-width="2""##));
+    let unit = if report.preload_n.is_some() { "N" } else { "F" };
+    let told =
+        if force < NOTHING { "0".to_owned() } else { significant(force * report.preload_n.unwrap_or(1.0)) };
+    let words = format!("○ weakest: {told} {unit} at {:.1}°", side.direction_rad.to_degrees());
+    svg.text([MIDDLE[0], MIDDLE[1] + RADIUS + 46.0], LABEL, Anchor::Middle, INK, &words);
+}
+
+/// Between two rings.
+fn ring(rim: f64) -> f64 {
+    let unit = 10f64.powf((rim / RINGS).log10().floor());
+    let step = [1.0, 2.0, 2.5, 5.0, 10.0]
+        .map(|k| k * unit)
+        .into_iter()
+        .find(|step| RINGS * step >= rim * (1.0 - NOTHING));
+    step.unwrap_or(10.0 * unit)
+}
+
+/// Up to four digits, without zeros at their end.
+fn significant_short(value: f64) -> String {
+    let text = significant(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+fn bars(svg: &mut Svg, report: &HoldReport) {
+    let Rect { x, y, w, h } = BARS;
+    let width = if report.design.unit.is_some() { report.design.width } else { 1.0 };
+    let scale = report.preload_n.unwrap_or(1.0) * width;
+    let force = if report.preload_n.is_some() { "N" } else { "F" };
+    let unit = report.design.unit.map_or("D", |unit| unit.symbol());
+    let head = format!("torques that it withstands [{force} {unit}]");
+    svg.text([x, MIDDLE[1] - RADIUS - 36.0], LABEL, Anchor::Start, INK, &head);
+    if report.torques.is_empty() {
+        svg.text([x, y + 20.0], LABEL, Anchor::Start, SOFT, "rotations are locked");
+        return;
+    }
+    let torques: Vec<(String, Two)> = report
+        .torques
+        .iter()
+        .map(|torque| {
+            let sign = if torque.sign > 0.0 { '+' } else { '−' };
+            (format!("{sign}{}", torque.axis.name()), [torque.smooth, torque.rough])
+        })
+        .collect();
+    let finite = torques.iter().flat_map(|(_, two)| COLUMNS.iter().filter_map(|column| (column.of)(two)));
+    let most = rim(finite);
+    let asked = |column: &&Column| torques.iter().any(|(_, two)| (column.of)(two).is_some());
+    let columns: Vec<&Column> = COLUMNS.iter().filter(asked).collect();
+    let each = (h / torques.len() as f64).min(80.0);
+    let thick = (0.8 * each / columns.len().max(1) as f64).min(14.0);
+    for (k, (name, two)) in torques.iter().enumerate() {
+        let top = y + each * k as f64;
+        svg.text([x - 8.0, top + 0.5 * thick * columns.len() as f64 + 4.0], LABEL, Anchor::End, INK, name);
+        for (j, column) in columns.iter().enumerate() {
+            let Some(value) = (column.of)(two) else { continue };
+            let length = w * (value / most).min(1.0);
+            let colour = hex(CURVES[column.colour % CURVES.len()]);
+            let opacity = if column.dashed { 0.35 } else { 0.85 };
+            let bar = Rect { x, y: top + thick * j as f64, w: length.max(0.5), h: 0.8 * thick };
+            svg.rect(bar, &format!(r#"fill="{colour}" fill-opacity="{opacity}" stroke="none""#));
+            let told = match value {
+                f64::INFINITY => "any".to_owned(),
+                value if value < NOTHING => "0".to_owned(),
+                value => significant(value * scale),
+            };
+            svg.text(
+                [x + length + 6.0, bar.y + 0.8 * thick],
+                TICK.min(thick + 1.0),
+                Anchor::Start,
+                INK,
+                &told,
+            );
+        }
+    }
+    let bottom = y + each * torques.len() as f64;
+    svg.line([x, y - 6.0], [x, bottom], &format!(r#"stroke="{SOFT}" stroke-width="1""#));
+    svg.text(
+        [x, bottom + 18.0],
+        TICK,
+        Anchor::Start,
+        SOFT,
+        "about the centre of rotation; guided in pale colour",
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use catchment_core::design::read;
+    use catchment_core::exec::Exec;
+    use catchment_core::problem::Problem;
+    use catchment_study::hold::{Settings, run};
+    use std::path::Path;
+
+    fn drawn(text: &str, friction: f64, preload: Option<f64>) -> Picture {
+        let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
+        let found = run(&problem, &Settings { friction, ..Settings::default() }, &Exec::new()).unwrap();
+        let report = HoldReport::new(problem.design(), &found, preload, Vec::new(), None);
+        hold(&report).unwrap()
+    }
+
+    #[test]
+    fn forces_and_torques_are_drawn() {
+        let text = "[connector]\nfamily = \"x-face-3d\"\nwidth = 50\nunit = \"mm\"\naspect_ratio = 0.577\n";
+        let picture = drawn(text, 0.0, None);
+        look("hold", &picture);
+        assert!(picture.svg().contains("weakest"));
+        let rough = drawn(text, 0.2, Some(40.0));
+        look("hold-friction", &rough);
+        assert!(rough.svg().contains("[N mm]") && rough.svg().contains("free, friction"));
+        let planar = "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n";
+        look("hold-planar", &drawn(planar, 0.3, None));
+        let locked =
+            "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"pitch\"]\nrotation_length = 1.0\n";
+        assert!(drawn(locked, 0.0, None).svg().contains("x and y are locked"));
+    }
+}

@@ -1,0 +1,270 @@
+//! Jams and rests: each cut through what touches, and in space, with the features that hold it.
+
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::plane::{Patch, Plane};
+use super::section::{Placement, View, describe};
+use super::solid::touching;
+use super::{FigureError, Picture};
+use crate::resting::{Told, words};
+use crate::text::grouped;
+use crate::{ContactReport, JamReport, JamsFound, RestReport, RestsReport};
+use catchment_core::acceptance::Outcome;
+use catchment_core::connector::Connector;
+use catchment_core::design::Design;
+use catchment_core::run::jams::Firmness;
+use glam::{DMat3, DVec3};
+
+/// Jams that are drawn.
+const SHOWN: usize = 6;
+/// How many beside each other.
+const COLUMNS: usize = 2;
+/// A panel, in SVG units.
+/// Lines of words that a panel holds beside the last.
+const MOST_LINES: usize = 3;
+
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 384.0;
+/// Its words above, the section in it, and the view in space beside that.
+const WORDS: f64 = 114.0;
+const SECTION: [f64; 2] = [270.0, 210.0];
+const SPACE: [f64; 2] = [180.0, 190.0];
+/// Above the panels.
+const TOP: f64 = 76.0;
+
+/// What a panel shows.
+struct Panel<'a> {
+    head: String,
+    contacts: &'a [ContactReport],
+    placement: Placement,
+    /// Below what touches and where.
+    tail: Vec<String>,
+}
+
+/// Draws the jams with most of the poses: the halves of `connector` as the design places them.
+///
+/// # Errors
+/// If nothing jams.
+pub fn jams(design: &Design, found: &JamsFound, connector: &Connector) -> Result<Picture, FigureError> {
+    if found.jams.is_empty() {
+        return Err(FigureError::Empty { what: "none of the poses jams" });
+    }
+    let all: Vec<String> = found
+        .outcomes
+        .iter()
+        .filter(|(_, share)| share.count > 0)
+        .map(|(outcome, share)| format!("{} {}", outcome.name(), percent(share.share)))
+        .collect();
+    let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
+    let panels: Vec<Panel<'_>> = found
+        .jams
+        .iter()
+        .take(SHOWN)
+        .enumerate()
+        .map(|(k, jam)| jam_panel(design, found, k + 1, jam))
+        .collect();
+    draw_all(design, connector, &story, &panels)
+}
+
+fn jam_panel<'a>(design: &Design, found: &JamsFound, number: usize, jam: &'a JamReport) -> Panel<'a> {
+    let tail = jam.examined.map(|examined| {
+        let level = match examined.firmness {
+            _ if examined.is_held_by_friction(found.settings.friction) => "held by friction alone",
+            Firmness::Level => "near-level",
+            firmness => firmness.name(),
+        };
+        let lifted = |climb| Told::of(design).lifted(climb);
+        let way = examined
+            .way_out
+            .map_or_else(String::new, |way| format!("; {}, and it gets out", lifted(way.climb_at_most_d)));
+        format!("{level}{way}")
+    });
+    Panel {
+        head: format!(
+            "jam {number}:  {} of jams, {} of the box",
+            percent(jam.of_jams),
+            percent(jam.of_box.share)
+        ),
+        contacts: &jam.contacts,
+        placement: Placement { error: jam.pose, height: jam.height_d },
+        tail: tail.into_iter().collect(),
+    }
+}
+
+/// Draws the rests with most of the poses.
+///
+/// # Errors
+/// If nothing comes to rest.
+pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, FigureError> {
+    if report.rests.is_empty() {
+        return Err(FigureError::Empty { what: "none of the poses comes to rest" });
+    }
+    let off: Vec<String> = report
+        .outcomes
+        .iter()
+        .filter(|(outcome, share)| matches!(outcome, Outcome::Missed | Outcome::Undecided) && share.count > 0)
+        .map(|(outcome, share)| format!(", {} {}", outcome.name(), percent(share.share)))
+        .collect();
+    let story = format!(
+        "where motions rest under a load along −z: {} random poses of the error box{}",
+        grouped(report.motions),
+        off.concat()
+    );
+    let panels: Vec<Panel<'_>> = report
+        .rests
+        .iter()
+        .take(SHOWN)
+        .enumerate()
+        .map(|(k, rest)| rest_panel(report, k + 1, rest))
+        .collect();
+    draw_all(&report.design, connector, &story, &panels)
+}
+
+fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestReport) -> Panel<'a> {
+    let docked = if rest.is_docked() { ", docked" } else { "" };
+    let mut tail = Vec::new();
+    if let Some(examined) = &rest.examined {
+        tail.extend(examined.immobility.map(|held| held.words()));
+        tail.push(report.out(rest));
+    }
+    Panel {
+        head: format!("rest {number}:  basin {} of the box{docked}", percent(rest.of_box.share)),
+        contacts: &rest.contacts,
+        placement: Placement { error: rest.pose, height: rest.height_d },
+        tail,
+    }
+}
+
+fn draw_all(
+    design: &Design,
+    connector: &Connector,
+    story: &str,
+    panels: &[Panel<'_>],
+) -> Result<Picture, FigureError> {
+    let rows = panels.len().div_ceil(COLUMNS);
+    let columns = panels.len().min(COLUMNS);
+    let mut svg = Svg::new(24.0 + columns as f64 * WIDTH, TOP + rows as f64 * HEIGHT + 10.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    for (k, line) in broken(story, columns as f64 * WIDTH - 30.0).iter().enumerate() {
+        svg.text([24.0, 50.0 + 15.0 * k as f64], LABEL, Anchor::Start, SOFT, line);
+    }
+    for (k, panel) in panels.iter().enumerate() {
+        let corner = [24.0 + (k % COLUMNS) as f64 * WIDTH, TOP + (k / COLUMNS) as f64 * HEIGHT];
+        draw(&mut svg, corner, design, connector, panel)?;
+    }
+    Ok(Picture::of(svg))
+}
+
+fn draw(
+    svg: &mut Svg,
+    [x, y]: [f64; 2],
+    design: &Design,
+    connector: &Connector,
+    shown: &Panel<'_>,
+) -> Result<(), FigureError> {
+    let placement = shown.placement;
+    svg.bold([x, y + 16.0], LABEL + 1.0, Anchor::Start, &shown.head);
+    let mut lines: Vec<(&str, String)> = Vec::new();
+    for words in words(shown.contacts) {
+        lines.extend(broken(&words, WIDTH - 40.0).into_iter().map(|line| (INK, line)));
+    }
+    let most = MOST_LINES + 1 - shown.tail.len().clamp(1, MOST_LINES);
+    if lines.len() > most {
+        lines.truncate(most);
+        if let Some((_, last)) = lines.last_mut() {
+            last.push_str(" …");
+        }
+    }
+    lines.push((SOFT, describe(design, &placement)));
+    lines.extend(shown.tail.iter().map(|words| (SOFT, words.clone())));
+    for (k, (colour, words)) in lines.iter().enumerate() {
+        svg.text([x, y + 33.0 + 15.0 * k as f64], LABEL - 0.5, Anchor::Start, colour, words);
+    }
+    let placed = placement.of(design);
+    let patches: Vec<Patch> = shown.contacts.iter().map(|contact| patch(contact, placed)).collect();
+    let plane = Plane::showing(design, connector, &placement, &patches);
+    let view = View::along(design, connector, std::slice::from_ref(&placement), plane)?;
+    let rect = Rect { x: x + 52.0, y: y + WORDS, w: SECTION[0], h: SECTION[1] };
+    let frame = view.frame(rect);
+    view.halves(svg, &frame, &placement);
+    svg.begin_clip(frame.rect);
+    view.contacts(svg, &frame, &patches);
+    svg.end();
+    frame.draw(svg);
+    if let Some(words) = view.words() {
+        svg.text([x + 52.0, y + WORDS + SECTION[1] + 48.0], LABEL - 2.0, Anchor::Start, SOFT, &words);
+    }
+    let space = Rect { x: x + SECTION[0] + 70.0, y: y + WORDS, w: SPACE[0], h: SPACE[1] };
+    let points: Vec<DVec3> = patches.into_iter().flat_map(|patch| patch.points).collect();
+    touching(svg, space, design, connector, &placement, &points)
+}
+
+fn patch(contact: &ContactReport, placed: (DMat3, DVec3)) -> Patch {
+    let points = contact.points_d.iter().copied().map(DVec3::from_array).collect();
+    Patch::new(points, DVec3::from_array(contact.normal), placed)
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// Words in lines no wider than this, in SVG units.
+fn broken(words: &str, width: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in words.split_whitespace() {
+        let last = lines.len() - 1;
+        let longer = if lines[last].is_empty() { word.to_owned() } else { format!("{} {word}", lines[last]) };
+        if width_of(&longer, LABEL - 0.5) > width && !lines[last].is_empty() {
+            lines.push(word.to_owned());
+        } else {
+            lines[last] = longer;
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use catchment_core::design::read;
+    use catchment_core::exec::Exec;
+    use catchment_core::problem::Problem;
+    use catchment_core::run::jams::{Settings, run};
+    use std::path::Path;
+
+    fn drawn(text: &str) -> Result<Picture, FigureError> {
+        let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
+        let found =
+            run(&problem, &Settings { motions: Some(400), ..Settings::default() }, &Exec::new()).unwrap();
+        jams(problem.design(), &JamsFound::new(problem.design(), &found), problem.connector())
+    }
+
+    #[test]
+    fn every_jam_is_drawn_with_what_touches() {
+        let text = "[connector]\nfamily = \"v-face\"\nwidth = 50\nunit = \"mm\"\n[alignment]\nrotation_length = 1.0\n";
+        let picture = drawn(text).unwrap();
+        look("jams", &picture);
+        assert!(picture.svg().contains("of the fixed one"));
+        let text = "[connector]\nfamily = \"pyramid\"\nwidth = 50\nunit = \"mm\"\naspect_ratio = 0.5\n";
+        look("jams-pyramid", &drawn(text).unwrap());
+    }
+
+    #[test]
+    fn every_rest_is_drawn() {
+        use catchment_core::run::rests;
+        let text = "[connector]\nfamily = \"v-face\"\nwidth = 50\nunit = \"mm\"\n[alignment]\nrotation_length = 1.0\n";
+        let problem = Problem::of(read(text, Path::new("")).unwrap().design).unwrap();
+        let settings = rests::Settings { motions: Some(400), ..rests::Settings::default() };
+        let found = rests::run(&problem, &settings, &Exec::new()).unwrap();
+        let report = RestsReport::new(problem.design(), &found, Vec::new(), None);
+        let picture = super::rests(&report, problem.connector()).unwrap();
+        look("rests", &picture);
+        assert!(picture.svg().contains("immobile to first order"));
+    }
+
+    #[test]
+    fn where_nothing_jams_there_is_nothing_to_draw() {
+        let text = "[connector]\nfamily = \"pyramid\"\n[alignment]\nfree = [\"x\", \"y\"]\n[errors]\nx = 0.1\ny = 0.1\n";
+        assert!(matches!(drawn(text), Err(FigureError::Empty { .. })));
+    }
+}

@@ -1,0 +1,344 @@
+//! Maps over two errors: what slices, height maps and the overview share.
+
+use super::draw::axis::{Frame, Units, short};
+use super::draw::colour::{self, Rgb, hex};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TICK, polyline, width_of};
+use super::{FigureError, raster};
+use crate::schema::Interval;
+use catchment_core::acceptance::{Acceptance, Outcome};
+use catchment_core::landscape::Grid;
+use catchment_core::merit::slice::Slice;
+use catchment_core::pose::{Dof, PoseError};
+
+/// Two axes of a grid, where the others are fixed, and the outcomes there.
+pub(super) struct Map {
+    pub(super) slice: Slice,
+    pub(super) outcomes: Vec<Outcome>,
+}
+
+impl Map {
+    pub(super) fn of(acceptance: &Acceptance, pair: [Dof; 2], at: &PoseError) -> Result<Self, FigureError> {
+        let grid = acceptance.grid().ok_or(catchment_core::merit::MeritError::NotAGrid)?;
+        let slice = Slice::of(grid, &pair, at)?;
+        let outcomes = slice.pick(&acceptance.outcomes);
+        Ok(Self { slice, outcomes })
+    }
+
+    /// The same map as a part of `whole`, which may have more errors: those are fixed at zero.
+    pub(super) fn within(mut self, whole: &Acceptance, pair: [Dof; 2]) -> Result<Self, FigureError> {
+        let grid = whole.grid().ok_or(catchment_core::merit::MeritError::NotAGrid)?;
+        let beside = |dof: Dof| !pair.contains(&dof) && self.slice.at.iter().all(|(d, _)| *d != dof);
+        let more: Vec<(Dof, f64)> =
+            grid.axes.iter().filter(|a| beside(a.dof)).map(|a| (a.dof, 0.0)).collect();
+        self.slice.at.extend(more);
+        Ok(self)
+    }
+
+    pub(super) fn frame(&self, rect: Rect, units: &Units) -> Frame {
+        Frame { rect, x: units.axis(&self.slice.axes[0]), y: units.axis(&self.slice.axes[1]) }
+    }
+
+    /// The fixed errors in words; empty if there are none.
+    pub(super) fn fixed(&self, units: &Units) -> String {
+        let values: Vec<String> = self.slice.at.iter().map(|(dof, v)| units.value(*dof, *v)).collect();
+        values.join(", ")
+    }
+
+    /// What it shows, and where it lies among the errors that are fixed, in at most this width: `…, slice through zero`, `…, slice at yaw = 1.5°`.
+    pub(super) fn heading(&self, shows: &str, units: &Units, width: f64) -> String {
+        if self.slice.at.is_empty() {
+            return shows.to_owned();
+        }
+        if self.is_central() {
+            return format!("{shows}, slice through zero");
+        }
+        let exact = format!("{shows}, slice at {}", self.fixed(units));
+        if width_of(&exact, LABEL) < width { exact } else { format!("{shows}, slice beside zero") }
+    }
+
+    /// Whether every fixed error is zero: cells of an even grid are centred beside it.
+    pub(super) fn is_central(&self) -> bool {
+        self.slice.at.iter().all(|(_, value)| value.abs() < 1e-9)
+    }
+
+    /// The share of its cells with an outcome.
+    pub(super) fn share(&self, outcome: Outcome) -> f64 {
+        let count = self.outcomes.iter().filter(|found| **found == outcome).count();
+        count as f64 / self.outcomes.len().max(1) as f64
+    }
+
+    /// One pixel per cell, first axis to the right, second upwards.
+    pub(super) fn paint(&self, svg: &mut Svg, frame: &Frame, colours: &[Rgb]) -> Result<(), FigureError> {
+        let [width, height] = [self.slice.axes[0].cells, self.slice.axes[1].cells];
+        svg.image(frame.rect, &raster::cells(width, height, colours)?, true);
+        Ok(())
+    }
+
+    /// The border of the accepted set: along cell borders, runs joined.
+    pub(super) fn border(&self, frame: &Frame) -> String {
+        let [width, height] = [self.slice.axes[0].cells, self.slice.axes[1].cells];
+        let accepted = |i: usize, j: usize| self.outcomes[i + j * width] == Outcome::Aligned;
+        let place = |i: usize, j: usize| {
+            let r = frame.rect;
+            [r.x + r.w * i as f64 / width as f64, r.y + r.h * (1.0 - j as f64 / height as f64)]
+        };
+        let mut data = String::new();
+        for i in 1..width {
+            for (from, to) in runs(height, |j| accepted(i - 1, j) != accepted(i, j)) {
+                data += &polyline([place(i, from), place(i, to)], false);
+            }
+        }
+        for j in 1..height {
+            for (from, to) in runs(width, |i| accepted(i, j - 1) != accepted(i, j)) {
+                data += &polyline([place(from, j), place(to, j)], false);
+            }
+        }
+        data
+    }
+}
+
+/// The maximal runs `from..to` of 0..n where `holds`.
+fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+    let mut found: Vec<(usize, usize)> = Vec::new();
+    for k in (0..n).filter(|k| holds(*k)) {
+        match found.last_mut() {
+            Some((_, to)) if *to == k => *to = k + 1,
+            _ => found.push((k, k + 1)),
+        }
+    }
+    found
+}
+
+/// Paints outcomes, border, zero lines, the ONAA cube (nothing where it has no bounds), and the axes.
+pub(super) fn outcomes(
+    svg: &mut Svg,
+    map: &Map,
+    frame: &Frame,
+    units: &Units,
+    onaa: &[Interval],
+) -> Result<(), FigureError> {
+    inside(svg, map, frame, units, onaa)?;
+    frame.draw(svg);
+    Ok(())
+}
+
+/// The same without the axes.
+pub(super) fn inside(
+    svg: &mut Svg,
+    map: &Map,
+    frame: &Frame,
+    units: &Units,
+    onaa: &[Interval],
+) -> Result<(), FigureError> {
+    let colours: Vec<Rgb> = map.outcomes.iter().map(|o| colour::outcome(*o)).collect();
+    map.paint(svg, frame, &colours)?;
+    zero_lines(svg, frame);
+    svg.path(&map.border(frame), &format!(r##"fill="none" stroke="#123a5c" stroke-width="1.6" {JOIN}"##));
+    cube(svg, map, frame, units, onaa);
+    Ok(())
+}
+
+/// Thin lines through zero.
+pub(super) fn zero_lines(svg: &mut Svg, frame: &Frame) {
+    let r = frame.rect;
+    let style = r##"stroke="#ffffff" stroke-opacity="0.75" stroke-width="0.9""##;
+    if frame.x.lo < 0.0 && frame.x.hi > 0.0 {
+        svg.line([frame.px(0.0), r.y], [frame.px(0.0), r.y + r.h], style);
+    }
+    if frame.y.lo < 0.0 && frame.y.hi > 0.0 {
+        svg.line([r.x, frame.py(0.0)], [r.x + r.w, frame.py(0.0)], style);
+    }
+}
+
+/// The cube's shadow on the two axes; dashed where the slice does not cut it.
+fn cube(svg: &mut Svg, map: &Map, frame: &Frame, units: &Units, onaa: &[Interval]) {
+    let range = |dof: Dof| onaa.iter().find(|i| i.axis == dof).map(|i| (i.lo, i.hi));
+    let [a, b] = [map.slice.axes[0].dof, map.slice.axes[1].dof];
+    let (Some((x0, x1)), Some((y0, y1))) = (range(a), range(b)) else { return };
+    let cuts = map.slice.at.iter().all(|(dof, v)| range(*dof).is_none_or(|(lo, hi)| (lo..=hi).contains(v)));
+    let [left, top] = frame.at([x0 * units.factor(a), y1 * units.factor(b)]);
+    let [right, bottom] = frame.at([x1 * units.factor(a), y0 * units.factor(b)]);
+    let dash = if cuts { "" } else { r#" stroke-dasharray="5 3""# };
+    let rect = Rect { x: left, y: top, w: right - left, h: bottom - top };
+    svg.rect(
+        rect,
+        &format!(r##"fill="#ffffff" fill-opacity="0.16" stroke="#ffffff" stroke-width="3.6"{dash}"##),
+    );
+    svg.rect(rect, &format!(r#"fill="none" stroke="{INK}" stroke-width="1.7"{dash}"#));
+}
+
+/// The outcomes and the cube that maps show, in words from left to right.
+pub(super) struct Legend {
+    /// What the shares are of; empty where there are none.
+    of: &'static str,
+    /// A fill (none for the cube) and the words.
+    entries: Vec<(Option<Rgb>, String)>,
+}
+
+impl Legend {
+    /// Of a single map, with the share that each outcome has of what it shows.
+    pub(super) fn of(map: &Map, onaa: bool) -> Self {
+        let of = if map.slice.at.is_empty() { "of the error box:" } else { "of this slice:" };
+        Self::new(of, std::slice::from_ref(map), onaa, |outcome| {
+            format!("{} {} %", outcome.name(), short(100.0 * map.share(outcome)))
+        })
+    }
+
+    /// Of several maps, each of which has its own shares.
+    pub(super) fn of_all(maps: &[Map], onaa: bool) -> Self {
+        Self::new("", maps, onaa, |outcome| outcome.name().to_owned())
+    }
+
+    fn new(of: &'static str, maps: &[Map], onaa: bool, words: impl Fn(Outcome) -> String) -> Self {
+        let occurs = |outcome: &Outcome| maps.iter().any(|map| map.outcomes.contains(outcome));
+        let mut entries: Vec<(Option<Rgb>, String)> = Outcome::ALL
+            .into_iter()
+            .filter(occurs)
+            .map(|outcome| (Some(colour::outcome(outcome)), words(outcome)))
+            .collect();
+        if onaa {
+            entries.push((None, "largest cube (ONAA)".to_owned()));
+        }
+        Self { of, entries }
+    }
+
+    fn indent(&self) -> f64 {
+        if self.of.is_empty() { 0.0 } else { width_of(self.of, LABEL) + 0.5 * BETWEEN }
+    }
+
+    /// Its width.
+    pub(super) fn width(&self) -> f64 {
+        let entry = |(_, words): &(Option<Rgb>, String)| SWATCH + width_of(words, LABEL) + BETWEEN;
+        self.indent() + self.entries.iter().map(entry).sum::<f64>() - BETWEEN
+    }
+
+    /// Draws it.
+    pub(super) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2]) {
+        svg.text([x, y + 0.5], LABEL, Anchor::Start, SOFT, self.of);
+        let mut place = x + self.indent();
+        for (fill, words) in &self.entries {
+            let swatch = Rect { x: place, y: y - 10.0, w: 13.0, h: 13.0 };
+            let style = fill.map_or_else(
+                || format!(r#"fill="none" stroke="{INK}" stroke-width="1.7""#),
+                |fill| {
+                    let fill = hex(fill);
+                    format!(r#"fill="{fill}" stroke="{INK}" stroke-opacity="0.35" stroke-width="0.7""#)
+                },
+            );
+            svg.rect(swatch, &style);
+            svg.text([place + SWATCH, y + 0.5], LABEL, Anchor::Start, INK, words);
+            place += SWATCH + width_of(words, LABEL) + BETWEEN;
+        }
+    }
+}
+
+/// From a swatch to its words, and from words to the next swatch.
+const SWATCH: f64 = 19.0;
+const BETWEEN: f64 = 22.0;
+
+/// A colour bar with ticks, to the right of a map.
+pub(super) fn colour_bar(
+    svg: &mut Svg,
+    map: &Frame,
+    scale: super::draw::axis::Scale,
+) -> Result<(), FigureError> {
+    const STEPS: usize = 128;
+    let rect = Rect { x: map.rect.x + map.rect.w + 14.0, y: map.rect.y, w: 12.0, h: map.rect.h };
+    let colours: Vec<Rgb> = (0..STEPS).map(|k| colour::sequential(k as f64 / (STEPS - 1) as f64)).collect();
+    svg.image(rect, &raster::cells(1, STEPS, &colours)?, false);
+    svg.rect(rect, &format!(r#"fill="none" stroke="{INK}" stroke-opacity="0.5" stroke-width="0.8""#));
+    let frame = Frame { rect, x: scale.clone(), y: scale };
+    for z in frame.y.ticks((rect.h / 42.0) as usize) {
+        let y = frame.py(z);
+        svg.line([rect.x + rect.w, y], [rect.x + rect.w + 4.0, y], r#"stroke="black" stroke-width="0.7""#);
+        svg.text(
+            [rect.x + rect.w + 7.0, y + 3.8],
+            TICK,
+            Anchor::Start,
+            SOFT,
+            &super::draw::axis::tick_label(z),
+        );
+    }
+    Ok(())
+}
+
+/// Path data of the lines where a field over cell centres takes `level`: marching squares, straight in each square.
+/// Squares with a corner that is not finite are left out.
+pub(super) fn contour(frame: &Frame, [width, height]: [usize; 2], field: &[f64], level: f64) -> String {
+    let at = |i: usize, j: usize| field[i + j * width];
+    let place = |i: f64, j: f64| {
+        let r = frame.rect;
+        [r.x + r.w * (i + 0.5) / width as f64, r.y + r.h * (1.0 - (j + 0.5) / height as f64)]
+    };
+    let mut data = String::new();
+    for j in 1..height {
+        for i in 1..width {
+            let corners = [(i - 1, j - 1), (i, j - 1), (i, j), (i - 1, j)];
+            let values = corners.map(|(i, j)| at(i, j));
+            if values.iter().any(|v| !v.is_finite()) {
+                continue;
+            }
+            let mut crossings = Vec::with_capacity(4);
+            for k in 0..4 {
+                let (a, b) = (values[k], values[(k + 1) % 4]);
+                if (a < level) != (b < level) {
+                    let t = (level - a) / (b - a);
+                    let ((i0, j0), (i1, j1)) = (corners[k], corners[(k + 1) % 4]);
+                    let between = |p: usize, q: usize| p as f64 + t * (q as f64 - p as f64);
+                    crossings.push(place(between(i0, i1), between(j0, j1)));
+                }
+            }
+            for ends in crossings.chunks_exact(2) {
+                data += &polyline(ends.iter().copied(), false);
+            }
+        }
+    }
+    data
+}
+
+/// Every pair of axes, or those asked for; an error if there is none.
+pub(super) fn pairs_or_all(grid: &Grid, pairs: &[[Dof; 2]]) -> Result<Vec<[Dof; 2]>, FigureError> {
+    let all = if pairs.is_empty() { catchment_core::merit::slice::pairs(grid) } else { pairs.to_vec() };
+    if all.is_empty() {
+        return Err(FigureError::Empty { what: "a map needs two free errors" });
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use catchment_core::landscape::GridAxis;
+
+    fn map(outcomes: Vec<Outcome>, width: usize) -> Map {
+        let cells = outcomes.len() / width;
+        let axes = vec![
+            GridAxis { dof: Dof::X, lo: 0.0, hi: 1.0, cells: width },
+            GridAxis { dof: Dof::Y, lo: 0.0, hi: 1.0, cells },
+        ];
+        Map { slice: Slice { axes, at: Vec::new(), cells: (0..outcomes.len()).collect() }, outcomes }
+    }
+
+    fn frame(map: &Map, side: f64) -> Frame {
+        let units = Units::of(&crate::schema::testing::design(catchment_core::pose::DofSet::ALL));
+        map.frame(Rect { x: 0.0, y: 0.0, w: side, h: side }, &units)
+    }
+
+    #[test]
+    fn the_border_runs_between_accepted_and_rejected_cells() {
+        // The lower left quarter of a 4 × 4 map: one joined run up, one to the right; y grows upwards.
+        let accepted = |k: usize| if k % 4 < 2 && k < 8 { Outcome::Aligned } else { Outcome::Missed };
+        let map = map((0..16).map(accepted).collect(), 4);
+        assert_eq!(map.border(&frame(&map, 4.0)), "M2 4L2 2M0 2L2 2");
+    }
+
+    #[test]
+    fn contours_of_a_plane_are_straight() {
+        // x from 0 to 3 across four columns of width 1: level 1.5 lies midway between centres 1.5 and 2.5.
+        let map = map(vec![Outcome::Missed; 12], 4);
+        let field: Vec<f64> = (0..12).map(|k| f64::from(k % 4)).collect();
+        let data = contour(&frame(&map, 12.0), [4, 3], &field, 1.5);
+        assert_eq!(data.matches('M').count(), 2);
+        assert!(data.split(['M', 'L']).filter(|p| !p.is_empty()).all(|p| p.starts_with("6 ")), "{data}");
+    }
+}

@@ -1,0 +1,47 @@
+//! The pair as it was understood: both halves in space, drawn apart, and cut through where they are mated, or where they first touch
+//! if that is no mated pose.
+
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use super::section::{Placement, View};
+use super::solid::panel;
+use super::{FigureError, Picture};
+use catchment_core::contact::face::misdrawn;
+use catchment_core::contact::mated::CONTACT_TOLERANCE;
+use catchment_core::problem::Problem;
+
+/// How far apart the halves are drawn in space, in D.
+const LIFT: f64 = 0.6;
+
+/// Draws the two halves of a problem: what a person compares with the parts before they believe a number.
+///
+/// # Errors
+/// If there is nothing to draw.
+pub fn pair(problem: &Problem) -> Result<Picture, FigureError> {
+    const TOP: f64 = 86.0;
+    const HEIGHT: f64 = 400.0;
+    let (design, connector) = (problem.design(), problem.connector());
+    let mated = Placement::mated(design, 0.0);
+    // Where the halves do not touch as they should, that is drawn where they do.
+    let height = problem.pair().mated_height();
+    let meets = (height - mated.height).abs() <= CONTACT_TOLERANCE;
+    let is_mated = !height.is_finite() || meets && misdrawn(connector, &design.connector).is_none();
+    let (mated, words) = if is_mated {
+        (mated, "mated, cut along the approach")
+    } else {
+        (Placement { height, ..mated }, "at first contact, cut along the approach")
+    };
+    let view = View::new(design, connector, std::slice::from_ref(&mated))?;
+    let (width, height) = view.fit(460.0, HEIGHT);
+    let space = Rect { x: 24.0, y: TOP, w: 400.0, h: HEIGHT };
+    let cut = Rect { x: space.x + space.w + 84.0, y: TOP, w: width, h: height };
+    let mut svg = Svg::new(cut.x + width.max(280.0) + 40.0, TOP + HEIGHT + 60.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    for (rect, words) in [(space, "drawn apart"), (cut, words)] {
+        svg.text([rect.x, TOP - 18.0], LABEL, Anchor::Start, SOFT, words);
+    }
+    panel(&mut svg, space, design, connector, &Placement::mated(design, LIFT))?;
+    let frame = view.frame(cut);
+    view.halves(&mut svg, &frame, &mated);
+    frame.draw(&mut svg);
+    Ok(Picture::of(svg))
+}

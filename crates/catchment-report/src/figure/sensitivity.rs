@@ -1,0 +1,78 @@
+//! The Sum against ρ, with its interval.
+
+use super::Picture;
+use super::draw::axis::short;
+use super::draw::chart::{Chart, Line, Mark, Point, Spacing};
+use super::draw::colour::CURVES;
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE};
+use catchment_core::design::Design;
+use catchment_study::sensitivity::Sensitivity;
+
+/// Draws the Sum over ρ. The points are of the same random poses: their band moves as a whole, their differences are
+/// known better than it is wide.
+pub fn sensitivity(design: &Design, found: &Sensitivity) -> Picture {
+    let mut svg = Svg::new(620.0, 440.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    let story = format!(
+        "Sum {} … {} {} over ρ, with its 95 % interval, by the same {} random poses",
+        short(found.least.sum),
+        short(found.greatest.sum),
+        found.unit,
+        found.settings.poses.unwrap_or_default()
+    );
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
+    let point = |p: &catchment_study::sensitivity::AtRho| Point {
+        x: p.rotation_length,
+        y: p.sum,
+        interval: Some(p.ci95),
+    };
+    let line =
+        Line { name: String::new(), colour: CURVES[0], points: found.over_rho.iter().map(point).collect() };
+    let chart = Chart {
+        rect: Rect { x: 78.0, y: 76.0, w: 510.0, h: 300.0 },
+        x_label: "ρ, rotation length [D]",
+        spacing: Spacing::Logarithmic,
+        y_label: &format!("Sum [{}]", found.unit),
+        lines: &[line],
+        mark: Some(Mark { x: design.alignment.rotation_length, y: None, words: "this design" }),
+    };
+    chart.draw(&mut svg);
+    Picture::of(svg)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::schema::testing::design;
+    use catchment_core::pose::Dof;
+    use catchment_study::sensitivity::{AtRho, Settings};
+
+    #[test]
+    fn the_sum_is_drawn_over_rho() {
+        let design = design([Dof::X, Dof::Pitch].into_iter().collect());
+        let settings = Settings::default();
+        let at = |rho: f64| {
+            let sum = 2.0 + 0.4 * (-rho).exp();
+            AtRho { rotation_length: rho, sum, ci95: [sum - 0.06, sum + 0.06] }
+        };
+        let over_rho: Vec<AtRho> = settings.rotation_lengths.iter().map(|rho| at(*rho)).collect();
+        let found = Sensitivity {
+            unit: "D·rad".to_owned(),
+            sum: 2.2,
+            sum_ci95: [2.1, 2.3],
+            slopes: Vec::new(),
+            least: over_rho[12],
+            greatest: over_rho[0],
+            spread: 0.2,
+            spread_ci95: [0.1, 0.3],
+            undecided: 0,
+            over_rho,
+            settings,
+        };
+        let picture = sensitivity(&design, &found);
+        look("sensitivity", &picture);
+        assert_eq!(picture.svg().matches("<circle").count(), 13);
+        assert!(picture.svg().contains("this design") && !picture.svg().contains("NaN"));
+    }
+}

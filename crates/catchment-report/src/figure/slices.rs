@@ -1,0 +1,192 @@
+//! Outcomes over pairs of errors, all others fixed.
+
+use super::draw::axis::{Units, short};
+use super::draw::svg::{Anchor, LABEL, Rect, SOFT, Svg, TITLE, width_of};
+use super::map::{self, Legend, Map, pairs_or_all};
+use super::{FigureError, Picture, cube, headline};
+use crate::Report;
+use catchment_core::acceptance::{Acceptance, Outcome};
+use catchment_core::merit::MeritError;
+use catchment_core::pose::{Dof, PoseError};
+
+/// Draws the outcomes over each pair of errors (all pairs if none is named), the others at the values of `at`, with the
+/// border of the accepted set and the largest axis-oriented cube of the `report`, dashed where the slice misses it. Shares are those of the
+/// cells of a slice; the headline has those of the error box. A pair that one of
+/// `finer` has for its only axes is drawn from that one: it must have been computed with the other errors zero.
+///
+/// # Errors
+/// Fewer than two free errors, a pair that the grid does not have, listed poses instead of a grid.
+pub fn slices(
+    report: &Report,
+    acceptance: &Acceptance,
+    finer: &[Acceptance],
+    pairs: &[[Dof; 2]],
+    at: &PoseError,
+) -> Result<Picture, FigureError> {
+    let grid = acceptance.grid().ok_or(MeritError::NotAGrid)?;
+    let pairs = pairs_or_all(grid, pairs)?;
+    let own = |pair: &[Dof; 2]| {
+        finer.iter().find(|a| a.grid().is_some_and(|g| g.axes.iter().map(|a| a.dof).eq(*pair)))
+    };
+    let drawn = |pair: &[Dof; 2]| match own(pair) {
+        Some(slice) => Map::of(slice, *pair, at)?.within(acceptance, *pair),
+        None => Map::of(acceptance, *pair, at),
+    };
+    let maps = pairs.iter().map(drawn).collect::<Result<Vec<Map>, FigureError>>()?;
+    let (design, cube, story) = (&report.design, cube(report), headline(report));
+    let units = Units::of(design);
+    let columns = match maps.len() {
+        1 => 1,
+        2 | 4 => 2,
+        n if n > 6 => 5,
+        _ => 3,
+    };
+    let side = match maps.len() {
+        1 => 400.0,
+        2..=4 => 280.0,
+        _ => 230.0,
+    };
+    let legend = match &maps[..] {
+        [map] => Legend::of(map, !cube.is_empty()),
+        _ => Legend::of_all(&maps, !cube.is_empty()),
+    };
+    let (left, top, cell) = (62.0, 100.0, [side + 76.0, side + 76.0]);
+    let rows = maps.len().div_ceil(columns);
+    let width = (left + columns as f64 * cell[0] - 50.0)
+        .max(legend.width() + 48.0)
+        .max(width_of(&story, LABEL) + 48.0);
+    let height = top + rows as f64 * cell[1] + 20.0;
+    let indent = left + 0.5 * (width - left - 26.0 - (columns as f64 * cell[0] - 76.0)).max(0.0);
+    let mut svg = Svg::new(width, height);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, &story);
+    let (is_sliced, is_central) = (grid.axes.len() > 2, maps.iter().all(Map::is_central));
+    let subtitle = match (is_sliced, is_central) {
+        (false, _) => "area of acceptance",
+        (true, true) => "area of acceptance, slices through zero",
+        (true, false) => "area of acceptance, slices",
+    };
+    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, subtitle);
+    for (k, map) in maps.iter().enumerate() {
+        let (column, row) = (k % columns, k / columns);
+        let rect = Rect {
+            x: if columns == 1 { indent } else { left } + column as f64 * cell[0],
+            y: top + row as f64 * cell[1],
+            w: side,
+            h: side,
+        };
+        map::outcomes(&mut svg, map, &map.frame(rect, &units), &units, cube)?;
+        let mut above = Vec::new();
+        if maps.len() > 1 {
+            let share = short(100.0 * map.share(Outcome::Aligned));
+            above.push(format!("{} {share} % of this slice", Outcome::Aligned.name()));
+        }
+        if !is_central {
+            above.push(map.fixed(&units));
+        }
+        for (line, words) in above.iter().enumerate() {
+            let place = [rect.x + rect.w, rect.y - 6.0 - 13.0 * line as f64];
+            svg.text(place, LABEL - 1.5, Anchor::End, SOFT, words);
+        }
+    }
+    legend.draw(&mut svg, [24.0, height - 20.0]);
+    Ok(Picture::of(svg))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{look, report_of};
+    use super::*;
+    use crate::schema::testing::{blob, design};
+    use catchment_core::design::Design;
+    use catchment_core::pose::DofSet;
+
+    fn drawn(
+        design: &Design,
+        acceptance: &Acceptance,
+        pairs: &[[Dof; 2]],
+        at: &PoseError,
+    ) -> Result<Picture, FigureError> {
+        slices(&report_of(design, acceptance), acceptance, &[], pairs, at)
+    }
+
+    #[test]
+    fn one_pair_three_pairs_and_ten() {
+        for (name, free, cells) in [
+            ("slices-2", [Dof::X, Dof::Pitch].into_iter().collect(), 100),
+            ("slices-3", [Dof::X, Dof::Y, Dof::Yaw].into_iter().collect(), 40),
+            ("slices-5", DofSet::ALL, 12),
+        ] {
+            let design = design(free);
+            let picture = drawn(&design, &blob(&design, cells), &[], &PoseError::default()).unwrap();
+            look(name, &picture);
+            let pairs = free.len() * (free.len() - 1) / 2;
+            assert_eq!(picture.svg().matches("<image").count(), pairs);
+            assert!(picture.svg().contains("x [mm]"));
+        }
+    }
+
+    /// The shares of the whole grid stood under a slice. A ball of radius 0.5 in a cube of side 2 has π/48 of it, and π/16 of its slices.
+    #[test]
+    fn shares_are_those_of_their_slice() {
+        let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
+        let mut ball = blob(&design, 21);
+        let grid = ball.grid().unwrap().clone();
+        for (cell, outcome) in ball.outcomes.iter_mut().enumerate() {
+            let pose = grid.pose(cell);
+            let yaw = pose.yaw / design.alignment.half_range(Dof::Yaw);
+            let x = pose.x / design.alignment.half_range(Dof::X);
+            let y = pose.y / design.alignment.half_range(Dof::Y);
+            let inside = x * x + y * y + yaw * yaw < 0.25;
+            *outcome = if inside { Outcome::Aligned } else { Outcome::Missed };
+        }
+        let zero = PoseError::default();
+        let slice = Map::of(&ball, [Dof::X, Dof::Y], &zero).unwrap();
+        let of_slice = short(100.0 * slice.share(Outcome::Aligned));
+        let of_grid = short(100.0 * ball.counts()[0] as f64 / ball.outcomes.len() as f64);
+        assert_ne!(of_slice, of_grid);
+        let all = drawn(&design, &ball, &[], &zero).unwrap();
+        assert_eq!(all.svg().matches(&format!("aligned {of_slice} % of this slice")).count(), 3);
+        let one = drawn(&design, &ball, &[[Dof::X, Dof::Y]], &zero).unwrap();
+        assert!(
+            one.svg().contains("of this slice:") && one.svg().contains(&format!("aligned {of_slice} %<"))
+        );
+        assert!(!all.svg().contains(&format!("aligned {of_grid} %")));
+        assert!(!one.svg().contains(&format!("aligned {of_grid} %")));
+    }
+
+    /// The middle cells of an even grid are centred half a cell beside zero.
+    #[test]
+    fn an_even_grid_has_no_slice_through_zero() {
+        let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
+        let of = |cells: usize| drawn(&design, &blob(&design, cells), &[], &PoseError::default()).unwrap();
+        assert!(of(11).svg().contains("slices through zero") && !of(10).svg().contains("through zero"));
+        assert!(of(10).svg().contains("yaw = "));
+    }
+
+    #[test]
+    fn a_slice_elsewhere_says_where() {
+        let design = design([Dof::X, Dof::Y, Dof::Yaw].into_iter().collect());
+        let at = PoseError { yaw: 0.5, ..PoseError::default() };
+        let picture = drawn(&design, &blob(&design, 10), &[[Dof::X, Dof::Y]], &at).unwrap();
+        assert!(picture.svg().contains("yaw = 27°"), "the cell of 0.5 rad is centred at 27°");
+    }
+
+    #[test]
+    fn a_design_without_a_unit_is_shown_in_d() {
+        let mut design = design([Dof::X, Dof::Y].into_iter().collect());
+        (design.unit, design.width) = (None, 1.0);
+        let mut blob = blob(&design, 31);
+        blob.outcomes[5] = catchment_core::acceptance::Outcome::Undecided;
+        let picture = drawn(&design, &blob, &[], &PoseError::default()).unwrap();
+        look("slices-dimensionless", &picture);
+        assert!(picture.svg().contains("x [D]") && picture.svg().contains("undecided 0.1 %"));
+    }
+
+    #[test]
+    fn one_error_has_no_map() {
+        let design = design([Dof::X].into_iter().collect());
+        let error = drawn(&design, &blob(&design, 10), &[], &PoseError::default()).unwrap_err();
+        assert!(matches!(error, FigureError::Empty { .. }));
+    }
+}

@@ -1,0 +1,160 @@
+//! The success of robots against the factor of their standard deviations, and what it gains to halve one of them.
+
+use super::Picture;
+use super::draw::axis::{Units, short};
+use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
+use super::draw::colour::{CURVES, Rgb, hex};
+use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE};
+use crate::success::chance;
+use crate::{DockingReport, SuccessesReport};
+
+/// Colour of what is required.
+const REQUIRED: Rgb = [0x5f, 0x6b, 0x7a];
+/// Factors below it say little: nearly all docks.
+const LEAST: f64 = 0.25;
+/// Curves that are drawn: as many as there are colours.
+const MOST: usize = CURVES.len();
+
+/// Draws the success over the factor for each robot (the first five), and beside it the gains of the one that docks most seldom.
+pub fn success(report: &SuccessesReport) -> Picture {
+    let (left, top, size) = (78.0, 112.0, [400.0, 300.0]);
+    let bars = Rect { x: 590.0, y: top, w: 300.0, h: size[1] };
+    let mut svg = Svg::new(bars.x + bars.w + 70.0, top + size[1] + 56.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &report.design.name);
+    let head = &report.success;
+    let [lo, hi] = head.ci95.map(chance);
+    let of = if report.robots.len() > 1 {
+        format!(" of {}, the least of all,", head.robot)
+    } else {
+        String::new()
+    };
+    let story = format!("success{of} {}, from {lo} to {hi} with 95 % confidence", chance(head.probability));
+    svg.text([24.0, 50.0], LABEL, Anchor::Start, SOFT, &story);
+    let lines = lines(report);
+    let rect = Rect { x: left, y: top, w: size[0], h: size[1] };
+    Chart {
+        rect,
+        x_label: "all standard deviations times",
+        spacing: Spacing::Logarithmic,
+        y_label: "success [%]",
+        lines: &lines,
+        mark: Some(Mark { x: 1.0, y: None, words: "as they are" }),
+    }
+    .draw(&mut svg);
+    legend(&mut svg, &lines, [left, top - 34.0]);
+    if let Some(robot) = report.worst() {
+        gains(&mut svg, report, robot, bars);
+    }
+    Picture::of(svg)
+}
+
+fn lines(report: &SuccessesReport) -> Vec<Line> {
+    let percent = |share: f64| 100.0 * share;
+    let of = |(k, robot): (usize, &DockingReport)| Line {
+        name: robot.robot.clone(),
+        colour: CURVES[k % CURVES.len()],
+        points: robot
+            .curve
+            .iter()
+            .filter(|at| at.factor >= LEAST)
+            .map(|at| Point {
+                x: at.factor,
+                y: percent(at.probability),
+                interval: Some(at.ci95.map(percent)),
+            })
+            .collect(),
+    };
+    let mut lines: Vec<Line> = report.robots.iter().take(MOST).enumerate().map(of).collect();
+    let factors = || lines.iter().flat_map(|line| line.points.iter().map(|point| point.x));
+    let ends = [factors().fold(f64::INFINITY, f64::min), factors().fold(0.0, f64::max)];
+    let required = percent(report.settings.required);
+    lines.push(Line {
+        name: format!("{} % required", short(required)),
+        colour: REQUIRED,
+        points: ends.map(|x| Point { x, y: required, interval: None }).to_vec(),
+    });
+    lines
+}
+
+/// A bar for each error, with the interval of its gain; and where all of them are nothing, a line.
+fn gains(svg: &mut Svg, report: &SuccessesReport, robot: &DockingReport, rect: Rect) {
+    let units = Units::of(&report.design);
+    let head = if report.robots.len() > 1 {
+        format!("halved, one by one: {}", robot.robot)
+    } else {
+        "halved, one by one".to_owned()
+    };
+    svg.text([rect.x, rect.y - 16.0], LABEL, Anchor::Start, INK, &head);
+    let (low, high) = robot.improve.iter().fold((0.0f64, 0.0f64), |(low, high), improve| {
+        let [lo, hi] = improve.gain_ci95;
+        (low.min(lo.min(improve.gain)), high.max(hi.max(improve.gain)))
+    });
+    let span = (high - low).max(1e-6);
+    let px = |gain: f64| rect.x + (gain - low) / span * rect.w;
+    let count = robot.improve.len().max(1) as f64;
+    let each = (rect.h / count).min(64.0);
+    for (k, improve) in robot.improve.iter().enumerate() {
+        let top = rect.y + each * k as f64;
+        let middle = top + 0.62 * each;
+        let name = format!(
+            "{} {} {}",
+            improve.axis.name(),
+            short(improve.sigma * units.factor(improve.axis)),
+            if improve.axis.is_rotation() { "deg" } else { units.symbol() }
+        );
+        svg.text([rect.x, top + 0.3 * each], TICK, Anchor::Start, SOFT, &name);
+        let (from, to) = (px(0.0).min(px(improve.gain)), px(0.0).max(px(improve.gain)));
+        let bar = Rect { x: from, y: middle - 0.16 * each, w: (to - from).max(0.5), h: 0.32 * each };
+        let colour = hex(CURVES[improve.axis.index() % CURVES.len()]);
+        svg.rect(bar, &format!(r#"fill="{colour}" fill-opacity="0.75" stroke="none""#));
+        let whisker = format!(r#"stroke="{INK}" stroke-width="1.2""#);
+        let [lo, hi] = improve.gain_ci95.map(px);
+        svg.line([lo, middle], [hi, middle], &whisker);
+        for end in [lo, hi] {
+            svg.line([end, middle - 3.5], [end, middle + 3.5], &whisker);
+        }
+        let points = format!("{:+.2}", 100.0 * improve.gain).replace('-', "−");
+        svg.text([rect.x + rect.w + 10.0, middle + 4.0], LABEL, Anchor::Start, INK, &points);
+    }
+    let bottom = rect.y + each * count;
+    svg.line([px(0.0), rect.y], [px(0.0), bottom], &format!(r#"stroke="{SOFT}" stroke-width="1""#));
+    svg.text(
+        [rect.x, bottom + 22.0],
+        TICK,
+        Anchor::Start,
+        SOFT,
+        "gain of success, in percentage points, with its 95 % interval",
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::look;
+    use super::*;
+    use crate::schema::testing::design;
+    use catchment_core::exec::Exec;
+    use catchment_core::pose::{Dof, PoseError};
+    use catchment_core::poses::{Robot, Spread};
+    use catchment_core::problem::Problem;
+    use catchment_study::success::{Settings, run};
+
+    #[test]
+    fn curves_and_gains_are_drawn() {
+        let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
+        let robot = |name: &str, sigma: f64| Robot {
+            name: name.to_owned(),
+            errors: Spread::normal(PoseError { x: sigma, pitch: 2.0 * sigma, ..PoseError::default() }),
+        };
+        let settings = Settings { motions: Some(400), required: 0.9, ..Settings::default() };
+        let found = run(&problem, &[robot("arm A", 0.15), robot("arm B", 0.1)], &settings, &Exec::new());
+        let report = SuccessesReport::new(problem.design(), &found.unwrap(), Vec::new(), None);
+        let picture = success(&report);
+        look("success", &picture);
+        assert!(picture.svg().contains("90 % required") && picture.svg().contains("arm B"));
+        let head = chance(report.success.probability);
+        assert!(
+            picture.svg().contains(&format!("success of {}, the least of all, {head}", report.success.robot))
+        );
+        assert!(!picture.svg().contains("NaN"));
+    }
+}

@@ -1,0 +1,138 @@
+//! The zero-rotation area of acceptance in theory and by trials, side by side over the error box: a dot for every trial, ringed where it
+//! lies on the wrong side.
+
+use super::super::text::{percent, significant};
+use super::Picture;
+use super::draw::axis::{Frame, Scale, Units};
+use super::draw::colour::{self, hex};
+use super::draw::svg::{Anchor, INK, JOIN, LABEL, Rect, SOFT, Svg, TITLE, polyline, width_of};
+use catchment_core::acceptance::Outcome;
+use catchment_core::design::Design;
+use catchment_core::method::zraa::Zraa;
+use catchment_core::pose::Dof;
+use catchment_study::trials::{Trial, Trials};
+
+/// A trial on the wrong side.
+const WRONG: &str = "#c62f2f";
+
+/// Draws the exact region and the trials of the last round.
+pub fn trials(design: &Design, found: &Trials) -> Picture {
+    let (side, top) = (360.0, 98.0);
+    let planar = found.grid.axes.len() == 2;
+    let rect = |x: f64| Rect { x, y: top, w: side, h: if planar { side } else { 60.0 } };
+    let unit = if planar { "D²" } else { "D" };
+    let round = found.rounds.last();
+    let told = round.map_or_else(String::new, |round| {
+        let [lo, hi] = round.disagreeing_ci95.map(percent);
+        let step = round.timestep.map_or_else(String::new, |step| format!(", time step {step} s"));
+        format!(
+            "{} trials by {}{step}: {} of the box on the wrong side (95 %: {lo} … {hi})",
+            round.trials,
+            found.settings.method.name(),
+            percent(round.disagreeing),
+        )
+    });
+    let width = (78.0 + 2.0 * side + 84.0 + 24.0).max(width_of(&told, LABEL) + 48.0);
+    let mut svg = Svg::new(width, top + rect(0.0).h + 84.0);
+    svg.bold([24.0, 30.0], TITLE, Anchor::Start, &design.name);
+    svg.text([24.0, 49.0], LABEL, Anchor::Start, SOFT, "corrected without rotation, in theory and by trials");
+    svg.text([24.0, 66.0], LABEL, Anchor::Start, SOFT, &told);
+    let heading = |svg: &mut Svg, x: f64, words: &str| {
+        svg.text([x, top - 10.0], LABEL, Anchor::Start, INK, words);
+    };
+    let (left, right) = (rect(78.0), rect(78.0 + side + 84.0));
+    heading(&mut svg, left.x, &format!("exact: {} {unit}", significant(found.exact)));
+    let accepted = round.map_or(0.0, |round| round.accepted);
+    heading(&mut svg, right.x, &format!("trials: {} {unit}", significant(accepted)));
+    region(&mut svg, &frame(design, found, left), design, &found.zraa, true);
+    let of_trials = frame(design, found, right);
+    region(&mut svg, &of_trials, design, &found.zraa, false);
+    dots(&mut svg, &of_trials, design, found);
+    legend(&mut svg, found, [left.x, top + left.h + 62.0]);
+    Picture::of(svg)
+}
+
+fn frame(design: &Design, found: &Trials, rect: Rect) -> Frame {
+    let units = Units::of(design);
+    let axes = &found.grid.axes;
+    let nothing = || Scale::new(String::new(), 0.0, 0.0, false);
+    let scale = |k: usize| axes.get(k).map_or_else(nothing, |axis| units.axis(axis));
+    Frame { rect, x: scale(0), y: scale(1) }
+}
+
+/// The exact region, filled or as an outline of its tiles, and the axes.
+fn region(svg: &mut Svg, frame: &Frame, design: &Design, zraa: &Zraa, filled: bool) {
+    let rect = frame.rect;
+    let factor = Units::of(design).lengths();
+    let fill = hex(colour::outcome(Outcome::Aligned));
+    svg.rect(rect, &format!(r#"fill="{}""#, hex(colour::NOTHING)));
+    svg.begin_clip(rect);
+    let opacity = if filled { 1.0 } else { 0.22 };
+    // Tiles share borders; of half-covering ones a line would show.
+    let line = if filled { format!(r#" stroke="{fill}" stroke-width="0.6""#) } else { String::new() };
+    let style = format!(r#"fill="{fill}" fill-opacity="{opacity}"{line} {JOIN}"#);
+    match zraa {
+        Zraa::Region { polygons, .. } => {
+            let tiles: String = polygons
+                .iter()
+                .map(|tile| polyline(tile.iter().map(|p| frame.at([p.x * factor, p.y * factor])), true))
+                .collect();
+            svg.path(&tiles, &style);
+        }
+        Zraa::Interval { from, to, .. } => {
+            let [from, to] = [from, to].map(|end| frame.px(end * factor));
+            svg.rect(Rect { x: from, w: to - from, ..rect }, &style);
+        }
+    }
+    svg.end();
+    frame.draw(svg);
+}
+
+fn dots(svg: &mut Svg, frame: &Frame, design: &Design, found: &Trials) {
+    let factor = Units::of(design).lengths();
+    let cells = found.grid.axes.iter().map(|axis| axis.cells).max().unwrap_or(1);
+    let radius = (0.3 * frame.rect.w / cells as f64).clamp(0.8, 4.0);
+    let line = frame.rect.y + 0.5 * frame.rect.h;
+    let place = |trial: &Trial| match &found.zraa {
+        Zraa::Region { .. } => frame.at([trial.error.x * factor, trial.error.y * factor]),
+        Zraa::Interval { axis, .. } => {
+            let along = if *axis == Dof::X { trial.error.x } else { trial.error.y };
+            [frame.px(along * factor), line]
+        }
+    };
+    // Wrong ones on top.
+    let mut order: Vec<&Trial> = found.last.iter().collect();
+    order.sort_by_key(|trial| is_wrong(trial));
+    for trial in order {
+        svg.circle(place(trial), radius, &style(trial.outcome, is_wrong(trial)));
+    }
+}
+
+fn is_wrong(trial: &Trial) -> bool {
+    trial.inside != (trial.outcome == Outcome::Aligned)
+}
+
+fn style(outcome: Outcome, wrong: bool) -> String {
+    let fill = match outcome {
+        // On grey ground its own colour would not show.
+        Outcome::Missed => "#ffffff".to_owned(),
+        other => hex(colour::outcome(other)),
+    };
+    let (edge, width) = if wrong { (WRONG, 1.6) } else { (SOFT, 0.5) };
+    format!(r#"fill="{fill}" stroke="{edge}" stroke-width="{width}""#)
+}
+
+fn legend(svg: &mut Svg, found: &Trials, [mut x, y]: [f64; 2]) {
+    let met = |outcome: Outcome| found.last.iter().any(|trial| trial.outcome == outcome);
+    let mut entries: Vec<(String, &str)> = Outcome::ALL
+        .into_iter()
+        .filter(|outcome| met(*outcome))
+        .map(|outcome| (style(outcome, false), outcome.name()))
+        .collect();
+    entries.push((style(Outcome::Missed, true), "on the wrong side of the exact border"));
+    for (style, words) in entries {
+        svg.circle([x + 5.0, y - 4.0], 4.5, &style);
+        svg.text([x + 16.0, y], LABEL, Anchor::Start, INK, words);
+        x += 38.0 + width_of(words, LABEL);
+    }
+}

@@ -1,0 +1,131 @@
+//! What a person or another program receives.
+//!
+//! ```text
+//!                 ┌─ schema   versioned JSON: everything that changes the answer, and the answer
+//!   Acceptance ───┼─ table    the same for eyes, in 80 columns
+//!   merit         ├─ page     the same to click: one offline file (feature `page`)
+//!   study         ├─ figure   PNG and SVG (feature `figure`), with the numbers of the report
+//!                 ├─ zarr     the whole grid, for xarray (feature `zarr`)
+//!                 └─ vtk (ParaView), gltf (viewers), cells (a table): for other tools
+//!                       └──▶  write: complete or not at all
+//!
+//!   check · trajectory · chance · jams · rests · hold · friction · plan · validation · lever · zraa · faces · trials · export · solids · slices ·
+//!   convergence · sensitivity · sweep · comparison
+//!                             one file per subject: its JSON, its text, its table for programs
+//!   envelope · text           the head of all JSON; what all text is made with
+//! ```
+//!
+//! The same input gives the same bytes, apart from the field `timing`. Lengths are in D and angles in radians in
+//! every machine format; for people the design's own unit and degrees stand beside them.
+
+mod answer;
+mod bench;
+#[cfg(feature = "zarr")]
+mod bounded;
+mod cells;
+#[cfg(feature = "drop")]
+mod chance;
+mod check;
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub mod compare;
+mod comparison;
+mod convergence;
+mod doubting;
+mod ending;
+mod envelope;
+mod export;
+mod faces;
+#[cfg(feature = "figure")]
+pub mod figure;
+pub mod folder;
+mod friction;
+pub mod gltf;
+mod hold;
+mod jams;
+mod lever;
+mod outcomes;
+#[cfg(feature = "page")]
+pub mod page;
+mod plan;
+mod resting;
+mod rests;
+#[cfg(all(feature = "figure", feature = "zarr"))]
+mod save;
+pub mod schema;
+mod sensitivity;
+pub mod set;
+mod slices;
+pub mod solids;
+mod success;
+mod sweep;
+mod table;
+pub mod text;
+mod trajectory;
+mod trials;
+mod validation;
+mod version;
+pub mod vtk;
+mod window;
+pub mod write;
+#[cfg(feature = "zarr")]
+pub mod zarr;
+mod zraa;
+
+pub use answer::{UnanswerableError, check_requirements};
+pub use cells::cells;
+#[cfg(feature = "drop")]
+pub use chance::{
+    AtSpeedReport, ChanceBody, ChanceReport, CircumstanceReport, MapReport, OverallReport, PoseChanceReport,
+    PresetReport,
+};
+pub use check::{CheckBody, CheckReport, Place, ProblemReport};
+pub use comparison::{
+    Agreement, AgreementBody, AgreementReport, Compared, ComparisonBody, ComparisonReport, Decided,
+    MethodResult,
+};
+pub use convergence::{ConvergenceBody, ConvergenceReport};
+pub use doubting::Doubts;
+pub use ending::{EndContact, Endings};
+pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
+pub use export::{ExportBody, ExportReport};
+pub use faces::{FacesBody, FacesError, FacesReport};
+pub use friction::{FrictionBody, FrictionReport, KeptReport, RungReport, StickingReport, SticksReport};
+pub use hold::{
+    HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
+};
+pub use jams::{
+    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsFound, JamsReport,
+    PairReport, ShareReport, WayOutReport,
+};
+pub use lever::{LeverBody, LeverFound, LeverReport};
+pub use outcomes::{OutcomeRows, OutcomesReport};
+pub use plan::{PlanBody, PlanCounts, PlanPointReport, PlanReport, PlannedReport};
+pub use resting::{HeldReport, ThresholdsReport};
+pub use rests::{RestReport, RestsBody, RestsReport};
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub use save::{Saved, Target, save, save_drawn, save_group, save_pictures, save_set, save_slices};
+pub use schema::{Report, RunBody};
+pub use sensitivity::{SensitivityBody, SensitivityReport};
+pub use slices::{SliceReport, SlicesBody, SlicesReport};
+pub use solids::{SolidsBody, SolidsReport};
+pub use success::{
+    AloneReport, DockingReport, ErrorsReport, FailuresReport, FirstReport, FitReport, GridCost, Headline,
+    ImprovementReport, SuccessesBody, SuccessesReport, TolerableReport,
+};
+#[cfg(all(feature = "figure", feature = "zarr"))]
+pub use sweep::Parts;
+pub use sweep::{SweepBody, SweepReport};
+pub use table::{first_look, table, table_with};
+pub use text::{csv, number};
+pub use trajectory::{TouchReport, TraceBody, TraceReport, WaypointReport};
+pub use trials::{TrialReport, TrialsBody, TrialsReport};
+pub use validation::{
+    AgreedReport, CountReport, EvidenceReport, ExplainingReport, FrictionTried, LineReport, OneSidedReport,
+    TriedReport, ValidationBody, ValidationReport,
+};
+pub use version::{Version, VersionError};
+pub use window::{
+    CertificateReport, HalfWidths, SideReport, WindowBody, WindowFound, WindowReport, WindowSection,
+    WorstReport,
+};
+pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};

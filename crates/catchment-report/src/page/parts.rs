@@ -1,0 +1,188 @@
+//! What a page is made of: a result that was just computed or one that was stored, its halves, and the studies beside it.
+
+use super::Page;
+#[cfg(feature = "zarr")]
+use crate::{JamsBody, WindowBody, WindowSection};
+use crate::{JamsReport, Report, WindowReport};
+use catchment_core::acceptance::Acceptance;
+#[cfg(feature = "zarr")]
+use catchment_core::acceptance::Domain;
+use catchment_core::advice::Advice;
+#[cfg(feature = "zarr")]
+use catchment_core::design::{Design, hex};
+use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
+use catchment_core::method::Method;
+use catchment_core::problem::Problem;
+use catchment_core::run::Answer;
+use catchment_core::run::jams::{self, JamsError};
+use catchment_core::run::window::{self, WindowError};
+use catchment_study::planes;
+use serde_json::json;
+
+/// A page in parts.
+#[derive(Debug, Clone)]
+pub struct Parts {
+    /// The run.
+    pub report: Report,
+    /// Its outcomes.
+    pub acceptance: Acceptance,
+    /// Outcomes over planes through zero, once they are studied.
+    pub planes: Vec<Acceptance>,
+    /// What was decided, where its halves can be had.
+    pub problem: Option<Problem>,
+    /// Where it jams.
+    pub jams: Option<JamsReport>,
+    /// The window.
+    pub window: Option<WindowReport>,
+    /// What a person should know of the page.
+    pub notes: Vec<String>,
+}
+
+/// What is studied beside a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Studies {
+    /// Planes through zero, of a grid of three or more errors.
+    pub planes: bool,
+    /// Where it jams.
+    pub jams: bool,
+    /// The largest box that docks.
+    pub window: bool,
+}
+
+impl Parts {
+    /// Of an answer.
+    pub fn of(answer: &Answer) -> Self {
+        let (report, acceptance) = (Report::of_answer(answer), answer.acceptance.clone());
+        let problem = Some(answer.problem.clone());
+        Self { report, acceptance, planes: Vec::new(), problem, jams: None, window: None, notes: Vec::new() }
+    }
+
+    /// Of a result that was stored, its folder or its group, with what is stored of jams and window. Halves that come from files are read again; where they cannot be, or are others by
+    /// now, the page has none and says so.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    #[cfg(feature = "zarr")]
+    pub fn stored(path: &std::path::Path, exec: &Exec) -> Result<Self, crate::zarr::ZarrError> {
+        use crate::folder::RESULT;
+        let inner = path.join(RESULT);
+        let without_grid = if inner.is_dir() { None } else { sampled(path) };
+        let (report, acceptance) = match without_grid {
+            Some(report) => {
+                let domain = Domain::Poses(Vec::new());
+                let (method, outcomes) = ("descent", Vec::new());
+                (report, Acceptance { method, domain, outcomes, warnings: Vec::new() })
+            }
+            None => crate::zarr::read(if inner.is_dir() { &inner } else { path }, exec)?,
+        };
+        let (problem, notes) = match again(&report.design) {
+            Ok(problem) => (Some(problem), Vec::new()),
+            Err(why) => (None, vec![why]),
+        };
+        let design = || report.design.clone();
+        let jams = report
+            .jams
+            .clone()
+            .map(|found| JamsReport::of(JamsBody { design: design(), found }, Vec::new(), None));
+        let window = report.window.clone().map(|WindowSection { half_widths, found }| {
+            WindowReport::of(WindowBody { design: design(), window: half_widths, found }, Vec::new(), None)
+        });
+        Ok(Self { report, acceptance, planes: Vec::new(), problem, jams, window, notes })
+    }
+
+    /// Adds studies, with the friction of the run. One that finds nothing leaves a note.
+    ///
+    /// # Errors
+    /// It was asked to stop.
+    pub fn study(&mut self, studies: Studies, exec: &Exec) -> Result<(), Cancelled> {
+        let Some(problem) = &self.problem else { return Ok(()) };
+        let (design, friction) = (problem.design(), self.report.friction());
+        if studies.planes {
+            match through_zero(problem, &self.report, &self.acceptance, exec) {
+                Ok(planes) => self.planes = planes,
+                Err(PlanesError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(why) => self.notes.push(format!("slices at zero show cells of the grid: {why}")),
+            }
+        }
+        if studies.jams {
+            match jams::run(problem, &jams::Settings { friction, ..jams::Settings::default() }, exec) {
+                Ok(found) => self.jams = Some(JamsReport::new(design, &found, Vec::new(), None)),
+                Err(JamsError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(why) => self.notes.push(format!("no jams: {why}")),
+            }
+        }
+        if studies.window {
+            match window::run(problem, &window::Settings { friction, ..window::Settings::default() }, exec) {
+                Ok(found) => self.window = Some(WindowReport::new(design, &found, Vec::new(), None)),
+                Err(WindowError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(why) => self.notes.push(format!("no window: {why}")),
+            }
+        }
+        Ok(())
+    }
+
+    /// The page, of a file.
+    pub fn page(&self) -> Page<'_> {
+        let Self { report, acceptance, planes, problem, jams, window, notes } = self;
+        Page {
+            report,
+            acceptance,
+            planes,
+            halves: problem.as_ref().map(Problem::connector),
+            jams: jams.as_ref(),
+            window: window.as_ref(),
+            notes: notes.clone(),
+            is_served: false,
+        }
+    }
+}
+
+/// Why a page has no planes through zero.
+#[derive(Debug, thiserror::Error)]
+enum PlanesError {
+    #[error("the settings of its method cannot be read ({0})")]
+    Method(#[from] serde_json::Error),
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// The planes that the pictures of the result show: by the motions of its method; none where the method's own cells are shown.
+fn through_zero(
+    problem: &Problem,
+    report: &Report,
+    acceptance: &Acceptance,
+    exec: &Exec,
+) -> Result<Vec<Acceptance>, PlanesError> {
+    let method = json!({ "name": report.method, "settings": report.settings });
+    let method: Method = serde_json::from_value(method)?;
+    let Some(grid) = acceptance.grid().filter(|_| !method.info().departs) else { return Ok(Vec::new()) };
+    let (pair, motions) = (problem.pair(), method.motions());
+    let needed = planes::bytes(pair, &motions, grid);
+    exec.ensure_fits("the slices at zero", needed, |_| vec![Advice::MoreMemory])?;
+    Ok(planes::through_zero(pair, &motions, grid, exec)?)
+}
+
+/// The report of a stored run without a grid; its poses are in no picture of a page.
+#[cfg(feature = "zarr")]
+fn sampled(path: &std::path::Path) -> Option<Report> {
+    use crate::{bounded, folder::REPORT};
+    let bytes = bounded::read(&path.join(REPORT), bounded::REPORT_BYTES).ok()?;
+    let report = Report::from_json(std::str::from_utf8(&bytes).ok()?).ok()?;
+    (report.axes.is_empty() && report.check().is_ok()).then_some(report)
+}
+
+/// The problem of a stored design, if it still is the same; else what to say.
+#[cfg(feature = "zarr")]
+fn again(design: &Design) -> Result<Problem, String> {
+    let without = "the page has no halves and no motions";
+    let problem = Problem::of(design.clone()).map_err(|error| {
+        let first = error.to_string().lines().next().unwrap_or_default().to_owned();
+        format!("{without}: they cannot be built again from what the result says: {first}")
+    })?;
+    match design.digest() {
+        Some(digest) if hex(&digest) == problem.digest() => Ok(problem),
+        _ => Err(format!("{without}: their files are no longer what the result was computed from")),
+    }
+}

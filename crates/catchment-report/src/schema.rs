@@ -1,0 +1,459 @@
+//! The report of a run: a versioned contract. Lengths in D, angles in radians, fields in this order, in the
+//! [`Envelope`] of every report. The same run writes the same bytes but for `timing`.
+
+use super::envelope::{Body, Envelope};
+use super::{JamsFound, WindowSection};
+use catchment_core::acceptance::{Acceptance, Warning};
+use catchment_core::design::Design;
+use catchment_core::exec::Exec;
+use catchment_core::merit::centered::CenteredBox;
+use catchment_core::merit::onaa::Onaa;
+use catchment_core::merit::success::{Distribution, Success, success};
+use catchment_core::merit::sum::Sum;
+use catchment_core::merit::tolerance::Tolerance;
+use catchment_core::merit::{MeritError, Merits};
+use catchment_core::method::certified::Certificate;
+use catchment_core::method::confluence::Joined;
+use catchment_core::pose::Dof;
+use catchment_core::run::{Seating, Upright};
+use serde::{Deserialize, Serialize};
+
+/// Everything one run has to say, with its head.
+pub type Report = Envelope<RunBody>;
+
+/// What one run has to say.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunBody {
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// Name of the method that decided.
+    pub method: String,
+    /// The method's settings: what else changes the answer.
+    pub settings: serde_json::Value,
+    /// The axes of the error grid, the first one fastest; empty for listed poses.
+    pub axes: Vec<Axis>,
+    /// The accepted set.
+    pub acceptance: AcceptanceReport,
+    /// The largest axis-oriented cube; null for listed poses.
+    pub onaa: Option<OnaaReport>,
+    /// The largest cube around zero; null for listed poses.
+    pub centered: Option<CenteredReport>,
+    /// How far each error may go alone; empty for listed poses.
+    pub tolerances: Vec<ToleranceReport>,
+    /// The same with roll and pitch locked, where all five errors are free and motions were followed; null otherwise, and in reports of versions that did not
+    /// ask.
+    #[serde(default)]
+    pub upright: Option<UprightReport>,
+    /// Success probability for the errors asked about; null if none were.
+    pub success: Option<SuccessReport>,
+    /// The basins behind the outcomes; null for methods that know none.
+    pub basins: Option<BasinsReport>,
+    /// The watersheds behind the outcomes, before merging and after; null for methods that flood nothing, and in reports of versions
+    /// that did not count them.
+    #[serde(default)]
+    pub watersheds: Option<WatershedsReport>,
+    /// The polytopes behind the outcomes; null for all methods but `partition`.
+    pub partition: Option<PartitionReport>,
+    /// What is certain of the error box and of the seat; null for all methods but `certified`, and in reports of versions without it.
+    #[serde(default)]
+    pub certificate: Option<Certificate>,
+    /// How many cells joined others, and how often that was wrong; null for all methods but `confluence`, and in reports of versions that did
+    /// not know it.
+    #[serde(default)]
+    pub joined: Option<Joined>,
+    /// Where motions rest that do not dock; null where that was not asked, and in reports of versions that did not ask.
+    #[serde(default)]
+    pub jams: Option<JamsFound>,
+    /// The largest box of errors that all dock; null where that was not asked or there is none, and in reports of versions that did not ask.
+    #[serde(default)]
+    pub window: Option<WindowSection>,
+    /// The seat, and how far off accepted poses rest in it; null in reports of versions that did not ask.
+    #[serde(default)]
+    pub seat: Option<Seating>,
+}
+
+impl Body for RunBody {
+    const KIND: &'static str = "run";
+}
+
+/// One axis of the error grid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// Which error.
+    pub axis: Dof,
+    /// `D` or `rad`.
+    pub unit: Unit,
+    /// Lower border of the error box.
+    pub lo: f64,
+    /// Upper border of the error box.
+    pub hi: f64,
+    /// Number of equal cells, each sampled at its centre.
+    pub cells: usize,
+}
+
+/// Unit of an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Unit {
+    /// Widths of the connector.
+    D,
+    /// Radians.
+    #[serde(rename = "rad")]
+    Rad,
+}
+
+impl Unit {
+    /// The unit of an error.
+    pub const fn of(dof: Dof) -> Self {
+        if dof.is_rotation() { Self::Rad } else { Self::D }
+    }
+}
+
+/// The accepted set in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AcceptanceReport {
+    /// The measure of the accepted set, in `unit`: the unbiased estimate where there is a `sample`, what certainly docks where there is a `certificate`, else
+    /// `sum_grid`.
+    pub sum: f64,
+    /// Unit of `sum`, like `D²·rad³`.
+    pub unit: String,
+    /// 95 % interval of the true measure, from the poses of `sample` or the listed ones, drawn at random. Null if
+    /// nothing was.
+    pub sum_ci95: Option<[f64; 2]>,
+    /// The measure of the accepted cells; of listed poses, their share of the error box.
+    pub sum_grid: f64,
+    /// Where there is a `certificate`, what certainly docks, and that with what is undecided. Else
+    /// `sum_grid` without the accepted cells that touch a rejected one, and with the rejected cells that touch an
+    /// accepted one: the doubt of resolution, no confidence interval. Null for listed poses.
+    pub sum_bracket: Option<[f64; 2]>,
+    /// `sum` as a share of the error box, in [0, 1].
+    pub fraction: f64,
+    /// Cells or poses tried.
+    pub cells: usize,
+    /// How many met each outcome.
+    pub outcomes: Outcomes,
+    /// Random poses, followed exactly, that correct the Sum; null if none were.
+    pub sample: Option<SampleReport>,
+}
+
+/// Poses per outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Outcomes {
+    /// Contact brings the halves to the mated pose.
+    pub aligned: usize,
+    /// At rest in contact elsewhere.
+    pub jammed: usize,
+    /// No contact, or slid off.
+    pub missed: usize,
+    /// The budget ran out.
+    pub undecided: usize,
+}
+
+/// An interval along an axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// Which error.
+    pub axis: Dof,
+    /// Lower end, D or rad.
+    pub lo: f64,
+    /// Upper end, D or rad.
+    pub hi: f64,
+}
+
+/// The largest axis-oriented n-cube in the accepted set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OnaaReport {
+    /// Its edge after each axis is divided by its range: in [0, 1].
+    pub edge: f64,
+    /// Where it lies; empty if the edge is 0.
+    pub bounds: Vec<Interval>,
+    /// Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    #[serde(default)]
+    pub followed: bool,
+}
+
+/// The largest n-cube around zero in the accepted set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CenteredReport {
+    /// Its edge after each axis is divided by its range: in [0, 1].
+    pub edge: f64,
+    /// Where it lies.
+    pub bounds: Vec<Interval>,
+    /// The border of the error box stopped it: it may be larger.
+    pub reaches_border: bool,
+    /// Whether poses were followed to find its size, so that it does not rest on cells; false in reports of versions that did not.
+    #[serde(default)]
+    pub followed: bool,
+    /// How many random poses of it were followed last, all of which dock.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampled: Option<usize>,
+}
+
+/// What a connector tolerates whose roll and pitch are locked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UprightReport {
+    /// The largest box around zero all of which docks, in the proportions of the tolerances; its edge is a multiple of these.
+    pub window: CenteredReport,
+    /// How far each error may go alone.
+    pub tolerances: Vec<ToleranceReport>,
+}
+
+/// How far one error may go alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ToleranceReport {
+    /// Which error.
+    pub axis: Dof,
+    /// `D` or `rad`.
+    pub unit: Unit,
+    /// Below zero; not negative.
+    pub minus: f64,
+    /// Above zero; not negative.
+    pub plus: f64,
+    /// Uncertainty of both: half a cell, or half the distance between a pose that docks and one that does not.
+    pub half_cell: f64,
+    /// Whether poses were followed along the axis, so that it does not rest on cells; false in reports of versions that did not.
+    #[serde(default)]
+    pub followed: bool,
+    /// The border of the error box stopped `minus`: it may be larger.
+    pub minus_reaches_border: bool,
+    /// The border of the error box stopped `plus`: it may be larger.
+    pub plus_reaches_border: bool,
+}
+
+/// Success probability for a distribution of errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SuccessReport {
+    /// How the errors are distributed.
+    pub distribution: Distribution,
+    /// Probability that an error is accepted, in [0, 1]; errors outside the error box count as failures.
+    pub probability: f64,
+    /// The same with the cells at the border of the accepted set counted as failures, and as successes.
+    pub bracket: [f64; 2],
+    /// 95 % interval of `probability`; null where it is an exact sum over cells.
+    pub ci95: Option<[f64; 2]>,
+    /// Probability of an error outside the error box.
+    pub outside: f64,
+}
+
+/// A doubt, for programs and for people. A kind of doubt that this version does not know is read as a
+/// [`Warning::Note`] of its sentence.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "StoredWarning")]
+pub struct WarningReport {
+    /// The doubt itself, with its `kind`.
+    pub warning: Warning,
+    /// The same as a sentence.
+    pub message: String,
+}
+
+#[derive(Deserialize)]
+struct StoredWarning {
+    warning: serde_json::Value,
+    message: String,
+}
+
+impl From<StoredWarning> for WarningReport {
+    fn from(StoredWarning { warning, message }: StoredWarning) -> Self {
+        let warning = serde_json::from_value(warning).unwrap_or(Warning::Note { text: message.clone() });
+        Self { warning, message }
+    }
+}
+
+/// How long it took. The only part of a report that differs between equal runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Timing {
+    /// Wall-clock time of the computation, in seconds.
+    pub total_s: f64,
+    /// Worker threads.
+    pub threads: usize,
+}
+
+impl RunBody {
+    /// A number among the settings of the method, or of the motions that it follows.
+    pub(super) fn of_motions(&self, name: &str) -> Option<f64> {
+        self.settings.get(name).or_else(|| self.settings.get("descent")?.get(name))?.as_f64()
+    }
+
+    /// The coefficient of friction of the motions that decided; 0 of methods that know none.
+    pub fn friction(&self) -> f64 {
+        self.of_motions("friction").unwrap_or(0.0)
+    }
+}
+
+impl Report {
+    /// Evaluates an acceptance. `settings` are those of the method that gave it. The doubts that the accepted set
+    /// itself raises are added to the method's own.
+    ///
+    /// # Errors
+    /// When the figures of merit do not fit into memory, or are cancelled.
+    pub fn new(
+        design: &Design,
+        acceptance: &Acceptance,
+        settings: serde_json::Value,
+        timing: Option<Timing>,
+        exec: &Exec,
+    ) -> Result<Self, MeritError> {
+        let merits = Merits::of(acceptance, &design.alignment, exec)?;
+        Ok(Self::from_merits(design, acceptance, &merits, settings, timing))
+    }
+
+    /// The same of an acceptance that was evaluated.
+    pub fn from_merits(
+        design: &Design,
+        acceptance: &Acceptance,
+        merits: &Merits,
+        settings: serde_json::Value,
+        timing: Option<Timing>,
+    ) -> Self {
+        let Merits { sum, bracket, onaa, centered, tolerances, warnings } = merits.clone();
+        let body = RunBody {
+            design: design.clone(),
+            method: acceptance.method.to_owned(),
+            settings,
+            axes: axes(acceptance),
+            acceptance: AcceptanceReport { sum_bracket: bracket, ..AcceptanceReport::from(sum) },
+            onaa: onaa.map(OnaaReport::from),
+            centered: centered.map(CenteredReport::from),
+            tolerances: tolerances.into_iter().map(ToleranceReport::from).collect(),
+            upright: None,
+            success: None,
+            basins: None,
+            watersheds: None,
+            partition: None,
+            certificate: None,
+            joined: None,
+            jams: None,
+            window: None,
+            seat: None,
+        };
+        Envelope::of(body, warnings.into_iter().map(WarningReport::from).collect(), timing)
+    }
+
+    /// Adds the success probability for a distribution of errors.
+    ///
+    /// # Errors
+    /// Those of [`success()`].
+    pub fn with_success(
+        mut self,
+        acceptance: &Acceptance,
+        distribution: Distribution,
+        exec: &Exec,
+    ) -> Result<Self, MeritError> {
+        let found = success(acceptance, &distribution, exec)?;
+        self.success = Some(SuccessReport::new(distribution, &found));
+        Ok(self)
+    }
+}
+
+/// The axes of its grid.
+pub(super) fn axes(acceptance: &Acceptance) -> Vec<Axis> {
+    let Some(grid) = acceptance.grid() else { return Vec::new() };
+    grid.axes
+        .iter()
+        .map(|a| Axis { axis: a.dof, unit: Unit::of(a.dof), lo: a.lo, hi: a.hi, cells: a.cells })
+        .collect()
+}
+
+impl From<Sum> for AcceptanceReport {
+    fn from(sum: Sum) -> Self {
+        Self {
+            sum: sum.sum,
+            unit: sum.unit(),
+            sum_ci95: sum.ci95,
+            sum_grid: sum.sum,
+            sum_bracket: None,
+            fraction: sum.fraction,
+            cells: sum.tried,
+            outcomes: Outcomes::new(sum.counts),
+            sample: None,
+        }
+    }
+}
+
+impl SuccessReport {
+    /// Of a probability that was found for a distribution.
+    pub fn new(distribution: Distribution, found: &Success) -> Self {
+        Self {
+            distribution,
+            probability: found.probability,
+            bracket: found.bracket,
+            ci95: found.ci95,
+            outside: found.outside,
+        }
+    }
+}
+
+impl Outcomes {
+    /// From counts in the order of [`Outcome::ALL`].
+    const fn new([aligned, jammed, missed, undecided]: [usize; 4]) -> Self {
+        Self { aligned, jammed, missed, undecided }
+    }
+}
+
+impl From<Warning> for WarningReport {
+    fn from(warning: Warning) -> Self {
+        Self { message: warning.to_string(), warning }
+    }
+}
+
+impl WarningReport {
+    /// A doubt that is only a sentence.
+    pub fn note(text: &(impl ToString + ?Sized)) -> Self {
+        Self::from(Warning::Note { text: text.to_string() })
+    }
+}
+
+impl From<Onaa> for OnaaReport {
+    fn from(onaa: Onaa) -> Self {
+        let bounds = onaa.bounds.into_iter().map(|(axis, lo, hi)| Interval { axis, lo, hi }).collect();
+        Self { edge: onaa.edge, bounds, followed: onaa.is_followed }
+    }
+}
+
+impl From<&Upright> for UprightReport {
+    fn from(found: &Upright) -> Self {
+        Self {
+            window: found.window.clone().into(),
+            tolerances: found.tolerances.iter().copied().map(ToleranceReport::from).collect(),
+        }
+    }
+}
+
+impl From<CenteredBox> for CenteredReport {
+    fn from(found: CenteredBox) -> Self {
+        let bounds =
+            found.half_widths.into_iter().map(|(axis, h)| Interval { axis, lo: -h, hi: h }).collect();
+        let (reaches_border, sampled) = (found.reaches_border, found.sampled);
+        Self { edge: found.scale, bounds, reaches_border, followed: sampled.is_some(), sampled }
+    }
+}
+
+impl From<Tolerance> for ToleranceReport {
+    fn from(t: Tolerance) -> Self {
+        Self {
+            axis: t.dof,
+            unit: Unit::of(t.dof),
+            minus: t.minus,
+            plus: t.plus,
+            half_cell: t.half_cell,
+            followed: t.is_followed,
+            minus_reaches_border: t.minus_reaches_border,
+            plus_reaches_border: t.plus_reaches_border,
+        }
+    }
+}
+
+pub(crate) mod basins;
+mod partition;
+mod sample;
+mod sound;
+#[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
+mod tests;
+mod watersheds;
+
+pub use basins::{BasinReport, BasinsReport, LISTED, SMALLEST_STEP, StepReport};
+pub use partition::PartitionReport;
+pub use sample::SampleReport;
+pub use sound::UnsoundError;
+pub use watersheds::WatershedsReport;

@@ -1,0 +1,21 @@
+//! The polyhedral partition behind the outcomes: how large it was, and its own exact measure.
+
+use catchment_core::acceptance::Outcome;
+use catchment_core::method::partition::{Counts, Partition};
+use serde::{Deserialize, Serialize};
+
+/// A partition of the contact space.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct PartitionReport {
+    /// Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.
+    pub counts: Counts,
+    /// Measure of the accepted polytopes inside the error box, in the unit of the Sum. No grid is involved.
+    pub sum: f64,
+}
+
+impl PartitionReport {
+    /// Measures a partition.
+    pub fn new(partition: &Partition) -> Self {
+        Self { counts: partition.counts(), sum: partition.measure(Outcome::Aligned) }
+    }
+}

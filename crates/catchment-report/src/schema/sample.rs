@@ -1,0 +1,75 @@
+//! The Sum corrected by exact descents: an estimate that owes its truth to no grid.
+//!
+//! A sample turns the report's Sum from the measure of the accepted cells into the unbiased estimate of
+//! [`catchment_core::method::correction`], with its interval. The measure of the cells stays beside it.
+
+use super::Report;
+use catchment_core::method::certified::Certificate;
+use catchment_core::method::correction::Stratum;
+use catchment_core::run::Corrected;
+use serde::{Deserialize, Serialize};
+
+/// Random poses, followed exactly, that the Sum and its interval come from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SampleReport {
+    /// Name of the method that followed them.
+    pub method: String,
+    /// Its settings.
+    pub settings: serde_json::Value,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Poses followed.
+    pub descents: usize,
+    /// Share of the error box whose poses fare otherwise than their cells, accepted or not, in [0, 1]; 1 in reports of versions that did
+    /// not count it.
+    #[serde(default = "unknown")]
+    pub differing: f64,
+    /// Its 95 % interval.
+    #[serde(default = "open")]
+    pub differing_ci95: [f64; 2],
+    /// Where they lay.
+    pub strata: Vec<Stratum>,
+}
+
+const fn unknown() -> f64 {
+    1.0
+}
+
+const fn open() -> [f64; 2] {
+    [0.0, 1.0]
+}
+
+impl Report {
+    /// Adds what is certain: the Sum is at least what docks, and at most that and what is undecided.
+    #[must_use]
+    pub(crate) fn with_certificate(mut self, found: Certificate) -> Self {
+        let [docks, _, open] = found.measures;
+        let acceptance = &mut self.body.acceptance;
+        acceptance.sum_bracket = Some([docks, docks + open]);
+        if acceptance.sample.is_none() {
+            (acceptance.sum, acceptance.fraction) = (docks, found.yes);
+        }
+        self.body.certificate = Some(found);
+        self
+    }
+
+    /// Replaces the Sum by the corrected one.
+    #[must_use]
+    pub fn with_sample(mut self, corrected: &Corrected) -> Self {
+        let acceptance = &mut self.body.acceptance;
+        let Corrected { found, seed, method, settings } = corrected;
+        acceptance.sum = found.sum;
+        acceptance.sum_ci95 = Some(found.ci95);
+        acceptance.fraction = found.fraction;
+        acceptance.sample = Some(SampleReport {
+            method: (*method).to_owned(),
+            settings: settings.clone(),
+            seed: *seed,
+            descents: found.descents,
+            differing: found.differing,
+            differing_ci95: found.differing_ci95,
+            strata: found.strata.clone(),
+        });
+        self
+    }
+}

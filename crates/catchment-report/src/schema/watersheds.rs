@@ -1,0 +1,22 @@
+//! The watersheds behind the outcomes: how many there were before merging and after.
+
+use catchment_core::method::flood::{Counts, Watersheds};
+use serde::{Deserialize, Serialize};
+
+/// Watersheds of a flooded grid; that of the cells without contact is none of them.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct WatershedsReport {
+    /// First labels, merged ones, and cells of either fate.
+    #[serde(flatten)]
+    pub counts: Counts,
+    /// Share of all cells whose first watershed was merged into another.
+    pub moved_share: f64,
+}
+
+impl WatershedsReport {
+    /// Counts the labels of every cell.
+    pub fn new(watersheds: &Watersheds) -> Self {
+        let counts = watersheds.counts();
+        Self { counts, moved_share: counts.moved as f64 / watersheds.first.len().max(1) as f64 }
+    }
+}

@@ -1,0 +1,143 @@
+//! The shapes behind the contact space: what they are made of, and their files.
+//!
+//! ```text
+//!   Solids ──▶ vtp   VTK's `PolyData` in XML, text: ParaView, pyvista, vtk; numbers per face
+//!         ├──▶ obj   Wavefront: a group per convex piece
+//!         └──▶ figure::bodies
+//! ```
+
+mod obj;
+#[cfg(test)]
+mod tests;
+mod vtp;
+
+pub use obj::obj;
+pub use vtp::vtp;
+
+use super::envelope::{Body, Envelope};
+use super::schema::WarningReport;
+use super::text::{grouped, line, row, significant};
+use catchment_core::design::Design;
+use catchment_core::method::partition::{Settings, Solid, Solids, Subject};
+use glam::DVec3;
+use serde::Serialize;
+
+/// A shape, with its head.
+pub type SolidsReport = Envelope<SolidsBody>;
+
+/// What a shape is made of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SolidsBody {
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// Which shape.
+    pub shape: Subject,
+    /// What the three axes of a file show: `x`, `y` and `z` are lengths in D, the others angles in radians.
+    pub axes: [&'static str; 3],
+    /// 3, or 2 where the bodies are flat.
+    pub dimension: usize,
+    /// Slices and strips; null for the halves, which have none.
+    pub settings: Option<Settings>,
+    /// Convex pieces of the fixed half.
+    pub fixed_pieces: usize,
+    /// Convex pieces of the moving half.
+    pub moving_pieces: usize,
+    /// Convex bodies of the shape, which may overlap.
+    pub bodies: usize,
+    /// Their corners.
+    pub corners: usize,
+    /// Their faces.
+    pub faces: usize,
+    /// The least coordinates, on the axes of a file.
+    pub low: [f64; 3],
+    /// The greatest.
+    pub high: [f64; 3],
+}
+
+impl Body for SolidsBody {
+    const KIND: &'static str = "solids";
+}
+
+impl SolidsReport {
+    /// Of a shape, with the doubts about its design.
+    pub fn new(design: &Design, shape: &Solids, warnings: Vec<WarningReport>) -> Self {
+        let (low, high) = bounds(shape);
+        let sum = |count: fn(&Solid) -> usize| shape.solids.iter().map(count).sum();
+        let body = SolidsBody {
+            design: design.clone(),
+            shape: shape.subject,
+            axes: shape.axes,
+            dimension: shape.dimension,
+            settings: (shape.subject != Subject::Halves).then_some(shape.settings),
+            fixed_pieces: shape.pieces[0],
+            moving_pieces: shape.pieces[1],
+            bodies: shape.solids.len(),
+            corners: sum(|solid| solid.vertices.len()),
+            faces: sum(|solid| solid.faces.len()),
+            low: low.into(),
+            high: high.into(),
+        };
+        Self::of(body, warnings, None)
+    }
+
+    /// For eyes.
+    pub fn table(&self) -> String {
+        let mut text = String::new();
+        line(&mut text, &self.design.name);
+        line(&mut text, &format!("  {}", told(self.shape)));
+        row(&mut text, "pieces", &format!("{} fixed, {} moving", self.fixed_pieces, self.moving_pieces));
+        if let Some(Settings { slices, strips }) = self.settings {
+            let turns = self.axes.iter().any(|axis| is_angle(axis));
+            let slices = if turns { format!("{slices} slices, ") } else { String::new() };
+            row(&mut text, "made of", &format!("{slices}{strips} strips per D"));
+        }
+        let kind = if self.dimension == 2 { "flat bodies" } else { "bodies" };
+        let counts = format!("{} convex {kind}, {} faces", grouped(self.bodies), grouped(self.faces));
+        row(&mut text, "written", &counts);
+        for (k, axis) in self.axes.iter().enumerate() {
+            let [low, high] = [self.low[k], self.high[k]].map(significant);
+            let unit = if is_angle(axis) { "rad" } else { "D" };
+            row(&mut text, axis, &format!("{low} to {high} {unit}"));
+        }
+        text
+    }
+}
+
+/// What a shape is, in words.
+pub fn told(shape: Subject) -> &'static str {
+    match shape {
+        Subject::Halves => "both halves as convex pieces, docked",
+        Subject::Swept => "the moving half, reflected and turned through its slices",
+        Subject::Collision => "places of the centre of rotation at which the halves overlap",
+    }
+}
+
+/// Whether an axis of a file shows an angle.
+pub fn is_angle(axis: &str) -> bool {
+    !matches!(axis, "x" | "y" | "z")
+}
+
+/// The least and the greatest coordinates of a shape; both 0 for nothing.
+pub fn bounds(shape: &Solids) -> (DVec3, DVec3) {
+    let corners = || shape.solids.iter().flat_map(|solid| &solid.vertices).copied();
+    (corners().reduce(DVec3::min).unwrap_or_default(), corners().reduce(DVec3::max).unwrap_or_default())
+}
+
+/// One line on the axes of a file, for its head.
+fn heading(shape: &Solids) -> String {
+    let axis = |(file, axis): (&str, &&str)| {
+        format!("{file} is {axis} ({})", if is_angle(axis) { "rad" } else { "D" })
+    };
+    let axes: Vec<String> = ["x", "y", "z"].into_iter().zip(&shape.axes).map(axis).collect();
+    format!(
+        "catchment {}: {}; {}, z along the approach",
+        env!("CARGO_PKG_VERSION"),
+        told(shape.subject),
+        axes.join(", ")
+    )
+}
+
+/// The middle of a face's corners.
+fn middle(solid: &Solid, face: &[usize]) -> DVec3 {
+    face.iter().map(|k| solid.vertices[*k]).sum::<DVec3>() / face.len() as f64
+}

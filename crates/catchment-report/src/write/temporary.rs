@@ -1,0 +1,217 @@
+//! What is being written, beside its place; and what a killed process left there.
+//!
+//! ```text
+//!   .NAME.PID.MARK.tmp   new, not complete; after an exchange: old, to be removed
+//!   .NAME.PID.MARK.old   old, stepped aside where the system cannot exchange
+//! ```
+//!
+//! MARK is a digest of what stands before it, which nobody writes by chance: what has it is ours, whatever is in it. What looks alike
+//! without it is another's, unless it holds a manifest, or nothing at all.
+//!
+//! Whoever writes holds a lock on it, which ends with the process. So the next start knows what nobody works on any
+//! more, on every machine that sees the same disk. Where the system knows no such locks, left-overs stay.
+
+use super::disk::{Permit, is_exhausted, permit};
+use super::lock::is_at;
+use super::manifest::Manifest;
+use super::{WriteError, parent};
+use catchment_core::design::hex;
+use sha2::{Digest, Sha256};
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, Permissions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// New, or old and to be removed.
+pub(super) const NEW: &str = "tmp";
+/// Stepped aside.
+pub(super) const ASIDE: &str = "old";
+
+/// Threads of one process, and processes of one number on several machines, that write to one place at the same time.
+const WRITERS: usize = 64;
+
+/// Something unfinished beside its place: removed when dropped.
+#[derive(Debug)]
+pub(super) struct Temporary {
+    pub(super) path: PathBuf,
+    finished: bool,
+    /// Released when dropped.
+    lock: Option<File>,
+}
+
+/// What was made under a name that was free.
+enum Made<T> {
+    /// It can be locked by this.
+    Locked(File, T),
+    /// Here nothing can be locked.
+    Unlocked(T),
+    /// Somebody swept it away before it could be opened.
+    Swept,
+}
+
+impl Temporary {
+    /// An empty folder, open to nobody to whom the folder that it will replace is closed.
+    pub(super) fn folder(place: &Path) -> Result<Self, WriteError> {
+        let replaced = fs::symlink_metadata(place).ok().filter(fs::Metadata::is_dir);
+        let permissions = replaced.map(|meta| meta.permissions());
+        Self::make(place, |permit, path| {
+            permit.create_dir(path, permissions.as_ref())?;
+            match File::open(path) {
+                Ok(folder) => Ok(Made::Locked(folder, ())),
+                Err(error) if error.kind() == ErrorKind::NotFound => Ok(Made::Swept),
+                Err(error) if cfg!(unix) => {
+                    // Nobody can know it any more, not even by its lock.
+                    let _ = permit.remove_dir(path);
+                    Err(error)
+                }
+                // Some systems cannot open folders.
+                Err(_) => Ok(Made::Unlocked(())),
+            }
+        })
+        .map(|(made, ())| made)
+    }
+
+    /// An empty file, open to nobody to whom the file that it will replace is closed.
+    pub(super) fn file(place: &Path, permissions: Option<&Permissions>) -> Result<(Self, File), WriteError> {
+        Self::make(place, |permit, path| {
+            let file = permit.create(path, permissions)?;
+            Ok(match file.try_clone() {
+                Ok(lock) => Made::Locked(lock, file),
+                Err(_) => Made::Unlocked(file),
+            })
+        })
+    }
+
+    fn make<T>(
+        place: &Path,
+        create: impl Fn(&Permit, &Path) -> io::Result<Made<T>>,
+    ) -> Result<(Self, T), WriteError> {
+        for number in 0..WRITERS {
+            let path = hidden(place, number, NEW)?;
+            let permit = permit();
+            let (lock, made) = match create(&permit, &path) {
+                Ok(Made::Locked(lock, made)) if !is_held(&lock) && is_at(&lock, &path) => (Some(lock), made),
+                Ok(Made::Unlocked(made)) => (None, made),
+                // Theirs to remove who found it before it was locked; the name may be another's by now.
+                Ok(Made::Locked(..) | Made::Swept) => continue,
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
+                Err(error) => return Err(WriteError::at(place, error)),
+            };
+            permit.unfinished(&path, true);
+            return Ok((Self { path, finished: false, lock }, made));
+        }
+        Err(WriteError::at(place, ErrorKind::ResourceBusy.into()))
+    }
+
+    /// It has its place, or must stay where it is.
+    pub(super) fn keep(&mut self) {
+        permit().unfinished(&self.path, false);
+        self.finished = true;
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.finished {
+            let permit = permit();
+            let mut removed = permit.remove_tree(&self.path);
+            if removed.as_ref().is_err_and(is_exhausted) && self.lock.take().is_some() {
+                // The lock's own descriptor is the one that was missing.
+                removed = permit.remove_tree(&self.path);
+            }
+            // Nobody is left to report to; the next start tries again.
+            drop(removed);
+            permit.unfinished(&self.path, false);
+        }
+    }
+}
+
+/// The hidden name beside a place.
+pub(super) fn hidden(place: &Path, number: usize, ending: &str) -> Result<PathBuf, WriteError> {
+    let name = place.file_name().ok_or_else(|| WriteError::NoName { path: place.to_owned() })?;
+    let mut hidden = start(name);
+    let id = std::process::id();
+    let number = if number > 0 { format!("{id}-{number}") } else { id.to_string() };
+    let mark = mark(&hidden, &number);
+    hidden.push(format!("{number}.{mark}.{ending}"));
+    Ok(place.with_file_name(hidden))
+}
+
+/// What shows that a hidden name is from here.
+pub(super) fn mark(start: &OsStr, number: &str) -> String {
+    const DIGITS: usize = 8;
+    let digest = Sha256::new().chain_update(start.as_encoded_bytes()).chain_update(number).finalize();
+    hex(&digest)[..DIGITS].to_owned()
+}
+
+fn start(name: &OsStr) -> OsString {
+    let mut start = OsString::from(".");
+    start.push(name);
+    start.push(".");
+    start
+}
+
+/// The ending of a hidden name of this start, if it is one, and whether it has its mark.
+fn ending(name: &OsStr, start: &OsStr) -> Option<(&'static str, bool)> {
+    let rest = name.as_encoded_bytes().strip_prefix(start.as_encoded_bytes())?;
+    let (number, rest) = std::str::from_utf8(rest).ok()?.split_once('.')?;
+    let marked = rest.split_once('.').filter(|(found, _)| *found == mark(start, number));
+    let ending = marked.map_or(rest, |(_, ending)| ending);
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_number = number.split_once('-').map_or_else(|| digits(number), |(a, b)| digits(a) && digits(b));
+    let known = [NEW, ASIDE].into_iter().find(|known| is_number && ending == *known)?;
+    Some((known, marked.is_some()))
+}
+
+/// Whether somebody else holds the lock; if not, it is taken.
+fn is_held(file: &File) -> bool {
+    matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock))
+}
+
+/// Restores and removes what killed processes left beside a place.
+///
+/// # Errors
+/// A left-over holds something that is not from this program.
+pub(crate) fn sweep(place: &Path) -> Result<(), WriteError> {
+    let Some(name) = place.file_name() else { return Ok(()) };
+    let start = start(name);
+    let Ok(entries) = fs::read_dir(parent(place)) else { return Ok(()) };
+    let mut left: Vec<(&'static str, bool, PathBuf)> = entries
+        .filter_map(Result::ok)
+        .filter_map(|entry| {
+            let (ending, marked) = ending(&entry.file_name(), &start)?;
+            Some((ending, marked, place.with_file_name(entry.file_name())))
+        })
+        .collect();
+    left.sort(); // what stepped aside comes first: it may be all there is
+    for (ending, marked, path) in left {
+        let Ok(meta) = fs::symlink_metadata(&path) else { continue };
+        if !meta.is_file() && !meta.is_dir() {
+            continue;
+        }
+        // Without a lock nobody can know whether it is still being written.
+        let Ok(lock) = File::open(&path) else { continue };
+        if lock.try_lock().is_err() || !is_at(&lock, &path) {
+            continue;
+        }
+        let at = |error| WriteError::at(&path, error);
+        let permit = permit();
+        let manifest = if meta.is_dir() { Manifest::read(&path).map_err(at)? } else { None };
+        if ending == ASIDE && (marked || manifest.is_some()) && fs::symlink_metadata(place).is_err() {
+            permit.rename_to_new(&path, place).map_err(at)?;
+        } else if let Some(manifest) = manifest {
+            match manifest.strange(&path).map_err(at)? {
+                None => manifest.remove(&path, &permit).map_err(at)?,
+                Some(strange) => {
+                    return Err(WriteError::Strange { path, name: strange.name, changed: strange.changed });
+                }
+            }
+        } else if ending == NEW && marked {
+            permit.remove_tree(&path).map_err(at)?;
+        } else if meta.is_dir() {
+            // Its manifest went last; if it is not empty, it is not from here.
+            let _ = permit.remove_dir(&path);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,142 @@
+//! The outcomes of a group, and its heights, read back: only what this program writes, and never more than the report announces.
+//!
+//! ```text
+//!   outcome/zarr.json   must be what is written: u8 (heights: f32) over the report's cells, its chunks, gzip
+//!   outcome/c/i/j/…     one chunk after the other: whole rows, so each goes on where the one before it ended
+//! ```
+//!
+//! A chunk that unpacks to more than it should hold is refused when the first byte too many arrives.
+
+use super::{CHUNK_CELLS, chunk_shape, unravel};
+use crate::bounded;
+use catchment_core::acceptance::Outcome;
+use catchment_core::exec::{Cancelled, Exec};
+use flate2::bufread::GzDecoder;
+use serde_json::{Value, json};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Most bytes of the metadata of an array: those of this program take less than one thousand.
+const METADATA_BYTES: u64 = 1 << 20;
+
+/// Most bytes of a chunk as it is stored: what does not compress grows by five bytes in 64 kB, and a head and a tail.
+const CHUNK_BYTES: u64 = (CHUNK_CELLS + CHUNK_CELLS / 1024 + 1024) as u64;
+
+/// Why there are no outcomes.
+pub(super) enum Refused {
+    /// The file, and what is wrong with it.
+    Content(PathBuf, String),
+    Cancelled(Cancelled),
+}
+
+impl From<Cancelled> for Refused {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::Cancelled(cancelled)
+    }
+}
+
+/// The outcomes over `shape`, row-major; their number has been compared with the memory allowed.
+pub(super) fn read(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Vec<Outcome>, Refused> {
+    cells(folder, "outcome", "uint8", shape, exec, |[code]: [u8; 1]| {
+        let outcome = Outcome::ALL.into_iter().find(|outcome| *outcome as u8 == code);
+        outcome.ok_or_else(|| format!("{code} is the code of no outcome"))
+    })
+}
+
+/// The heights over `shape`, row-major, in D, NaN without contact; `None` of a group that has none.
+pub(super) fn heights(folder: &Path, shape: &[usize], exec: &Exec) -> Result<Option<Vec<f32>>, Refused> {
+    if !folder.join("height").is_dir() {
+        return Ok(None);
+    }
+    cells(folder, "height", "float32", shape, exec, |bytes: [u8; 4]| Ok(f32::from_le_bytes(bytes))).map(Some)
+}
+
+/// An array of numbers of `N` bytes over `shape`, each as `value` makes it.
+fn cells<T, const N: usize>(
+    folder: &Path,
+    name: &str,
+    kind: &str,
+    shape: &[usize],
+    exec: &Exec,
+    value: impl Fn([u8; N]) -> Result<T, String>,
+) -> Result<Vec<T>, Refused> {
+    let folder = folder.join(name);
+    check_metadata(&folder.join("zarr.json"), shape, kind)?;
+    let chunk = chunk_shape(shape);
+    let grid: Vec<usize> = shape.iter().zip(&chunk).map(|(n, c)| n.div_ceil(*c)).collect();
+    // The dimension along which the last chunk ends early: before it chunks hold one row, behind it all.
+    let cut = chunk.iter().zip(shape).rposition(|(c, n)| c < n).unwrap_or_default();
+    let row: usize = chunk[cut + 1..].iter().product();
+    let cells: usize = chunk.iter().product();
+    let mut found = Vec::new();
+    let most: usize = shape.iter().product();
+    if found.try_reserve_exact(most).is_err() {
+        return Err(Refused::Content(folder, format!("there is no memory for its {most} cells")));
+    }
+    for number in 0..grid.iter().product() {
+        exec.check()?;
+        let place = unravel(number, &grid);
+        let path = place.iter().fold(folder.join("c"), |path, k| path.join(k.to_string()));
+        let refused = |reason| Refused::Content(path.clone(), reason);
+        let bytes = unpacked(&path, cells, N).map_err(refused)?;
+        let inside = (shape[cut] - place[cut] * chunk[cut]).min(chunk[cut]) * row;
+        for bytes in bytes.as_chunks().0.iter().take(inside) {
+            found.push(value(*bytes).map_err(refused)?);
+        }
+    }
+    Ok(found)
+}
+
+/// The bytes of a chunk, `width` of every cell.
+fn unpacked(path: &Path, cells: usize, width: usize) -> Result<Vec<u8>, String> {
+    let packed = bounded::read(path, CHUNK_BYTES * width as u64).map_err(|error| error.to_string())?;
+    let mut bytes = Vec::with_capacity(cells * width);
+    let unpacking = GzDecoder::new(&packed[..]).take((cells * width) as u64 + 1).read_to_end(&mut bytes);
+    unpacking.map_err(|error| format!("it is no gzip stream: {error}"))?;
+    match bytes.len() {
+        found if found == cells * width => Ok(bytes),
+        found if found > cells * width => Err(format!("it unpacks to more than its {cells} cells")),
+        found => Err(format!("it unpacks to {} of {cells} cells", found / width)),
+    }
+}
+
+/// Refuses an array that this program would not have written over these cells.
+fn check_metadata(path: &Path, shape: &[usize], kind: &str) -> Result<(), Refused> {
+    let bad = |reason: String| Refused::Content(path.to_owned(), reason);
+    let bytes = bounded::read(path, METADATA_BYTES).map_err(|error| bad(error.to_string()))?;
+    let found: Value = serde_json::from_slice(&bytes).map_err(|error| bad(error.to_string()))?;
+    if found["shape"] != json!(shape) {
+        let given = short(&found["shape"]);
+        return Err(bad(format!("its outcomes are over {given} cells, its report says {shape:?}")));
+    }
+    let codecs: Option<Vec<&Value>> =
+        found["codecs"].as_array().map(|all| all.iter().map(|c| &c["name"]).collect());
+    for (what, given, expected) in [
+        ("zarr_format", &found["zarr_format"], json!(3)),
+        ("node_type", &found["node_type"], json!("array")),
+        ("data_type", &found["data_type"], json!(kind)),
+        ("chunk_grid", &found["chunk_grid"]["name"], json!("regular")),
+        ("chunk_shape", &found["chunk_grid"]["configuration"]["chunk_shape"], json!(chunk_shape(shape))),
+        ("chunk_key_encoding", &found["chunk_key_encoding"]["name"], json!("default")),
+        ("separator", &found["chunk_key_encoding"]["configuration"]["separator"], json!("/")),
+        ("codecs", &json!(codecs), json!(["bytes", "gzip"])),
+        ("storage_transformers", found.get("storage_transformers").unwrap_or(&json!([])), json!([])),
+    ] {
+        if *given != expected {
+            let given = short(given);
+            return Err(bad(format!("{what} is {given}, this program writes {expected}")));
+        }
+    }
+    Ok(())
+}
+
+/// What a message repeats of a value.
+fn short(value: &Value) -> String {
+    const SHOWN: usize = 60;
+    let text = value.to_string();
+    let mut short: String = text.chars().take(SHOWN).collect();
+    if short.len() < text.len() {
+        short.push('…');
+    }
+    short
+}

@@ -1,0 +1,306 @@
+//! The offsets that are corrected without any rotation: as versioned JSON, as text, as corners for programs.
+
+use super::envelope::{Body, Envelope};
+use super::text::{line, number, rounded};
+use catchment_core::design::Design;
+use catchment_core::method::zraa::{Catch, Nilsson, Square, Zraa, circle_bounds, circle_square};
+use catchment_core::pose::Dof;
+use serde::Serialize;
+
+/// The zero-rotation area of acceptance, with its head.
+pub type ZraaReport = Envelope<ZraaBody>;
+
+/// The zero-rotation area of acceptance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ZraaBody {
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// What is accepted.
+    #[serde(flatten)]
+    pub found: ZraaFound,
+}
+
+/// Offsets that are accepted, in D. Bounds of a circle are those of the round design that a polygon stands for, null
+/// where nothing is round.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum ZraaFound {
+    /// One free translation.
+    Interval {
+        /// x or y.
+        axis: Dof,
+        /// Lower end.
+        from_d: f64,
+        /// Upper end.
+        to_d: f64,
+        /// From one to the other.
+        length_d: f64,
+        /// Bounds of the length for the circle.
+        circle_length_d: Option<[f64; 2]>,
+        /// The ONAA, counted in D: of one translation the length itself.
+        onaa_d: f64,
+        /// Nilsson's bounds; null where the halves do not meet along one profile.
+        nilsson: Option<NilssonReport>,
+    },
+    /// Both translations.
+    Region {
+        /// Area, in D².
+        area_d2: f64,
+        /// Bounds of the area for the circle.
+        circle_area_d2: Option<[f64; 2]>,
+        /// The ONAA, counted in D: edge of the largest axis-parallel square inside.
+        onaa_d: f64,
+        /// Its middle.
+        onaa_center_d: [f64; 2],
+        /// Edge of the largest one around zero.
+        onaa_centered_d: f64,
+        /// Bounds of the edge for the circle.
+        circle_onaa_d: Option<[f64; 2]>,
+        /// Convex polygons that tile it: x and y of their corners, counter-clockwise.
+        polygons_d: Vec<Vec<[f64; 2]>>,
+    },
+}
+
+/// What one profile corrects to both sides, beside what any of its kind can.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NilssonReport {
+    /// Whether both halves are alike.
+    pub ungendered: bool,
+    /// Width of the profile.
+    pub width_d: f64,
+    /// The most that any profile of this kind and width corrects to both sides.
+    pub bound_d: f64,
+    /// What this one does.
+    pub both_d: f64,
+    /// What limits offsets to −x; null where nothing is corrected.
+    pub from: Option<CatchReport>,
+    /// What limits offsets to +x; null where nothing is corrected.
+    pub to: Option<CatchReport>,
+}
+
+/// The moving half's minimum slides home until it stands over the fixed half's maximum.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CatchReport {
+    /// The offset where it does.
+    pub offset_d: f64,
+    /// x of the minimum, mated.
+    pub minimum_d: f64,
+    /// x of the maximum.
+    pub maximum_d: f64,
+}
+
+impl From<&Nilsson> for NilssonReport {
+    fn from(found: &Nilsson) -> Self {
+        let side = |side: &Catch| CatchReport {
+            offset_d: side.reach(),
+            minimum_d: side.minimum,
+            maximum_d: side.maximum,
+        };
+        let [from, to] = &found.catches;
+        Self {
+            ungendered: found.ungendered,
+            width_d: found.width,
+            bound_d: found.bound(),
+            both_d: found.both(),
+            from: from.as_ref().map(side),
+            to: to.as_ref().map(side),
+        }
+    }
+}
+
+impl NilssonReport {
+    /// The bound in a few words.
+    pub fn bound(&self) -> String {
+        let share = if self.ungendered { 3 } else { 2 };
+        if (self.width_d - 1.0).abs() < Square::TOLERANCE {
+            format!("D/{share}")
+        } else {
+            format!("{} D/{share}", rounded(self.width_d))
+        }
+    }
+
+    fn tell(&self, text: &mut String) {
+        let kind = if self.ungendered { "both halves alike" } else { "halves of two kinds" };
+        line(text, &format!("  nilsson {} to both sides is the most for one profile, {kind}", self.bound()));
+        line(text, &format!("          {:.9} D to both sides is what this one corrects", self.both_d));
+        for (side, found) in [("−x", &self.from), ("+x", &self.to)] {
+            let words = found.map_or_else(
+                || "nothing is caught".to_owned(),
+                |CatchReport { minimum_d, maximum_d, .. }| {
+                    let [minimum, maximum] = [minimum_d, maximum_d].map(|x| rounded(x + 0.0));
+                    format!("the minimum at x = {minimum} slides home short of the maximum at {maximum}")
+                },
+            );
+            line(text, &format!("          to {side} {words}"));
+        }
+    }
+}
+
+impl Body for ZraaBody {
+    const KIND: &'static str = "zraa";
+}
+
+impl ZraaReport {
+    /// Of a design; `nilsson` is what its profile says, if it has one.
+    pub fn new(design: &Design, zraa: &Zraa, square: &Square, nilsson: Option<&Nilsson>) -> Self {
+        Self::of(ZraaBody::new(design, zraa, square, nilsson), Vec::new(), None)
+    }
+}
+
+impl ZraaBody {
+    /// Of a design; `nilsson` is what its profile says, if it has one.
+    pub fn new(design: &Design, zraa: &Zraa, square: &Square, nilsson: Option<&Nilsson>) -> Self {
+        let bounds = circle_bounds(design, zraa);
+        let found = match zraa {
+            Zraa::Interval { axis, from, to } => ZraaFound::Interval {
+                axis: *axis,
+                from_d: *from,
+                to_d: *to,
+                length_d: to - from,
+                circle_length_d: bounds,
+                onaa_d: square.edge,
+                nilsson: nilsson.map(NilssonReport::from),
+            },
+            Zraa::Region { polygons, area, .. } => ZraaFound::Region {
+                area_d2: *area,
+                circle_area_d2: bounds,
+                onaa_d: square.edge,
+                onaa_center_d: square.center.to_array(),
+                onaa_centered_d: square.centered_edge,
+                circle_onaa_d: circle_square(design, zraa, square),
+                polygons_d: polygons.iter().map(|p| p.iter().map(|v| [v.x, v.y]).collect()).collect(),
+            },
+        };
+        Self { design: design.clone(), found }
+    }
+
+    /// The accepted offsets for a person.
+    pub fn table(&self) -> String {
+        let mut text = String::new();
+        let (design, text) = (&self.design, &mut text);
+        line(text, &design.name);
+        let circle = |text: &mut String, bounds: Option<[f64; 2]>, unit: &str| {
+            if let Some([lower, upper]) = bounds {
+                let stands = "a polygon stands for it, see chord_error";
+                line(text, &format!("  circle  {lower:.9} … {upper:.9} {unit}: {stands}"));
+            }
+        };
+        match &self.found {
+            ZraaFound::Interval { axis, from_d, to_d, length_d, circle_length_d, nilsson, .. } => {
+                line(text, &format!("  offsets in {} corrected without rotation", axis.name()));
+                for (name, value) in [("from", from_d), ("to", to_d), ("length", length_d)] {
+                    line(text, &format!("  {name:<6}  {value:.9} D{}", in_unit(design, *value, 1)));
+                }
+                circle(text, *circle_length_d, "D");
+                if let Some(nilsson) = nilsson {
+                    nilsson.tell(text);
+                }
+            }
+            ZraaFound::Region {
+                area_d2,
+                circle_area_d2,
+                onaa_d,
+                onaa_center_d: [x, y],
+                onaa_centered_d,
+                circle_onaa_d,
+                polygons_d,
+            } => {
+                line(text, "  offsets in x and y corrected without rotation");
+                line(text, &format!("  area    {area_d2:.9} D²{}", in_unit(design, *area_d2, 2)));
+                circle(text, *circle_area_d2, "D²");
+                // The edge is exact to 1e-8 D: more digits would be noise.
+                line(text, &format!("  onaa    {onaa_d:.7} D{}", in_unit(design, *onaa_d, 1)));
+                line(text, &format!("          edge of the largest square, {}", around(*x, *y)));
+                if onaa_d - onaa_centered_d > Square::TOLERANCE {
+                    line(text, &format!("          {onaa_centered_d:.7} D for the largest around zero"));
+                }
+                if let Some([lower, upper]) = circle_onaa_d {
+                    line(text, &format!("  circle  {lower:.7} … {upper:.7} D"));
+                }
+                line(text, &format!("  tiled by {} convex polygons", polygons_d.len()));
+            }
+        }
+        std::mem::take(text)
+    }
+
+    /// The corners as records for programs, the names of the columns first, in D; an interval has its two ends.
+    pub fn records(&self) -> Vec<Vec<String>> {
+        match &self.found {
+            ZraaFound::Interval { axis, from_d, to_d, .. } => {
+                vec![vec![axis.name().to_owned()], vec![number(*from_d)], vec![number(*to_d)]]
+            }
+            ZraaFound::Region { polygons_d, .. } => {
+                let mut records = vec![["polygon", "x", "y"].map(str::to_owned).to_vec()];
+                for (k, polygon) in polygons_d.iter().enumerate() {
+                    records.extend(polygon.iter().map(|[x, y]| vec![k.to_string(), number(*x), number(*y)]));
+                }
+                records
+            }
+        }
+    }
+}
+
+/// Where a square lies.
+fn around(x: f64, y: f64) -> String {
+    if x.abs().max(y.abs()) < Square::TOLERANCE {
+        "around zero".to_owned()
+    } else {
+        format!("around x = {}, y = {} D", rounded(x), rounded(y))
+    }
+}
+
+/// ` = 25 mm`, where the design has a unit.
+fn in_unit(design: &Design, value: f64, power: i32) -> String {
+    let square = if power == 2 { "²" } else { "" };
+    design.unit.map_or_else(String::new, |unit| {
+        format!(" = {:.6} {}{square}", value * design.width.powi(power), unit.symbol())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::schema::testing::design;
+    use super::*;
+    use catchment_core::pose::DofSet;
+    use glam::DVec2;
+
+    #[test]
+    fn an_area_and_an_interval_have_fields_of_their_own() {
+        let mut design = design(DofSet::ALL);
+        design.name = "\u{1b}[2Jx".to_owned();
+        let corners = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
+        let center = DVec2::new(0.25, 0.25);
+        let square = Square { edge: 0.5, center, centered_edge: 0.0 };
+        let region = ZraaReport::new(
+            &design,
+            &Zraa::Region { polygons: vec![corners], area: 0.5, seam: 0.0 },
+            &square,
+            None,
+        );
+        let json: serde_json::Value = serde_json::from_str(&region.to_json().unwrap()).unwrap();
+        assert_eq!(
+            (&json["kind"], &json["area_d2"], &json["polygons_d"][0][1][0]),
+            (&"zraa".into(), &0.5.into(), &1.0.into())
+        );
+        assert!(json["circle_area_d2"].is_null() && json.get("axis").is_none());
+        assert_eq!((&json["onaa_d"], &json["onaa_center_d"][1]), (&0.5.into(), &0.25.into()));
+        let told = region.table();
+        assert!(told.contains("onaa    0.5000000 D = 25.000000 mm\n"), "{told}");
+        assert!(
+            told.contains("around x = 0.25, y = 0.25 D\n          0.0000000 D for the largest around"),
+            "{told}"
+        );
+        assert!(
+            region.table().starts_with("?[2Jx\n")
+                && region.table().contains("0.500000000 D² = 1250.000000 mm²")
+        );
+        assert_eq!(region.records()[1..], [["0", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]);
+        let square = Square { edge: 0.75, center: DVec2::ZERO, centered_edge: 0.5 };
+        let interval =
+            ZraaReport::new(&design, &Zraa::Interval { axis: Dof::X, from: -0.5, to: 0.25 }, &square, None);
+        let json: serde_json::Value = serde_json::from_str(&interval.to_json().unwrap()).unwrap();
+        assert_eq!((&json["axis"], &json["length_d"]), (&"x".into(), &0.75.into()));
+        assert_eq!(json["onaa_d"], json["length_d"]);
+        assert_eq!(interval.records(), [["x"], ["-0.5"], ["0.25"]]);
+    }
+}

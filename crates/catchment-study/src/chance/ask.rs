@@ -1,0 +1,193 @@
+//! Poses and maps: so many trials of each, and the share that docks.
+
+use super::found::{Chance, Map, PoseChance};
+use super::spread;
+use super::trial::{Draw, check, nominal};
+use super::{ChanceError, FEWEST_OVERALL, MOST_FACTOR, MOST_TRIALS, Question, Settings};
+use catchment_core::acceptance::{Outcome, Stream};
+use catchment_core::exec::Exec;
+use catchment_core::landscape::Grid;
+use catchment_core::method::descent::{self, Follower};
+use catchment_core::method::drop::Bench;
+use catchment_core::pose::PoseError;
+use catchment_core::poses::Circumstance;
+use catchment_core::problem::Problem;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const STAGE: &str = "drop tests";
+/// Streams of poses and of errors that are expected.
+pub(super) const OF_POSES: u64 = 1;
+pub(super) const OF_ERRORS: u64 = 2;
+
+/// Everything that trials are made with.
+pub(super) struct Trials<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) settings: &'a Settings,
+    pub(super) bench: Bench<'a>,
+    pub(super) nominal: f64,
+}
+
+/// Answers what is asked.
+///
+/// # Errors
+/// See [`ChanceError`].
+///
+/// # Examples
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use catchment::design::read;
+/// use catchment::exec::Exec;
+/// use catchment::pose::PoseError;
+/// use catchment::poses::{Circumstance, Dynamics, Law};
+/// use catchment::problem::Problem;
+/// use catchment::study::chance::{self, Question, Settings};
+///
+/// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
+/// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
+/// let dynamics = Dynamics::default().with(Circumstance::Speed, Law::Normal { mean: 1.0, sigma: 0.2 });
+/// let settings = Settings { dynamics, trials: 10, ..Settings::default() };
+/// let at = |x: f64| PoseError { x, ..PoseError::default() };
+/// let asked = Question { poses: vec![at(0.1), at(0.9)], ..Question::default() };
+/// let found = chance::run(&problem, &asked, &settings, &Exec::new())?;
+/// assert_eq!(found.poses.iter().map(|pose| pose.probability()).collect::<Vec<_>>(), [1.0, 0.0]);
+/// # Ok(())
+/// # }
+/// ```
+pub fn run(
+    problem: &Problem,
+    asked: &Question,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Chance, ChanceError> {
+    check(problem, settings)?;
+    sound(problem, asked, settings)?;
+    let bench = Bench::new(problem.pair())?;
+    let nominal = nominal(settings, &bench);
+    let trials = Trials { problem, settings, bench, nominal };
+    let grid = (!asked.map.is_empty()).then(|| Grid { axes: asked.map.clone() });
+    let cells: Vec<PoseError> =
+        grid.iter().flat_map(|grid| (0..grid.len()).map(|cell| grid.pose(cell))).collect();
+    // By their trials, so that progress is even.
+    let all = asked.trials(settings).max(1) as f64;
+    let ends = [asked.poses.len(), asked.poses.len() + cells.len()]
+        .map(|places| (places * settings.trials) as f64 / all);
+    let poses = trials.poses(&asked.poses, &exec.part([0.0, ends[0]], STAGE))?;
+    let cells = trials.poses(&cells, &exec.part(ends, STAGE))?;
+    let (overall, curve) = match &asked.errors {
+        Some(errors) => spread::overall(&trials, errors, &asked.times, &exec.part([ends[1], 1.0], STAGE))?,
+        None => (None, Vec::new()),
+    };
+    let map = grid.map(|grid| Map { axes: grid.axes, cells });
+    let counted = overall.as_ref().map_or(0, |overall| overall.trials);
+    let places = poses.len() + map.as_ref().map_or(0, |map| map.cells.len());
+    let made = places * settings.trials + counted + curve.iter().map(|at| at.trials).sum::<usize>();
+    Ok(Chance { settings: settings.clone(), poses, map, overall, curve, trials: made })
+}
+
+fn sound(problem: &Problem, asked: &Question, settings: &Settings) -> Result<(), ChanceError> {
+    if asked.poses.is_empty() && asked.map.is_empty() && asked.errors.is_none() {
+        return Err(ChanceError::Nothing);
+    }
+    let trials = asked.trials(settings);
+    if trials > MOST_TRIALS {
+        return Err(ChanceError::TooMany { trials });
+    }
+    if settings.trials == 0 {
+        return Err(ChanceError::TooFew { trials: 0, what: "each pose", least: 1 });
+    }
+    if asked.errors.is_some() && settings.overall < FEWEST_OVERALL {
+        let (trials, what) = (settings.overall, "a probability under errors");
+        return Err(ChanceError::TooFew { trials, what, least: FEWEST_OVERALL });
+    }
+    if let Some(factor) = asked.times.iter().find(|factor| !(**factor > 0.0 && **factor <= MOST_FACTOR)) {
+        return Err(ChanceError::Factor { factor: *factor });
+    }
+    let free = problem.alignment().free;
+    if let Some(axis) = asked.map.iter().find(|axis| !free.contains(axis.dof)) {
+        return Err(ChanceError::LockedError { axis: axis.dof });
+    }
+    Ok(())
+}
+
+impl Trials<'_> {
+    /// What becomes of a pose with a draw, every velocity times `factor`.
+    pub(super) fn fall(
+        &self,
+        error: &PoseError,
+        draw: &Draw,
+        factor: f64,
+        exec: &Exec,
+    ) -> Result<Outcome, ChanceError> {
+        let start = draw.start(self.problem, self.settings, error);
+        let settings = draw.settings(self.settings, factor, self.nominal);
+        Ok(self.bench.fall(&start, &settings, exec)?.outcome)
+    }
+
+    /// Whether friction varies from draw to draw.
+    pub(super) fn slips_otherwise(&self) -> bool {
+        self.settings.dynamics.law(Circumstance::Friction).is_some_and(|law| !law.is_constant())
+    }
+
+    /// How exact motions follow a draw.
+    pub(super) fn motions(&self, draw: &Draw) -> Result<descent::Settings, ChanceError> {
+        Ok(descent::Settings::with_friction(draw.friction(self.settings))?)
+    }
+
+    /// The draws of a pose: functions of the seed, the pose and their numbers, wherever the pose stands.
+    fn draws(&self, error: &PoseError) -> impl Fn(usize) -> Draw {
+        // −0 and 0 are the same error.
+        let bits = |value: f64| (value + 0.0).to_bits();
+        let stream = Stream::new(self.settings.seed).branch(OF_POSES);
+        let stream = error.to_array().into_iter().fold(stream, |stream, value| stream.branch(bits(value)));
+        let dynamics = &self.settings.dynamics;
+        move |trial| Draw::of(dynamics, stream.branch(trial as u64))
+    }
+
+    /// Tries each pose as often as the settings say.
+    fn poses(&self, poses: &[PoseError], exec: &Exec) -> Result<Vec<PoseChance>, ChanceError> {
+        let trials = self.settings.trials;
+        let all = poses.len() * trials;
+        let done = AtomicUsize::new(0);
+        let outcomes: Vec<Outcome> = exec.install(|| {
+            (0..all)
+                .into_par_iter()
+                .map(|k| {
+                    let error = &poses[k / trials];
+                    let outcome = self.fall(error, &self.draws(error)(k % trials), 1.0, exec)?;
+                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                    exec.report(done as f64 / all as f64, STAGE);
+                    Ok(outcome)
+                })
+                .collect::<Result<_, ChanceError>>()
+        })?;
+        let quasi_static: Vec<f64> = exec.install(|| {
+            poses.par_iter().map(|error| self.quasi_static(error, exec)).collect::<Result<_, ChanceError>>()
+        })?;
+        let of = |(k, error): (usize, &PoseError)| {
+            let met = &outcomes[k * trials..(k + 1) * trials];
+            let counts = Outcome::ALL.map(|outcome| met.iter().filter(|end| **end == outcome).count());
+            PoseChance { error: *error, trials, counts, quasi_static: quasi_static[k] }
+        };
+        Ok(poses.iter().enumerate().map(of).collect())
+    }
+
+    /// Share of the draws of a pose that dock by exact motion.
+    fn quasi_static(&self, error: &PoseError, exec: &Exec) -> Result<f64, ChanceError> {
+        let count = if self.slips_otherwise() { self.settings.trials } else { 1 };
+        let draws = self.draws(error);
+        let mut docks = 0;
+        for trial in 0..count {
+            exec.check()?;
+            let settings = self.motions(&draws(trial))?;
+            let end = Follower::new(self.problem.pair(), &settings).follow(error);
+            docks += usize::from(end.outcome == Outcome::Aligned);
+        }
+        Ok(docks as f64 / count as f64)
+    }
+
+    /// The mean of an approach speed, in D/s.
+    pub(super) fn speed(&self) -> f64 {
+        self.settings.dynamics.mean(Circumstance::Speed).unwrap_or(self.settings.drop.launch.speed)
+    }
+}

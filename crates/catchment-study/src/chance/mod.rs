@@ -1,0 +1,240 @@
+//! Dynamics as a probability: how likely a half docks that comes with some speed, drift, spin, mass, friction, bounce and height, each of
+//! them drawn from a declared law.
+//!
+//! ```text
+//!   [dynamics]            one trial                                   asked
+//!   speed 50 ± 10 mm/s    draw ──▶ settings ──▶ engine ──▶ aligned?   of poses: share of N trials, Wilson's interval
+//!   friction 0.1..0.3                                                 of cells over two errors: a map of the same
+//!                                                                     of errors as they are expected: P by double sampling,
+//!                                                                     the trials where the quasi-static border runs
+//!                                                                     P with every velocity times t, t → 0: quasi-static
+//! ```
+//!
+//! **What drives it.** With *held* speed the half is let go at its approach speed v, and pushed as damping balances at v: by
+//! F = m·γ·v. Where contact stops it, it has γ⁻¹ of time to lose what it came with: it coasts λ = v/γ, and λ against D is all that speed is
+//! in the geometry. As v → 0 the force of inertia vanishes beside that of damping, and what is left is the motion of
+//! [`descent`](catchment_core::method::descent), whose metric is that of damping. Time is counted so that the half approaches at the engine's own
+//! pace, whatever its speed: trials of any speed take as many steps. With a *given* push (a force, or gravity) nothing is scaled, and t → 0
+//! is a half let go at rest: no quasi-static motion.
+//!
+//! **Mass** declared as a law changes inertia and weight; the friction with the surroundings stays that of the mean mass, so that a heavy half coasts
+//! farther.
+//!
+//! Draw k of pose e is a function of the seed, e and k alone: threads, the order of poses and what else is asked change no bit. Curves use
+//! the same draws at every speed.
+//!
+//! Not promised: that the laws are true, or independent of each other, as they are taken to be. Undecided trials count as failures and widen intervals upwards. The engine's
+//! own errors are in the shares. Units: D, s, kg, radians. The wish is that of the dissertation, section 7.2.
+
+mod ask;
+mod found;
+mod spread;
+#[cfg(test)]
+mod tests;
+mod trial;
+
+pub use ask::run;
+use catchment_core::exec::Cancelled;
+use catchment_core::landscape::GridAxis;
+use catchment_core::method::DecideError;
+use catchment_core::method::descent::FrictionOutOfRange;
+use catchment_core::method::drop;
+use catchment_core::pose::{Dof, PoseError};
+use catchment_core::poses::{Circumstance, Dynamics, Spread};
+use catchment_core::problem::Problem;
+pub use found::{AtSpeed, Chance, Map, Overall, PoseChance, majority_of_three};
+use serde::{Deserialize, Serialize};
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// What is not declared; its trials, seed and, with held speed, its push do not count.
+    pub drop: drop::Settings,
+    /// What is.
+    pub dynamics: Dynamics,
+    /// Whether the half is pushed as damping balances at its speed, in the place of what `drop` says.
+    pub held: bool,
+    /// Trials of each pose and of each cell of a map.
+    pub trials: usize,
+    /// Trials of the probability under expected errors, and of each speed of the curve.
+    pub overall: usize,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+/// Rate at which velocities decay where nothing is said, in 1/s: an arm under force control gives way within a tenth of a second.
+pub const DAMPING: f64 = 10.0;
+
+impl Default for Settings {
+    fn default() -> Self {
+        let drop = drop::Settings { damping: DAMPING, angular_damping: DAMPING, ..drop::Settings::default() };
+        Self { drop, dynamics: Dynamics::default(), held: true, trials: 100, overall: 1000, seed: 1 }
+    }
+}
+
+impl Settings {
+    /// How far a half coasts that comes with the mean speed, in D; none without damping or speed.
+    pub fn coasting(&self) -> Option<f64> {
+        let speed = self.dynamics.mean(Circumstance::Speed).unwrap_or(self.drop.launch.speed);
+        (speed > 0.0 && self.drop.damping > 0.0).then(|| speed / self.drop.damping)
+    }
+}
+
+/// What is asked; nothing of it has to be.
+#[derive(Debug, Clone, Default)]
+pub struct Question {
+    /// These poses, each by itself.
+    pub poses: Vec<PoseError>,
+    /// A map over two errors, or one, all others 0.
+    pub map: Vec<GridAxis>,
+    /// The errors that are expected.
+    pub errors: Option<Spread>,
+    /// All velocities times these, under the errors that are expected; above 0.
+    pub times: Vec<f64>,
+}
+
+/// Why there is no chance.
+#[derive(Debug, thiserror::Error)]
+pub enum ChanceError {
+    /// Nothing is asked.
+    #[error("nothing is asked: name poses, errors to expect, or the axes of a map")]
+    Nothing,
+    /// A held speed that is none.
+    #[error(
+        "the approach speed may be 0: held speed needs one above 0; declare it, or give a push or gravity in its place"
+    )]
+    NoSpeed,
+    /// Held speed without damping.
+    #[error(
+        "without damping no force holds a speed: give a damping above 0, or a push or gravity in the place of held speed"
+    )]
+    Undamped,
+    /// The law of what the design locks.
+    #[error("{} is declared, and the design locks {}: it would not count; leave it out", of.name(), axis.name())]
+    Locked {
+        /// What is declared.
+        of: Circumstance,
+        /// What is locked.
+        axis: Dof,
+    },
+    /// Errors of what the design locks.
+    #[error("{} does not vary in this design, which locks it", axis.name())]
+    LockedError {
+        /// The error.
+        axis: Dof,
+    },
+    /// None of the errors varies.
+    #[error("none of the expected errors varies: ask about the pose itself")]
+    Still,
+    /// A factor of speeds that is none.
+    #[error("speeds cannot be multiplied by {factor}: give a number above 0, and at most {MOST_FACTOR}")]
+    Factor {
+        /// What was given.
+        factor: f64,
+    },
+    /// Too few trials.
+    #[error("{trials} trials of {what} are too few; {least} or more")]
+    TooFew {
+        /// How many.
+        trials: usize,
+        /// Of what.
+        what: &'static str,
+        /// How many it takes.
+        least: usize,
+    },
+    /// Too many trials.
+    #[error(
+        "{trials} trials in all, at some milliseconds each, are days: at most {MOST_TRIALS}; ask for fewer trials, poses, cells or speeds"
+    )]
+    TooMany {
+        /// How many.
+        trials: usize,
+    },
+    /// A setting that no trial can be made with, or a geometry that the engine does not take.
+    #[error(transparent)]
+    Drop(drop::DropError),
+    /// No friction of exact motions.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
+    /// The grid that says where to look was not decided.
+    #[error(transparent)]
+    Decide(#[from] DecideError),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<drop::DropError> for ChanceError {
+    fn from(error: drop::DropError) -> Self {
+        match error {
+            drop::DropError::Cancelled(error) => Self::Cancelled(error),
+            error => Self::Drop(error),
+        }
+    }
+}
+
+/// Most trials of one question: at 5 ms some fourteen hours on one core.
+pub const MOST_TRIALS: usize = 10_000_000;
+/// Largest factor of speeds.
+const MOST_FACTOR: f64 = 1e3;
+/// Fewest trials of a probability under errors: a few for each stratum.
+const FEWEST_OVERALL: usize = 100;
+/// What a trial takes, about, in seconds on one core: 3 ms between planar faces, 6 ms between pyramids, 15 ms between saddles.
+const TRIAL_SECONDS: f64 = 0.005;
+
+/// Beyond this it is said how long it takes, in seconds.
+const LONG: f64 = 600.0;
+
+impl Question {
+    /// A map over two errors, so many cells along each, as far as the error box reaches.
+    #[must_use]
+    pub fn with_map(mut self, problem: &Problem, axes: [Dof; 2], cells: usize) -> Self {
+        let alignment = problem.alignment();
+        let axis = |dof| {
+            let half = alignment.half_range(dof);
+            GridAxis { dof, lo: -half, hi: half, cells }
+        };
+        self.map = axes.map(axis).to_vec();
+        self
+    }
+
+    /// The same with errors even over the whole error box, where speeds are asked about, or nothing at all, and no errors are expected.
+    #[must_use]
+    pub fn or_box(mut self, problem: &Problem) -> Self {
+        let nothing = self.poses.is_empty() && self.map.is_empty();
+        if self.errors.is_none() && (nothing || !self.times.is_empty()) {
+            let alignment = problem.alignment();
+            let mut half_width = [0.0; 5];
+            for dof in alignment.free.iter() {
+                half_width[dof.index()] = alignment.half_range(dof);
+            }
+            let half_width = PoseError::from_array(half_width);
+            self.errors = Some(Spread::Uniform { mean: PoseError::default(), half_width });
+        }
+        self
+    }
+
+    /// Trials in all.
+    pub fn trials(&self, settings: &Settings) -> usize {
+        let cells = self.map.iter().map(|axis| axis.cells).fold(1usize, usize::saturating_mul);
+        let cells = if self.map.is_empty() { 0 } else { cells };
+        let places = self.poses.len().saturating_add(cells);
+        let curves = usize::from(self.errors.is_some()).saturating_mul(1 + self.times.len());
+        places.saturating_mul(settings.trials).saturating_add(curves.saturating_mul(settings.overall))
+    }
+
+    /// That it takes long on so many threads, if it does.
+    pub fn doubt(&self, settings: &Settings, threads: usize) -> Option<String> {
+        let trials = self.trials(settings);
+        let seconds = trials as f64 * TRIAL_SECONDS / threads.max(1) as f64;
+        (seconds > LONG).then(|| {
+            let took = if seconds < 3600.0 {
+                format!("{:.0} minutes", seconds / 60.0)
+            } else {
+                format!("{:.1} hours", seconds / 3600.0)
+            };
+            format!("{trials} trials take about {took} between simple halves")
+        })
+    }
+}

@@ -1,0 +1,319 @@
+//! Does the answer still move when the grid is refined? Every method, side by side.
+//!
+//! ```text
+//!   Sum ▲   ○                       cells per axis n, n·√2, n·2, … (odd: a cell is centred on the mated pose)
+//!       │      ○──○──○  stable      stop when the last two refinements changed the Sum by less than the
+//!       │  ●──●──●──●──●            tolerance of itself, and the ONAA edge by less than the tolerance of the box
+//!       └──────────────▶ n          or when the next one would not fit into the time or the memory allowed
+//! ```
+//!
+//! Not promised: that a stable answer is a true one. Flooding becomes stable at a wrong value: beside each finest Sum
+//! stands the one that exact descents correct it to, with its 95 % interval. Two small changes in a row may be luck. Where time stops a method, the number of
+//! its refinements differs from run to run; what is computed at each resolution does not.
+
+use super::refinement::{Refinement, RefinementError, Sampled};
+use catchment_core::exec::{Bytes, Exec, OutOfBudget};
+use catchment_core::landscape::Resolution;
+use catchment_core::method::correction::{self, Stop};
+use catchment_core::method::{Decide, Method, descent};
+use catchment_core::problem::Problem;
+use serde::Serialize;
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Settings {
+    /// Largest change that counts as stable: a share of the Sum, and a share of the error box's edge for ONAA.
+    pub tolerance: f64,
+    /// Seconds that each method may take.
+    pub time_limit_s: f64,
+    /// Cells of the finest grid that may be tried, after the coarsest.
+    pub most_cells: u64,
+    /// Which methods.
+    #[serde(serialize_with = "names")]
+    pub methods: Vec<Method>,
+    /// Random poses, followed exactly, that correct the Sum of each method's finest grid; 0 for none. Where nothing is
+    /// said, as many as a run by descent draws.
+    pub descents: Option<usize>,
+    /// Their seed.
+    pub seed: u64,
+}
+
+fn names<S: serde::Serializer>(methods: &[Method], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(methods.iter().map(Method::name))
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 0.01,
+            time_limit_s: 60.0,
+            most_cells: u64::MAX,
+            methods: Method::on_grids(),
+            descents: None,
+            seed: 1,
+        }
+    }
+}
+
+/// How one method fared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sequence {
+    /// Which.
+    pub method: &'static str,
+    /// Coarse to fine.
+    pub trials: Vec<Refinement>,
+    /// Why there are no more.
+    pub end: StopReason,
+    /// What exact descents say of the finest grid's Sum, if any were asked for.
+    pub corrected: Option<CorrectedSum>,
+}
+
+/// An unbiased Sum.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CorrectedSum {
+    /// The estimate, Dᵃ·radᵇ.
+    pub sum: f64,
+    /// Its 95 % interval.
+    pub ci95: [f64; 2],
+    /// Descents that it took.
+    pub descents: usize,
+}
+
+/// Why a sequence ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum StopReason {
+    /// Two refinements in a row changed little enough.
+    Stable,
+    /// The next refinement would take too long.
+    Time {
+        /// Its cells per axis.
+        resolution: usize,
+        /// Seconds it would take, by the time per cell of the last one.
+        expected_s: f64,
+    },
+    /// The next refinement would need too much memory.
+    Memory {
+        /// Its cells per axis.
+        resolution: usize,
+        /// What does not fit.
+        message: String,
+    },
+    /// The next refinement would have too many cells.
+    Cells {
+        /// Its cells per axis.
+        resolution: usize,
+    },
+}
+
+/// What refinement showed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Convergence {
+    /// What else changes the answer.
+    pub settings: Settings,
+    /// Unit of the Sums, like `D²·rad³`.
+    pub unit: String,
+    /// One per method.
+    pub sequences: Vec<Sequence>,
+}
+
+/// Why there is no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum ConvergenceError {
+    /// No share.
+    #[error("a tolerance of {tolerance} cannot be reached; give a share above 0, such as 1%")]
+    Tolerance {
+        /// What was given.
+        tolerance: f64,
+    },
+    /// Not even the coarsest grid can be computed.
+    #[error(transparent)]
+    Refinement(#[from] RefinementError),
+}
+
+/// Cells per axis to begin with, for one to five axes: some thousand cells at most.
+const FIRST: [usize; 5] = [51, 11, 9, 7, 5];
+
+/// Refines until stable.
+///
+/// # Errors
+/// A tolerance that is none, a coarsest grid that does not fit into memory, a cancelled run.
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Convergence, ConvergenceError> {
+    let tolerance = settings.tolerance;
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(ConvergenceError::Tolerance { tolerance });
+    }
+    let affordable = || descent::Settings::default().default_samples(problem.pair());
+    let settings =
+        &Settings { descents: Some(settings.descents.unwrap_or_else(affordable)), ..settings.clone() };
+    let total = settings.methods.len() as f64;
+    let sequences = settings
+        .methods
+        .iter()
+        .enumerate()
+        .map(|(k, method)| {
+            let part = exec.part([k as f64 / total, (k + 1) as f64 / total], "convergence");
+            sequence(method, problem, settings, &part)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let first = sequences.iter().find_map(|s: &Sequence| s.trials.first());
+    let unit = first.map_or_else(String::new, |trial| trial.unit.clone());
+    Ok(Convergence { settings: settings.clone(), unit, sequences })
+}
+
+fn sequence(
+    method: &Method,
+    problem: &Problem,
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Sequence, ConvergenceError> {
+    let axes = problem.alignment().free.len().clamp(1, 5);
+    let cells = |resolution: usize| (resolution as f64).powf(axes as f64);
+    let mut resolution = FIRST[axes - 1];
+    let mut trials: Vec<Refinement> = Vec::new();
+    let mut finest: Option<Sampled> = None;
+    let mut spent = 0.0;
+    let end = loop {
+        if let Some(last) = trials.last() {
+            if stable(&trials, settings.tolerance) {
+                break StopReason::Stable;
+            }
+            let expected_s = last.seconds * cells(resolution) / cells(last.resolution);
+            if spent + expected_s > settings.time_limit_s {
+                break StopReason::Time { resolution, expected_s };
+            }
+        }
+        if cells(resolution) > settings.most_cells as f64 && !trials.is_empty() {
+            break StopReason::Cells { resolution };
+        }
+        // Each refinement is dearer than all before it together: half of what is left.
+        let done = 1.0 - 0.5f64.powf(trials.len() as f64);
+        let part = exec.part([done, 0.5 + 0.5 * done], "convergence");
+        let tried = Sampled::by(method, problem, resolution, &part)
+            .and_then(|sampled| Ok((sampled.refinement(problem, &part)?, sampled)));
+        match tried {
+            Ok((trial, sampled)) => {
+                spent += trial.seconds;
+                trials.push(trial);
+                finest = Some(sampled);
+            }
+            Err(RefinementError::OutOfBudget(refusal)) if !trials.is_empty() => {
+                break StopReason::Memory { resolution, message: needs(&refusal) };
+            }
+            Err(error) => return Err(error.into()),
+        }
+        resolution = finer(resolution);
+    };
+    let corrected = match finest {
+        Some(sampled) if settings.descents != Some(0) => {
+            let stop = Stop::Samples(settings.descents.unwrap_or_default());
+            let sample = correction::Settings { seed: settings.seed, stop };
+            let found = sampled.correct(problem, &sample, exec).map_err(RefinementError::from)?;
+            Some(CorrectedSum { sum: found.sum, ci95: found.ci95, descents: found.descents })
+        }
+        _ => None,
+    };
+    Ok(Sequence { method: method.name(), trials, end, corrected })
+}
+
+/// The odd number nearest to √2 times as many cells.
+fn finer(resolution: usize) -> usize {
+    let finer = std::f64::consts::SQRT_2 * resolution as f64;
+    (2 * (0.5 * (finer - 1.0)).round() as usize + 1).clamp(resolution + 2, Resolution::MOST)
+}
+
+fn needs(refusal: &OutOfBudget) -> String {
+    format!("{} needs {} of the {} allowed", refusal.what, Bytes(refusal.needed), Bytes(refusal.budget))
+}
+
+/// Whether the last two refinements changed little enough.
+fn stable(trials: &[Refinement], tolerance: f64) -> bool {
+    let close = |a: &Refinement, b: &Refinement| {
+        (b.sum - a.sum).abs() <= tolerance * b.sum.abs() && (b.onaa_edge - a.onaa_edge).abs() <= tolerance
+    };
+    matches!(trials, [.., a, b, c] if close(a, b) && close(b, c))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::problem;
+    use catchment_core::design::Family;
+    use catchment_core::pose::Dof;
+
+    fn trial(sum: f64, onaa_edge: f64) -> Refinement {
+        let bracket = [sum, sum];
+        let unit = String::new();
+        Refinement { resolution: 3, cells: 9, seconds: 0.0, sum, unit, bracket, onaa_edge, undecided: 0 }
+    }
+
+    #[test]
+    fn two_small_changes_in_a_row_are_stable() {
+        let sums = |sums: &[f64]| stable(&sums.iter().map(|s| trial(*s, 0.5)).collect::<Vec<_>>(), 0.01);
+        assert!(sums(&[3.0, 2.0, 2.01, 2.005]));
+        assert!(!sums(&[2.0, 2.01]), "one refinement");
+        assert!(!sums(&[1.0, 2.0, 2.01]) && !sums(&[2.0, 2.01, 2.2]));
+        assert!(sums(&[0.0, 0.0, 0.0]), "nothing accepted, at every resolution");
+        assert!(!stable(&[trial(2.0, 0.5), trial(2.0, 0.52), trial(2.0, 0.52)], 0.01));
+    }
+
+    #[test]
+    fn resolutions_are_odd_and_grow_by_half_the_cells_again() {
+        let mut sequence = vec![5];
+        while sequence.len() < 7 {
+            sequence.push(finer(sequence[sequence.len() - 1]));
+        }
+        assert_eq!(sequence, [5, 7, 9, 13, 19, 27, 39]);
+        assert_eq!((finer(1), finer(113)), (3, 159));
+    }
+
+    #[test]
+    fn every_method_is_refined_until_it_is_stable_or_something_stops_it() {
+        let problem = problem(Family::VFace, [Dof::X, Dof::Pitch].into_iter().collect());
+        let settings = Settings {
+            tolerance: 0.1,
+            time_limit_s: f64::INFINITY,
+            descents: Some(200),
+            ..Settings::default()
+        };
+        let found = run(&problem, &settings, &Exec::new()).unwrap();
+        assert_eq!(
+            found.sequences.iter().map(|s| s.method).collect::<Vec<_>>(),
+            ["confluence", "descent", "flood", "steepest", "transport"]
+        );
+        assert_eq!(found.unit, "D·rad");
+        for sequence in &found.sequences {
+            assert_eq!(sequence.end, StopReason::Stable);
+            assert!(sequence.trials.len() >= 3 && sequence.trials[0].resolution == 11);
+            let corrected = sequence.corrected.unwrap();
+            assert!(corrected.ci95[0] < corrected.sum && corrected.sum < corrected.ci95[1]);
+            for t in &sequence.trials {
+                assert!(t.cells == t.resolution.pow(2) && t.resolution % 2 == 1);
+                assert!(t.bracket[0] <= t.sum && t.sum <= t.bracket[1]);
+            }
+        }
+        let few = Settings { most_cells: 300, tolerance: 1e-9, descents: Some(0), ..settings.clone() };
+        let found = run(&problem, &few, &Exec::new()).unwrap();
+        assert!(
+            found
+                .sequences
+                .iter()
+                .all(|s| s.end == StopReason::Cells { resolution: 21 } && s.trials.len() == 2)
+        );
+        let hasty = Settings { time_limit_s: 0.0, tolerance: 1e-9, ..settings.clone() };
+        let found = run(&problem, &hasty, &Exec::new()).unwrap();
+        let once =
+            |s: &Sequence| s.trials.len() == 1 && matches!(s.end, StopReason::Time { resolution: 15, .. });
+        assert!(found.sequences.iter().all(once));
+        let small = Exec::new().with_memory_budget(2_000_000);
+        let strict = Settings { tolerance: 1e-9, ..settings.clone() };
+        let found = run(&problem, &strict, &small).unwrap();
+        assert!(found.sequences.iter().all(|s| matches!(s.end, StopReason::Memory { .. })), "{found:?}");
+        assert!(matches!(
+            run(&problem, &settings, &Exec::new().with_memory_budget(10)),
+            Err(ConvergenceError::Refinement(RefinementError::OutOfBudget(_)))
+        ));
+        let none = Settings { tolerance: 0.0, ..settings };
+        assert!(matches!(run(&problem, &none, &Exec::new()), Err(ConvergenceError::Tolerance { .. })));
+    }
+}

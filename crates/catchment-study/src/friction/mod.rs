@@ -1,0 +1,380 @@
+//! Friction: what docks at each, from which on poses no longer do, and what sticks first.
+//!
+//! ```text
+//!   docks │▔▔▔▔▔╲
+//!         │      ╲___        the same random poses of the error box at every friction, each by exact motion
+//!         └───┬───┬──▶ μ     between two frictions of the ladder, where a pose is lost is found by bisection
+//! ```
+//!
+//! Friction bends the way of a half and may even help, so poses are lost and gained, and what happens at one friction says nothing certain of another: every
+//! pose is followed at every friction. The *critical friction* of a pose that docks without any is where it first no longer does; of a
+//! design it is that of a stated share of these poses: up to it 95 % of what docks without friction docks still. (The smallest of all would be
+//! nothing: right beside the border any friction tells.)
+//!
+//! Beside it stands the static test along the frictionless way: from which friction on some force would hold the half somewhere on the way it takes
+//! without friction ([`Follower::follow_holding`]). It needs one motion for all frictions, and is wrong on as many poses as is told.
+//!
+//! Where rigid halves under Coulomb's law and those that give a little, as real ones and those of engines do, may part is counted, too: poses that are
+//! *hardly held*, which dock with a tenth less friction, and those that *wedge* where they jam ([`Doubt::wedges`]).
+//!
+//! Not promised: that a pose which is lost at one friction is lost at all larger ones, nor that frictions between those of the ladder were looked at.
+
+#[cfg(test)]
+mod tests;
+
+use catchment_core::acceptance::{Domain, Outcome};
+use catchment_core::exec::{Cancelled, Exec};
+use catchment_core::method::Decide;
+use catchment_core::method::correction::Z95;
+use catchment_core::method::descent::{self, Doubt, Follower, FrictionOutOfRange, HARDLY};
+use catchment_core::pose::PoseError;
+use catchment_core::problem::Problem;
+use catchment_core::run::jams::{Sticks, what_sticks};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// The ladder: coefficients of friction at which poses are followed, beside none.
+    pub frictions: Vec<f64>,
+    /// Random poses of the error box; 1000 of simple halves where nothing is said, fewer of halves with many facets.
+    pub motions: Option<usize>,
+    /// Their seed.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { frictions: vec![0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5], motions: None, seed: 1 }
+    }
+}
+
+/// Poses of a sample that is enough for a percent; the ladder takes as many motions of each as it has rungs, and more.
+const FEWER: usize = 4;
+/// To so much the critical friction of a pose is found.
+const EXACT: f64 = 1e-3;
+/// Shares of what docks without friction whose critical friction is told.
+const SHARES: [f64; 4] = [0.99, 0.95, 0.9, 0.5];
+/// What sticks first: of the poses that are lost, the first so many of a hundred of all that dock without friction, and at least so many.
+const FIRST: usize = 10;
+const AT_LEAST: usize = 20;
+
+/// What friction does to a design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Friction {
+    /// How it was asked for, everything filled in.
+    pub settings: Settings,
+    /// What becomes of the poses at every friction, none first.
+    pub rungs: Vec<Rung>,
+    /// Up to which friction most of what docks without it docks still.
+    pub kept: Vec<Kept>,
+    /// Poses that are lost first and stick somewhere, and the features that touch there, those that do so most often first.
+    pub first: (usize, Vec<Sticks>),
+    /// Poses that dock without friction, not at some friction of the ladder, and again at a larger one.
+    pub come_back: usize,
+}
+
+/// What becomes of the poses at one friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tally {
+    /// Poses by their outcomes, in the order of [`Outcome::ALL`].
+    pub counts: [usize; 4],
+    /// Poses that dock without friction and not at this.
+    pub lost: usize,
+    /// Poses that dock at this friction and not without.
+    pub gained: usize,
+    /// Poses that dock, and on the way came by a place where Coulomb's law would let them stick as well.
+    pub may_stick: usize,
+    /// Of the lost those that dock with a tenth less friction: halves that give a little may dock as well.
+    pub hardly_held: usize,
+    /// Poses that jam, and wedge there: some force would hold them against a pull straight out as well.
+    pub wedged: usize,
+    /// Poses that the static test says dock: without friction they do, and nowhere on that way some force would hold them.
+    pub static_docks: usize,
+    /// Poses of which the static test says the wrong thing.
+    pub static_wrong: usize,
+}
+
+/// One friction of the ladder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rung {
+    /// The coefficient of friction.
+    pub friction: f64,
+    /// What becomes of the poses.
+    pub tally: Tally,
+}
+
+/// Up to which friction a share of what docks without it docks still.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kept {
+    /// The share, in (0, 1).
+    pub share: f64,
+    /// Up to this friction.
+    pub friction: f64,
+    /// Its 95 % interval, by order statistics; an end at the top of the ladder may lie anywhere beyond it.
+    pub ci95: [f64; 2],
+    /// It is the top of the ladder, and perhaps more.
+    pub is_top: bool,
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FrictionError {
+    /// No coefficient of friction.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
+    /// An empty ladder.
+    #[error("no friction above 0 is named; name some, such as 0.1 and 0.2")]
+    NoFrictions,
+    /// Nothing was asked.
+    #[error("no motions, no answer: follow one random pose at least")]
+    NoMotions,
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// What becomes of one pose.
+struct Way {
+    /// Without friction, and at each of the ladder with what Coulomb's law leaves open.
+    without: Outcome,
+    at: Vec<(Outcome, Doubt)>,
+    /// The least friction at which something on the frictionless way would hold it; infinite where none of the ladder does.
+    holds: f64,
+    /// Up to which it docks, and where it is first known not to; of those alone that dock without friction and are lost.
+    critical: Option<[f64; 2]>,
+}
+
+/// Follows random poses of the error box at every friction.
+///
+/// # Errors
+/// See [`FrictionError`].
+///
+/// # Examples
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use catchment::design::read;
+/// use catchment::exec::Exec;
+/// use catchment::problem::Problem;
+/// use catchment::study::friction::{self, Settings};
+///
+/// let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
+/// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
+/// let settings = Settings { frictions: vec![0.1, 0.3], motions: Some(100), seed: 1 };
+/// let found = friction::run(&problem, &settings, &Exec::new())?;
+/// // The facets of this V-Face have a slope of 0.2: half of the box docks below it, and nothing above
+/// assert_eq!(found.rungs[1].tally.lost, 0);
+/// // but what starts within the depth of the seat.
+/// assert!(found.rungs[2].tally.counts[0] < 10);
+/// # Ok(())
+/// # }
+/// ```
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Friction, FrictionError> {
+    let settings = settings.filled(problem)?;
+    let Domain::Poses(poses) =
+        Domain::random(problem.alignment(), settings.motions.unwrap_or_default(), settings.seed)
+    else {
+        return Err(FrictionError::NoMotions);
+    };
+    let ladder: Vec<descent::Settings> = settings
+        .frictions
+        .iter()
+        .map(|mu| descent::Settings::with_friction(*mu))
+        .collect::<Result<_, _>>()?;
+    let without = descent::Settings::default();
+    let top = settings.frictions.last().copied().unwrap_or_default();
+    let done = AtomicUsize::new(0);
+    let ways: Vec<Way> = exec.install(|| {
+        poses
+            .par_iter()
+            .map_init(
+                || {
+                    let followers = ladder.iter().map(|settings| Follower::new(problem.pair(), settings));
+                    (Follower::new(problem.pair(), &without), followers.collect::<Vec<_>>())
+                },
+                |(free, followers), pose| {
+                    exec.check()?;
+                    let way = Way::of(problem, pose, free, followers, &settings.frictions);
+                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                    exec.report(done as f64 / poses.len() as f64, "poses");
+                    Ok(way)
+                },
+            )
+            .collect::<Result<_, Cancelled>>()
+    })?;
+    let first = first_lost(&poses, &ways);
+    Ok(Friction {
+        rungs: rungs(&settings.frictions, &ways),
+        kept: kept(&ways, top),
+        first: what_sticks(problem, &first, exec)?,
+        come_back: ways.iter().filter(|way| way.comes_back()).count(),
+        settings,
+    })
+}
+
+impl Settings {
+    /// Everything filled in, the ladder from below.
+    fn filled(&self, problem: &Problem) -> Result<Self, FrictionError> {
+        for friction in &self.frictions {
+            descent::Settings::with_friction(*friction)?;
+        }
+        let mut frictions: Vec<f64> =
+            self.frictions.iter().copied().filter(|friction| *friction > 0.0).collect();
+        frictions.sort_by(f64::total_cmp);
+        frictions.dedup();
+        if frictions.is_empty() {
+            return Err(FrictionError::NoFrictions);
+        }
+        let motions = self
+            .motions
+            .unwrap_or_else(|| descent::Settings::default().default_samples(problem.pair()).div_ceil(FEWER));
+        if motions == 0 {
+            return Err(FrictionError::NoMotions);
+        }
+        Ok(Self { frictions, motions: Some(motions), seed: self.seed })
+    }
+}
+
+impl Friction {
+    /// With every place that an answer has, and numbers that mean nothing: what requirements are tried on.
+    pub fn form(settings: &Settings) -> Self {
+        let none = Tally {
+            counts: [0; 4],
+            lost: 0,
+            gained: 0,
+            may_stick: 0,
+            hardly_held: 0,
+            wedged: 0,
+            static_docks: 0,
+            static_wrong: 0,
+        };
+        let frictions = std::iter::once(0.0).chain(settings.frictions.iter().copied());
+        Self {
+            rungs: frictions.map(|friction| Rung { friction, tally: none }).collect(),
+            kept: SHARES.map(|share| Kept { share, friction: 0.0, ci95: [0.0; 2], is_top: false }).to_vec(),
+            first: (0, Vec::new()),
+            come_back: 0,
+            settings: settings.clone(),
+        }
+    }
+
+    /// The least friction of the ladder at which poses wedge: from there on rigid halves under Coulomb's law and halves that give a little, as real ones
+    /// do, part.
+    pub fn wedges_from(&self) -> Option<f64> {
+        self.rungs.iter().find(|rung| rung.tally.wedged > 0).map(|rung| rung.friction)
+    }
+
+    /// How many random poses were followed.
+    pub fn motions(&self) -> usize {
+        self.rungs.first().map_or(0, |rung| rung.tally.counts.iter().sum())
+    }
+}
+
+impl Way {
+    fn of(
+        problem: &Problem,
+        pose: &PoseError,
+        free: &mut Follower<'_>,
+        followers: &mut [Follower<'_>],
+        frictions: &[f64],
+    ) -> Self {
+        let top = frictions.last().copied().unwrap_or_default();
+        let (end, holds) = free.follow_holding(pose, top);
+        let at: Vec<(Outcome, Doubt)> = followers
+            .iter_mut()
+            .map(|follower| {
+                let (end, doubt) = follower.follow_doubting(pose);
+                (end.outcome, doubt)
+            })
+            .collect();
+        let docks = end.outcome == Outcome::Aligned;
+        let lost = at.iter().position(|(outcome, _)| *outcome != Outcome::Aligned).filter(|_| docks);
+        let critical = lost.map(|k| {
+            let docks_at = |friction: f64| {
+                let settings = descent::Settings { friction, ..descent::Settings::default() };
+                descent::outcome(problem.pair(), pose, &settings).outcome == Outcome::Aligned
+            };
+            let [mut docks, mut fails] = [if k == 0 { 0.0 } else { frictions[k - 1] }, frictions[k]];
+            while fails - docks > EXACT {
+                let middle = f64::midpoint(docks, fails);
+                if docks_at(middle) { docks = middle } else { fails = middle }
+            }
+            [docks, fails]
+        });
+        Self { without: end.outcome, at, holds: if holds < top { holds } else { f64::INFINITY }, critical }
+    }
+
+    /// Whether it docks without friction and, as far as bisection tells, up to this one at least.
+    fn docks_with(&self, friction: f64) -> bool {
+        self.critical.is_some_and(|[docks, _]| docks >= friction)
+    }
+
+    /// Whether it is lost at some friction and docks at a larger one.
+    fn comes_back(&self) -> bool {
+        let docks = |(outcome, _): &&(Outcome, Doubt)| *outcome == Outcome::Aligned;
+        self.without == Outcome::Aligned
+            && self.at.iter().skip_while(docks).any(|(outcome, _)| *outcome == Outcome::Aligned)
+    }
+}
+
+fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
+    let rung = |(k, friction): (Option<usize>, f64)| {
+        let at = |way: &Way| k.map_or((way.without, Doubt::default()), |k| way.at[k]);
+        let count = |is: &dyn Fn(&Way) -> bool| ways.iter().filter(|way| is(way)).count();
+        let docks = |way: &Way| at(way).0 == Outcome::Aligned;
+        let docked = |way: &Way| way.without == Outcome::Aligned;
+        let by_statics = |way: &Way| docked(way) && way.holds > friction;
+        let tally = Tally {
+            counts: Outcome::ALL.map(|outcome| count(&|way| at(way).0 == outcome)),
+            lost: count(&|way| docked(way) && !docks(way)),
+            gained: count(&|way| !docked(way) && docks(way)),
+            may_stick: count(&|way| docks(way) && at(way).1.may_stick),
+            hardly_held: count(&|way| !docks(way) && way.docks_with(friction / HARDLY)),
+            wedged: count(&|way| at(way).1.wedges),
+            static_docks: count(&|way| by_statics(way)),
+            static_wrong: count(&|way| by_statics(way) != docks(way)),
+        };
+        Rung { friction, tally }
+    };
+    let ladder = frictions.iter().enumerate().map(|(k, friction)| (Some(k), *friction));
+    std::iter::once((None, 0.0)).chain(ladder).map(rung).collect()
+}
+
+/// Quantiles of the critical friction, with intervals by order statistics (Conover, *Practical Nonparametric Statistics*, 3.2): ranks
+/// n q ± 1.96 √(n q (1 − q)), rounded outwards.
+fn kept(ways: &[Way], top: f64) -> Vec<Kept> {
+    let mut critical: Vec<f64> = ways
+        .iter()
+        .filter(|way| way.without == Outcome::Aligned)
+        .map(|way| way.critical.map_or(top, |[docks, _]| docks))
+        .collect();
+    critical.sort_by(f64::total_cmp);
+    let count = critical.len();
+    // The friction up to which all but `lost` poses dock.
+    let of_rank = |lost: f64| {
+        let rank = lost.clamp(0.0, count as f64);
+        if rank >= count as f64 { top } else { critical[rank as usize] }
+    };
+    let of_share = |share: f64| {
+        let (expected, spread) =
+            ((1.0 - share) * count as f64, Z95 * (share * (1.0 - share) * count as f64).sqrt());
+        let friction = of_rank((expected + 1e-9).floor());
+        let low = if expected - spread < 1.0 { 0.0 } else { of_rank((expected - spread).floor() - 1.0) };
+        Kept { share, friction, ci95: [low, of_rank((expected + spread).ceil())], is_top: friction >= top }
+    };
+    SHARES.map(of_share).to_vec()
+}
+
+/// The poses that are lost first, each with a friction at which it is.
+fn first_lost(poses: &[PoseError], ways: &[Way]) -> Vec<(PoseError, f64)> {
+    let docked = ways.iter().filter(|way| way.without == Outcome::Aligned).count();
+    let lost = poses.iter().zip(ways).filter_map(|(pose, way)| way.critical.map(|[_, fails]| (*pose, fails)));
+    let mut lost: Vec<(PoseError, f64)> = lost.collect();
+    // Stable: of equals the one that was drawn first.
+    lost.sort_by(|a, b| a.1.total_cmp(&b.1));
+    lost.truncate((docked * FIRST / 100).max(AT_LEAST));
+    lost
+}

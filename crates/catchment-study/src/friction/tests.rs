@@ -1,0 +1,108 @@
+use super::*;
+use crate::testing::problem;
+use catchment_core::design::Family;
+use catchment_core::pose::{Dof, DofSet};
+
+/// Rotations locked, the critical friction of a facet is its slope: of every pose, and so of every share of them.
+#[test]
+fn on_facets_every_pose_is_lost_at_their_slope() {
+    for (family, ratio, slope) in [(Family::VFace, 0.1, 0.2), (Family::XFace, 0.3, 0.3)] {
+        let text = format!(
+            "[connector]\nfamily = \"{}\"\naspect_ratio = {ratio}\n[alignment]\nfree = [\"x\"]\n",
+            family.name()
+        );
+        let problem = Problem::of(catchment_core::design::read(&text, ".".as_ref()).unwrap().design).unwrap();
+        let settings =
+            Settings { frictions: vec![0.1, 0.15, 1.05 * slope, 0.4], motions: Some(200), seed: 2 };
+        let found = run(&problem, &settings, &Exec::new()).unwrap();
+        let docked = found.rungs[0].tally.counts[0];
+        assert!(docked > 50);
+        for kept in &found.kept {
+            assert!((kept.friction - slope).abs() <= EXACT, "{family:?} {kept:?}");
+            assert!(kept.ci95[0] <= kept.friction && kept.friction <= kept.ci95[1]);
+            assert!(!kept.is_top);
+        }
+        // Nothing bends the way, so that more friction never helps.
+        assert!(found.rungs.windows(2).all(|two| two[1].tally.counts[0] <= two[0].tally.counts[0]));
+        // All of them at their slope: within a tenth of what is asked, or not.
+        for Rung { friction, tally } in &found.rungs {
+            let is_near = *friction > slope && *friction < HARDLY * slope;
+            assert_eq!(tally.hardly_held, if is_near { tally.lost } else { 0 }, "{family:?} {friction}");
+        }
+        let last = found.rungs[4].tally;
+        // What starts within the depth of the seat is docked as it is.
+        assert_eq!((last.lost + last.counts[0], last.gained, found.come_back), (docked, 0, 0));
+        assert!(last.counts[0] < docked / 10, "{last:?}");
+        // Nothing bends the way here: the static test is right, but where it begins within a step of the seat.
+        assert!(found.rungs.iter().all(|rung| rung.tally.static_wrong <= 2), "{:?}", found.rungs);
+        assert_eq!(found.first.0, AT_LEAST);
+        let Sticks { touching, critical } = &found.first.1[0];
+        assert_eq!((touching.count, critical.len()), (AT_LEAST, AT_LEAST));
+        assert!(critical.iter().all(|friction| (friction - slope).abs() <= EXACT), "{family:?} {critical:?}");
+    }
+}
+
+#[test]
+fn tallies_add_up_and_threads_change_nothing() {
+    let problem = problem(Family::XFace3d, DofSet::ALL);
+    let settings = Settings { frictions: vec![0.3, 0.1, 0.3, 0.0], motions: Some(120), seed: 3 };
+    let with = |threads| run(&problem, &settings, &Exec::new().with_threads(threads).unwrap()).unwrap();
+    let found = with(1);
+    assert_eq!(found, with(2));
+    assert_eq!(found.settings.frictions, [0.1, 0.3]);
+    let docked = found.rungs[0].tally.counts[0];
+    for Rung { friction, tally } in &found.rungs {
+        assert_eq!(tally.counts.iter().sum::<usize>(), 120);
+        assert_eq!(tally.counts[0] + tally.lost, docked + tally.gained, "{friction}");
+        assert!(tally.may_stick <= tally.counts[0] && tally.static_docks <= docked);
+        assert!(tally.wedged <= tally.counts[1] && tally.hardly_held <= tally.lost);
+    }
+    // Up to less friction more of them dock still.
+    assert!(
+        found.kept.windows(2).all(|two| two[0].share > two[1].share && two[0].friction <= two[1].friction)
+    );
+    let direct = |friction: f64| {
+        let Domain::Poses(poses) = Domain::random(problem.alignment(), 120, 3) else { unreachable!() };
+        let settings = descent::Settings::with_friction(friction).unwrap();
+        poses
+            .iter()
+            .filter(|pose| descent::outcome(problem.pair(), pose, &settings).outcome == Outcome::Aligned)
+            .count()
+    };
+    assert_eq!(
+        found.rungs.iter().map(|rung| rung.tally.counts[0]).collect::<Vec<_>>(),
+        [0.0, 0.1, 0.3].map(direct)
+    );
+}
+
+#[test]
+fn the_interval_of_a_quantile_holds_it() {
+    let way = |critical: f64| Way {
+        without: Outcome::Aligned,
+        at: Vec::new(),
+        holds: 0.0,
+        critical: (critical < 0.5).then_some([critical, critical + EXACT]),
+    };
+    // Critical frictions all over [0, 1), of which the ladder sees those below 0.5: 90 % are kept up to 0.1.
+    let of = |seed: u64| {
+        let stream = catchment_core::acceptance::Stream::new(seed);
+        let ways: Vec<Way> = (0..400).map(|k| way(stream.uniform(k))).collect();
+        kept(&ways, 0.5)
+    };
+    let hold = |share: usize, truth: f64| {
+        (0..400).filter(|seed| (of(*seed)[share].ci95[0]..=of(*seed)[share].ci95[1]).contains(&truth)).count()
+    };
+    assert!(hold(2, 0.1) >= 376 && hold(1, 0.05) >= 376, "{} {}", hold(2, 0.1), hold(1, 0.05));
+    let half = of(1)[3];
+    assert!(half.friction > 0.44 && half.ci95[1] == 0.5, "{half:?}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused() {
+    let problem = problem(Family::VFace, [Dof::X].into_iter().collect());
+    let refused = |settings: Settings| run(&problem, &settings, &Exec::new()).unwrap_err();
+    let base = Settings { motions: Some(10), ..Settings::default() };
+    assert_eq!(refused(Settings { motions: Some(0), ..base.clone() }), FrictionError::NoMotions);
+    assert_eq!(refused(Settings { frictions: vec![0.0], ..base.clone() }), FrictionError::NoFrictions);
+    assert!(matches!(refused(Settings { frictions: vec![-0.1], ..base }), FrictionError::Friction(_)));
+}

@@ -1,0 +1,388 @@
+//! Hold: what a docked half withstands, in every direction.
+//!
+//! ```text
+//!          │ preload                        y  ╭───╮
+//!          ▼                                 ╭─╯   ╰─╮   how hard it may be pushed sideways until it leaves,
+//!    ───╲─────╱─── ◀── sideways          ───┤   ·   ├─ x      over the direction; and how hard it may be
+//!        ╲___╱    ⤺ torque                  ╰─╮   ╭─╯        twisted about each free axis, either way
+//!                                              ╰───╯
+//! ```
+//!
+//! The half rests in its mated pose, or where another one comes to rest, pressed on by a preload along −z through its centre of rotation. Sideways forces
+//! act through the face centre of the moving half or [`Settings::lever`] above it, torques about the centre of rotation. Each is found twice
+//! ([`catchment_core::method::descent::Holding`]):
+//!
+//! - **guided**: it can move the way it is pushed and up, nothing else. This is the preload times the slope of the height of first contact that way.
+//! - **free**: it can move in all errors that are free, and up. Tilting may be easier: this is never more.
+//!
+//! All numbers are shares of the preload, torques of the preload times D; `None`: no load of that kind moves it. What it withstands without friction is the least
+//! of what it withstands with any.
+//!
+//! Not promised: anything beyond rigid halves and Coulomb's law, see [`Holding`]. The weakest direction is looked for near the weakest of those that are tried: a
+//! notch between two of them that is narrower is not seen.
+
+#[cfg(test)]
+mod tests;
+
+use catchment_core::acceptance::Outcome;
+use catchment_core::exec::{Cancelled, Exec};
+use catchment_core::method::descent::{self, Follower, FrictionOutOfRange, Guide, Holding, Load, TOUCHING};
+use catchment_core::pose::{Dof, PoseError, face_from_cor};
+use catchment_core::problem::Problem;
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Coefficient of friction between the halves; 0 for none.
+    pub friction: f64,
+    /// Directions sideways that are tried where both x and y are free.
+    pub directions: usize,
+    /// How far above the face centre of the moving half forces sideways act, in D.
+    pub lever: f64,
+    /// What is no farther apart touches, in D: the play that is taken for used.
+    pub play: f64,
+    /// The pose error that is let go of, to be held where it comes to rest; the mated pose where there is none.
+    pub pose: Option<PoseError>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { friction: 0.0, directions: 72, lever: 0.0, play: TOUCHING, pose: None }
+    }
+}
+
+/// So many preloads, or times D, stand for any load where a number has to.
+pub const ANY: f64 = catchment_core::method::descent::MOST_LOAD;
+
+/// Fewest and most directions: the axes, and a tenth of a degree.
+const DIRECTIONS: [usize; 2] = [4, 3600];
+
+/// What a half withstands of a kind of load: shares of the preload, or of it times D.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Withstood {
+    /// Where it can move the way of the load alone, and up; `None`: any.
+    pub guided: Option<f64>,
+    /// Where it can move in all free errors, and up; `None`: any.
+    pub free: Option<f64>,
+}
+
+/// What it withstands, without friction and with it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Both {
+    /// Without friction; `None` where friction alone holds the preload.
+    pub smooth: Option<Withstood>,
+    /// With the friction that was asked for; `None` where none was.
+    pub rough: Option<Withstood>,
+}
+
+/// A force sideways.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sideways {
+    /// Its direction from x towards y, in radians, in [0, 2π).
+    pub direction: f64,
+    /// What the half withstands of it.
+    pub withstood: Both,
+}
+
+/// A torque about the axis of a free error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Torque {
+    /// About which axis: roll x, pitch y, yaw z.
+    pub axis: Dof,
+    /// 1 or −1.
+    pub sign: f64,
+    /// What the half withstands of it.
+    pub withstood: Both,
+}
+
+/// What a half withstands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hold {
+    /// How it was asked for.
+    pub settings: Settings,
+    /// The pose error in which it rests.
+    pub pose: PoseError,
+    /// Whether that counts as docked.
+    pub outcome: Outcome,
+    /// z of the centre of rotation there, in D.
+    pub height: f64,
+    /// Points in which it touches, from the fixed half to the moving one: where, and the unit normal.
+    pub contacts: Vec<[DVec3; 2]>,
+    /// Forces sideways, by their directions; those along x or y alone where only one is free.
+    pub sideways: Vec<Sideways>,
+    /// The weakest of them in each column: without friction guided and free, with it guided and free.
+    pub weakest: [Option<Sideways>; 4],
+    /// Torques about free axes, either way.
+    pub torques: Vec<Torque>,
+}
+
+/// Why nothing can be said of what a half withstands.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum HoldError {
+    /// The friction is none.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
+    /// Too few directions, or too many.
+    #[error("{directions} directions: from {} to {} can be tried", DIRECTIONS[0], DIRECTIONS[1])]
+    Directions {
+        /// What was asked.
+        directions: usize,
+    },
+    /// A length that is none.
+    #[error("{what}: {value} is no length here: {wanted}")]
+    Length {
+        /// Which.
+        what: &'static str,
+        /// What was given, in D.
+        value: f64,
+        /// What would be one.
+        wanted: &'static str,
+    },
+    /// The pose comes to no rest.
+    #[error("let go at that pose error the half comes to no rest that could be held: its motion is {}", outcome.name())]
+    NoRest {
+        /// What becomes of it.
+        outcome: Outcome,
+    },
+    /// The rest is none.
+    #[error("the preload alone moves the half where it should rest: its contacts there do not hold it")]
+    NotHeld,
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Finds what a half withstands.
+///
+/// # Errors
+/// See [`HoldError`].
+///
+/// # Examples
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use catchment::design::read;
+/// use catchment::exec::Exec;
+/// use catchment::problem::Problem;
+/// use catchment::study::hold::{self, Settings};
+///
+/// // Flanks of slope 2 AR.
+/// let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.5\n[alignment]\nrotation_length = 1.0\n";
+/// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
+/// let found = hold::run(&problem, &Settings::default(), &Exec::new())?;
+/// let guided = found.sideways[0].withstood.smooth.and_then(|of| of.guided);
+/// assert!((guided.unwrap_or_default() - 1.0).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Hold, HoldError> {
+    let motion = settings.check()?;
+    let pair = problem.pair();
+    let (pose, outcome, rest) = match &settings.pose {
+        None => (PoseError::default(), Outcome::Aligned, None),
+        Some(pose) => {
+            let end = Follower::new(pair, &motion).come_to_rest(pose);
+            (end.error, end.outcome, end.height.map(|height| (height, end.touching)))
+        }
+    };
+    if matches!(outcome, Outcome::Missed | Outcome::Undecided) {
+        return Err(HoldError::NoRest { outcome });
+    }
+    // What touches is known better than by a distance, unless play is to be taken for used.
+    let near =
+        |touching: f64| if settings.play > TOUCHING { settings.play } else { settings.play.min(touching) };
+    let holding = match rest {
+        Some((height, touching)) => Holding::at_rest(pair, &pose, height, near(touching)),
+        None => Holding::at(pair, &pose, settings.play),
+    };
+    let Some(mut holding) = holding else {
+        return Err(HoldError::NoRest { outcome: Outcome::Missed });
+    };
+    let frictions = [0.0, settings.friction].map(|friction| holding.is_held(friction).then_some(friction));
+    let rough = frictions[1].filter(|_| settings.friction > 0.0);
+    let face = face_from_cor(holding.rotation(), pair.alignment.center_of_rotation);
+    let tried = Tried { holding, face, frictions: [frictions[0], rough], lever: settings.lever };
+    if tried.frictions == [None; 2] {
+        return Err(HoldError::NotHeld);
+    }
+    let free = pair.alignment.free;
+    let directions: Vec<f64> = match [Dof::X, Dof::Y].map(|dof| free.contains(dof)) {
+        [true, true] => {
+            (0..settings.directions).map(|k| TAU * k as f64 / settings.directions as f64).collect()
+        }
+        [true, false] => vec![0.0, PI],
+        [false, true] => vec![0.5 * PI, 1.5 * PI],
+        [false, false] => Vec::new(),
+    };
+    let turns: Vec<(Dof, f64)> =
+        free.iter().filter(|dof| dof.is_rotation()).flat_map(|dof| [(dof, 1.0), (dof, -1.0)]).collect();
+    let refine = free.contains(Dof::X) && free.contains(Dof::Y);
+    let (sideways, torques, weakest) = exec.install(|| -> Result<_, Cancelled> {
+        let sideways: Vec<Sideways> = directions
+            .par_iter()
+            .map(|direction| {
+                exec.check()?;
+                Ok(tried.sideways(*direction))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        exec.report(FIRST_SHARE, STAGE);
+        let torques: Vec<Torque> = turns
+            .par_iter()
+            .map(|(axis, sign)| {
+                exec.check()?;
+                Ok(tried.torque(*axis, *sign))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let weakest: Vec<Option<Sideways>> = (0..COLUMNS)
+            .into_par_iter()
+            .map(|column| {
+                exec.check()?;
+                Ok(tried.weakest(&sideways, column, refine))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        Ok((sideways, torques, weakest))
+    })?;
+    exec.report(1.0, STAGE);
+    let weakest = std::array::from_fn(|column| weakest[column]);
+    let contacts = tried.holding.contacts().iter().map(|(contact, _)| [contact.point, contact.normal]);
+    Ok(Hold {
+        settings: settings.clone(),
+        pose,
+        outcome,
+        height: tried.holding.cor().z,
+        contacts: contacts.collect(),
+        sideways,
+        weakest,
+        torques,
+    })
+}
+
+/// What progress is told of, and the share of it that the directions take.
+const STAGE: &str = "loads";
+const FIRST_SHARE: f64 = 0.6;
+/// Columns: without friction guided and free, with it guided and free.
+const COLUMNS: usize = 4;
+/// The weakest direction is found to so much of the step between two that are tried.
+const FINEST: f64 = 1e-4;
+
+impl Settings {
+    fn check(&self) -> Result<descent::Settings, HoldError> {
+        if !(DIRECTIONS[0]..=DIRECTIONS[1]).contains(&self.directions) {
+            return Err(HoldError::Directions { directions: self.directions });
+        }
+        if !self.lever.is_finite() {
+            return Err(HoldError::Length { what: "lever", value: self.lever, wanted: "give a finite one" });
+        }
+        if !(self.play > 0.0 && self.play <= MOST_PLAY) {
+            let wanted = "above 0 and at most a tenth of D";
+            return Err(HoldError::Length { what: "play", value: self.play, wanted });
+        }
+        Ok(descent::Settings::with_friction(self.friction)?)
+    }
+}
+
+/// More than this is no play, in D.
+const MOST_PLAY: f64 = 0.1;
+
+/// What is tried on a half.
+struct Tried {
+    holding: Holding,
+    /// The face centre of the moving half, from the centre of rotation.
+    face: DVec3,
+    /// Without friction and with it, where the preload is held.
+    frictions: [Option<f64>; 2],
+    lever: f64,
+}
+
+impl Tried {
+    fn sideways(&self, direction: f64) -> Sideways {
+        let (sin, cos) = direction.sin_cos();
+        let force = DVec3::new(snapped(cos), snapped(sin), 0.0);
+        let arm = self.arm();
+        let load = Load { force, moment: arm.cross(force) };
+        Sideways { direction, withstood: self.withstood(&load) }
+    }
+
+    /// From the centre of rotation to where forces sideways act.
+    fn arm(&self) -> DVec3 {
+        self.face + DVec3::Z * self.lever
+    }
+
+    fn torque(&self, axis: Dof, sign: f64) -> Torque {
+        let moment = sign
+            * match axis {
+                Dof::Roll => DVec3::X,
+                Dof::Pitch => DVec3::Y,
+                _ => DVec3::Z,
+            };
+        let withstood = self.withstood(&Load { force: DVec3::ZERO, moment });
+        Torque { axis, sign, withstood }
+    }
+
+    fn withstood(&self, load: &Load) -> Both {
+        let with = |friction: Option<f64>| {
+            let friction = friction?;
+            let mut holding = self.holding.clone();
+            let mut most = |guide| holding.most(load, guide, friction).filter(|most| most.is_finite());
+            Some(Withstood { guided: most(Guide::Along), free: most(Guide::Free) })
+        };
+        Both { smooth: with(self.frictions[0]), rough: with(self.frictions[1]) }
+    }
+
+    /// The weakest direction of a column: by golden section about the weakest of those that were tried.
+    fn weakest(&self, tried: &[Sideways], column: usize, refine: bool) -> Option<Sideways> {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let of = |side: &Sideways| side.withstood.column(column);
+        let finite = tried.iter().filter_map(|side| Some((of(side)?, *side)));
+        let (mut least, mut best) = finite.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        if !refine {
+            return Some(best);
+        }
+        let step = TAU / tried.len() as f64;
+        let [mut from, mut to] = [best.direction - step, best.direction + step];
+        let at = |direction: f64| {
+            let side = self.sideways(direction.rem_euclid(TAU));
+            (of(&side).unwrap_or(f64::INFINITY), side)
+        };
+        let (mut left, mut right) = (at(to - GOLDEN * (to - from)), at(from + GOLDEN * (to - from)));
+        while to - from > FINEST * step {
+            if left.0 <= right.0 {
+                to = from + GOLDEN * (to - from);
+                right = left;
+                left = at(to - GOLDEN * (to - from));
+            } else {
+                from = to - GOLDEN * (to - from);
+                left = right;
+                right = at(from + GOLDEN * (to - from));
+            }
+        }
+        for (value, side) in [left, right] {
+            // What only rounding makes weaker is not.
+            if value < least * (1.0 - ROUNDING) {
+                (least, best) = (value, side);
+            }
+        }
+        Some(best)
+    }
+}
+
+/// A direction is weaker than those that were tried only by more than this share: along a straight side of what is withstood rounding decides.
+const ROUNDING: f64 = 1e-4;
+
+/// Components of a direction along an axis are exact.
+fn snapped(part: f64) -> f64 {
+    const NOTHING: f64 = 1e-15;
+    if part.abs() < NOTHING { 0.0 } else { part }
+}
+
+impl Both {
+    /// A column of the table: without friction guided and free, with it guided and free.
+    pub fn column(&self, column: usize) -> Option<f64> {
+        let of = if column < 2 { self.smooth } else { self.rough }?;
+        if column.is_multiple_of(2) { of.guided } else { of.free }
+    }
+}

@@ -1,0 +1,58 @@
+//! Studies: many computations of one design, and what they say together.
+//!
+//! ```text
+//!   slices       two errors at a time, everything free            one design, n (n − 1)/2 planes
+//!   planes       the same through zero alone, beside a grid      one design, what pictures show at zero
+//!   agreement    every method on one grid                        one design, how each two agree
+//!   convergence  finer and finer grids until stable               one design, every method
+//!   sensitivity  the Sum against rho, COR and aspect ratio         one design, the same poses again and again
+//!   trials       trials of single poses beside the exact region  one design, finer grids and time steps
+//!   success      how likely the errors of a robot are corrected  one design, stratified exact motions
+//!   friction     what docks at each friction, what sticks first  one design, the same poses at every friction
+//!   hold         what a docked half withstands                   one design, contact forces alone
+//!   chance       how likely drop tests dock, under declared laws  one design, trials in a rigid-body engine
+//!   plan         at which poses a robot should try it            one design, exact motions at every pose
+//!   validate     what a robot's trials say of the prediction     one design, exact motions and the trials
+//!   proposal     all ways in which two parts may dock           two files, the design that docks them
+//!   sweep        any keys of the design file, all combinations     many designs, one run
+//! ```
+
+pub mod agreement;
+#[cfg(feature = "drop")]
+pub mod chance;
+pub mod convergence;
+pub mod friction;
+pub mod hold;
+pub mod plan;
+pub mod planes;
+pub mod proposal;
+pub mod refinement;
+pub mod sensitivity;
+pub mod slices;
+pub mod success;
+pub mod sweep;
+pub mod trials;
+pub mod validate;
+
+use catchment_core::acceptance::Outcome;
+use catchment_core::method::descent;
+
+/// Bytes per descent while they run: the end and the outcome of each, and the ends once more while the parts of the
+/// threads are put together.
+const fn pose_bytes() -> u64 {
+    (2 * size_of::<descent::End>() + size_of::<Outcome>()) as u64
+}
+
+#[cfg(test)]
+mod testing {
+    //! Problems to try things on.
+
+    use catchment_core::design::{Design, Family};
+    use catchment_core::pose::DofSet;
+    use catchment_core::problem::Problem;
+
+    /// A family with its defaults, free in `free`.
+    pub(crate) fn problem(family: Family, free: DofSet) -> Problem {
+        Problem::of(Design::of_family(family, free)).unwrap()
+    }
+}

@@ -1,0 +1,298 @@
+//! How far a pose is from the border of what docks, by exact motions.
+//!
+//! ```text
+//!     docks  ░░░░│                1  towards the nearest known pose that fares otherwise, along ± every error, along random directions:
+//!      ●─────────○ border            the first look that fares otherwise, then bisection
+//!       ╲    ░░░░│                2  directions beside the best one, each only where it would be nearer
+//! ```
+//!
+//! Distances are measured in units of an accuracy per error: √Σ(Δₖ/σₖ)². Errors without accuracy are exact and are not moved along.
+//!
+//! Not promised: that no nearer pose fares otherwise. What is found is a pose that does, so the distance is *at most* so much. Beyond the error
+//! box nothing is looked for.
+
+use crate::success::normals;
+use catchment_core::acceptance::{Outcome, Stream};
+use catchment_core::method::descent::{Follower, Settings};
+use catchment_core::pose::{Dof, PoseError};
+use catchment_core::poses::Observed;
+use catchment_core::problem::Problem;
+
+/// Where the border is, as far as motions showed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Border {
+    /// How far, in units of the accuracy: at most.
+    pub sigmas: f64,
+    /// The same pose, as a share of the half-ranges of the error box: √Σ(Δₖ/rangeₖ)².
+    pub box_share: f64,
+    /// The same pose in D, rotations times the rotation length.
+    pub distance: f64,
+    /// The pose beyond the border.
+    pub at: PoseError,
+}
+
+/// Random directions per error.
+const RANDOM: u64 = 4;
+/// Directions beside the best one, per error.
+const BESIDE: u64 = 12;
+/// How far beside, at first, and by what that shrinks with each that finds nothing nearer.
+const SPREAD: f64 = 0.5;
+const SHRINK: f64 = 0.8;
+/// Directions beside the best one are looked at so much nearer.
+const NEARER: f64 = 0.98;
+/// Looks along a direction where a distance is known.
+const LOOKS: usize = 4;
+/// The first look where none is, in units of the accuracy; each further one is twice as far.
+const FIRST_LOOK: f64 = 0.25;
+/// Width to which a border is bisected, as a share of the distance and at least in units of the accuracy.
+const SHARP: f64 = 2e-3;
+const SHARPEST: f64 = 1e-3;
+
+/// Follows poses of a problem.
+pub struct Judge<'a> {
+    follower: Follower<'a>,
+    problem: &'a Problem,
+    followed: usize,
+}
+
+impl<'a> Judge<'a> {
+    /// By these motions.
+    pub fn new(problem: &'a Problem, motions: &'a Settings) -> Self {
+        Self { follower: Follower::new(problem.pair(), motions), problem, followed: 0 }
+    }
+
+    /// Whether a pose docks, turned by a symmetry or not; what is undecided does not.
+    pub fn docks(&mut self, error: &PoseError) -> bool {
+        self.followed += 1;
+        self.follower.follow(error).outcome == Outcome::Aligned
+    }
+
+    /// What becomes of a pose; nothing where that is undecided.
+    pub fn predict(&mut self, error: &PoseError) -> Option<Observed> {
+        self.followed += 1;
+        let end = self.follower.follow(error);
+        match end.outcome {
+            Outcome::Aligned if self.problem.alignment().symmetry > 1 => {
+                self.followed += 1;
+                let rest = self.follower.rest(error);
+                let turned = self.problem.alignment().nearest_yaw(rest.error.yaw) != 0.0;
+                Some(if turned { Observed::AlignedElsewhere } else { Observed::Aligned })
+            }
+            Outcome::Aligned => Some(Observed::Aligned),
+            Outcome::Jammed => Some(Observed::Jammed),
+            Outcome::Missed => Some(Observed::Missed),
+            Outcome::Undecided => None,
+        }
+    }
+
+    /// Motions so far.
+    pub const fn followed(&self) -> usize {
+        self.followed
+    }
+}
+
+/// A search for the border about poses, in units of an accuracy.
+#[derive(Debug, Clone)]
+pub struct Search<'a> {
+    problem: &'a Problem,
+    /// Accuracy per error, 0 for exact ones.
+    accuracy: [f64; 5],
+    /// Errors that have one.
+    axes: Vec<usize>,
+    /// Nothing further is looked for, in units of the accuracy.
+    most: f64,
+}
+
+/// The nearest pose known to fare otherwise.
+#[derive(Debug, Clone, Copy)]
+struct Best {
+    distance: f64,
+    along: [f64; 5],
+}
+
+impl<'a> Search<'a> {
+    /// In units of this accuracy, no further than `most` of them.
+    pub fn new(problem: &'a Problem, accuracy: &PoseError, most: f64) -> Self {
+        let free = problem.alignment().free;
+        let accuracy = accuracy.to_array();
+        let axes = free.iter().map(Dof::index).filter(|k| accuracy[*k] > 0.0).collect();
+        Self { problem, accuracy, axes, most }
+    }
+
+    /// How far two poses are apart, in units of the accuracy; infinitely where an exact error differs.
+    pub fn apart(&self, a: &PoseError, b: &PoseError) -> f64 {
+        let (a, b) = (a.to_array(), b.to_array());
+        let mut sum = 0.0;
+        for dof in self.problem.alignment().free.iter() {
+            let k = dof.index();
+            let off = a[k] - b[k];
+            if off != 0.0 {
+                sum += (off / self.accuracy[k]).powi(2);
+            }
+        }
+        sum.sqrt()
+    }
+
+    /// The nearest pose found that fares otherwise than `from`, which `docks` or does not; `other` is one that is known to.
+    pub(crate) fn nearest(
+        &self,
+        judge: &mut Judge<'_>,
+        from: &PoseError,
+        docks: bool,
+        other: Option<&PoseError>,
+        random: Stream,
+    ) -> Option<Border> {
+        let mut best = None;
+        if let Some(other) = other {
+            let distance = self.apart(from, other);
+            if distance > 0.0 && distance.is_finite() && distance <= self.most {
+                let along = std::array::from_fn(|k| {
+                    let off = other.to_array()[k] - from.to_array()[k];
+                    if self.axes.contains(&k) { off / self.accuracy[k] / distance } else { 0.0 }
+                });
+                best = Some(Best { distance, along });
+                self.ray(judge, from, docks, along, &mut best);
+            }
+        }
+        for k in &self.axes {
+            for sign in [-1.0, 1.0] {
+                let mut along = [0.0; 5];
+                along[*k] = sign;
+                self.ray(judge, from, docks, along, &mut best);
+            }
+        }
+        let several = self.axes.len() as u64;
+        if several > 1 {
+            for number in 0..RANDOM * several {
+                if let Some(along) = self.unit(random_direction(random, number)) {
+                    self.ray(judge, from, docks, along, &mut best);
+                }
+            }
+            self.beside(judge, from, docks, random.branch(1), &mut best);
+        }
+        best.map(|best| self.border(from, &best))
+    }
+
+    /// Looks in directions beside the best one.
+    fn beside(
+        &self,
+        judge: &mut Judge<'_>,
+        from: &PoseError,
+        docks: bool,
+        random: Stream,
+        best: &mut Option<Best>,
+    ) {
+        let mut spread = SPREAD;
+        for number in 0..BESIDE * self.axes.len() as u64 {
+            let Some(known) = *best else { return };
+            let step = random_direction(random, number);
+            let Some(along) = self.unit(std::array::from_fn(|k| known.along[k] + spread * step[k])) else {
+                continue;
+            };
+            let nearer = known.distance * NEARER;
+            if nearer > self.reach(from, &along) || judge.docks(&self.pose(from, &along, nearer)) == docks {
+                spread *= SHRINK;
+            } else {
+                *best =
+                    Some(Best { distance: self.bisect(judge, from, docks, &along, [0.0, nearer]), along });
+            }
+        }
+    }
+
+    /// Looks along a direction, as far as is worth it.
+    fn ray(
+        &self,
+        judge: &mut Judge<'_>,
+        from: &PoseError,
+        docks: bool,
+        along: [f64; 5],
+        best: &mut Option<Best>,
+    ) {
+        let reach = self.reach(from, &along).min(self.most);
+        let end = best.map_or(reach, |best| best.distance.min(reach));
+        let looks: Vec<f64> = if best.is_some() {
+            (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect()
+        } else {
+            let far = std::iter::successors(Some(FIRST_LOOK), |t| Some(2.0 * t)).take_while(|t| *t < end);
+            far.chain([end]).collect()
+        };
+        let mut same = 0.0;
+        for t in looks.into_iter().filter(|t| *t > 0.0) {
+            if judge.docks(&self.pose(from, &along, t)) == docks {
+                same = t;
+                continue;
+            }
+            let distance = self.bisect(judge, from, docks, &along, [same, t]);
+            if best.is_none_or(|best| distance < best.distance) {
+                *best = Some(Best { distance, along });
+            }
+            return;
+        }
+    }
+
+    /// Where what becomes of it changes, from where it does not to where it does.
+    fn bisect(
+        &self,
+        judge: &mut Judge<'_>,
+        from: &PoseError,
+        docks: bool,
+        along: &[f64; 5],
+        [mut same, mut other]: [f64; 2],
+    ) -> f64 {
+        while other - same > (SHARP * other).max(SHARPEST) {
+            let middle = f64::midpoint(same, other);
+            if judge.docks(&self.pose(from, along, middle)) == docks {
+                same = middle;
+            } else {
+                other = middle;
+            }
+        }
+        other
+    }
+
+    /// How far a direction stays in the error box.
+    fn reach(&self, from: &PoseError, along: &[f64; 5]) -> f64 {
+        let alignment = self.problem.alignment();
+        let until = |k: usize| {
+            let speed = along[k] * self.accuracy[k];
+            let end = alignment.half_range(Dof::ALL[k]).copysign(speed);
+            if speed == 0.0 { f64::INFINITY } else { ((end - from.to_array()[k]) / speed).max(0.0) }
+        };
+        self.axes.iter().map(|k| until(*k)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn pose(&self, from: &PoseError, along: &[f64; 5], t: f64) -> PoseError {
+        let from = from.to_array();
+        PoseError::from_array(std::array::from_fn(|k| from[k] + t * along[k] * self.accuracy[k]))
+    }
+
+    /// The same direction with length 1, exact errors left out.
+    fn unit(&self, along: [f64; 5]) -> Option<[f64; 5]> {
+        let length = self.axes.iter().map(|k| along[*k] * along[*k]).sum::<f64>().sqrt();
+        (length > 0.0)
+            .then(|| std::array::from_fn(|k| if self.axes.contains(&k) { along[k] / length } else { 0.0 }))
+    }
+
+    fn border(&self, from: &PoseError, best: &Best) -> Border {
+        let alignment = self.problem.alignment();
+        let at = self.pose(from, &best.along, best.distance);
+        let off = |k: usize| at.to_array()[k] - from.to_array()[k];
+        let sum = |unit: &dyn Fn(usize) -> f64| {
+            self.axes.iter().map(|k| (off(*k) * unit(*k)).powi(2)).sum::<f64>().sqrt()
+        };
+        let in_d = |k: usize| if Dof::ALL[k].is_rotation() { alignment.rotation_length } else { 1.0 };
+        Border {
+            sigmas: best.distance,
+            box_share: sum(&|k| alignment.half_ranges[k].recip()),
+            distance: sum(&in_d),
+            at,
+        }
+    }
+}
+
+/// Uniform numbers that five normal ones take.
+const DRAWS: u64 = 6;
+
+pub(super) fn random_direction(random: Stream, number: u64) -> [f64; 5] {
+    normals(|k| random.uniform(DRAWS * number + k))
+}

@@ -1,0 +1,386 @@
+//! Plans of bench tests: at which poses a robot should try a connector, so that the trials decide something.
+//!
+//! ```text
+//!   pattern  ──▶  poses  ──▶  what becomes of each, exactly  ──▶  trials in random order, in blocks, repeated
+//!   grid          x, yaw      how far it is from the border
+//!   lattice                   in units of the robot's accuracy:
+//!   arc                       below 1 it may go either way
+//!   bracket
+//! ```
+//!
+//! The accuracy is a standard deviation per error, of x and y at the face centre; errors without one are exact. The distance to the border is that
+//! to the nearest pose found that fares otherwise (`border`): *at most* so much.
+//!
+//! Not promised: friction, unless it is given; speed; that the robot can reach a pose. Lengths in D, angles in radians.
+
+mod border;
+mod foretold;
+mod pattern;
+mod slices;
+#[cfg(test)]
+mod tests;
+
+pub use border::{Border, Judge, Search};
+use catchment_core::acceptance::Stream;
+use catchment_core::exec::{Cancelled, Exec};
+use catchment_core::method::descent::{self, FrictionOutOfRange};
+use catchment_core::pose::{Dof, PoseError};
+use catchment_core::problem::Problem;
+pub use foretold::Foretold;
+pub(crate) use foretold::{for_each, foretell};
+pub use pattern::Pattern;
+use pattern::{Maker, Placed};
+use serde::{Deserialize, Serialize};
+pub use slices::{CELLS, Panel, panels};
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Where trials are made.
+    pub pattern: Pattern,
+    /// Standard deviation of each error, in D and radians; 0 for those that are exact.
+    pub accuracy: PoseError,
+    /// Only errors of positive sign: the halves are taken to be symmetric.
+    pub symmetric: bool,
+    /// How often each pose is tried.
+    pub repeats: usize,
+    /// Parts of the test, as one operator or one day each, that hold about as many trials.
+    pub blocks: usize,
+    /// Whether trials come in random order, or as the pattern has them.
+    pub shuffled: bool,
+    /// Whether each line ends with its first predicted failure.
+    pub stop_at_first_failure: bool,
+    /// Seed of the order, of random lines and of the search for the border.
+    pub seed: u64,
+    /// Coefficient of friction between the halves.
+    pub friction: f64,
+}
+
+impl Settings {
+    /// A pattern for a robot of this accuracy; everything tried once, in random order.
+    pub const fn new(pattern: Pattern, accuracy: PoseError) -> Self {
+        Self {
+            pattern,
+            accuracy,
+            symmetric: false,
+            repeats: 1,
+            blocks: 1,
+            shuffled: true,
+            stop_at_first_failure: false,
+            seed: 1,
+            friction: 0.0,
+        }
+    }
+}
+
+/// Most trials of a plan: weeks of work for a robot.
+pub const MOST_TRIALS: usize = 10_000;
+
+/// A plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// How it was asked for.
+    pub settings: Settings,
+    /// The poses, line by line.
+    pub points: Vec<Point>,
+    /// The trials in their order.
+    pub trials: Vec<Trial>,
+    /// Poses that fare otherwise, and not for want of accuracy, with other signs of their errors; of plans with positive errors alone.
+    pub asymmetric: usize,
+    /// Directions along which nothing fails within the error box; of brackets.
+    pub open: usize,
+    /// Motions that were followed.
+    pub motions: usize,
+}
+
+/// A pose of a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// The pose error.
+    pub error: PoseError,
+    /// Its line, from 1.
+    pub line: usize,
+    /// What exact motions say of it.
+    pub foretold: Foretold,
+}
+
+/// A trial of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Trial {
+    /// From 1, in the order in which they are made.
+    pub number: usize,
+    /// Its part of the test, from 1.
+    pub block: usize,
+    /// How often the pose was tried by then, this time included.
+    pub repeat: usize,
+    /// Which pose.
+    pub point: usize,
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// No accuracy.
+    #[error("no error has an accuracy: say how exactly the robot moves along one of them at least")]
+    NoAccuracy,
+    /// A number that is no accuracy.
+    #[error("{}: {value} is no accuracy: finite, 0 or more, of an error that the design leaves free", axis.name())]
+    Accuracy {
+        /// Which error.
+        axis: Dof,
+        /// What was given.
+        value: f64,
+    },
+    /// No coefficient of friction.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
+    /// No pose at all.
+    #[error("the pattern has no pose: give steps to one error at least")]
+    Nothing,
+    /// A plan without repeats or blocks.
+    #[error("0 {what}: 1 or more")]
+    None {
+        /// Of what.
+        what: &'static str,
+    },
+    /// Too many trials.
+    #[error("more than {most} trials; take larger steps, or fewer errors")]
+    TooMany {
+        /// As many may be.
+        most: usize,
+    },
+    /// Too few trials.
+    #[error("{trials} trials do not bracket a border: {fewest} or more, two on every line and two controls")]
+    TooFew {
+        /// What was given.
+        trials: usize,
+        /// What is needed.
+        fewest: usize,
+    },
+    /// A lever that is none.
+    #[error("a lever of {lever} D turns nothing: it goes from the joint to the face centre, above 0")]
+    Lever {
+        /// What was given.
+        lever: f64,
+    },
+    /// The arc turns what the design locks.
+    #[error("{}: the arc turns it, but the design locks it", axis.name())]
+    Locked {
+        /// Which error.
+        axis: Dof,
+    },
+    /// The arc moves sideways what the design locks.
+    #[error(
+        "{}: the design locks it at its centre of rotation ({cor} D in front of the face centre), which a joint {lever} D behind the face centre \
+         moves; free {0}, or put the centre of rotation at −{lever} D", axis.name()
+    )]
+    JointElsewhere {
+        /// Which error.
+        axis: Dof,
+        /// From the joint to the face centre, in D.
+        lever: f64,
+        /// Where the design's centre of rotation is, in D.
+        cor: f64,
+    },
+    /// Not even zero docks.
+    #[error("the mated pose itself does not dock: there is no border around it")]
+    NotDocked,
+    /// There is no border to bracket.
+    #[error("nothing fails within the error box along any line: enlarge [errors] of the design")]
+    NoBorder,
+    /// No point of a lattice is near the border.
+    #[error(
+        "no point of the lattice is within a step of the border: take a larger step, or enlarge [errors] of the design"
+    )]
+    FarFromBorder,
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Parts of the time that the pattern and the poses take.
+const PARTS: [f64; 4] = [0.0, 0.3, 0.9, 1.0];
+/// What the parts of the work are called.
+const STAGE: &str = "motions";
+
+/// Plans trials.
+///
+/// # Errors
+/// See [`PlanError`].
+///
+/// # Examples
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use catchment::design::read;
+/// use catchment::exec::Exec;
+/// use catchment::pose::PoseError;
+/// use catchment::problem::Problem;
+/// use catchment::study::plan::{self, Pattern, Settings};
+///
+/// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
+/// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
+/// let accuracy = PoseError { x: 0.01, ..PoseError::default() };
+/// let pattern = Pattern::Bracket { trials: 6, lines: None, resolution: [None; 5] };
+/// let plan = plan::run(&problem, &Settings::new(pattern, accuracy), &Exec::new())?;
+/// // Without rotations a V-Face corrects offsets up to D/2: two accuracies inside and outside on either side, and two controls.
+/// let mut x: Vec<f64> = plan.points.iter().map(|point| (1e3 * point.error.x).round() / 1e3).collect();
+/// x.sort_by(f64::total_cmp);
+/// assert_eq!(x, [-0.52, -0.48, 0.25, 0.48, 0.52, 0.75]);
+/// # Ok(())
+/// # }
+/// ```
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Plan, PlanError> {
+    check_accuracy(problem, &settings.accuracy)?;
+    for (count, what) in [(settings.repeats, "repeats"), (settings.blocks, "blocks")] {
+        if count == 0 {
+            return Err(PlanError::None { what });
+        }
+    }
+    let motions = descent::Settings::with_friction(settings.friction)?;
+    let part = |k: usize| exec.part([PARTS[k], PARTS[k + 1]], STAGE);
+    let maker = Maker {
+        problem,
+        accuracy: settings.accuracy,
+        motions: &motions,
+        symmetric: settings.symmetric,
+        seed: settings.seed,
+    };
+    let made = maker.make(&settings.pattern, &part(0))?;
+    if made.poses.is_empty() {
+        return Err(PlanError::FarFromBorder);
+    }
+    if made.poses.len().saturating_mul(settings.repeats) > MOST_TRIALS {
+        return Err(PlanError::TooMany { most: MOST_TRIALS });
+    }
+    let errors: Vec<PoseError> = made.poses.iter().map(|placed| placed.error).collect();
+    let (foretold, followed) =
+        foretell(problem, &settings.accuracy, &motions, &errors, settings.seed, &part(1))?;
+    let point = |(Placed { error, line }, foretold)| Point { error, line, foretold };
+    let mut points: Vec<Point> = made.poses.into_iter().zip(foretold).map(point).collect();
+    if settings.stop_at_first_failure {
+        points = stopped(problem, points);
+    }
+    let (asymmetric, more) =
+        if settings.symmetric { other_signs(problem, &points, &motions, &part(2))? } else { (0, 0) };
+    let trials = order(points.len(), settings);
+    Ok(Plan {
+        settings: settings.clone(),
+        points,
+        trials,
+        asymmetric,
+        open: made.open,
+        motions: made.followed + followed + more,
+    })
+}
+
+impl Plan {
+    /// A plan without a pose: what requirements are tried on.
+    pub fn form(settings: &Settings) -> Self {
+        Self {
+            settings: settings.clone(),
+            points: Vec::new(),
+            trials: Vec::new(),
+            asymmetric: 0,
+            open: 0,
+            motions: 0,
+        }
+    }
+}
+
+/// An accuracy is of free errors, and not of none.
+pub(crate) fn check_accuracy(problem: &Problem, accuracy: &PoseError) -> Result<(), PlanError> {
+    let free = problem.alignment().free;
+    for (axis, value) in Dof::ALL.into_iter().zip(accuracy.to_array()) {
+        let fits = value.is_finite() && value >= 0.0 && (value == 0.0 || free.contains(axis));
+        if !fits {
+            return Err(PlanError::Accuracy { axis, value });
+        }
+    }
+    if *accuracy == PoseError::default() { Err(PlanError::NoAccuracy) } else { Ok(()) }
+}
+
+/// How far a pose is from zero, as a share of the error box.
+pub(crate) fn outwards(problem: &Problem, error: &PoseError) -> f64 {
+    let alignment = problem.alignment();
+    let part = |axis: Dof| (error.to_array()[axis.index()] / alignment.half_range(axis)).powi(2);
+    alignment.free.iter().map(part).sum::<f64>().sqrt()
+}
+
+/// Every line up to its first predicted failure, that included.
+fn stopped(problem: &Problem, mut points: Vec<Point>) -> Vec<Point> {
+    points.sort_by(|a, b| {
+        a.line.cmp(&b.line).then(outwards(problem, &a.error).total_cmp(&outwards(problem, &b.error)))
+    });
+    let mut ended = None;
+    points.retain(|point| {
+        if ended == Some(point.line) {
+            return false;
+        }
+        if !point.foretold.docks() {
+            ended = Some(point.line);
+        }
+        true
+    });
+    points
+}
+
+/// Poses that fare otherwise with other signs, by more than the accuracy explains.
+fn other_signs(
+    problem: &Problem,
+    points: &[Point],
+    motions: &descent::Settings,
+    exec: &Exec,
+) -> Result<(usize, usize), Cancelled> {
+    let found = for_each(
+        points.len(),
+        exec,
+        || Judge::new(problem, motions),
+        |judge, k| {
+            let Point { error, foretold, .. } = &points[k];
+            if foretold.is_either() {
+                return (false, 0);
+            }
+            let before = judge.followed();
+            let values = error.to_array();
+            let occurring: Vec<usize> = (0..5).filter(|k| values[*k] != 0.0).collect();
+            let otherwise = (1..1u32 << occurring.len()).any(|signs| {
+                let mut turned = values;
+                for (bit, k) in occurring.iter().enumerate() {
+                    if signs >> bit & 1 == 1 {
+                        turned[*k] = -turned[*k];
+                    }
+                }
+                judge.docks(&PoseError::from_array(turned)) != foretold.docks()
+            });
+            (otherwise, judge.followed() - before)
+        },
+    )?;
+    let otherwise = found.iter().filter(|(otherwise, _)| *otherwise).count();
+    Ok((otherwise, found.iter().map(|(_, count)| count).sum()))
+}
+
+/// The order of the trials: every pose once, then again; each time shuffled by itself. Blocks are runs of that order.
+fn order(points: usize, settings: &Settings) -> Vec<Trial> {
+    let total = points * settings.repeats;
+    let mut trials = Vec::with_capacity(total);
+    for repeat in 1..=settings.repeats {
+        let mut turn: Vec<usize> = (0..points).collect();
+        if settings.shuffled {
+            // Fisher and Yates.
+            let random = Stream::new(settings.seed).branch(5).branch(repeat as u64);
+            for k in (1..points).rev() {
+                let other = (random.uniform(k as u64) * (k + 1) as f64) as usize;
+                turn.swap(k, other.min(k));
+            }
+        }
+        trials.extend(turn.into_iter().map(|point| (repeat, point)));
+    }
+    let place = |(k, (repeat, point)): (usize, (usize, usize))| Trial {
+        number: k + 1,
+        block: k * settings.blocks / total + 1,
+        repeat,
+        point,
+    };
+    trials.into_iter().enumerate().map(place).collect()
+}

@@ -1,0 +1,455 @@
+//! Where trials are made: patterns of poses.
+//!
+//! ```text
+//!   grid            lattice, along the border      arc, about a joint        bracket
+//!   · · · · ·            · ·                        ●╮  ╲ lever L               ·      border ± what can be told apart,
+//!   · · · · ·            ○ · ·                      │ ╲  ╲                   ·──┼─·    along lines from zero
+//!   · · · · ·              ○ · ·                    │  ╰──● x = −L·sin pitch     ·
+//! ```
+//!
+//! A point belongs to a line, along which outcomes are read outwards: of a grid and a lattice along their first error, of an arc for each yaw, of a
+//! bracket from zero.
+
+use super::border::{Judge, Search, random_direction};
+use super::foretold::for_each;
+use super::{MOST_TRIALS, PlanError};
+use crate::validate::LIMIT;
+use catchment_core::acceptance::Stream;
+use catchment_core::exec::Exec;
+use catchment_core::method::descent;
+use catchment_core::pose::{CorPose, Dof, PoseError, face_from_cor};
+use catchment_core::problem::Problem;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// A pattern of poses. Lengths in D, angles in radians, lists in the order of [`Dof::ALL`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Pattern {
+    /// So many points along each error, evenly up to the largest.
+    Grid {
+        /// How many, 2 or more; errors without stay 0.
+        steps: [Option<usize>; 5],
+        /// The largest; the half-ranges of the error box where nothing is said.
+        max: [Option<f64>; 5],
+    },
+    /// Multiples of a step.
+    Lattice {
+        /// The step of each error; errors without stay 0.
+        step: [Option<f64>; 5],
+        /// The largest; the half-ranges of the error box where nothing is said.
+        max: [Option<f64>; 5],
+        /// Only points within one step of the predicted border, on either side.
+        along_border: bool,
+    },
+    /// The face turns about a joint of the robot, which moves x and pitch together.
+    Arc {
+        /// From the joint to the face centre, in D, above 0.
+        lever: f64,
+        /// Angles of the joint.
+        pitch: Vec<f64>,
+        /// Yaws at which that is done.
+        yaw: Vec<f64>,
+    },
+    /// On both sides of the border, along lines from zero, and a few far from it.
+    Bracket {
+        /// Trials in all.
+        trials: usize,
+        /// Lines; as many as there can be where nothing is said, with two points each.
+        lines: Option<usize>,
+        /// How near to the border it is worth trying; nothing finer than twice the accuracy.
+        resolution: [Option<f64>; 5],
+    },
+}
+
+/// A pose of a pattern.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Placed {
+    pub(super) error: PoseError,
+    pub(super) line: usize,
+}
+
+/// What made the pattern, beside its poses.
+#[derive(Debug, Default)]
+pub(super) struct Made {
+    pub(super) poses: Vec<Placed>,
+    pub(super) followed: usize,
+    /// Directions along which nothing fails within the error box.
+    pub(super) open: usize,
+}
+
+/// A line of a bracket: where along it the first pose fails, and how far from there, on either side, a point can be told to be on its
+/// side; as shares of the way through the error box.
+struct Border {
+    along: [f64; 5],
+    at: f64,
+    sides: [f64; 2],
+}
+
+/// How a pattern is laid out.
+pub(super) struct Maker<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) accuracy: PoseError,
+    pub(super) motions: &'a descent::Settings,
+    pub(super) symmetric: bool,
+    pub(super) seed: u64,
+}
+
+/// A joint may miss the lock of an offset by so much, in D: rounding.
+const LOCKED_WITHIN: f64 = 1e-6;
+/// Looks along a line of a bracket for its first failure.
+const LOOKS: usize = 48;
+/// Bisections of a border along a line: to 2⁻²⁰ of it.
+const HALVINGS: usize = 20;
+/// Points of a bracket are at least so many accuracies from the border: a little more than the two from which a trial decides.
+const TOLD_APART: f64 = 2.02;
+/// Of more than two errors the nearest border may lie in directions that were not looked in: so much farther.
+const LEEWAY: f64 = 1.25;
+/// How often a point that is nearer than that is moved out.
+const MOVES: usize = 6;
+/// One trial in so many is a control, far inside or far outside.
+const CONTROLS: usize = 8;
+/// Directions that are looked at for each line that is wanted.
+const TRIES: usize = 8;
+
+impl Maker<'_> {
+    pub(super) fn make(&self, pattern: &Pattern, exec: &Exec) -> Result<Made, PlanError> {
+        match pattern {
+            Pattern::Grid { steps, max } => {
+                let values = |axis: Dof| {
+                    let (count, most) = (steps[axis.index()]?, self.most(axis, max));
+                    let at = |k: usize| {
+                        let share = k as f64 / (count - 1).max(1) as f64;
+                        if self.symmetric { share * most } else { (2.0 * share - 1.0) * most }
+                    };
+                    Some((0..count).map(at).collect())
+                };
+                Ok(Made { poses: self.product(values)?, ..Made::default() })
+            }
+            Pattern::Lattice { step, max, along_border } => {
+                let poses = self.lattice(step, max)?;
+                if *along_border {
+                    self.along_border(poses, step, exec)
+                } else {
+                    Ok(Made { poses, ..Made::default() })
+                }
+            }
+            Pattern::Arc { lever, pitch, yaw } => self.arc(*lever, pitch, yaw),
+            Pattern::Bracket { trials, lines, resolution } => self.bracket(*trials, *lines, resolution, exec),
+        }
+    }
+
+    fn most(&self, axis: Dof, max: &[Option<f64>; 5]) -> f64 {
+        max[axis.index()].unwrap_or_else(|| self.problem.alignment().half_range(axis))
+    }
+
+    fn lattice(&self, step: &[Option<f64>; 5], max: &[Option<f64>; 5]) -> Result<Vec<Placed>, PlanError> {
+        /// A multiple that rounding puts beyond the largest is there all the same.
+        const ROUNDING: f64 = 1e-9;
+        let mut far = None;
+        let values = |axis: Dof| {
+            let step = step[axis.index()].filter(|step| *step > 0.0)?;
+            let count = self.most(axis, max) / step + ROUNDING;
+            if count > MOST_TRIALS as f64 {
+                far = Some(axis);
+                return Some(Vec::new());
+            }
+            let count = count.floor() as i32;
+            Some((if self.symmetric { 0 } else { -count }..=count).map(|k| f64::from(k) * step).collect())
+        };
+        let poses = self.product(values)?;
+        if far.is_some() { Err(PlanError::TooMany { most: MOST_TRIALS }) } else { Ok(poses) }
+    }
+
+    /// All combinations; lines run along the first error, outwards from 0.
+    fn product(&self, mut values: impl FnMut(Dof) -> Option<Vec<f64>>) -> Result<Vec<Placed>, PlanError> {
+        let axes: Vec<(Dof, Vec<f64>)> =
+            self.problem.alignment().free.iter().filter_map(|axis| Some((axis, values(axis)?))).collect();
+        if axes.is_empty() {
+            return Err(PlanError::Nothing);
+        }
+        let total = axes.iter().try_fold(1usize, |total, (_, values)| total.checked_mul(values.len()));
+        let Some(total) = total.filter(|total| *total <= MOST_TRIALS) else {
+            return Err(PlanError::TooMany { most: MOST_TRIALS });
+        };
+        let along = axes[0].1.len();
+        let pose = |number: usize| {
+            let mut rest = number;
+            let mut error = [0.0; 5];
+            for (axis, values) in &axes {
+                error[axis.index()] = values[rest % values.len()];
+                rest /= values.len();
+            }
+            let backwards = usize::from(error[axes[0].0.index()] < 0.0);
+            Placed { error: PoseError::from_array(error), line: 2 * (number / along) + backwards + 1 }
+        };
+        Ok(numbered((0..total).map(pose).collect()))
+    }
+
+    /// Only points within one step of the border.
+    fn along_border(
+        &self,
+        poses: Vec<Placed>,
+        step: &[Option<f64>; 5],
+        exec: &Exec,
+    ) -> Result<Made, PlanError> {
+        /// A point that rounding puts beyond a step is within it.
+        const ROUNDING: f64 = 1e-9;
+        /// Directions that are first looked at may meet the border so much farther off than it is.
+        const OBLIQUE: f64 = 3.0;
+        let steps = PoseError::from_array(step.map(Option::unwrap_or_default));
+        let search = Search::new(self.problem, &steps, OBLIQUE);
+        let random = Stream::new(self.seed).branch(1);
+        let found = for_each(
+            poses.len(),
+            exec,
+            || Judge::new(self.problem, self.motions),
+            |judge, k| {
+                let before = judge.followed();
+                let error = &poses[k].error;
+                let docks = judge.docks(error);
+                let border = search.nearest(judge, error, docks, None, random.branch(k as u64));
+                let near = border.is_some_and(|border| border.sigmas <= 1.0 + ROUNDING);
+                (near, judge.followed() - before)
+            },
+        )?;
+        let kept = poses.into_iter().zip(&found).filter(|(_, (near, _))| *near).map(|(placed, _)| placed);
+        Ok(Made { poses: numbered(kept.collect()), followed: found.iter().map(|(_, n)| n).sum(), open: 0 })
+    }
+
+    fn arc(&self, lever: f64, pitch: &[f64], yaw: &[f64]) -> Result<Made, PlanError> {
+        if !(lever.is_finite() && lever > 0.0) {
+            return Err(PlanError::Lever { lever });
+        }
+        if pitch.len().saturating_mul(yaw.len()) > MOST_TRIALS {
+            return Err(PlanError::TooMany { most: MOST_TRIALS });
+        }
+        let alignment = self.problem.alignment();
+        let mut poses = Vec::new();
+        for (number, yaw) in yaw.iter().enumerate() {
+            for pitch in pitch {
+                let turned = PoseError { pitch: *pitch, yaw: *yaw, ..PoseError::default() };
+                let face = face_from_cor(&turned.rotation(), -lever);
+                // Where the face does not move, it is at 0 and not beside it by rounding.
+                let clean = |value: f64| if value.abs() < f64::EPSILON { 0.0 } else { value };
+                let error = PoseError { x: clean(face.x), y: clean(face.y), ..turned };
+                let locked = |axis: Dof| !alignment.free.contains(axis);
+                let turning = [(Dof::Pitch, *pitch), (Dof::Yaw, *yaw)];
+                if let Some((axis, _)) =
+                    turning.into_iter().find(|(axis, value)| *value != 0.0 && locked(*axis))
+                {
+                    return Err(PlanError::Locked { axis });
+                }
+                let held = CorPose::from_error(
+                    &error,
+                    alignment.center_of_rotation,
+                    catchment_core::pose::DofSet::ALL,
+                )
+                .lateral;
+                for (axis, off) in [(Dof::X, held.x), (Dof::Y, held.y)] {
+                    if locked(axis) && off.abs() > LOCKED_WITHIN {
+                        return Err(PlanError::JointElsewhere {
+                            axis,
+                            lever,
+                            cor: alignment.center_of_rotation,
+                        });
+                    }
+                }
+                poses.push(Placed { error, line: 2 * number + usize::from(*pitch < 0.0) + 1 });
+            }
+        }
+        if poses.is_empty() {
+            Err(PlanError::Nothing)
+        } else {
+            Ok(Made { poses: numbered(poses), ..Made::default() })
+        }
+    }
+
+    fn bracket(
+        &self,
+        trials: usize,
+        lines: Option<usize>,
+        resolution: &[Option<f64>; 5],
+        exec: &Exec,
+    ) -> Result<Made, PlanError> {
+        let controls = 2 * (trials / (2 * CONTROLS)).max(1);
+        let fewest = 2 * lines.unwrap_or(1) + controls;
+        if trials < fewest || lines == Some(0) {
+            return Err(PlanError::TooFew { trials, fewest });
+        }
+        if trials > MOST_TRIALS {
+            return Err(PlanError::TooMany { most: MOST_TRIALS });
+        }
+        let wanted = lines.unwrap_or((trials - controls) / 2);
+        let mut judge = Judge::new(self.problem, self.motions);
+        if !judge.docks(&PoseError::default()) {
+            return Err(PlanError::NotDocked);
+        }
+        let mut made = Made::default();
+        // Lines on which a pair fits between zero and the error box first.
+        let (mut borders, mut narrow) = (Vec::new(), Vec::new());
+        for (number, along) in self.directions(wanted).into_iter().enumerate() {
+            exec.check()?;
+            if borders.len() == wanted {
+                break;
+            }
+            let Some(at) = self.border(&mut judge, &along) else {
+                made.open += 1;
+                continue;
+            };
+            let sides = [-1.0, 1.0]
+                .map(|sign| sign * self.told_apart(&mut judge, &along, at, sign, resolution, number));
+            let border = Border { along, at, sides };
+            let fits = sides.iter().all(|side| is_within(at + side));
+            if fits { &mut borders } else { &mut narrow }.push(border);
+        }
+        let missing = wanted - borders.len();
+        borders.extend(narrow.into_iter().take(missing));
+        if borders.is_empty() {
+            return Err(PlanError::NoBorder);
+        }
+        // There may be fewer lines than were wanted: their trials go to more pairs, and what is left to controls.
+        let pairs = (trials - controls) / (2 * borders.len());
+        for (number, Border { along, at, sides }) in borders.iter().enumerate() {
+            for side in sides {
+                // The widest first: each pair halves what the one before left open.
+                let at = (0..pairs).rev().map(|pair| at + side * f64::from(1u32 << pair.min(16)));
+                let place = |t: f64| Placed { error: self.scaled(along, t), line: number + 1 };
+                made.poses.extend(at.filter(|t| is_within(*t)).map(place));
+            }
+        }
+        for number in 0..trials - made.poses.len() {
+            let (line, round) = ((number / 2) % borders.len(), number / (2 * borders.len()));
+            let Border { along, at, .. } = &borders[line];
+            let share = between(round);
+            let t = if number % 2 == 0 { share * at } else { at + share * (1.0 - at) };
+            made.poses.push(Placed { error: self.scaled(along, t), line: line + 1 });
+        }
+        made.followed = judge.followed();
+        made.poses.sort_by_key(|placed| placed.line);
+        Ok(made)
+    }
+
+    /// How far from the border along a line, as a share of the way through the box, a point can be told to be on its side.
+    fn told_apart(
+        &self,
+        judge: &mut Judge<'_>,
+        along: &[f64; 5],
+        border: f64,
+        sign: f64,
+        resolution: &[Option<f64>; 5],
+        number: usize,
+    ) -> f64 {
+        let speed = |units: [f64; 5]| {
+            let rate = |k: usize| {
+                let part = along[k] * self.problem.alignment().half_range(Dof::ALL[k]);
+                if units[k] > 0.0 { (part / units[k]).powi(2) } else { 0.0 }
+            };
+            (0..5).map(rate).sum::<f64>().sqrt()
+        };
+        let inverse = |rate: f64| if rate > 0.0 { rate.recip() } else { 0.0 };
+        let is_wide = self.problem.alignment().free.len() > 2;
+        let wanted = TOLD_APART * if is_wide { LEEWAY } else { 1.0 };
+        let mut apart = (wanted * inverse(speed(self.accuracy.to_array())))
+            .max(inverse(speed(resolution.map(Option::unwrap_or_default))));
+        let search = Search::new(self.problem, &self.accuracy, 2.0 * wanted);
+        let random = Stream::new(self.seed).branch(2).branch(number as u64);
+        for _ in 0..MOVES {
+            let t = border + sign * apart;
+            if !is_within(t) {
+                break;
+            }
+            let error = self.scaled(along, t);
+            let docks = judge.docks(&error);
+            match search.nearest(judge, &error, docks, None, random) {
+                Some(found) if found.sigmas < wanted * LIMIT / TOLD_APART => {
+                    apart *= (wanted / found.sigmas).clamp(1.05, 2.0);
+                }
+                _ => break,
+            }
+        }
+        apart
+    }
+
+    /// Where along a direction the first pose fails, as a share of the way through the error box.
+    fn border(&self, judge: &mut Judge<'_>, along: &[f64; 5]) -> Option<f64> {
+        let fails = (1..=LOOKS).find(|k| !judge.docks(&self.scaled(along, *k as f64 / LOOKS as f64)))?;
+        let [mut docks, mut fails] = [fails - 1, fails].map(|k| k as f64 / LOOKS as f64);
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(docks, fails);
+            if judge.docks(&self.scaled(along, middle)) {
+                docks = middle;
+            } else {
+                fails = middle;
+            }
+        }
+        Some(fails)
+    }
+
+    /// A pose so far along a direction whose largest part is 1: at 1 it is on the surface of the error box.
+    fn scaled(&self, along: &[f64; 5], t: f64) -> PoseError {
+        let range = |k: usize| self.problem.alignment().half_range(Dof::ALL[k]);
+        PoseError::from_array(std::array::from_fn(|k| t * along[k] * range(k)))
+    }
+
+    /// Directions through the error box: of two errors evenly, of more along each error first and then random ones.
+    fn directions(&self, wanted: usize) -> Vec<[f64; 5]> {
+        let axes: Vec<usize> = self.problem.alignment().free.iter().map(Dof::index).collect();
+        let signs: &[f64] = if self.symmetric { &[1.0] } else { &[1.0, -1.0] };
+        let mut all: Vec<[f64; 5]> = Vec::new();
+        if let [a, b] = axes[..] {
+            let turn =
+                if self.symmetric { FRAC_PI_2 / (wanted - 1).max(1) as f64 } else { TAU / wanted as f64 };
+            for k in 0..wanted {
+                let (sin, cos) = (turn * k as f64).sin_cos();
+                let clean = |part: f64| if part.abs() < f64::EPSILON { 0.0 } else { part };
+                let mut along = [0.0; 5];
+                (along[a], along[b]) = (clean(cos), clean(sin));
+                all.push(along);
+            }
+        } else {
+            for k in &axes {
+                for sign in signs {
+                    let mut along = [0.0; 5];
+                    along[*k] = *sign;
+                    all.push(along);
+                }
+            }
+        }
+        if axes.len() > 1 {
+            let random = Stream::new(self.seed).branch(3);
+            for number in 0..(TRIES * wanted) as u64 {
+                let normal = random_direction(random, number);
+                let part = |k: usize| if self.symmetric { normal[k].abs() } else { normal[k] };
+                all.push(std::array::from_fn(|k| if axes.contains(&k) { part(k) } else { 0.0 }));
+            }
+        }
+        let largest = |along: &[f64; 5]| along.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
+        all.iter().map(|along| along.map(|part| part / largest(along))).collect()
+    }
+}
+
+/// Whether a point so far along a line is beyond zero and not beyond the error box.
+fn is_within(t: f64) -> bool {
+    t > 0.0 && t <= 1.0
+}
+
+/// Where controls stand between two ends, half way first: 1/2, 1/4, 3/4, 1/8, 5/8, …, no two alike.
+fn between(round: usize) -> f64 {
+    let (mut rest, mut digit, mut share) = (round + 1, 0.5, 0.0);
+    while rest > 0 {
+        share += digit * (rest % 2) as f64;
+        (rest, digit) = (rest / 2, digit / 2.0);
+    }
+    share
+}
+
+/// Lines numbered 1, 2, 3, … in the order in which they are met.
+fn numbered(mut poses: Vec<Placed>) -> Vec<Placed> {
+    let mut met = std::collections::BTreeMap::new();
+    for placed in &mut poses {
+        let next = met.len() + 1;
+        placed.line = *met.entry(placed.line).or_insert(next);
+    }
+    poses
+}

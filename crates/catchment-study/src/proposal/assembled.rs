@@ -1,0 +1,109 @@
+//! Parts that are drawn docked, in one frame: along which approach they hold, near the pose in which they are drawn.
+//!
+//! ```text
+//!   6 approaches, and common diagonals ──▶ a lattice near the drawn pose ──▶ exact contact of those that hold
+//!                                                                       └─▶ drawn apart: let down to first contact
+//! ```
+
+use super::judge::{Judged, Refusal, judge};
+use super::way::{Lie, Way};
+use super::{Frames, Looked, Parts, is_seat, rank, sink, ways};
+use catchment_core::exec::{Cancelled, Exec};
+use glam::DVec2;
+
+/// Parts that are drawn docked: what a lattice says of each approach; of those that hold, or that are asked for, what exact contact says.
+pub(super) fn docked(
+    both: &Parts<'_>,
+    looked: &mut Looked,
+    exec: &Exec,
+) -> Result<Vec<(Way, sink::Drawn)>, Cancelled> {
+    let ways = ways(both.settings.approach);
+    let look = |ways: &[Way]| {
+        exec.each(ways.len(), usize::MAX, "approaches", |k, _| {
+            (ways[k], sink::drawn(both.lattices(), ways[k], false, both.grain))
+        })
+    };
+    let mut looks = look(&ways);
+    if both.settings.approach.is_none() {
+        // Of a diagonal it says nothing that it does not hold.
+        let [fixed, moving] = &both.diagonals;
+        let common: Vec<Way> = fixed.iter().copied().filter(|way| moving.contains(way)).collect();
+        looks.extend(look(&common).into_iter().filter(|(_, drawn)| matches!(drawn, sink::Drawn::Holds(_))));
+    }
+    exec.check()?;
+    let holds = looks.iter().filter_map(|(way, drawn)| match drawn {
+        sink::Drawn::Holds(sunk) => Some((*way, *sunk)),
+        _ => None,
+    });
+    let holds: Vec<(Way, sink::Sunk)> = holds.collect();
+    let found =
+        exec.each(holds.len(), usize::MAX, "seats", |k, exec| let_in(both, holds[k].0, holds[k].1, exec));
+    looked.add(found);
+    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    if !looked.has_seat() {
+        // A groove holds one way only, which is none to a lattice.
+        let rests = |drawn: &sink::Drawn| matches!(drawn, sink::Drawn::Flat { .. });
+        let is_asked = both.settings.frames == Frames::Assembled || both.settings.approach.is_some();
+        let flat: Vec<Way> =
+            looks.iter().filter(|(_, drawn)| is_asked || rests(drawn)).map(|(way, _)| *way).collect();
+        let found = exec.each(flat.len(), usize::MAX, "approaches", |k, _| {
+            let lie = Lie::Assembled { approach: flat[k] };
+            judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie))
+        });
+        looked.add(found);
+        rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    }
+    Ok(looks)
+}
+
+/// A place near the drawn pose, as drawn where exact contact holds there, and otherwise where it is deepest nearby.
+fn let_in(both: &Parts<'_>, way: Way, sunk: sink::Sunk, exec: &Exec) -> Result<Judged, Refusal> {
+    let lie = Lie::Assembled { approach: way };
+    let drawn = judge(both.halves, lie, DVec2::ZERO, &[], None, both.told).map_err(|refusal| refusal.of(lie));
+    let near = |found: &Judged| {
+        let lift = sunk.height + 0.5 * sunk.climb;
+        found.lift <= lift
+    };
+    if let Ok(found) = drawn
+        && near(&found)
+    {
+        let mut found = found.found(sunk, 0);
+        found.ask(both.settings.free, both.told, exec);
+        if matches!(found.seat, Some(Ok(_))) {
+            return Ok(found);
+        }
+    }
+    let lie = sunk.lie;
+    judge(both.halves, lie, sunk.offset, &[DVec2::ZERO], Some(&sunk), both.told)
+        .map(|found| found.found(sunk, 0))
+        .map_err(|refusal| refusal.of(lie))
+}
+
+/// Parts that are drawn apart: let down along the approach to where they hold, however far that is; what to say of it.
+pub(super) fn let_down(
+    both: &Parts<'_>,
+    looks: &[(Way, sink::Drawn)],
+    looked: &mut Looked,
+    exec: &Exec,
+) -> Result<Option<String>, Cancelled> {
+    let apart: Vec<Way> = looks
+        .iter()
+        .filter(|(_, drawn)| matches!(drawn, sink::Drawn::Apart(_)))
+        .map(|(way, _)| *way)
+        .collect();
+    let found = exec.each(apart.len(), usize::MAX, "approaches", |k, exec| {
+        let sink::Drawn::Holds(sunk) = sink::drawn(both.lattices(), apart[k], true, both.grain) else {
+            return None;
+        };
+        Some(let_in(both, apart[k], sunk, exec))
+    });
+    looked.add(found.into_iter().flatten().collect());
+    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    let best = looked.judged.first().filter(|best| is_seat(best)).and_then(|best| best.sunk);
+    Ok(best.map(|sunk| {
+        format!(
+            "in doubt: as drawn the parts are {} apart; the moving part slides so far along the approach to first contact",
+            both.told.length(sunk.height.abs())
+        )
+    }))
+}

@@ -1,0 +1,153 @@
+//! One way in which two parts may dock, as a person sees it.
+
+use super::judge::{Judged, Seat};
+use super::way::Lie;
+use catchment_core::contact::told::{Told, number};
+use catchment_core::design::LengthUnit;
+use catchment_core::pose::PoseError;
+use std::fmt;
+
+/// One way in which the parts may dock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// How they lie.
+    pub lie: Lie,
+    /// 0 to 1; the more, the likelier.
+    pub score: f64,
+    /// How far the moving half climbs before it leaves, and how far it moves to each side at half of that, in the unit of the design;
+    /// where a lattice found it.
+    pub sunk: Option<[f64; 2]>,
+    /// climb / (e + play); 0 where no lattice found it.
+    pub steep: f64,
+    /// Whether it hardly rises as far as a lattice looks: what lies in a tray, and not in a seat.
+    pub is_loose: bool,
+    /// Which place it is: candidates of one place differ by a turn about the approach.
+    pub class: usize,
+    /// How much a half climbs that is off, 0 to 1.
+    pub climb: f64,
+    /// The area that can touch as a share of the broadest side of the smaller part's box.
+    pub shared: f64,
+    /// D, in the unit of the design.
+    pub width: f64,
+    /// Where the origin of the moving part is across the approach, in the unit of the design and the frame of the fixed half, turned.
+    pub offset: [f64; 2],
+    /// Whether it is a seat.
+    pub seat: Held,
+}
+
+/// Whether a candidate is a seat.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Held {
+    /// As drawn.
+    Holds,
+    /// Where the halves have settled.
+    Settles {
+        /// By how much the moving half turned, in radians.
+        turn: f64,
+        /// By how much it shifted across the approach, in the unit of the design.
+        shift: f64,
+        /// How that is told.
+        told: String,
+    },
+    /// It is none, and why.
+    Refused(String),
+    /// Others are better, so that it was not asked.
+    NotAsked,
+}
+
+impl fmt::Display for Held {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Holds => f.write_str("holds"),
+            Self::Settles { told, .. } => write!(f, "settles, {told} off"),
+            Self::Refused(reason) => f.write_str(reason),
+            Self::NotAsked => f.write_str("not looked at any closer"),
+        }
+    }
+}
+
+/// The unit in which a person says lengths of parts: millimetres where a file is in metres.
+pub(super) const fn shown_unit(unit: LengthUnit) -> LengthUnit {
+    match unit {
+        LengthUnit::M => LengthUnit::Mm,
+        other => other,
+    }
+}
+
+/// A length given in the unit of the design, as a person says it: in millimetres where the file is in metres.
+pub fn shown_length(value: f64, unit: LengthUnit) -> String {
+    let shown = shown_unit(unit);
+    format!("{} {}", number(value * unit.metres() / shown.metres()), shown.symbol())
+}
+
+/// A candidate as a person sees it: lengths times `unit` are in the unit of the design.
+pub(super) fn candidate(judged: &Judged, unit: f64, told: Told) -> Candidate {
+    let Judged { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
+    Candidate {
+        lie: *lie,
+        score: judged.score(),
+        sunk: sunk.map(|sunk| [sunk.climb * unit, sunk.play * unit]),
+        steep: sunk.map_or(0.0, |sunk| sunk.steep),
+        is_loose: sunk.is_some_and(|sunk| sunk.is_loose),
+        class: *class,
+        climb: climb.max(0.0),
+        shared: *shared,
+        width: width * unit,
+        offset: (*offset * unit).to_array(),
+        seat: match seat {
+            None => Held::NotAsked,
+            Some(Ok(Seat { settle: Some(off), .. })) => settles(off, width * told.scale, told.unit),
+            Some(Ok(_)) => Held::Holds,
+            Some(Err(reason)) => Held::Refused(reason.clone()),
+        },
+    }
+}
+
+/// Where halves have settled.
+fn settles(off: &PoseError, width: f64, unit: &str) -> Held {
+    let turn = off.roll.hypot(off.pitch).hypot(off.yaw);
+    let shift = off.x.hypot(off.y) * width;
+    // What is less is how well the rest is known.
+    let shown = [(turn.to_degrees(), "deg", 0.05), (shift, unit, 1e-4 * width)];
+    let parts: Vec<String> = shown
+        .into_iter()
+        .filter(|(value, _, least)| value >= least)
+        .map(|(value, unit, _)| match unit {
+            "deg" => format!("{value:.1} deg"),
+            _ => format!("{} {unit}", number(value)),
+        })
+        .collect();
+    let told = if parts.is_empty() { "hardly".to_owned() } else { parts.join(" and ") };
+    Held::Settles { turn, shift, told }
+}
+
+impl Candidate {
+    /// Where the moving part is, in words to put behind how it lies, where others lie the same way; nothing otherwise.
+    pub fn place_among(&self, all: &[Self], unit: LengthUnit) -> String {
+        if all.iter().filter(|other| other.lie == self.lie).count() < 2 {
+            return String::new();
+        }
+        let shown = shown_unit(unit);
+        let [x, y] = self.offset.map(|side| number(side * unit.metres() / shown.metres()));
+        format!(", its origin at ({x}, {y}) {}", shown.symbol())
+    }
+
+    /// The candidate in words, beside all of them, with lengths in this unit.
+    pub fn told(&self, all: &[Self], unit: LengthUnit) -> String {
+        let Self { lie, score, climb, shared, seat, .. } = self;
+        if let Some([deep, play]) = self.sunk {
+            return format!(
+                "{score:.2}  {lie}{}: {} deep, play {} to each side, {seat}",
+                self.place_among(all, unit),
+                shown_length(deep, unit),
+                shown_length(play, unit)
+            );
+        }
+        format!(
+            "{score:.2}  {lie}{}: climbs {:.0} %, {:.0} % of the smaller part's broad side can touch, {seat}",
+            self.place_among(all, unit),
+            climb * 100.0,
+            shared * 100.0
+        )
+    }
+}

@@ -1,0 +1,234 @@
+//! Why parts do not dock, as a person would say it: what comes of each approach as drawn, and mistakes in the files.
+//!
+//! ```text
+//!   meets nothing            ──▶ passes through: a stop is missing
+//!   meets, and slides off    ──▶ flat: magnets or pins are missing
+//!   blocked all ways         ──▶ interlock: a thread of this lead; a snap, an undercut or an interference of so many mm; something else
+//! ```
+//!
+//! Not promised: that the cause is the only one.
+
+use super::halves::file_unit;
+use super::sink::{self, Drawn, Grain, Triangles, together};
+use super::{PartFile, Settings, Way};
+use catchment_core::advice::Advice;
+use catchment_core::connector::Half;
+use catchment_core::contact::told::{Told, number};
+use catchment_core::design::LengthUnit;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// What to say of a seat that is elsewhere than where parts are drawn that may be assembled.
+pub(super) const ELSEWHERE: &str = "in doubt: the parts are drawn inside each other without overlap, and do not hold so; the seat that was taken is another one";
+
+/// An assembly shares no volume but for rounding and press fits, as a share of the smaller part's.
+const MOST_SHARED: f64 = 0.01;
+/// In an assembly the share of the moving part's surface that is near the fixed one, where the boxes overlap, times the share of the boxes that
+/// overlaps, is at least so much; where it is less, but the boxes overlap by this share, it may be one.
+const LEAST_NEAR: f64 = 0.02;
+const LEAST_INSIDE: f64 = 0.25;
+
+/// How two parts are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Frame {
+    /// Near or inside each other, without overlap.
+    Assembly,
+    /// Inside each other, without overlap and far from each other's surface.
+    Perhaps,
+    /// Each in its own frame.
+    Own,
+}
+
+/// How parts are drawn.
+pub(super) fn frame(parts: [&Triangles; 2], grain: Grain) -> Frame {
+    let found = together(parts, grain);
+    if found.shared >= MOST_SHARED {
+        Frame::Own
+    } else if found.near * found.inside >= LEAST_NEAR {
+        Frame::Assembly
+    } else if found.inside >= LEAST_INSIDE {
+        Frame::Perhaps
+    } else {
+        Frame::Own
+    }
+}
+
+/// The cause, of what comes of each approach, and what helps.
+pub(super) fn of(
+    parts: [&Triangles; 2],
+    looks: &[(Way, Drawn)],
+    grain: Grain,
+    told: Told,
+) -> (String, Option<Advice>) {
+    let text = words(parts, looks, grain, told);
+    let stops = |drawn: &Drawn| matches!(drawn, Drawn::Flat { .. } | Drawn::Passes);
+    let holds = |drawn: &Drawn| matches!(drawn, Drawn::Holds(_));
+    let is_part_missing =
+        looks.iter().any(|(_, drawn)| stops(drawn)) && !looks.iter().any(|(_, drawn)| holds(drawn));
+    (text, is_part_missing.then_some(Advice::MissingPart))
+}
+
+/// The cause in words.
+fn words(parts: [&Triangles; 2], looks: &[(Way, Drawn)], grain: Grain, told: Told) -> String {
+    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Holds(_))) {
+        return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
+    }
+    let flat = looks.iter().find_map(|(way, drawn)| match drawn {
+        Drawn::Flat { climb } => Some((way, *climb)),
+        _ => None,
+    });
+    if let Some((way, climb)) = flat {
+        return format!(
+            "as drawn, approach {way}: flat: the parts meet and nothing holds them sideways (the moving part climbs {} before it slides off). Are magnets or \
+             pins missing?",
+            told.length(climb)
+        );
+    }
+    if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Passes)) {
+        return format!(
+            "as drawn, approach {way}: the moving part meets nothing and passes through: no stop. What does it come to rest on?"
+        );
+    }
+    let apart = looks.iter().filter_map(|(way, drawn)| match drawn {
+        Drawn::Apart(by) => Some((*by, way)),
+        _ => None,
+    });
+    if let Some((by, way)) = apart.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        return format!(
+            "as drawn, approach {way}: the parts are {} apart, and where the moving part then meets the fixed one nothing holds it",
+            told.length(by)
+        );
+    }
+    let blocked = looks.iter().filter_map(|(way, drawn)| match drawn {
+        Drawn::Blocked(by) => Some((*by, *way)),
+        _ => None,
+    });
+    let blocked: Vec<(f64, Way)> = blocked.collect();
+    let Some((by, way)) = blocked.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return "as drawn the parts do not meet".to_owned();
+    };
+    let mut lines = Way::ALL.into_iter().filter(|way| way.vector().max_element() > 0.0);
+    if let Some((way, lead)) = lines.find_map(|way| sink::lead(parts, way, grain).map(|lead| (way, lead))) {
+        let hand = if lead > 0.0 { "right" } else { "left" };
+        return format!(
+            "as drawn the parts are screwed together: a {hand}-handed thread along {way} that moves about {} per turn. No straight way along an axis brings them \
+             together: what docks is a part without its thread",
+            told.length(lead.abs())
+        );
+    }
+    let ways = blocked.iter().map(|(_, way)| *way);
+    let snaps = ways.filter_map(|way| sink::undercut(parts, way, grain).map(|undercut| (undercut, way)));
+    match snaps.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((undercut, way)) => format!(
+            "as drawn the parts interlock: along {way} walls would have to give way by {}: a snap, an undercut or an interference. Both halves are rigid here: \
+             draw the catch as it is when it is bent, or leave it out",
+            told.length(undercut)
+        ),
+        None if looks.len() == 1 => format!(
+            "as drawn, approach {way}: the moving part meets the fixed one {} before it is where it is drawn",
+            told.length(by)
+        ),
+        None => format!(
+            "as drawn the parts interlock: no straight way along an axis brings them together. Nearest is approach {way}, {} short",
+            told.length(by)
+        ),
+    }
+}
+
+/// A mistake in the files, and its remedy; lengths of the halves times `scale` are in the unit of the design.
+pub(super) fn of_files(
+    parts: &[PartFile; 2],
+    halves: [&Half; 2],
+    settings: &Settings,
+    scale: f64,
+) -> Option<String> {
+    let [fixed, moving] = halves;
+    if settings.with.iter().all(Vec::is_empty)
+        && parts[0].written == parts[1].written
+        && parts[0].body == parts[1].body
+    {
+        return Some("both halves are the same file: name the file of the other half".to_owned());
+    }
+    if is_same(fixed, moving) && settings.with.iter().all(Vec::is_empty) {
+        return Some("both files hold the same part: name the file of the other half".to_owned());
+    }
+    for ((whose, half), with) in ["fixed", "moving"].into_iter().zip(halves).zip(&settings.with) {
+        let count = bodies(half);
+        if with.is_empty() && count > 1 {
+            return Some(format!(
+                "the file of the {whose} half holds {count} separate bodies: if both halves are in it, give that file alone; of more than two bodies split it \
+                 (MeshLab: Split in Connected Components; PrusaSlicer: Split to objects)"
+            ));
+        }
+    }
+    inches(halves, settings, scale)
+}
+
+/// The corner that stands for a body.
+fn root(body: &mut [usize], mut k: usize) -> usize {
+    while body[k] != k {
+        body[k] = body[body[k]];
+        k = body[k];
+    }
+    k
+}
+
+/// Bodies whose boxes are compared in pairs, at most.
+const MOST_COMPARED: usize = 2000;
+
+/// How many bodies a half has whose boxes do not lie within each other; all of them if there are more than [`MOST_COMPARED`].
+fn bodies(half: &Half) -> usize {
+    let mut boxes: Vec<(DVec3, DVec3)> = Vec::new();
+    for surface in &half.surfaces {
+        // Corners that a facet joins are of one body.
+        let mut body: Vec<usize> = (0..surface.vertices.len()).collect();
+        for facet in &surface.facets {
+            let first = root(&mut body, facet.corners[0] as usize);
+            for corner in &facet.corners {
+                let other = root(&mut body, *corner as usize);
+                body[other] = first;
+            }
+        }
+        let mut found: HashMap<usize, (DVec3, DVec3)> = HashMap::new();
+        for (k, p) in surface.vertices.iter().enumerate() {
+            let (low, high) = found.entry(root(&mut body, k)).or_insert((*p, *p));
+            (*low, *high) = (low.min(*p), high.max(*p));
+        }
+        boxes.extend(found.into_values());
+    }
+    if boxes.len() > MOST_COMPARED {
+        return boxes.len();
+    }
+    let within =
+        |a: &(DVec3, DVec3), b: &(DVec3, DVec3)| a.0.cmpge(b.0).all() && a.1.cmple(b.1).all() && a != b;
+    boxes.iter().filter(|a| !boxes.iter().any(|b| within(a, b))).count()
+}
+
+/// Whether two halves have the same corners.
+fn is_same(one: &Half, other: &Half) -> bool {
+    let same = |a: &DVec3, b: &DVec3| a.abs_diff_eq(*b, 1e-9);
+    one.surfaces.len() == other.surfaces.len()
+        && one.surfaces.iter().zip(&other.surfaces).all(|(a, b)| {
+            a.vertices.len() == b.vertices.len()
+                && a.vertices.iter().zip(&b.vertices).all(|(a, b)| same(a, b))
+        })
+}
+
+/// Parts that are no longer than this, in millimetres, are rather in inches.
+const SHORT: f64 = 6.0;
+
+/// That files which say no unit, and of which somebody said millimetres, are rather in inches.
+pub(super) fn inches(halves: [&Half; 2], settings: &Settings, scale: f64) -> Option<String> {
+    let longest = halves.map(|half| {
+        let (low, high) = half.bounds();
+        (high - low).max_element() * scale
+    });
+    let longest = longest[0].max(longest[1]);
+    (file_unit(settings) == LengthUnit::Mm && longest < SHORT).then(|| {
+        format!(
+            "the larger part is {} mm long: is the file in inches? Then it is {} mm long",
+            number(longest),
+            number(longest * 25.4)
+        )
+    })
+}

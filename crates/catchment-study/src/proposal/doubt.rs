@@ -1,0 +1,110 @@
+//! What a person should look at in a proposal, in words: another way that is nearly as good, a seat that is shallow or settles, a size that rather has another unit.
+
+use super::halves::design_unit;
+use super::{Candidate, Frames, Held, Lie, NEARLY, Settings, file};
+use catchment_core::design::LengthUnit;
+
+/// A half that settles by more than this turn, or by this shift in D, is told of: 2 degrees, as much of an arm of half D.
+const MUCH: f64 = 2.0 / 180.0 * std::f64::consts::PI;
+/// Another place with this share of the steepness of the best may be the one that is meant.
+const RIVAL: f64 = 0.4;
+/// A place that scores less than this is weak.
+const WEAK: f64 = 0.4;
+/// Docks narrower and wider than this are rather in another unit, in metres.
+const LIKELY: [f64; 2] = [5e-4, 5.0];
+
+/// That a dock has a size which it would rather have in another unit.
+pub(super) fn of_size(width: f64, unit: LengthUnit) -> Option<String> {
+    let is_likely = |unit: &LengthUnit| (LIKELY[0]..=LIKELY[1]).contains(&(width * unit.metres()));
+    let rather = [LengthUnit::Mm, LengthUnit::M, LengthUnit::In].into_iter().find(is_likely)?;
+    (!is_likely(&unit)).then(|| {
+        let [millimetres, would_be] =
+            [unit, rather].map(|unit| file::number(width * unit.metres() * 1e3, 1e-3));
+        format!(
+            "the dock is {millimetres} mm wide: are the files in {}? Then it is {would_be} mm wide",
+            rather.symbol()
+        )
+    })
+}
+
+/// Whether two ways differ only in which end is up, of one of the parts.
+fn is_twin(one: &Candidate, other: &Candidate) -> bool {
+    let (Lie::Facing { fixed, moving, .. }, Lie::Facing { fixed: f, moving: m, .. }) = (one.lie, other.lie)
+    else {
+        return false;
+    };
+    (fixed == f || fixed.opposite() == f)
+        && (moving == m || moving.opposite() == m)
+        && (fixed, moving) != (f, m)
+}
+
+/// What a person should look at.
+pub(super) fn of(candidates: &[Candidate], settings: &Settings) -> Vec<String> {
+    let [best, others @ ..] = candidates else { return Vec::new() };
+    let mut doubts = Vec::new();
+    let rivals = |other: &&Candidate| {
+        let is_refused = matches!(other.seat, Held::Refused(_));
+        if best.steep > 0.0 && other.steep > 0.0 && other.class != best.class {
+            // What is as steep and does not hold may be off by a cell of the lattice.
+            other.steep >= if is_refused { NEARLY } else { RIVAL } * best.steep
+        } else {
+            !is_refused && other.score > NEARLY * best.score
+        }
+    };
+    let nearly: Vec<&Candidate> = others.iter().filter(rivals).collect();
+    let elsewhere =
+        |other: &&&Candidate| !other.lie.is_turned(best.lie) || best.steep > 0.0 && other.class != best.class;
+    if let Some(other) = nearly.iter().find(elsewhere) {
+        doubts.push(format!(
+            "in doubt: {} ({}{}; {:.2} beside {:.2}): look at the picture, and say which it is",
+            if is_twin(best, other) {
+                "turned end for end it docks as well"
+            } else {
+                "another way is nearly as good"
+            },
+            other.lie,
+            other.place_among(candidates, design_unit(settings)),
+            other.score,
+            best.score
+        ));
+    } else if let Some(other) = nearly.first() {
+        let place = if other.lie == best.lie { "at another place" } else { "turned about the approach" };
+        doubts.push(format!(
+            "the parts dock as well {place} ({}{}): look whether the one that was taken is the one that is meant",
+            other.lie,
+            other.place_among(candidates, design_unit(settings))
+        ));
+    }
+    if settings.frames == Frames::Any
+        && matches!(best.lie, Lie::Assembled { .. })
+        && settings.approach.is_none()
+    {
+        doubts.push("the parts meet as drawn, and were taken as an assembly that is docked".to_owned());
+    }
+    if let Held::Settles { turn, shift, told } = &best.seat
+        && (*turn > MUCH || *shift > MUCH * best.width)
+    {
+        doubts.push(format!(
+            "as drawn the parts do not hold; let go they come to rest {told} off, which is taken as mated: look at the picture, whether that is how \
+             they dock, or lock what turns with --free"
+        ));
+    }
+    if matches!(best.lie, Lie::Facing { .. }) && best.score < WEAK {
+        doubts.push(format!(
+            "in doubt: the seat is weak ({:.2}): look at the picture, and say how the parts lie if this is not what is meant",
+            best.score
+        ));
+    }
+    if best.is_loose {
+        doubts.push(
+            "in doubt: the moving part lies loose, as in a tray: look at the picture, and say how the parts lie if this is not what is meant".to_owned(),
+        );
+    }
+    if best.sunk.is_none() && best.climb < 0.1 {
+        doubts.push(format!(
+            "the seat is shallow: 0.1 D to 0.3 D off, a half climbs {} D on average",
+            file::number(best.climb * 0.3, 1e-4)
+        ));
+    }
+    doubts
+}

@@ -1,0 +1,261 @@
+//! The design file of a proposal: what every line is, and why it says what it says.
+
+use super::halves::{design_unit, file_unit, says_its_unit};
+use super::judge::{Judged, Seat};
+use super::way::Lie;
+use super::{Beside, PartFile, Settings};
+use catchment_core::design::{FileSpec, LengthUnit};
+use catchment_core::pose::{Dof, DofSet, Mount};
+use glam::DVec2;
+use std::fmt::Write;
+use std::path::Path;
+
+/// To what lengths are rounded, in D: what rests is known to 1e-7.
+const ROUNDED: f64 = 1e-8;
+
+/// A number rounded to a step that is a power of ten, below `about`.
+pub(super) fn number(value: f64, about: f64) -> String {
+    let digits = (-about.log10()).ceil().clamp(0.0, 15.0) as usize;
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// A string of TOML.
+fn quoted(text: &str) -> String {
+    let escaped = text.chars().fold(String::new(), |mut text, c| {
+        match c {
+            '"' | '\\' => text.extend(['\\', c]),
+            _ if c.is_control() => {
+                let _ = write!(text, "\\u{:04x}", u32::from(c));
+            }
+            _ => text.push(c),
+        }
+        text
+    });
+    format!("\"{escaped}\"")
+}
+
+fn list(set: DofSet) -> String {
+    let names: Vec<String> = set.iter().map(|dof| format!("\"{}\"", dof.name())).collect();
+    format!("[{}]", names.join(", "))
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// Facets stand for curved faces in a STEP file.
+const MESHED: &str =
+    "# Facets stand for its curved faces, off by 0.0002 of its size; closer with deflection = \"0.01 mm\".";
+
+/// The keys that name a file, and the unit of one that does not say it.
+fn named(part: &PartFile, unit: LengthUnit) -> (String, Option<String>) {
+    let stated = (!says_its_unit(&part.path)).then(|| format!("unit = \"{}\"", unit.symbol()));
+    (format!("mesh = {}", quoted(&part.written)), stated)
+}
+
+/// An element of a list of parts.
+fn element(beside: &Beside, unit: LengthUnit) -> String {
+    match beside {
+        Beside::File(part) => {
+            let (mesh, stated) = named(part, unit);
+            format!("    {{ {} }},", std::iter::once(mesh).chain(stated).collect::<Vec<_>>().join(", "))
+        }
+        Beside::Part(text) => format!("    {text},"),
+    }
+}
+
+/// What draws a half: its file, or a list of parts that begins with it.
+fn drawn(part: &PartFile, with: &[Beside], settings: &Settings) -> Vec<String> {
+    let unit = file_unit(settings);
+    let is_step = FileSpec::new(&part.path, 1.0).is_step();
+    let meshed = is_step.then(|| MESHED.to_owned());
+    if with.is_empty() {
+        let (mesh, stated) = named(part, unit);
+        let body = part.body.map(|body| {
+            format!("# Of the separate bodies in it this one, the largest first.\nbody = {body}")
+        });
+        let stated = stated.map(|unit| unit + " # of the file, which does not say it");
+        let fewer = settings.simplify.map(|most| {
+            let most = quoted(&format!("{most} {}", unit.symbol()));
+            format!("# Described with fewer triangles: its surface may move so far.\nsimplify = {most}")
+        });
+        return [Some(mesh), body, meshed, stated, fewer].into_iter().flatten().collect();
+    }
+    let open = "# The file, and what belongs to it, in its coordinates.\nparts = [".to_owned();
+    let file = element(&Beside::File(part.clone()), unit);
+    let more = with.iter().map(|one| element(one, unit));
+    meshed.into_iter().chain([open, file]).chain(more).chain(["]".to_owned()]).collect()
+}
+
+/// A design that says no more than what draws the halves.
+pub(super) fn halves(parts: &[PartFile; 2], settings: &Settings) -> String {
+    let unit = design_unit(settings);
+    let mut text = format!("[connector]\nunit = \"{}\"\n", unit.symbol());
+    for ((name, part), with) in ["fixed", "moving"].into_iter().zip(parts).zip(&settings.with) {
+        let _ = writeln!(text, "\n[connector.{name}]\n{}", drawn(part, with, settings).join("\n"));
+    }
+    text
+}
+
+/// The design; lengths of `judged` times `scale` are in its unit, and errors are looked at up to these shares of 1 D and 90 degrees.
+pub(super) fn text(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    judged: &Judged,
+    seat: Seat,
+    scale: f64,
+    ranges: &[f64; 5],
+) -> String {
+    let unit = design_unit(settings);
+    let width = judged.width * scale;
+    let length = |value: f64| number(value * scale, ROUNDED * width);
+    let name = settings.name.clone().unwrap_or_else(|| {
+        let [fixed, moving] = parts.each_ref().map(|part| stem(&part.path));
+        let both = if parts[0].body.is_some() { fixed } else { format!("{moving} on {fixed}") };
+        both.chars().take(catchment_core::design::keys::LONGEST_LINE).collect()
+    });
+    let mut text = String::new();
+    let mut line = |words: &str| {
+        let _ = writeln!(text, "{words}");
+    };
+    line(
+        "# Two parts as they come from CAD, and how they dock, as `catchment place` proposes it. Compare it with a picture:",
+    );
+    line(
+        "# `catchment check` draws both halves, apart and mated. Bare lengths are in D (the width) but for those of the parts.",
+    );
+    line("schema = 1");
+    line(&format!("name = {}", quoted(&name)));
+    line("\n[connector]");
+    line(if judged.is_widened {
+        "# D, in which answers are told: as little as the size of the parts allows; what can touch is smaller."
+    } else {
+        "# D, in which answers are told: the larger lateral extent of the facets that can touch."
+    });
+    line(&format!("width = {}", decimal(number(width, ROUNDED * width))));
+    line(&format!("unit = \"{}\"", unit.symbol()));
+    if let Lie::Assembled { approach } = judged.lie {
+        line("# Both parts stand in one frame, docked; moved along the approach to where they first touch.");
+        line("drawn = \"assembled\"");
+        line(
+            "# Where the moving half comes from: along this direction they hold each other, and nothing is in the way.",
+        );
+        line(&format!("approach = {}", approach.written()));
+    }
+    if seat.settle.is_some() {
+        line("# As drawn they do not hold; let go they come to rest near, which is taken as mated.");
+        line("settle = true");
+    }
+    let to_axis = [-judged.center, judged.offset - judged.center];
+    for (k, name) in ["fixed", "moving"].into_iter().enumerate() {
+        line(&format!("\n[connector.{name}]"));
+        for words in drawn(&parts[k], &settings.with[k], settings) {
+            line(&words);
+        }
+        if let Lie::Facing { fixed, moving, turned } = judged.lie {
+            line("# Where it faces in its file, which is turned to +z.");
+            line(&format!("facing = {}", [fixed, moving][k].written()));
+            if k == 1 && turned > 0 {
+                line("# Then a turn about the approach, which brings the features together.");
+                line(&format!("rotate = [0, 0, \"{} deg\"]", u32::from(turned) * 90));
+            }
+            // Facing +z the moving half is not mounted yet.
+            let by = Mount::X.apply(to_axis[k].extend(0.0)).truncate();
+            let DVec2 { x, y } = if k == 0 { to_axis[k] } else { by };
+            let why = if k == 0 {
+                "# Then moved: the approach axis stands in the middle of what can touch."
+            } else {
+                "# Then moved to where it lies deepest, in the middle of its play."
+            };
+            line(why);
+            line(&format!("translate = [{}, {}, 0]", length(x), length(y)));
+        }
+    }
+    alignment(&mut line, seat, settings, unit);
+    line("\n# Up to where errors are looked at, to both sides.");
+    if seat.free.iter().any(|dof| ranges[dof.index()] < 1.0) {
+        line("# About four times what each error alone tolerates.");
+    }
+    line("[errors]");
+    for dof in seat.free.iter() {
+        let share = ranges[dof.index()];
+        let range = if dof.is_rotation() {
+            format!("\"{} deg\"", number(90.0 * share, 1e-6))
+        } else {
+            format!("{} # D", decimal(number(share, 1e-9)))
+        };
+        line(&format!("{} = {range}", dof.name()));
+    }
+    text
+}
+
+/// `[alignment]` and `[docked]`.
+fn alignment(line: &mut impl FnMut(&str), seat: Seat, settings: &Settings, unit: LengthUnit) {
+    line("\n[alignment]");
+    let left: DofSet = Dof::ALL
+        .into_iter()
+        .filter(|dof| !seat.free.contains(*dof) && !seat.dont_care.contains(*dof))
+        .collect();
+    line(match (settings.free, left.is_empty()) {
+        (Some(_), _) => "# Errors that contact may correct, as was asked.",
+        (None, true) => "# Errors that contact may correct: all that the seat holds.",
+        (None, false) => {
+            "# Errors that contact may correct: those that the seat holds. The others are locked."
+        }
+    });
+    line(&format!("free = {}", list(seat.free)));
+    if !seat.dont_care.is_empty() {
+        line("# It does not matter: the half lies as deep all round.");
+        line(&format!("dont_care = {}", list(seat.dont_care)));
+    }
+    if seat.symmetry > 1 && seat.free.contains(Dof::Yaw) {
+        line(&format!(
+            "# Turned by {} deg about the approach the halves are mated as well. If that counts as docked:",
+            number(360.0 / f64::from(seat.symmetry), 1e-3)
+        ));
+        line(&format!("# symmetry = {}", seat.symmetry));
+    }
+    line(
+        "# The approach force acts through it: 0 is the face centre; in front of it is positive. Your mount decides, no geometry does:",
+    );
+    line(&format!("# in D, or with a unit, such as \"5 {}\".", unit.symbol()));
+    line("center_of_rotation = 0.0");
+    line("# rho: how far one radian counts as when motion is damped. Declare it; the answer depends on it.");
+    line("rotation_length = 0.5");
+    let said = Dof::ALL.into_iter().filter_map(|dof| Some((dof, seat.play[dof.index()]?)));
+    for (k, (dof, play)) in said.enumerate() {
+        if k == 0 {
+            line(
+                "\n# Walls hold these within a play only, and anywhere in it counts as docked. What is behind the face may need less.",
+            );
+            line("[docked]");
+        }
+        line(&if dof.is_rotation() {
+            format!("{} = \"{} deg\"", dof.name(), number(play.to_degrees(), 1e-4))
+        } else {
+            format!("{} = {} # D", dof.name(), decimal(number(play, 1e-6)))
+        });
+    }
+}
+
+/// A number that reads as one with a point.
+fn decimal(text: String) -> String {
+    if text.contains('.') { text } else { text + ".0" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_as_long_as_they_must_be() {
+        assert_eq!(number(50.000_000_000_1, 5e-7), "50");
+        assert_eq!(number(-0.000_000_01, 1e-6), "0");
+        assert_eq!(number(12.345_678_9, 1e-3), "12.346");
+        assert_eq!(number(1200.0, 10.0), "1200");
+        assert_eq!(quoted("a\"b\\c\n"), r#""a\"b\\c\u000a""#);
+        assert_eq!(decimal(number(0.008, 1e-9)), "0.008");
+    }
+}

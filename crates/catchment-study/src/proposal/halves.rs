@@ -1,0 +1,119 @@
+//! The halves of a proposal: a file each, and what belongs to it, in the unit of the design.
+
+use super::candidate::shown_unit;
+use super::{Beside, PartFile, ProposalError, Settings, file};
+use catchment_core::connector::{Half, Side, of_half};
+use catchment_core::design::{ConnectorSpec, FileSpec, FileUnit, Findings, HalfSpec, LengthUnit, SourceText};
+use catchment_core::exec::Exec;
+use catchment_core::problem::{Draft, findings};
+use glam::DVec3;
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Reads them.
+pub(super) fn read(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    place: &Path,
+    exec: &Exec,
+) -> Result<[Half; 2], ProposalError> {
+    let [fixed, moving] = specs(parts, settings, place)?;
+    let halves = match (of_half(&fixed, Side::Fixed, exec), of_half(&moving, Side::Moving, exec)) {
+        (Ok(fixed), Ok(moving)) => [fixed, moving],
+        (fixed, moving) => {
+            let all: Vec<_> = [fixed, moving].into_iter().filter_map(Result::err).flatten().collect();
+            return Err(ProposalError::Problem(said_once(findings(&all)).into()));
+        }
+    };
+    if settings.unit.is_none() {
+        for (part, with) in parts.iter().zip(&settings.with) {
+            let more = with.iter().filter_map(|beside| match beside {
+                Beside::File(file) => Some(file),
+                Beside::Part(_) => None,
+            });
+            let mut files = std::iter::once(part).chain(more);
+            if let Some(file) = files.find(|file| !says_its_unit(&file.path)) {
+                let alone = of_half(&mesh(file, settings), Side::Fixed, exec);
+                return Err(no_unit(file, &alone.unwrap_or_default()));
+            }
+        }
+    }
+    Ok(halves)
+}
+
+/// Whether one file holds both halves, and more than these.
+pub(super) fn are_more_than_two(parts: &[PartFile; 2], settings: &Settings, exec: &Exec) -> bool {
+    let [one, other] = parts;
+    let third = PartFile { body: Some(3), ..one.clone() };
+    let is_one_file = one.written == other.written && one.body.is_some();
+    is_one_file && of_half(&mesh(&third, settings), Side::Fixed, exec).is_ok()
+}
+
+/// What is wrong with both files alike is said of the first alone.
+fn said_once(mut findings: Findings) -> Findings {
+    let mut said = HashSet::new();
+    findings.list.retain(|finding| {
+        let reason = finding.message.split_once(": ").map_or(finding.message.as_str(), |(_, reason)| reason);
+        said.insert(reason.to_owned())
+    });
+    findings
+}
+
+fn no_unit(part: &PartFile, half: &Half) -> ProposalError {
+    let (low, high) = half.bounds();
+    let size = high - low;
+    ProposalError::NoUnit { path: part.path.clone(), size: size.to_array(), guess: guess(size) }
+}
+
+/// What the halves are, lengths in the unit of the design: a file, or, where more belongs to one of them, what a design would say.
+fn specs(parts: &[PartFile; 2], settings: &Settings, place: &Path) -> Result<[HalfSpec; 2], ProposalError> {
+    let files = parts.each_ref().map(|part| mesh(part, settings));
+    if settings.with.iter().all(Vec::is_empty) {
+        return Ok(files);
+    }
+    let draft = Draft::read_roughly(SourceText::new(place, file::halves(parts, settings)))?;
+    match draft.design().connector.clone() {
+        ConnectorSpec::Own(own) => Ok([own.fixed, own.moving]),
+        ConnectorSpec::Family(_) => Ok(files),
+    }
+}
+
+/// A file as a half.
+fn mesh(part: &PartFile, settings: &Settings) -> HalfSpec {
+    let unit = design_unit(settings).metres();
+    let scale = file_unit(settings).metres() / unit;
+    let mut spec = FileSpec::new(&part.path, scale);
+    if says_its_unit(&part.path) {
+        (spec.unit, spec.scale) = (FileUnit::InFile, 1.0 / unit);
+    }
+    spec.treatment.body = part.body;
+    spec.treatment.simplify = settings.simplify.map(|most| scale * most);
+    HalfSpec::Mesh(spec)
+}
+
+/// The unit of files that do not say theirs.
+pub(super) fn file_unit(settings: &Settings) -> LengthUnit {
+    settings.unit.unwrap_or(LengthUnit::Mm)
+}
+
+/// The unit of the design, in which answers are given: millimetres where files are in metres, unless parts are written in the unit of the files beside them.
+pub(super) fn design_unit(settings: &Settings) -> LengthUnit {
+    let unit = file_unit(settings);
+    let has_parts = settings.with.iter().flatten().any(|beside| matches!(beside, Beside::Part(_)));
+    if has_parts { unit } else { shown_unit(unit) }
+}
+
+/// Whether a file says its unit itself.
+pub(super) fn says_its_unit(path: &Path) -> bool {
+    FileSpec::new(path, 1.0).may_say_its_unit()
+}
+
+/// The unit in which a part of this size is between a pea and a door, if it is one of the usual ones.
+fn guess(size: DVec3) -> LengthUnit {
+    match size.max_element() {
+        most if most < 1.0 => LengthUnit::M,
+        most if most < 4.0 => LengthUnit::In,
+        most if most < 5e3 => LengthUnit::Mm,
+        _ => LengthUnit::Um,
+    }
+}

@@ -1,0 +1,469 @@
+//! Whether a place is a seat, by exact heights: where it is, how wide, what it holds.
+//!
+//! ```text
+//!   place ──▶ D ──▶ moved to where it lies deepest, in the middle of its play ──▶ which errors it holds ──▶ settled, if it must be
+//!                                                                    └ climb: what an offset of 0.1 D and 0.3 D takes, all around
+//! ```
+//!
+//! Errors that the seat leaves free (along a groove, the yaw of what is round) are left out of what is free: locked, but for the yaw of what lies as deep
+//! all round, which does not matter; where walls stop them, but later than a seat's
+//! play may be without being said ([`Docked::MOST_PLAY`]), the play is what counts as docked.
+
+use super::sink::Sunk;
+use super::way::Lie;
+use catchment_core::connector::{Connector, Half};
+use catchment_core::contact::mated::{MatedProblem, problems_on, round_half};
+use catchment_core::contact::relief::{broadest, plan_box};
+use catchment_core::contact::told::Told;
+use catchment_core::contact::{Pair, face, play, play_on, settle, width};
+use catchment_core::design::{Alignment, Drawn, HalfSpec, OwnSpec};
+use catchment_core::exec::Exec;
+use catchment_core::method::descent;
+use catchment_core::pose::{CorPose, Dof, DofSet, Mount, PoseError};
+use glam::{DMat3, DVec2};
+use std::f64::consts::TAU;
+use std::fmt;
+
+/// A seat that is as steep as this scores one half.
+pub(super) const STEEP: f64 = 3.5;
+/// How far apart what is drawn docked may be, in D.
+const MOST_APART: f64 = 0.05;
+/// How far off the climb is asked, in D, and what of it counts at most.
+const OFF: [f64; 2] = [0.1, 0.3];
+const MOST_CLIMB: f64 = 0.3;
+/// What a seat counts that does not hold.
+const LOOSE: f64 = 0.1;
+/// What one counts that holds neither x nor y, one of them, both.
+const HELD: [f64; 3] = [0.25, 0.75, 1.0];
+/// Turned by a part of a turn the halves are mated where they come as near as this, in D.
+const ALIKE: f64 = 2e-3;
+/// Rest nearer than this to where it is drawn, in D and radians, is there.
+const AT_REST: f64 = 1e-5;
+/// Play is put in its middle up to this much, in D.
+const MOST_PLAY: f64 = 0.05;
+
+/// Why parts do not dock as they were laid.
+#[derive(Debug, Clone)]
+pub(super) struct Refusal {
+    /// How far they are from where they would, in the unit of the halves; infinite where no distance says it.
+    pub(super) by: f64,
+    pub(super) why: String,
+    /// How they were laid.
+    lie: Option<Lie>,
+}
+
+impl From<&str> for Refusal {
+    fn from(why: &str) -> Self {
+        Self::new(f64::INFINITY, why.to_owned())
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { why, lie, .. } = self;
+        lie.map_or(Ok(()), |lie| write!(f, "{lie}: "))?;
+        f.write_str(why)
+    }
+}
+
+impl Refusal {
+    const fn new(by: f64, why: String) -> Self {
+        Self { by, why, lie: None }
+    }
+
+    /// With how they were laid.
+    pub(super) fn of(self, lie: Lie) -> Self {
+        Self { lie: Some(lie), ..self }
+    }
+}
+
+/// A candidate that was judged. Lengths in the unit of the halves.
+#[derive(Debug, Clone)]
+pub(super) struct Judged {
+    pub(super) lie: Lie,
+    pub(super) width: f64,
+    /// Whether that is more than what can touch, because a half may only be so much wider than D.
+    pub(super) is_widened: bool,
+    /// Where the middle of what can touch is in plan view, in the frame of the fixed half, turned.
+    pub(super) center: DVec2,
+    /// Where the origin of the turned moving half is.
+    pub(super) offset: DVec2,
+    /// How much a half climbs that is off, 0 to 1, and the share of the smaller part's broadest side that can touch.
+    pub(super) climb: f64,
+    pub(super) shared: f64,
+    /// How high the origin of the turned moving half is.
+    pub(super) lift: f64,
+    /// What a lattice says of it, where one was asked, and which of the places it is: those that differ by a turn about the approach are one.
+    pub(super) sunk: Option<Sunk>,
+    pub(super) class: usize,
+    /// What it holds, or why it is no seat; nothing while nobody asked.
+    pub(super) seat: Option<Result<Seat, String>>,
+    /// The halves in D, mated.
+    connector: Connector,
+}
+
+/// What a seat holds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seat {
+    pub(super) free: DofSet,
+    pub(super) dont_care: DofSet,
+    /// Where the halves have to settle first, that rest as an error of how they are drawn.
+    pub(super) settle: Option<PoseError>,
+    /// Turned by this part of a turn they are mated as well; 1 for none.
+    pub(super) symmetry: u32,
+    /// How far off they may rest, where it must be said: D and radians, in the order of [`Dof::ALL`].
+    pub(super) play: [Option<f64>; 5],
+}
+
+/// The largest play that counts as a seat's, in D and radians: beyond it no wall is looked for.
+const LOOSEST: [f64; 2] = [0.25, 30.0 / 180.0 * std::f64::consts::PI];
+
+impl Judged {
+    pub(super) fn score(&self) -> f64 {
+        let held = match &self.seat {
+            None => 1.0,
+            Some(Err(_)) => LOOSE,
+            Some(Ok(seat)) => {
+                let lateral = [Dof::X, Dof::Y].into_iter().filter(|dof| seat.free.contains(*dof)).count();
+                HELD[lateral]
+            }
+        };
+        let share = match &self.sunk {
+            Some(sunk) => sunk.steep / (sunk.steep + STEEP),
+            None => self.climb * self.shared,
+        };
+        (share * held).max(0.0)
+    }
+
+    /// Where a lattice found it.
+    pub(super) fn found(self, sunk: Sunk, class: usize) -> Self {
+        Self { sunk: Some(sunk), class, ..self }
+    }
+
+    /// The halves as the design of the seat will have them.
+    pub(super) fn pair(&self, seat: &Seat) -> Pair {
+        let mut alignment = Alignment::new(seat.free, Mount::X);
+        alignment.dont_care = seat.dont_care;
+        alignment.docked.limits = seat.play;
+        let settled = seat.settle.and_then(|_| settle::settled(self.connector.clone(), &alignment));
+        Pair::new(settled.as_ref().unwrap_or(&self.connector), &alignment)
+    }
+
+    /// Asks what it holds, which takes the longest.
+    pub(super) fn ask(&mut self, free: Option<DofSet>, told: Told, exec: &Exec) {
+        if self.seat.is_none() {
+            let told = Told { scale: told.scale * self.width, ..told };
+            self.seat = Some(seat(&self.connector, free, told, exec));
+        }
+    }
+}
+
+/// Judges halves that lie to each other as `lie` says, the moving one `offset` beside; more offsets may be given that are taken where the
+/// half lies as deep there. Why not, where the halves do not meet or are not docked as drawn, with lengths as `told` has them.
+pub(super) fn judge(
+    halves: [&Half; 2],
+    lie: Lie,
+    offset: DVec2,
+    others: &[DVec2],
+    sunk: Option<&Sunk>,
+    told: Told,
+) -> Result<Judged, Refusal> {
+    const APART: &str = "they pass each other by";
+    let turns = lie.turns();
+    let [fixed, moving] = [0, 1].map(|k| halves[k].mapped(|p| turns[k] * p));
+    let drawn = match lie {
+        Lie::Assembled { approach } => {
+            Drawn::Assembled { approach: approach.vector().to_array(), face_center: None }
+        }
+        Lie::Facing { .. } => Drawn::Facing,
+    };
+    let pair = Pair::new(&Connector::from_halves(fixed.clone(), moving.clone()), &nothing_free());
+    let height = |pair: &Pair, lateral: DVec2| pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
+    let mut lift = height(&pair, offset).ok_or(APART)?;
+    let mut offset = offset;
+    if let Some(sunk) = sunk {
+        // A lattice is off by a cell: where the half stands on the rim of its hole it may be beside.
+        let on_the_rim = |lift: f64| lift > sunk.height + 0.5 * sunk.climb;
+        let near = others.iter().copied().filter(|other| other.distance(sunk.offset) < 2.0 * sunk.cell);
+        let mut around = near.chain(rings(sunk.cell).map(|by| sunk.offset + by));
+        while on_the_rim(lift)
+            && let Some(other) = around.next()
+        {
+            if let Some(z) = height(&pair, other).filter(|z| *z < lift) {
+                (offset, lift) = (other, z);
+            }
+        }
+        if on_the_rim(lift) {
+            let (deep, cell) = (told.length(sunk.climb), told.length(sunk.cell));
+            let why = format!(
+                "no play: one would sink {deep} into the other if it were {cell} narrower on each side; give it some play"
+            );
+            return Err(Refusal::new(0.0, why));
+        }
+    }
+    let at = |offset: DVec2| moving.mapped(move |p| p + offset.extend(0.0));
+    let wide = width::width(&fixed, &at(offset), lift).ok_or(APART)?;
+    if let Lie::Facing { .. } = lie {
+        for other in others {
+            // Round numbers win where the half lies as deep.
+            if let Some(z) =
+                height(&pair, *other).filter(|z| *z <= lift + 1e-4 * wide && other.distance(offset) < wide)
+            {
+                (offset, lift) = (*other, z);
+            }
+        }
+        offset += deepest(&fixed, &at(offset), wide);
+        lift = height(&pair, offset).ok_or(APART)?;
+    } else {
+        if lift > MOST_APART * wide {
+            let why = format!("blocked: {} above where they are drawn", told.length(lift));
+            return Err(Refusal::new(lift, why));
+        }
+        if lift < -MOST_APART * wide {
+            return Err(Refusal::new(-lift, format!("drawn {} apart", told.length(-lift))));
+        }
+    }
+    let placed = at(offset);
+    let [low, high] = width::touching(&fixed, &placed, lift).ok_or(APART)?;
+    let width = (high - low).max_element();
+    if width <= 0.0 {
+        return Err(APART.into());
+    }
+    let widest = halves.map(|half| {
+        let (low, high) = plan_box(half, &DMat3::IDENTITY);
+        (high - low).max_element() / width::MOST_WIDE
+    });
+    let least = widest.into_iter().fold(0.0, f64::max);
+    let (width, is_widened) = (width.max(least), width < least);
+    let center = low.midpoint(high);
+    let smaller = halves.map(broadest).into_iter().fold(f64::INFINITY, f64::min);
+    let shared = ((high - low).element_product() / smaller).clamp(0.0, 1.0);
+    let scaled = |half: &Half| half.mapped(|p| p - center.extend(0.0)).scaled(1.0 / width);
+    let nothing = || HalfSpec::Pieces(Vec::new());
+    let own = OwnSpec { drawn, face_height: None, ..OwnSpec::new(0.0, nothing(), nothing()) };
+    let connector = face::found(Connector::from_halves(scaled(&fixed), scaled(&placed)), &own);
+    let climb = climb(&Pair::new(&connector, &nothing_free()));
+    Ok(Judged {
+        lie,
+        width,
+        is_widened,
+        center,
+        offset,
+        climb,
+        shared,
+        lift,
+        sunk: None,
+        class: 0,
+        seat: None,
+        connector,
+    })
+}
+
+const fn nothing_free() -> Alignment {
+    Alignment::new(DofSet::EMPTY, Mount::X)
+}
+
+/// Offsets around none, up to a cell and a half.
+fn rings(cell: f64) -> impl Iterator<Item = DVec2> {
+    let steps = [-3i32, -2, -1, 0, 1, 2, 3];
+    let mut all: Vec<DVec2> = steps
+        .iter()
+        .flat_map(|i| steps.iter().map(move |j| 0.5 * cell * DVec2::new(f64::from(*i), f64::from(*j))))
+        .collect();
+    all.sort_by(|a, b| a.length().total_cmp(&b.length()));
+    all.into_iter().skip(1)
+}
+
+/// How far from where it is the half lies deepest near, in the middle of its play.
+fn deepest(fixed: &Half, moving: &Half, width: f64) -> DVec2 {
+    let lateral = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
+    let alignment = Alignment::new(lateral, Mount::X);
+    let moved = |by: DVec2| {
+        let moving = moving.mapped(move |p| p + by.extend(0.0)).scaled(1.0 / width);
+        Pair::new(&Connector::from_halves(fixed.scaled(1.0 / width), moving), &alignment)
+    };
+    let mut by = DVec2::ZERO;
+    let pair = moved(by);
+    let pair = match settle::rest(&pair) {
+        Some(error) if DVec2::new(error.x, error.y).length() > AT_REST => {
+            by = DVec2::new(error.x, error.y) * width;
+            moved(by)
+        }
+        Some(_) => pair,
+        None => return by,
+    };
+    for play in play(&pair) {
+        let middle = 0.5 * (play.plus - play.minus);
+        if play.most() <= MOST_PLAY && middle.abs() > AT_REST {
+            by[play.axis.index()] += middle * width;
+        }
+    }
+    by
+}
+
+/// How much a half climbs that is off, as a share of what counts at most.
+fn climb(pair: &Pair) -> f64 {
+    const WAYS: u32 = 8;
+    let mut sum = 0.0;
+    for off in OFF {
+        for way in 0..WAYS {
+            let lateral = DVec2::from_angle(TAU * f64::from(way) / f64::from(WAYS)) * off;
+            let height = pair.height(&CorPose { lateral, rotation: DMat3::IDENTITY });
+            let climb = height.map_or(-MOST_CLIMB, |height| height - pair.mated_height());
+            sum += climb.clamp(-MOST_CLIMB, MOST_CLIMB) / MOST_CLIMB;
+        }
+    }
+    sum / (OFF.len() as f64 * f64::from(WAYS))
+}
+
+/// The largest part of a turn after which the halves are mated as well.
+fn symmetry(pair: &Pair) -> u32 {
+    const FOLDS: [u32; 6] = [8, 6, 5, 4, 3, 2];
+    let mated = |fold: &u32| {
+        let rotation = DMat3::from_rotation_z(TAU / f64::from(*fold));
+        let height = pair.height(&CorPose { lateral: DVec2::ZERO, rotation });
+        height.is_some_and(|height| (height - pair.mated_height()).abs() < ALIKE)
+    };
+    FOLDS.into_iter().find(mated).unwrap_or(1)
+}
+
+/// What the seat holds, of what may be free.
+fn seat(connector: &Connector, wanted: Option<DofSet>, told: Told, exec: &Exec) -> Result<Seat, String> {
+    // What does not hold may hold where it cannot tip, or where it only shifts.
+    let level = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
+    let sets = wanted.map_or_else(|| vec![DofSet::ALL, level.with(Dof::Yaw), level], |set| vec![set]);
+    let mut first = None;
+    for set in sets {
+        match held(connector, set, wanted.is_some(), told, exec) {
+            Ok(seat) => return Ok(seat),
+            Err(reason) => first = first.or(Some(reason)),
+        }
+    }
+    Err(first.unwrap_or_default())
+}
+
+/// The same, starting from one set; `exactly` that one, but for a yaw that does not matter.
+fn held(connector: &Connector, free: DofSet, exactly: bool, told: Told, exec: &Exec) -> Result<Seat, String> {
+    let mut alignment = Alignment::new(free, Mount::X);
+    let pair = Pair::new(connector, &alignment);
+    if round_half(&pair).is_some() {
+        alignment.free = free.without(Dof::Yaw);
+        alignment.dont_care = DofSet::EMPTY.with(Dof::Yaw);
+    }
+    let symmetry = if alignment.free.contains(Dof::Yaw) { symmetry(&pair) } else { 1 };
+    let spins = alignment.free.contains(Dof::Yaw) && spins(&pair);
+    drop(pair);
+    // The yaw of what is round does not matter; any other error that the seat does not hold is locked.
+    let may_go = |dof: &Dof| !exactly || *dof == Dof::Yaw && spins;
+    let leave_out = |alignment: &mut Alignment, dof: Dof| leave_out(alignment, dof, dof == Dof::Yaw && spins);
+    let mut is_without_walls = DofSet::EMPTY;
+    // Every step leaves one out, or says the play of some.
+    loop {
+        let mut settle = None;
+        let mut held = connector.clone();
+        let mut found = problems_on(&Pair::new(connector, &alignment), exec);
+        if found.iter().any(|problem| matches!(problem, MatedProblem::NotMinimum { .. })) {
+            let settled = settle::settled(connector.clone(), &alignment).ok_or("it runs off")?;
+            let off = settled.origin.settled.unwrap_or_default();
+            settle = off.to_array().iter().any(|off| off.abs() > AT_REST).then_some(off);
+            found = problems_on(&Pair::new(&settled, &alignment), exec);
+            held = settled;
+        }
+        // What nothing stops near, a wall may stop farther off.
+        let unsaid = found.iter().filter_map(|problem| match problem {
+            MatedProblem::Free { dof, .. } if !is_without_walls.contains(*dof) => Some(*dof),
+            _ => None,
+        });
+        let unsaid: DofSet = unsaid.collect();
+        if !unsaid.is_empty() {
+            let without = walls(connector, &mut alignment, unsaid, exec);
+            is_without_walls = without.iter().fold(is_without_walls, DofSet::with);
+            // Looked at again it would be found again.
+            if let Some(dof) = without.iter().find(may_go) {
+                leave_out(&mut alignment, dof)?;
+            }
+            continue;
+        }
+        let loose = found.iter().find_map(|problem| match problem {
+            MatedProblem::Round { .. } => Some(Dof::Yaw),
+            MatedProblem::Free { dof, .. } | MatedProblem::LimitCutsPlay { dof, .. } => Some(*dof),
+            _ => None,
+        });
+        let loose = loose.filter(may_go);
+        match (found.first(), loose) {
+            (None, _) => {
+                if let Some(fall) = descent::fall(&Pair::new(&held, &alignment)) {
+                    return Err(fall.told(told));
+                }
+                let Alignment { free, dont_care, docked, .. } = alignment;
+                return Ok(Seat { free, dont_care, settle, symmetry, play: docked.limits });
+            }
+            (Some(_), Some(dof)) => leave_out(&mut alignment, dof)?,
+            (Some(MatedProblem::NotMinimum { .. }), None) => return Err("it does not hold".to_owned()),
+            (Some(problem), None) => return Err(problem.told(told)),
+        }
+    }
+}
+
+/// Whether a half lies as deep all round, to within what counts as seated: looked at every 2.5 degrees.
+fn spins(pair: &Pair) -> bool {
+    const LOOKS: u32 = 144;
+    let depth = pair.alignment.docked.depth;
+    (1..LOOKS).all(|k| {
+        let rotation = DMat3::from_rotation_z(TAU * f64::from(k) / f64::from(LOOKS));
+        let height = pair.height(&CorPose { lateral: DVec2::ZERO, rotation });
+        height.is_some_and(|height| (height - pair.mated_height()).abs() <= depth)
+    })
+}
+
+/// Leaves out an error that the seat does not hold: locked, or of no matter.
+fn leave_out(alignment: &mut Alignment, dof: Dof, is_round: bool) -> Result<(), String> {
+    alignment.free = alignment.free.without(dof);
+    alignment.docked.limits[dof.index()] = None;
+    if is_round {
+        alignment.dont_care = alignment.dont_care.with(dof);
+    }
+    if alignment.free.is_empty() { Err("it holds nothing".to_owned()) } else { Ok(()) }
+}
+
+/// Says the play of some errors, two digits of it and not less, where walls stop them; returns those that nothing stops.
+fn walls(connector: &Connector, alignment: &mut Alignment, unsaid: DofSet, exec: &Exec) -> DofSet {
+    let loosest = |dof: Dof| LOOSEST[usize::from(dof.is_rotation())];
+    for dof in unsaid.iter() {
+        alignment.docked.limits[dof.index()] = Some(loosest(dof));
+    }
+    let mut free = DofSet::EMPTY;
+    for found in play_on(&Pair::new(connector, alignment), unsaid, exec) {
+        let (dof, most) = (found.axis, found.most());
+        if unsaid.contains(dof) {
+            let is_stopped = most <= loosest(dof);
+            alignment.docked.limits[dof.index()] = is_stopped.then(|| two_digits(dof, most));
+            free = if is_stopped { free } else { free.with(dof) };
+        }
+    }
+    free
+}
+
+/// A play as it is written: in D or degrees, rounded up.
+fn two_digits(dof: Dof, most: f64) -> f64 {
+    let up = |value: f64| {
+        let step = 10f64.powf(value.log10().floor() - 1.0);
+        (value / step).ceil() * step
+    };
+    if dof.is_rotation() { up(most.to_degrees()).to_radians() } else { up(most) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn a_half_is_scaled() {
+        let surface =
+            catchment_core::connector::convex_hull(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
+        let volume = surface.volume();
+        let half = Half::of(vec![surface]).scaled(3.0);
+        assert!((half.surfaces[0].volume() - 27.0 * volume).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,441 @@
+//! Two parts as they come from CAD, and the design that docks them: how they lie, where they seat, how wide they are.
+//!
+//! ```text
+//!   two files ──▶ drawn docked, in one frame?   6 approaches on a lattice near the drawn pose ──▶ exact contact of those that hold
+//!             └─▶ each in its own frame?        6 × 24 views, all lateral offsets on a lattice ──▶ exact contact of the steepest places
+//!                        └──▶ ranked by how steep the seat is ──▶ a design file
+//! ```
+//!
+//! steep = climb / (e + play): how far the moving half climbs before it leaves the seat, and how far it moves to each side at half of that;
+//! e is half a millimetre for parts of a few centimetres. The score of a candidate is steep / (steep + 3.5). What holds x and y not both counts less,
+//! what is no seat a tenth. A candidate that no lattice found (a shallow groove) scores climb · shared as exact contact has them: how much a half
+//! climbs that is 0.1 D and 0.3 D off, and the area that can touch as a share of the broadest side of the smaller part's box.
+//!
+//! Parts that are drawn in one frame, near each other and without overlap, are an assembly: they dock as drawn or are refused with the cause.
+//!
+//! D is the larger lateral extent of the facets that can touch (`contact::width`). The centre of rotation is put into the face
+//! centre, which no geometry says better. The design is read back and checked as any other before it is given.
+//!
+//! Not promised: that parts dock as a person meant. Parts that dock in several ways, or that are drawn at an angle to their axes which is not 45 degrees,
+//! need a word. A proposal with a runner-up of 0.4 of its steepness, or a weak one, is "in doubt" and says so.
+
+mod assembled;
+mod candidate;
+mod cause;
+mod doubt;
+mod error_box;
+mod file;
+mod halves;
+mod judge;
+mod remedy;
+mod search;
+mod sink;
+mod way;
+
+pub use candidate::{Candidate, Held, shown_length};
+pub use way::{Lie, Way};
+
+use assembled::{docked, let_down};
+use candidate::{candidate, shown_unit};
+use catchment_core::advice::Advice;
+use catchment_core::connector::Half;
+use catchment_core::contact::relief;
+use catchment_core::contact::told::Told;
+use catchment_core::design::LengthUnit;
+use catchment_core::exec::{Cancelled, Exec};
+use catchment_core::pose::DofSet;
+use catchment_core::problem::{Problem, ProblemError};
+use catchment_core::terminal::shown;
+use glam::{DMat3, DVec2};
+use halves::design_unit;
+use judge::{Judged, Refusal, judge};
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+/// In which frames the parts are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Frames {
+    /// Whichever gives a seat: in one frame, docked, where the parts meet as drawn.
+    #[default]
+    Any,
+    /// Both in one, docked.
+    Assembled,
+    /// Each in its own.
+    Facing,
+}
+
+/// What is known already.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Settings {
+    /// In which frames the parts are drawn.
+    pub frames: Frames,
+    /// The direction in which the moving half comes, of parts drawn docked.
+    pub approach: Option<Way>,
+    /// Where the fixed and the moving half face, of parts in frames of their own.
+    pub facing: [Option<Way>; 2],
+    /// The unit of files that do not say theirs; millimetres without it. The design has the same, but millimetres for files in metres.
+    pub unit: Option<LengthUnit>,
+    /// Errors that are free; whichever the seat holds without it.
+    pub free: Option<DofSet>,
+    /// The name of the design.
+    pub name: Option<String>,
+    /// How far the surface of a file may move so that it is described with fewer triangles, in `unit`.
+    pub simplify: Option<f64>,
+    /// What belongs to the fixed and to the moving half beside its file.
+    pub with: [Vec<Beside>; 2],
+}
+
+/// What belongs to a half beside its file, in the coordinates of that: what no export has, or has elsewhere.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Beside {
+    /// Another file.
+    File(PartFile),
+    /// A bought ball or pin, as an element of the design's list of parts: `{ sphere = { radius = 6 }, at = [21, 0, 8] }`.
+    Part(String),
+}
+
+/// A part.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PartFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// How the design names it: relative to the folder of the design.
+    pub written: String,
+    /// Which of its bodies, the largest first, where it holds several; all of them without a number.
+    pub body: Option<u16>,
+}
+
+/// A design that docks two parts.
+#[derive(Debug, Clone)]
+pub struct Proposal {
+    /// The design file.
+    pub text: String,
+    /// What it says, checked.
+    pub problem: Problem,
+    /// All ways that were judged, the best first.
+    pub candidates: Vec<Candidate>,
+    /// What a person should look at, as sentences.
+    pub doubts: Vec<String>,
+}
+
+/// Why there is no proposal.
+#[derive(Debug, thiserror::Error)]
+pub enum ProposalError {
+    /// A part cannot be read, or the design that was found is refused.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// A file does not say its unit, and nobody else does.
+    #[error("{} does not say its unit: the part is {} in its file", shown(path), told(*size))]
+    NoUnit {
+        /// The file.
+        path: PathBuf,
+        /// Its extent along x, y and z, in its own coordinates.
+        size: [f64; 3],
+        /// What it may be.
+        guess: LengthUnit,
+    },
+    /// The parts do not dock.
+    #[error("the parts dock in no direction along an axis{}", listed(tried))]
+    NoSeat {
+        /// What was tried, the best first, and why not.
+        tried: Vec<String>,
+        /// What would let them: a mirror image, or something narrow left out.
+        remedy: Option<String>,
+        /// What helps besides.
+        advice: Vec<Advice>,
+    },
+    /// The computation was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Candidates that a refusal tells.
+const MOST_TOLD: usize = 4;
+
+fn listed(tried: &[String]) -> String {
+    let told: Vec<&str> = tried.iter().take(MOST_TOLD).map(String::as_str).collect();
+    if told.is_empty() { String::new() } else { format!(": {}", told.join("; ")) }
+}
+
+fn told(size: [f64; 3]) -> String {
+    size.map(|side| file::number(side, 1e-3 * size.into_iter().fold(0.0, f64::max))).join(" × ")
+}
+
+/// A score below this is no seat: flat faces that slide.
+const LEAST: f64 = 0.02;
+/// A second best with this share of the score is nearly as good.
+const NEARLY: f64 = 0.8;
+/// Parts whose boxes are nearer than this, in the smaller one's middle extent, may be drawn docked.
+const NEAR: f64 = 0.05;
+/// Places that exact contact judges, the least steep as a share of the steepest.
+const JUDGED: usize = 5;
+const JUDGED_STEEP: f64 = 0.3;
+
+/// Both halves, as exact contact and as lattices see them. Lengths in the smaller one's middle extent.
+struct Parts<'a> {
+    halves: [&'a Half; 2],
+    triangles: [sink::Triangles; 2],
+    /// Directions half way between two axes along which each may enter or be entered.
+    diagonals: [Vec<Way>; 2],
+    grain: sink::Grain,
+    settings: &'a Settings,
+    /// How lengths are told.
+    told: Told,
+}
+
+impl<'a> Parts<'a> {
+    fn new(halves: [&'a Half; 2], grain: sink::Grain, settings: &'a Settings, told: Told) -> Self {
+        let triangles = halves.map(sink::triangles);
+        let diagonals = triangles.each_ref().map(sink::diagonals);
+        Self { halves, triangles, diagonals, grain, settings, told }
+    }
+
+    fn lattices(&self) -> [&sink::Triangles; 2] {
+        self.triangles.each_ref()
+    }
+}
+
+/// What was judged, and what was refused.
+#[derive(Default)]
+struct Looked {
+    judged: Vec<Judged>,
+    refused: Vec<Refusal>,
+}
+
+impl Looked {
+    fn add(&mut self, found: Vec<Result<Judged, Refusal>>) {
+        for one in found {
+            match one {
+                Ok(one) => self.judged.push(one),
+                Err(refusal) => self.refused.push(refusal),
+            }
+        }
+    }
+
+    fn has_seat(&self) -> bool {
+        self.judged.first().is_some_and(is_seat)
+    }
+}
+
+/// Proposes a design for two parts; it will lie at `place`, to whose folder the parts are written relative.
+///
+/// # Errors
+/// A part that is none or whose unit nobody says, parts that do not dock.
+pub fn propose(
+    parts: &[PartFile; 2],
+    settings: &Settings,
+    place: &Path,
+    exec: &Exec,
+) -> Result<Proposal, ProposalError> {
+    let halves = halves::read(parts, settings, place, exec)?;
+    exec.check()?;
+    let unit = halves.each_ref().map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
+    let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
+    let shown = shown_unit(design_unit(settings));
+    let told = Told { scale: unit * design_unit(settings).metres() / shown.metres(), unit: shown.symbol() };
+    let millimetre = 1e-3 / (unit * design_unit(settings).metres());
+    let both = Parts::new([&fixed, &moving], sink::Grain::new(millimetre), settings, told);
+    let pinned = settings.facing.iter().any(Option::is_some);
+    let may_be = |frames: Frames| match settings.frames {
+        Frames::Any => {
+            frames == if settings.approach.is_some() { Frames::Assembled } else { frames }
+                && !(pinned && frames == Frames::Assembled)
+        }
+        known => known == frames,
+    };
+    let mut looked = Looked::default();
+    let (mut doubts, mut why, mut frame) = (Vec::new(), None, cause::Frame::Own);
+    // Of parts that lie flat on each other as drawn: said if no other way is found.
+    let mut flat = None;
+    let meet = settings.frames != Frames::Any || settings.approach.is_some() || are_near(both.halves);
+    if may_be(Frames::Assembled) && meet {
+        let looks = docked(&both, &mut looked, exec)?;
+        if settings.frames == Frames::Any && settings.approach.is_none() {
+            frame = cause::frame(both.lattices(), both.grain);
+        }
+        let may_be_assembly = frame != cause::Frame::Own;
+        if !looked.has_seat() {
+            if may_be_assembly && let Some(doubt) = let_down(&both, &looks, &mut looked, exec)? {
+                doubts.push(doubt);
+            }
+            // Of frames of their own it says nothing.
+            why = (may_be_assembly || !may_be(Frames::Facing))
+                .then(|| cause::of(both.lattices(), &looks, both.grain, told));
+            let are_flat = looks.iter().any(|(_, drawn)| matches!(drawn, sink::Drawn::Flat { .. }));
+            flat = are_flat.then(|| cause::of(both.lattices(), &looks, both.grain, told));
+        }
+    }
+    let is_assembly = frame == cause::Frame::Assembly;
+    let faces = may_be(Frames::Facing) && !is_assembly;
+    if faces && !looked.has_seat() {
+        anywhere(&both, &mut looked, exec)?;
+        if frame == cause::Frame::Perhaps {
+            doubts.push(cause::ELSEWHERE.to_owned());
+        }
+    }
+    let Looked { judged, mut refused } = looked;
+    let candidates: Vec<Candidate> = judged.iter().map(|found| candidate(found, unit, told)).collect();
+    let best = judged.first().filter(|best| is_seat(best));
+    let Some((best, Some(Ok(seat)))) = best.map(|best| (best, &best.seat)) else {
+        let slack = |one: &Candidate| {
+            let flat = "flat: a half that is off does not climb";
+            let why = if let Held::Refused(why) = &one.seat { why } else { flat };
+            format!("{}{}: {why}", one.lie, one.place_among(&candidates, design_unit(settings)))
+        };
+        // What is nearest to docking first, before all that is flat: what lacks nothing but play.
+        refused.sort_by(|a, b| a.by.total_cmp(&b.by));
+        let (mut tight, refused): (Vec<Refusal>, Vec<Refusal>) =
+            refused.into_iter().partition(|refusal| refusal.by <= 0.0);
+        // Of a cube every facing has no play: once is enough.
+        let mut known = HashSet::new();
+        tight.retain(|refusal| known.insert(refusal.why.clone()));
+        let [tight, refused] =
+            [tight, refused].map(|list| list.into_iter().map(|refusal| refusal.to_string()));
+        let nowhere =
+            faces.then_some("facing each other: nowhere along the axes does one sink into the other");
+        let nowhere = nowhere.filter(|_| candidates.is_empty()).map(ToOwned::to_owned);
+        let (why, advice) = why.or(flat).unzip();
+        let taken = is_assembly.then_some(Advice::OwnFrames);
+        let advice = advice.flatten().into_iter().chain(taken).collect();
+        let slack = candidates.iter().map(slack);
+        let tried = tight.chain(why).chain(slack).chain(nowhere).chain(refused).collect();
+        let remedy = match cause::of_files(parts, both.halves, settings, unit) {
+            Some(mistake) => Some(mistake),
+            None if faces => remedy::of(&both, exec)?,
+            None => None,
+        };
+        return Err(ProposalError::NoSeat { tried, remedy, advice });
+    };
+    doubts.extend(doubt::of(&candidates, settings));
+    if best.score() < remedy::WEAK
+        && faces
+        && let Some((score, told)) = remedy::mirrored(&both, exec)?
+        && score * NEARLY > best.score()
+    {
+        doubts.push(told);
+    }
+    if halves::are_more_than_two(parts, settings, exec) {
+        doubts.push(
+            "in doubt: the file holds more than two separate bodies; the two largest were taken".to_owned(),
+        );
+    }
+    doubts.extend(cause::inches(both.halves, settings, unit));
+    let (text, problem) = error_box::designed(parts, settings, (best, seat), unit, place, exec)?;
+    doubts.extend(problem.design().unit.and_then(|unit| doubt::of_size(problem.design().width, unit)));
+    Ok(Proposal { text, problem, candidates, doubts })
+}
+
+/// Parts in frames of their own: the places where one sinks into the other, or the shallow ones where none does.
+fn anywhere(both: &Parts<'_>, looked: &mut Looked, exec: &Exec) -> Result<(), Cancelled> {
+    looked.add(sunk(both, exec)?);
+    rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    if !looked.has_seat() {
+        looked.add(facing(both.halves, both.settings, both.told, exec)?);
+        rank(&mut looked.judged, both.settings.free, both.told, exec)?;
+    }
+    Ok(())
+}
+
+/// The steepest places, as exact contact judges them.
+fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
+    let facing = both.settings.facing.map(ways);
+    let mut found = sink::sinks(both.lattices(), [&facing[0], &facing[1]], both.grain, exec)?;
+    if both.settings.facing == [None; 2] {
+        let [fixed, moving] = &both.diagonals;
+        if !fixed.is_empty() && !moving.is_empty() {
+            found.extend(sink::sinks(both.lattices(), [fixed, moving], both.grain, exec)?);
+            found.sort_by(|a, b| b.steep.total_cmp(&a.steep));
+        }
+    }
+    let classes = sink::classes(both.lattices()[1], &found, both.grain);
+    let most = classes.first().map_or(0.0, |class| class.best.steep);
+    let places: Vec<(usize, sink::Sunk)> = classes
+        .iter()
+        .take(JUDGED)
+        .enumerate()
+        .filter(|(_, class)| class.best.steep >= JUDGED_STEEP * most)
+        .flat_map(|(k, class)| {
+            let turned = class.turned.filter(|turned| k == 0 && turned.steep >= NEARLY * most);
+            std::iter::once(class.best).chain(turned).map(move |sunk| (k, sunk))
+        })
+        .collect();
+    Ok(exec.each(places.len(), usize::MAX, "seats", |k, _| {
+        let (class, sunk) = places[k];
+        judge(
+            both.halves,
+            sunk.lie,
+            sunk.offset,
+            &round_numbers(both.halves, sunk.lie),
+            Some(&sunk),
+            both.told,
+        )
+        .map(|found| found.found(sunk, class))
+        .map_err(|refusal| refusal.of(sunk.lie))
+    }))
+}
+
+/// Parts in frames of their own, judged wherever one may sink into the other.
+fn facing(
+    pair: [&Half; 2],
+    settings: &Settings,
+    told: Told,
+    exec: &Exec,
+) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
+    let facing = settings.facing.map(ways);
+    let places = search::places(pair, [&facing[0], &facing[1]], exec)?;
+    Ok(exec.each(places.len(), usize::MAX, "seats", |k, _| {
+        let search::Place { lie, offset, .. } = places[k];
+        judge(pair, lie, offset, &round_numbers(pair, lie), None, told).map_err(|refusal| refusal.of(lie))
+    }))
+}
+
+fn is_seat(judged: &Judged) -> bool {
+    matches!(judged.seat, Some(Ok(_))) && judged.score() > LEAST
+}
+
+/// The best first, and what the best and those nearly as good hold.
+fn rank(judged: &mut Vec<Judged>, free: Option<DofSet>, told: Told, exec: &Exec) -> Result<(), Cancelled> {
+    let sort = |judged: &mut Vec<Judged>| judged.sort_by(|a, b| b.score().total_cmp(&a.score()));
+    sort(judged);
+    // Places that came to the same seat.
+    let mut kept: Vec<Judged> = Vec::new();
+    for one in judged.drain(..) {
+        if !kept
+            .iter()
+            .any(|other| other.lie == one.lie && other.offset.distance(one.offset) < NEAR * one.width)
+        {
+            kept.push(one);
+        }
+    }
+    *judged = kept;
+    // Whoever is asked and refused falls back.
+    loop {
+        exec.check()?;
+        let level = judged.first().map_or(0.0, |best| (NEARLY * best.score()).max(LEAST));
+        let Some(next) = judged.iter_mut().find(|one| one.seat.is_none() && one.score() > level) else {
+            return Ok(());
+        };
+        next.ask(free, told, exec);
+        sort(judged);
+    }
+}
+
+fn ways(known: Option<Way>) -> Vec<Way> {
+    known.map_or_else(|| Way::ALL.to_vec(), |way| vec![way])
+}
+
+/// Whether the boxes of the parts overlap or nearly touch.
+fn are_near([fixed, moving]: [&Half; 2]) -> bool {
+    let ((a, b), (c, d)) = (fixed.bounds(), moving.bounds());
+    (c - b).max(a - d).max_element() < NEAR
+}
+
+/// Offsets that a person would choose: the middles of the parts' boxes together, the origins of their files together.
+fn round_numbers([fixed, moving]: [&Half; 2], lie: Lie) -> [DVec2; 2] {
+    let turns = lie.turns();
+    let middle = |half: &Half, turn: &DMat3| {
+        let (low, high) = relief::plan_box(half, turn);
+        low.midpoint(high)
+    };
+    [middle(fixed, &turns[0]) - middle(moving, &turns[1]), DVec2::ZERO]
+}

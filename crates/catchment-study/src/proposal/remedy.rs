@@ -1,0 +1,63 @@
+//! What would let parts dock that do not: the mirror image of one of them, or something narrow left out.
+//!
+//! ```text
+//!   no seat ──▶ the moving part reflected: does it seat?  ──▶ "was one of the two exported mirrored?"
+//!          └──▶ what is narrower than three cells left out, of one part, then of the other: does one sink in?  ──▶ "in the way: at (…)"
+//! ```
+//!
+//! Not promised: that parts which dock mirrored were meant to, or that what is in the way is all that is.
+
+use super::{Parts, Settings, is_seat, rank, search, sunk, ways};
+use catchment_core::connector::Half;
+use catchment_core::contact::relief;
+use catchment_core::contact::told::{Told, number};
+use catchment_core::exec::{Cancelled, Exec};
+use glam::DVec3;
+
+/// A score below this is a weak one: what a mirror image would have is looked at.
+pub(super) const WEAK: f64 = 0.3;
+
+/// What would let them, in words.
+pub(super) fn of(both: &Parts<'_>, exec: &Exec) -> Result<Option<String>, Cancelled> {
+    match mirrored(both, exec)? {
+        Some((_, words)) => Ok(Some(words)),
+        None => obstacle(both.halves, both.settings, both.told, exec),
+    }
+}
+
+/// Whether the mirror image of the moving part docks, with which score, and that in words.
+pub(super) fn mirrored(both: &Parts<'_>, exec: &Exec) -> Result<Option<(f64, String)>, Cancelled> {
+    let [fixed, moving] = both.halves;
+    let image = moving.reflected(|p| p * DVec3::new(-1.0, 1.0, 1.0));
+    let found = sunk(&Parts::new([fixed, &image], both.grain, both.settings, both.told), exec)?;
+    let mut judged = found.into_iter().filter_map(Result::ok).collect();
+    rank(&mut judged, both.settings.free, both.told, exec)?;
+    let best = judged.into_iter().next().filter(is_seat);
+    Ok(best.filter(|found| found.score() >= WEAK).map(|found| {
+        let score = found.score();
+        let words = format!(
+            "a mirror image of the moving part would dock ({}; {score:.2}): was one of the two exported mirrored?",
+            found.lie
+        );
+        (score, words)
+    }))
+}
+
+/// Whether the parts would dock without something narrow that is in the way, in words.
+fn obstacle(
+    pair: [&Half; 2],
+    settings: &Settings,
+    told: Told,
+    exec: &Exec,
+) -> Result<Option<String>, Cancelled> {
+    let facing = settings.facing.map(ways);
+    let found = search::obstacle(pair, [&facing[0], &facing[1]], exec)?;
+    Ok(found.map(|(lie, found)| {
+        let turns = lie.turns();
+        let at = [0, 1].map(|k| {
+            let [x, y, z] = (told.scale * (turns[k].transpose() * found.at[k])).to_array().map(number);
+            format!("({x}, {y}, {z}) {}", told.unit)
+        });
+        format!("{} ({lie})", relief::in_words(&found, &at, told))
+    }))
+}

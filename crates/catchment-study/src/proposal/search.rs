@@ -1,0 +1,215 @@
+//! Where parts of separate files may dock: all ways in which they may face, all lateral offsets.
+//!
+//! ```text
+//!   6 × 6 facings × 4 quarter turns ──▶ heights over all offsets ──▶ hollows: offsets around which the heights rise
+//!        the best of them on finer and finer lattices ──▶ places, for exact heights to judge
+//! ```
+//!
+//! A hollow counts by how much the half has to climb to leave it, and by how much of the parts lies over each other. Found in the unit
+//! of the smaller part's middle extent. Not promised: seats that are finer than a twentieth of that, turns that are no quarter turns.
+
+use super::way::{Lie, Way};
+use catchment_core::connector::{Half, Side};
+use catchment_core::contact::relief::{self, InTheWay, MOST_RISE, Relief, Reliefs};
+use catchment_core::exec::{Cancelled, Exec};
+use glam::{DMat3, DVec2};
+
+/// Side of a first cell, and the work that all offsets may take: points of the moving part times offsets.
+const CELL: f64 = relief::NARROW;
+const MOST_WORK: f64 = 4e8;
+/// How much wider cells get where the work is more.
+const WIDER: f64 = 1.2;
+/// Lattices after the first.
+const LATTICES: usize = 2;
+/// Points of the finest lattice.
+const MOST_POINTS: usize = 100_000;
+/// How much finer each next lattice is.
+const FINER: i32 = 4;
+/// Places that are looked at more closely, and those of them of one lie.
+const PLACES: usize = 10;
+const OF_ONE: usize = 2;
+/// Heights this near are equal.
+const LEVEL: f32 = 2e-3;
+
+/// A place where parts may dock.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) lie: Lie,
+    /// Where the origin of the turned moving half is, in plan view, in the frame of the fixed one.
+    pub(super) offset: DVec2,
+    score: f32,
+}
+
+/// The places worth judging, the most likely first; of turns of the moving half that look alike the first.
+pub(super) fn places(halves: [&Half; 2], facing: [&[Way]; 2], exec: &Exec) -> Result<Vec<Place>, Cancelled> {
+    let cell = cell(halves, facing);
+    let found = scan(halves, facing, None, cell, exec)?;
+    let finer = exec.each(found.len(), usize::MAX, "places", |k, _| refined(halves, found[k], cell));
+    exec.check()?;
+    Ok(finer)
+}
+
+/// Something narrow of one half without which the halves would sink into each other, and how they lie then.
+pub(super) fn obstacle(
+    halves: [&Half; 2],
+    facing: [&[Way]; 2],
+    exec: &Exec,
+) -> Result<Option<(Lie, InTheWay)>, Cancelled> {
+    let cell = cell(halves, facing);
+    for side in [Side::Fixed, Side::Moving] {
+        for Place { lie, offset, .. } in scan(halves, facing, Some(side), cell, exec)? {
+            let [top, bottom] = reliefs(halves, lie, cell);
+            let moved = ((offset - top.first + bottom.first) / cell).round().as_ivec2().to_array();
+            if let Some(found) = relief::in_the_way(&top, &bottom, moved, cell) {
+                return Ok(Some((lie, found)));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Both halves as they face each other.
+fn reliefs([fixed, moving]: [&Half; 2], lie: Lie, cell: f64) -> [Relief; 2] {
+    let turns = lie.turns();
+    [Relief::centered(fixed, &turns[0], 1.0, cell), Relief::centered(moving, &turns[1], -1.0, cell)]
+}
+
+/// The most likely places on the first lattice, with what is narrow of one half left out.
+fn scan(
+    [fixed, moving]: [&Half; 2],
+    facing: [&[Way]; 2],
+    without_narrow: Option<Side>,
+    cell: f64,
+    exec: &Exec,
+) -> Result<Vec<Place>, Cancelled> {
+    let broad = relief::broadest(fixed).min(relief::broadest(moving));
+    let seen = |half: &Half, side: Side, turn: &DMat3| {
+        let relief = Relief::centered(half, turn, if side == Side::Fixed { 1.0 } else { -1.0 }, cell);
+        if without_narrow == Some(side) { relief.without_narrow() } else { relief }
+    };
+    let lies: Vec<[Way; 2]> =
+        facing[0].iter().flat_map(|f| facing[1].iter().map(move |m| [*f, *m])).collect();
+    let found = exec.each(lies.len(), usize::MAX, "facings", |number, exec| {
+        let [f, m] = lies[number];
+        let top = seen(fixed, Side::Fixed, &Lie::Facing { fixed: f, moving: m, turned: 0 }.turns()[0]);
+        let (mut found, mut met): (Vec<Place>, Vec<Relief>) = (Vec::new(), Vec::new());
+        for turned in 0..4 {
+            if exec.is_cancelled() {
+                break;
+            }
+            let lie = Lie::Facing { fixed: f, moving: m, turned };
+            let bottom = seen(moving, Side::Moving, &lie.turns()[1]);
+            if !met.iter().any(|relief| relief.is_like(&bottom)) {
+                found.extend(relief::with(&top, &bottom, |both| {
+                    hollows(lie, [&top, &bottom], both, cell, broad)
+                }));
+                met.push(bottom);
+            }
+        }
+        found
+    });
+    exec.check()?;
+    let mut found: Vec<Place> = found.into_iter().flatten().collect();
+    found.sort_by(|a, b| b.score.total_cmp(&a.score));
+    found.truncate(PLACES);
+    Ok(found)
+}
+
+/// The cell with which all offsets are not too much work.
+fn cell(halves: [&Half; 2], facing: [&[Way]; 2]) -> f64 {
+    let mut cell = CELL;
+    loop {
+        let sizes = |side: usize| -> Vec<[f64; 2]> {
+            let of = |way: &Way| {
+                let lie = Lie::Facing { fixed: *way, moving: *way, turned: 0 };
+                let (low, high) = relief::plan_box(halves[side], &lie.turns()[side]);
+                ((high - low) / cell).ceil().to_array()
+            };
+            facing[side].iter().map(of).collect()
+        };
+        let work = |[a, b]: [f64; 2], [c, d]: [f64; 2]| 4.0 * (a + c) * (b + d) * c * d;
+        let (fixed, moving) = (sizes(0), sizes(1));
+        let all: f64 = fixed.iter().flat_map(|f| moving.iter().map(move |m| work(*f, *m))).sum();
+        if all <= MOST_WORK {
+            return cell;
+        }
+        cell *= WIDER;
+    }
+}
+
+/// The hollows of the heights over all offsets.
+fn hollows(lie: Lie, [top, bottom]: [&Relief; 2], both: &Reliefs<'_>, cell: f64, broad: f64) -> Vec<Place> {
+    let size: [i32; 2] = std::array::from_fn(|k| relief::signed(top.counts[k] + bottom.counts[k]) - 1);
+    let first: [i32; 2] = bottom.counts.map(|count| 1 - relief::signed(count));
+    let mut heights = Vec::with_capacity((size[0] * size[1]) as usize);
+    for j in 0..size[1] {
+        heights.extend((0..size[0]).map(|i| both.height([first[0] + i, first[1] + j])));
+    }
+    let at = |i: i32, j: i32| {
+        let inside = (0..size[0]).contains(&i) && (0..size[1]).contains(&j);
+        if inside { heights[(j * size[0] + i) as usize] } else { None }
+    };
+    let share = (cell * cell / broad) as f32;
+    let mut found: Vec<(f32, [i32; 2])> = Vec::new();
+    for (i, j) in (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| (i, j))) {
+        let Some((height, count)) = at(i, j) else { continue };
+        let (climb, worst) = relief::climb([i, j], height, |[i, j]| Some(at(i, j)?.0));
+        let score = climb * (count as f32 * share).min(1.0);
+        if score > 0.0 && worst > -0.1 * MOST_RISE {
+            found.push((score, [i, j]));
+        }
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut kept: Vec<(f32, [i32; 2])> = Vec::new();
+    for (score, [i, j]) in found {
+        const APART: i32 = 5;
+        if kept.iter().all(|(_, [a, b])| (a - i).abs().max((b - j).abs()) > APART) {
+            kept.push((score, [i, j]));
+        }
+        if kept.len() == OF_ONE {
+            break;
+        }
+    }
+    let place = |(score, [i, j]): (f32, [i32; 2])| {
+        let cells = DVec2::new(f64::from(first[0] + i), f64::from(first[1] + j));
+        Place { lie, offset: top.first - bottom.first + cell * cells, score }
+    };
+    kept.into_iter().map(place).collect()
+}
+
+/// The place on finer and finer lattices: the middle of where the half lies deepest.
+fn refined([fixed, moving]: [&Half; 2], mut place: Place, cell: f64) -> Place {
+    let turns = place.lie.turns();
+    let mut cell = cell;
+    for _ in 0..LATTICES {
+        // As far as the lattice before may have been off.
+        const REACH: i32 = FINER + 2;
+        cell /= f64::from(FINER);
+        let bottom = Relief::centered(moving, &turns[1], -1.0, cell);
+        if bottom.z.len() > MOST_POINTS {
+            break;
+        }
+        let reach = cell * f64::from(REACH);
+        let counts = bottom.counts.map(|count| count + 2 * REACH as usize);
+        let top = Relief::of(
+            fixed,
+            &turns[0],
+            1.0,
+            cell,
+            bottom.first + place.offset - DVec2::splat(reach),
+            counts,
+        );
+        let all = (0..=2 * REACH).flat_map(|j| (0..=2 * REACH).map(move |i| [i, j]));
+        let heights: Vec<(f32, DVec2)> = relief::with(&top, &bottom, |both| {
+            let at =
+                |[i, j]: [i32; 2]| Some((both.height([i, j])?.0, DVec2::new(f64::from(i), f64::from(j))));
+            all.filter_map(at).collect()
+        });
+        let Some(lowest) = heights.iter().map(|(height, _)| *height).min_by(f32::total_cmp) else { break };
+        let level: Vec<DVec2> =
+            heights.iter().filter(|(height, _)| *height <= lowest + LEVEL).map(|(_, at)| *at).collect();
+        let middle = level.iter().sum::<DVec2>() / level.len() as f64;
+        place.offset += cell * (middle - DVec2::splat(f64::from(REACH)));
+    }
+    place
+}

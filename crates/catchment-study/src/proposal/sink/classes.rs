@@ -1,0 +1,45 @@
+//! Which places are the same: of all places where a part sinks in, the best of each axis, and what differs from it.
+//!
+//! ```text
+//!   same axis, same side      turned about the approach: one class          same line, other side up     a twin: turned end for end
+//!   same axis, elsewhere      another place                                 anything else                another way
+//! ```
+
+use super::height::HeightMap;
+use super::{Grain, Sunk, Triangles};
+use crate::proposal::way::Lie;
+use glam::DMat3;
+
+/// The best place of those that differ by a turn about the approach.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::proposal) struct Class {
+    pub(in crate::proposal) best: Sunk,
+    /// The best of those that are turned about the approach from it.
+    pub(in crate::proposal) turned: Option<Sunk>,
+}
+
+/// Places whose parts' middles are nearer than this across the approach are one, in small lengths.
+const ONE_PLACE: f64 = 4.0;
+
+/// The classes of places, the steepest first. `sunk` is sorted.
+pub(in crate::proposal) fn classes(moving: &Triangles, sunk: &[Sunk], grain: Grain) -> Vec<Class> {
+    let (low, high) = HeightMap::bounds(moving, &DMat3::IDENTITY);
+    let middle = low.midpoint(high);
+    let at = |sunk: &Sunk| (sunk.lie.turns()[1] * middle).truncate() + sunk.offset;
+    let sides = |sunk: &Sunk| match sunk.lie {
+        Lie::Facing { fixed, moving, .. } => Some((fixed, moving)),
+        Lie::Assembled { .. } => None,
+    };
+    let mut found: Vec<Class> = Vec::new();
+    for one in sunk {
+        let same = |class: &&mut Class| {
+            sides(&class.best) == sides(one) && at(&class.best).distance(at(one)) < ONE_PLACE * grain.small
+        };
+        match found.iter_mut().find(same) {
+            Some(class) if class.turned.is_none() && class.best.lie != one.lie => class.turned = Some(*one),
+            Some(_) => {}
+            None => found.push(Class { best: *one, turned: None }),
+        }
+    }
+    found
+}

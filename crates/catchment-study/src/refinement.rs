@@ -1,0 +1,133 @@
+//! One method at one resolution: what studies of methods are made of.
+//!
+//! The Sum is the grid's own: the measure of the accepted cells, for transport the mean arrival fraction. Cells in doubt are not
+//! settled by descent. [`Sampled::correct`] gives the unbiased Sum that a run reports.
+
+use catchment_core::acceptance::{Domain, Outcome};
+use catchment_core::exec::{Cancelled, Exec, OutOfBudget, Stopwatch};
+use catchment_core::landscape::Grid;
+use catchment_core::merit::MeritError;
+use catchment_core::merit::onaa::Onaa;
+use catchment_core::merit::sum::{Sum, bracket};
+use catchment_core::method::correction::{self, Corrected, CorrectionError};
+use catchment_core::method::{DecideError, Decided, Method, ensure_fits};
+use catchment_core::problem::Problem;
+use catchment_core::run;
+use serde::Serialize;
+
+/// What one method says at one resolution.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Refinement {
+    /// Cells per axis.
+    pub resolution: usize,
+    /// Cells in all.
+    pub cells: usize,
+    /// Wall-clock time of deciding every cell.
+    pub seconds: f64,
+    /// The Sum, Dᵃ·radᵇ.
+    pub sum: f64,
+    /// Unit of the Sum, like `D²·rad³`.
+    pub unit: String,
+    /// The accepted cells without those at the border, and with their neighbours, in the same unit.
+    pub bracket: [f64; 2],
+    /// ONAA edge, in [0, 1].
+    pub onaa_edge: f64,
+    /// Undecided cells.
+    pub undecided: usize,
+}
+
+/// A method's answer over a grid.
+#[derive(Debug)]
+pub struct Sampled {
+    method: Method,
+    grid: Grid,
+    decided: Decided,
+    seconds: f64,
+}
+
+/// Why there is no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum RefinementError {
+    /// It does not fit into memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The method gave up.
+    #[error(transparent)]
+    Decide(DecideError),
+    /// The Sum could not be corrected.
+    #[error(transparent)]
+    Correction(#[from] CorrectionError),
+    /// A figure of merit could not be computed.
+    #[error(transparent)]
+    Merit(#[from] MeritError),
+}
+
+impl From<DecideError> for RefinementError {
+    fn from(error: DecideError) -> Self {
+        match error {
+            DecideError::OutOfBudget(error) => Self::OutOfBudget(error),
+            DecideError::Cancelled(error) => Self::Cancelled(error),
+            error => Self::Decide(error),
+        }
+    }
+}
+
+impl Sampled {
+    /// Decides every cell of a grid with `resolution` cells per axis.
+    ///
+    /// # Errors
+    /// See [`RefinementError`].
+    pub fn by(
+        method: &Method,
+        problem: &Problem,
+        resolution: usize,
+        exec: &Exec,
+    ) -> Result<Self, RefinementError> {
+        let grid = Grid::over(problem.alignment(), |_| resolution);
+        let cost = method.cost(problem, &grid);
+        let cells = grid.checked_len().map_or(u64::MAX, |cells| cells as u64);
+        let needed = cells.saturating_mul(cost.bytes_per_cell);
+        ensure_fits(cost.what, needed, cost.bytes_per_cell, grid.axes.len(), exec)?;
+        let started = Stopwatch::start();
+        let decided = method.decide(problem, &Domain::Grid(grid.clone()), exec)?;
+        let seconds = started.seconds();
+        Ok(Self { method: method.clone(), grid, decided, seconds })
+    }
+
+    /// What it says.
+    ///
+    /// # Errors
+    /// See [`RefinementError`].
+    pub fn refinement(&self, problem: &Problem, exec: &Exec) -> Result<Refinement, RefinementError> {
+        let acceptance = &self.decided.acceptance;
+        let sum = Sum::of(acceptance, problem.alignment());
+        Ok(Refinement {
+            resolution: self.grid.axes.first().map_or(0, |axis| axis.cells),
+            cells: sum.tried,
+            seconds: self.seconds,
+            sum: self.decided.doubts.as_ref().map_or(sum.sum, |doubts| doubts.mean() * self.grid.measure()),
+            unit: sum.unit(),
+            bracket: bracket(acceptance, exec)?,
+            onaa_edge: Onaa::of(acceptance, exec)?.edge,
+            undecided: sum.counts[Outcome::Undecided as usize - 1],
+        })
+    }
+
+    /// The Sum made unbiased by random poses, as a run does.
+    ///
+    /// # Errors
+    /// See [`CorrectionError`].
+    pub fn correct(
+        &self,
+        problem: &Problem,
+        settings: &correction::Settings,
+        exec: &Exec,
+    ) -> Result<Corrected, CorrectionError> {
+        let doubts = self.decided.doubts.as_deref();
+        let (method, acceptance) = (&self.method, &self.decided.acceptance);
+        Ok(run::correct(method, problem, &self.grid, acceptance, doubts, settings, exec)?.found)
+    }
+}

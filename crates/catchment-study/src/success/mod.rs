@@ -1,0 +1,303 @@
+//! Will it dock? The probability that a robot's errors are corrected, by exact motions; what fails, and which error to improve.
+//!
+//! ```text
+//!   robot  ──▶  random errors, none followed   ──▶  n of them followed exactly, most where there is doubt
+//!   normal,     ░░░░░░░░░░░░░░░░░░░░░░░░░░░░░       · · ·· ·::·· ·
+//!   uniform,    strata by a grid over them               │
+//!   measured                                             ├─▶  P with its interval              what fails, what fails first
+//!                                                        ├─▶  dP/dσ of every σ                 the same motions
+//!                                                        ├─▶  P with σ halved, one by one      which to improve first
+//!                                                        └─▶  P(t), every σ times t            how large they may be
+//! ```
+//!
+//! - The *probability* is that of exact quasi-static motions, not of cells: the grid only says where to look, and whatever it says, the
+//!   interval holds. Errors outside of the error box are followed like all others.
+//! - *Normal* errors may be correlated. *Measured* ones are taken row by row, each once; where there are more rows than motions, any of them. Rows
+//!   count as independent measurements: the interval says what they leave open.
+//! - *Slopes* dP/dσ are of normal errors by the score of the density, of uniform ones by the faces of their box; of measured ones there are none.
+//! - *Gains* are differences of two probabilities, with the σ as it is and halved: new motions, the same random errors.
+//! - The *factor* is by how much all σ together, or one alone, may be multiplied for the success that is required.
+//!
+//! Not promised: friction, speed, or that errors are as they are said to be. Undecided motions count as failures. Lengths in D, angles in
+//! radians.
+
+mod drawn;
+pub(crate) mod estimate;
+mod failure;
+mod fit;
+mod found;
+mod gain;
+pub(crate) mod source;
+pub(crate) mod strata;
+#[cfg(test)]
+mod tests;
+mod tolerable;
+
+use catchment_core::exec::{Cancelled, Exec};
+use catchment_core::method::descent::{self, FrictionOutOfRange};
+use catchment_core::method::{Decide, DecideError};
+use catchment_core::pose::{Dof, PoseError};
+use catchment_core::poses::{Moments, Robot, Spread};
+use catchment_core::problem::Problem;
+pub use found::{
+    AlongAxis, AtFactor, AxisFit, Docking, Factor, Failures, First, Fit, Improvement, Slope, Stratum, Success,
+};
+use serde::{Deserialize, Serialize};
+use source::Source;
+pub(crate) use source::normals;
+use std::f64::consts::SQRT_2;
+use strata::Strata;
+use tolerable::Curve;
+
+/// What changes the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Exact motions of the probability of each robot; gains take half as many each, factors a quarter. Where nothing is said 8000 of simple
+    /// halves, fewer of those with many facets.
+    pub motions: Option<usize>,
+    /// Seed of the random errors.
+    pub seed: u64,
+    /// The success for which factors are sought, above 0 and below 1.
+    pub required: f64,
+    /// Cells per axis of the grid that says where to look; 0 for none, by the number of errors where nothing is said.
+    pub cells: Option<usize>,
+    /// Coefficient of friction between the halves. The grid that says where to look knows none.
+    pub friction: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { motions: None, seed: 1, required: 0.99, cells: None, friction: 0.0 }
+    }
+}
+
+/// Why there is no probability.
+#[derive(Debug, thiserror::Error)]
+pub enum SuccessError {
+    /// No coefficient of friction.
+    #[error(transparent)]
+    Friction(#[from] FrictionOutOfRange),
+    /// No robot.
+    #[error("there is no robot to ask about")]
+    NoRobot,
+    /// A success that cannot be required.
+    #[error("a success of {required} cannot be required: above 0 and below 1")]
+    Required {
+        /// What was.
+        required: f64,
+    },
+    /// Too few motions.
+    #[error("{motions} motions are too few; {FEWEST_MOTIONS} or more")]
+    TooFew {
+        /// How many.
+        motions: usize,
+    },
+    /// Errors of what the design locks.
+    #[error("{robot}: {} does not vary in this design, which locks it", axis.name())]
+    Locked {
+        /// The robot.
+        robot: String,
+        /// The error.
+        axis: Dof,
+    },
+    /// Nothing varies.
+    #[error("{robot}: none of its errors varies; follow its mean, it is one pose")]
+    Still {
+        /// The robot.
+        robot: String,
+    },
+    /// The grid was not decided.
+    #[error(transparent)]
+    Decide(#[from] DecideError),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Fewest motions of a probability.
+pub const FEWEST_MOTIONS: usize = 100;
+/// Shares of the time that a robot's parts take, about.
+const PARTS: [f64; 6] = [0.0, 0.08, 0.2, 0.3, 0.5, 1.0];
+/// Factors of the curve beside those that are tried for the required success.
+const CURVE: [f64; 7] = [0.25, 0.5, 0.75, 1.2, SQRT_2, 1.7, 2.0];
+/// Motions of a probability, as a multiple of the random poses of a run: one takes a tenth of a millisecond or less between simple halves.
+const PER_SAMPLE: usize = 2;
+
+/// Asks whether robots dock.
+///
+/// # Errors
+/// See [`SuccessError`].
+///
+/// # Examples
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use catchment::design::read;
+/// use catchment::exec::Exec;
+/// use catchment::pose::PoseError;
+/// use catchment::poses::{Robot, Spread};
+/// use catchment::problem::Problem;
+/// use catchment::study::success::{self, Settings};
+///
+/// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
+/// let problem = Problem::of(read(text, ".".as_ref())?.design)?;
+/// let errors = Spread::normal(PoseError { x: 0.25, ..PoseError::default() });
+/// let robots = [Robot { name: "arm".to_owned(), errors }];
+/// let found = success::run(&problem, &robots, &Settings { motions: Some(500), ..Settings::default() }, &Exec::new())?;
+/// // Without rotations a V-Face corrects offsets up to D/2, here two standard deviations: 95.45 %.
+/// let [lo, hi] = found.robots[0].ci95;
+/// assert!(lo < 0.9545 && 0.9545 < hi && hi - lo < 0.03);
+/// # Ok(())
+/// # }
+/// ```
+pub fn run(
+    problem: &Problem,
+    robots: &[Robot],
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<Success, SuccessError> {
+    let by_method = || {
+        let samples = descent::Settings::default().default_samples(problem.pair());
+        (PER_SAMPLE * samples).max(FEWEST_MOTIONS)
+    };
+    let motions = settings.motions.unwrap_or_else(by_method);
+    check(problem, robots, settings, motions)?;
+    let settings = Settings { motions: Some(motions), ..settings.clone() };
+    let mut found = Vec::new();
+    let mut followed = 0;
+    for (number, robot) in robots.iter().enumerate() {
+        let [from, to] = [number, number + 1].map(|k| k as f64 / robots.len() as f64);
+        let (docking, more) = of_robot(problem, robot, &settings, motions, &exec.part([from, to], STAGE))?;
+        followed += more;
+        found.push(docking);
+    }
+    Ok(Success { settings, robots: found, motions: followed })
+}
+
+const STAGE: &str = "motions";
+
+fn check(
+    problem: &Problem,
+    robots: &[Robot],
+    settings: &Settings,
+    motions: usize,
+) -> Result<(), SuccessError> {
+    let required = settings.required;
+    if !(required > 0.0 && required < 1.0) {
+        return Err(SuccessError::Required { required });
+    }
+    if motions < FEWEST_MOTIONS {
+        return Err(SuccessError::TooFew { motions });
+    }
+    if robots.is_empty() {
+        return Err(SuccessError::NoRobot);
+    }
+    for robot in robots {
+        let free = problem.alignment().free;
+        // What a table says of a locked offset is what its lock makes of it.
+        let declared = !matches!(robot.errors, Spread::Measured { .. });
+        if let Some(axis) = robot.errors.occurring().find(|dof| declared && !free.contains(*dof)) {
+            return Err(SuccessError::Locked { robot: robot.name.clone(), axis });
+        }
+        if robot.errors.moments().sigma == PoseError::default() {
+            return Err(SuccessError::Still { robot: robot.name.clone() });
+        }
+    }
+    Ok(())
+}
+
+fn of_robot(
+    problem: &Problem,
+    robot: &Robot,
+    settings: &Settings,
+    motions: usize,
+    exec: &Exec,
+) -> Result<(Docking, usize), SuccessError> {
+    let part = |k: usize| exec.part([PARTS[k], PARTS[k + 1]], STAGE);
+    let followed_by = descent::Settings::with_friction(settings.friction)?;
+    let source = Source::of(&robot.errors, motions, settings.seed).followed_by(&followed_by);
+    // Rows that are all followed need no grid.
+    let cells = if source.rows().is_some() { Some(0) } else { settings.cells };
+    let strata = Strata::decide(problem, &source, cells, &part(0))?;
+    let found = estimate::as_expected(problem, &source, &strata, motions, &part(1))?;
+    let (failures, more) = failure::failures(problem, &source, &found, &part(2))?;
+    let mut followed = found.motions + more;
+    let (improve, more) = gain::gains(problem, &source, &strata, &found, motions.div_ceil(2), &part(3))?;
+    followed += more;
+    let quarter = motions.div_ceil(4).max(FEWEST_MOTIONS);
+    let (curves, fit_part) = (part(4).part([0.0, 0.9], STAGE), part(4).part([0.9, 1.0], STAGE));
+    let axes: Vec<Dof> = source.varying().collect();
+    let step = |k: usize| {
+        let of = (axes.len() + 1) as f64;
+        curves.part([k as f64 / of, (k + 1) as f64 / of], STAGE)
+    };
+    let mut all = Curve::new(problem, &source, &strata, quarter, [true; 5]);
+    all.know(&found);
+    for factor in CURVE {
+        all.look(factor, &step(0))?;
+    }
+    let tolerable = all.factor(settings.required, &step(0))?;
+    followed += all.followed();
+    let mut tolerable_alone = Vec::new();
+    for (k, axis) in axes.iter().enumerate() {
+        let mut changed = [false; 5];
+        changed[axis.index()] = true;
+        let mut alone = Curve::new(problem, &source, &strata, quarter, changed);
+        alone.know(&found);
+        tolerable_alone.push((*axis, alone.factor(settings.required, &step(k + 1))?));
+        followed += alone.followed();
+    }
+    let mut fit = fit::fit(&robot.errors);
+    if let Some(fit) = &mut fit {
+        let Moments { mean, sigma, correlation } = fit.moments;
+        let spread = Spread::Normal { mean, sigma, correlation };
+        let source = Source::of(&spread, 0, settings.seed).followed_by(&followed_by);
+        let strata = Strata::decide(problem, &source, settings.cells, &fit_part)?;
+        let found = estimate::as_expected(problem, &source, &strata, motions.div_ceil(2), &fit_part)?;
+        followed += found.motions;
+        fit.success = Some((found.probability, found.ci95));
+    }
+    let rows = match &robot.errors {
+        Spread::Measured { poses, .. } => Some(poses.len()),
+        _ => None,
+    };
+    let docking = Docking {
+        robot: robot.name.clone(),
+        kind: robot.errors.kind(),
+        moments: robot.errors.moments(),
+        rows,
+        probability: found.probability,
+        ci95: found.ci95,
+        motions: found.motions,
+        undecided: found.undecided,
+        plain_motions: found.plain,
+        grid: [strata.cells(), strata.motions()],
+        outside: outside(problem, &source, &found, exec)?,
+        strata: found.strata,
+        failures,
+        improve,
+        tolerable,
+        tolerable_alone,
+        curve: all.points().to_vec(),
+        fit,
+    };
+    Ok((docking, followed))
+}
+
+/// Share of the errors that lie outside of the error box.
+fn outside(
+    problem: &Problem,
+    source: &Source<'_>,
+    found: &estimate::Sample,
+    exec: &Exec,
+) -> Result<f64, Cancelled> {
+    let alignment = problem.alignment();
+    let is_outside = |number: u64| {
+        let error = source.pose(&source.standard(number), &source::SAME).to_array();
+        alignment.free.iter().any(|dof| error[dof.index()].abs() > alignment.half_range(dof))
+    };
+    let drawn = found.drawn().max(1);
+    exec.check()?;
+    let count = (0..drawn as u64).filter(|number| is_outside(*number)).count();
+    Ok(count as f64 / drawn as f64)
+}

@@ -1,0 +1,364 @@
+//! Trials beside the exact region: where a method that follows single poses disagrees with the zero-rotation area of acceptance.
+//!
+//! ```text
+//!   exact (zraa)          trials, one per cell, anywhere in it      disagreeing area = share of trials that
+//!      ╱╲                 ○ ○ ○ ● ○ ○                               lie on the wrong side × the error box
+//!     ╱  ╲                ○ ○ ● ● ● ○                               95 % interval: Wilson's, which a stratified
+//!     ╲  ╱                ○ ○ ○ ● ○ ○                               sample keeps and does not fill
+//!      ╲╱
+//! ```
+//!
+//! Every cell of an n × n grid over the error box has one trial, at a place drawn uniformly in it, so the share is unbiased. Rotations
+//! are locked, which the dissertation did by inertia. Finer grids narrow the interval; half the time step moves what is in it:
+//! the engine lets halves overlap by what they move in a step.
+//!
+//! Not promised: that the exact region is right where trials and it agree; both take the same halves and the same seat.
+//!
+//! Source: dissertation, section 4.2.2 and figure 4.4.
+
+use catchment_core::acceptance::{Domain, Outcome, Stream};
+use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
+use catchment_core::landscape::{Grid, Resolution};
+use catchment_core::merit::sum::wilson95;
+use catchment_core::method::zraa::{self, Zraa, ZraaError};
+use catchment_core::method::{DecideError, Method, MethodError};
+use catchment_core::pose::PoseError;
+use catchment_core::problem::Problem;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+
+/// What changes the answer.
+#[derive(Debug, Clone, Serialize)]
+pub struct Settings {
+    /// What decides single poses.
+    pub method: Method,
+    /// Trials along every free translation, one study each.
+    pub resolutions: Vec<usize>,
+    /// How often the time step is halved, for methods that have one.
+    pub halvings: u32,
+    /// Seed of the places in the cells.
+    pub seed: u64,
+}
+
+/// Trials at one resolution and time step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Round {
+    /// Trials along every free translation.
+    pub resolution: usize,
+    /// Time step in s; null for a method that has none.
+    pub timestep: Option<f64>,
+    /// How many trials there were.
+    pub trials: usize,
+    /// Not aligned, though the exact region holds them.
+    pub rejected_inside: usize,
+    /// Aligned, though it does not.
+    pub accepted_outside: usize,
+    /// Still moving when the time was up; they count as not aligned.
+    pub undecided: usize,
+    /// Share of the error box over which trials disagree.
+    pub disagreeing: f64,
+    /// Its 95 % interval.
+    pub disagreeing_ci95: [f64; 2],
+    /// The same as a measure, in the unit of the study.
+    pub measure: f64,
+    /// Its 95 % interval.
+    pub measure_ci95: [f64; 2],
+    /// Measure of what trials accept.
+    pub accepted: f64,
+}
+
+/// A trial of the finest grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trial {
+    /// Where it began.
+    pub error: PoseError,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Whether the exact region holds it.
+    pub inside: bool,
+}
+
+/// What was found.
+#[derive(Debug, Clone)]
+pub struct Trials {
+    /// How.
+    pub settings: Settings,
+    /// The exact region.
+    pub zraa: Zraa,
+    /// Its measure, in D² or D.
+    pub exact: f64,
+    /// One per resolution and time step, in this order.
+    pub rounds: Vec<Round>,
+    /// The grid of the last round.
+    pub grid: Grid,
+    /// Its trials, in the order of the cells.
+    pub last: Vec<Trial>,
+}
+
+/// Why there are none.
+#[derive(Debug, thiserror::Error)]
+pub enum TrialsError {
+    /// Something turns.
+    #[error("rotations are free, and the exact region is that of translation alone: free x, y or both")]
+    Rotations,
+    /// The method cannot be asked of single poses.
+    #[error("{method} does not decide single poses")]
+    Method {
+        /// Which.
+        method: &'static str,
+    },
+    /// The method has no time step.
+    #[error("{method} has no time step to halve")]
+    NoTimestep {
+        /// Which.
+        method: &'static str,
+    },
+    /// No grid, or one that is too fine.
+    #[error("{given} trials along an axis are none of {least} to {most}")]
+    Resolution {
+        /// What was given.
+        given: usize,
+        /// The least.
+        least: usize,
+        /// The most.
+        most: usize,
+    },
+    /// More halvings than a step can take.
+    #[error("the time step can be halved {most} times, not {given}")]
+    Halvings {
+        /// What was given.
+        given: u32,
+        /// The most.
+        most: u32,
+    },
+    /// There is no exact region.
+    #[error(transparent)]
+    Zraa(#[from] ZraaError),
+    /// The method refuses.
+    #[error(transparent)]
+    Decide(#[from] DecideError),
+    /// A setting of the method.
+    #[error(transparent)]
+    Setting(#[from] MethodError),
+    /// Too many trials for the memory.
+    #[error(transparent)]
+    OutOfBudget(#[from] OutOfBudget),
+    /// It was asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Least and most trials along an axis: hours of an engine.
+const RESOLUTION: [usize; 2] = [Resolution::LEAST, 1000];
+/// Most halvings: a thousandth of the step, a thousand times the time.
+const HALVINGS: u32 = 10;
+/// Bytes per trial beside what the method takes.
+const TRIAL_BYTES: u64 = size_of::<Trial>() as u64 + super::pose_bytes();
+
+/// Finds the exact region and asks the method at every resolution, and at the finest of them with every time step.
+///
+/// # Errors
+/// See [`TrialsError`].
+pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Trials, TrialsError> {
+    let alignment = problem.alignment();
+    if alignment.free.rotations() > 0 {
+        return Err(TrialsError::Rotations);
+    }
+    let name = settings.method.name();
+    settings.method.follows().ok_or(TrialsError::Method { method: name })?;
+    let [least, most] = RESOLUTION;
+    if let Some(&given) = settings.resolutions.iter().find(|n| !(least..=most).contains(n)) {
+        return Err(TrialsError::Resolution { given, least, most });
+    }
+    if settings.halvings > HALVINGS {
+        return Err(TrialsError::Halvings { given: settings.halvings, most: HALVINGS });
+    }
+    let step = settings.method.settings().get("timestep").and_then(Value::as_f64);
+    if settings.halvings > 0 && step.is_none() {
+        return Err(TrialsError::NoTimestep { method: name });
+    }
+    let finest = settings.resolutions.iter().copied().max().unwrap_or(least);
+    let trials = (finest as u64).saturating_pow(alignment.free.len() as u32);
+    exec.ensure_fits("the trials", trials.saturating_mul(TRIAL_BYTES), |_| {
+        vec![catchment_core::advice::Advice::CoarserGrid]
+    })?;
+    let zraa = zraa::run(problem.pair(), &zraa::Settings::default(), exec)?;
+    let coarse = settings.resolutions.iter().map(|resolution| (*resolution, 0));
+    let rounds: Vec<(usize, u32)> = coarse.chain((1..=settings.halvings).map(|k| (finest, k))).collect();
+    let (mut found, mut last) = (Vec::new(), None);
+    for (k, &(resolution, halvings)) in rounds.iter().enumerate() {
+        let ends = [k, k + 1].map(|k| k as f64 / rounds.len() as f64);
+        let part = exec.part(ends, "trials");
+        let timestep = step.map(|step| step / f64::from(1u32 << halvings));
+        let method = match timestep.filter(|_| halvings > 0) {
+            Some(step) => settings.method.with(&changed(step))?,
+            None => settings.method.clone(),
+        };
+        let grid = Grid::over(alignment, |_| resolution);
+        let trials = trials_of(problem, &zraa, &method, &grid, settings.seed, &part)?;
+        found.push(Round { timestep, ..counted(resolution, &grid, &trials) });
+        last = Some((grid, trials));
+    }
+    let (grid, last) = last.unwrap_or_else(|| (Grid::over(alignment, |_| least), Vec::new()));
+    Ok(Trials { settings: settings.clone(), exact: measure(&zraa), zraa, rounds: found, grid, last })
+}
+
+fn changed(step: f64) -> Map<String, Value> {
+    Map::from_iter([("timestep".to_owned(), json!(step))])
+}
+
+/// D or D² of a region.
+fn measure(zraa: &Zraa) -> f64 {
+    match zraa {
+        Zraa::Interval { from, to, .. } => to - from,
+        Zraa::Region { area, .. } => *area,
+    }
+}
+
+/// One trial at a random place of every cell.
+fn trials_of(
+    problem: &Problem,
+    zraa: &Zraa,
+    method: &Method,
+    grid: &Grid,
+    seed: u64,
+    exec: &Exec,
+) -> Result<Vec<Trial>, TrialsError> {
+    let stream = Stream::new(seed);
+    let error = |cell: usize| {
+        let mut place = grid.pose(cell).to_array();
+        for (k, axis) in grid.axes.iter().enumerate() {
+            let aside = stream.branch(k as u64).uniform(cell as u64) - 0.5;
+            place[axis.dof.index()] += aside * axis.step();
+        }
+        PoseError::from_array(place)
+    };
+    let errors: Vec<PoseError> = (0..grid.len()).map(error).collect();
+    let follow = method.follows().ok_or(TrialsError::Method { method: method.name() })?;
+    let (acceptance, _) = follow.follow(problem, Domain::Poses(errors.clone()), exec)?;
+    let trial = |(error, outcome): (PoseError, &Outcome)| Trial {
+        error,
+        outcome: *outcome,
+        inside: zraa.holds(DVec2::new(error.x, error.y)),
+    };
+    Ok(errors.into_iter().zip(&acceptance.outcomes).map(trial).collect())
+}
+
+/// What the trials of a grid say.
+fn counted(resolution: usize, grid: &Grid, trials: &[Trial]) -> Round {
+    let aligned = |trial: &Trial| trial.outcome == Outcome::Aligned;
+    let count = |which: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| which(trial)).count();
+    let rejected_inside = count(&|trial| trial.inside && !aligned(trial));
+    let accepted_outside = count(&|trial| !trial.inside && aligned(trial));
+    let (wrong, all) = (rejected_inside + accepted_outside, trials.len());
+    let (whole, share) = (grid.measure(), |count: usize| count as f64 / all.max(1) as f64);
+    let ci95 = wilson95(wrong, all);
+    Round {
+        resolution,
+        timestep: None,
+        trials: all,
+        rejected_inside,
+        accepted_outside,
+        undecided: count(&|trial| trial.outcome == Outcome::Undecided),
+        disagreeing: share(wrong),
+        disagreeing_ci95: ci95,
+        measure: share(wrong) * whole,
+        measure_ci95: ci95.map(|end| end * whole),
+        accepted: share(count(&|trial| aligned(trial))) * whole,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::problem;
+    use catchment_core::design::Family;
+    use catchment_core::pose::{Dof, DofSet};
+
+    const XY: DofSet = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
+
+    fn settings(method: &str, resolutions: &[usize]) -> Settings {
+        let method = method.parse().unwrap();
+        Settings { method, resolutions: resolutions.to_vec(), halvings: 0, seed: 1 }
+    }
+
+    /// Exact motions and the exact region are two ways to one set: |x| + |y| < 1, and an interval of ±½.
+    #[test]
+    fn exact_motions_agree_with_the_exact_region_everywhere() {
+        let found = run(&problem(Family::XFace3d, XY), &settings("descent", &[7, 20]), &Exec::new()).unwrap();
+        assert!((found.exact - 2.0).abs() < 1e-9);
+        assert_eq!(
+            found.rounds.iter().map(|r| (r.resolution, r.trials)).collect::<Vec<_>>(),
+            [(7, 49), (20, 400)]
+        );
+        for round in &found.rounds {
+            assert_eq!((round.rejected_inside, round.accepted_outside, round.timestep), (0, 0, None));
+            assert!(round.disagreeing_ci95[0] == 0.0 && round.disagreeing_ci95[1] < 0.1);
+            // 4√2 D of border, and one trial for every cell that it crosses.
+            assert!((round.accepted - 2.0).abs() < 4.0 / round.resolution as f64, "{round:?}");
+        }
+        let diamond = |trial: &Trial| trial.inside == (trial.error.x.abs() + trial.error.y.abs() < 1.0);
+        assert!(found.last.len() == 400 && found.last.iter().all(diamond));
+        let cells = found.last.iter().enumerate();
+        let in_cell = |(k, trial): (usize, &Trial)| {
+            let center = found.grid.pose(k);
+            let half = 0.5 * found.grid.axes[0].step();
+            (trial.error.x - center.x).abs() <= half && (trial.error.y - center.y).abs() <= half
+        };
+        assert!(cells.clone().all(in_cell));
+        let line = problem(Family::VFace, DofSet::EMPTY.with(Dof::X));
+        let found = run(&line, &settings("descent", &[50]), &Exec::new()).unwrap();
+        assert!((found.exact - 1.0).abs() < 1e-9 && found.rounds[0].disagreeing == 0.0);
+    }
+
+    #[test]
+    fn wrong_sides_are_counted_apart_and_their_interval_holds_the_share() {
+        let problem = problem(Family::XFace3d, XY);
+        let grid = Grid::over(problem.alignment(), |_| 10);
+        let trial = |k: usize| {
+            let outcome = match k {
+                0..3 => Outcome::Undecided,
+                3..30 => Outcome::Jammed,
+                _ => Outcome::Aligned,
+            };
+            Trial { error: grid.pose(k), outcome, inside: (20..95).contains(&k) }
+        };
+        let round = counted(10, &grid, &(0..100).map(trial).collect::<Vec<_>>());
+        assert_eq!((round.rejected_inside, round.accepted_outside, round.undecided), (10, 5, 3));
+        let [lo, hi] = round.disagreeing_ci95;
+        assert!((round.disagreeing - 0.15).abs() < 1e-15 && lo < 0.15 && 0.15 < hi && hi - lo < 0.16);
+        // The box is 2 D × 2 D.
+        assert!((round.measure - 0.6).abs() < 1e-12 && (round.accepted - 2.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_cannot_be_compared_is_refused() {
+        let both = problem(Family::XFace3d, XY);
+        let refused = |settings: &Settings| run(&both, settings, &Exec::new()).unwrap_err();
+        assert!(matches!(refused(&settings("transport", &[5])), TrialsError::Method { method: "transport" }));
+        assert!(matches!(refused(&settings("descent", &[5, 1])), TrialsError::Resolution { given: 1, .. }));
+        let halved = |halvings, method| Settings { halvings, ..settings(method, &[5]) };
+        assert!(matches!(refused(&halved(1, "descent")), TrialsError::NoTimestep { .. }));
+        assert!(matches!(refused(&halved(11, "descent")), TrialsError::Halvings { given: 11, .. }));
+        let turning = problem(Family::XFace3d, XY.with(Dof::Yaw));
+        let refused = run(&turning, &settings("descent", &[5]), &Exec::new()).unwrap_err();
+        assert!(matches!(refused, TrialsError::Rotations));
+    }
+
+    /// Drop trials: 36 places, and as many with half the step; those within a thousandth of the border may fall to either side.
+    #[cfg(feature = "drop")]
+    #[test]
+    fn drop_trials_agree_with_the_exact_region_but_at_its_border() {
+        let settings = Settings { halvings: 1, ..settings("drop", &[6]) };
+        let found = run(&problem(Family::XFace3d, XY), &settings, &Exec::new()).unwrap();
+        let steps: Vec<_> = found.rounds.iter().map(|round| round.timestep.unwrap()).collect();
+        assert_eq!(steps, [1e-3, 5e-4]);
+        assert_eq!((found.rounds[1].resolution, found.rounds[1].trials), (6, 36));
+        for trial in &found.last {
+            let margin = 1.0 - trial.error.x.abs() - trial.error.y.abs();
+            let agrees = trial.inside == (trial.outcome == Outcome::Aligned);
+            assert!(agrees || margin.abs() < 5e-3, "{trial:?}");
+        }
+    }
+}

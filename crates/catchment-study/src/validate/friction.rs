@@ -1,0 +1,152 @@
+//! Which friction explains a table of trials.
+//!
+//! ```text
+//!   disagreements beyond k accuracies
+//!      │╲                       ╱      every trial is followed again with each μ; of those that fare otherwise than was seen, those count whose
+//!      │ ╲___               ___╱       border at that μ is farther than k accuracies
+//!      └─────╲_____________╱───▶ μ
+//!             [ interval  ]            the coefficients with the fewest, its ends bisected
+//! ```
+//!
+//! Coefficients are tried from 0 upwards, until one leaves clearly more than the best before it. A motion that creeps on and on counts as one that
+//! does not dock.
+//!
+//! Not promised: that friction is the reason; only which coefficients are as good as the best, and that none beyond the last one tried is.
+
+use super::Settings;
+use crate::plan::{Judge, Search, for_each};
+use catchment_core::acceptance::Stream;
+use catchment_core::exec::{Cancelled, Exec};
+use catchment_core::method::descent;
+use catchment_core::poses::Tried;
+use catchment_core::problem::Problem;
+
+/// What friction explains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionFound {
+    /// The fewest disagreements beyond the limit; 0 where some friction explains all.
+    pub fewest: usize,
+    /// The coefficients that leave so few.
+    pub interval: [f64; 2],
+    /// The interval goes on beyond the largest coefficient that was tried.
+    pub open: bool,
+    /// Some coefficient within the interval leaves more.
+    pub broken: bool,
+    /// Every coefficient that was tried, in ascending order, with its disagreements: at least so many where it is clearly worse than the best before it.
+    pub tried: Vec<(f64, usize)>,
+}
+
+/// Largest coefficient that is tried: rubber.
+const MOST: f64 = 1.0;
+/// Coefficients between it and 0.
+const STEPS: usize = 20;
+/// Bisections of an end: to MOST / STEPS / 2⁴ = 0.003.
+const HALVINGS: usize = 4;
+/// The finest steps that bisections lead to, per coefficient of the ladder.
+const FINE: usize = 1 << HALVINGS;
+/// So many disagreements more than the fewest are clearly more.
+const CLEARLY: usize = 4;
+/// Steps after which a motion creeps; others take tens to hundreds.
+const CREEPS: usize = 500;
+
+/// Tries coefficients; and how many motions that took.
+pub(super) fn estimate(
+    problem: &Problem,
+    trials: &[(Tried, bool)],
+    settings: &Settings,
+    exec: &Exec,
+) -> Result<(FrictionFound, usize), Cancelled> {
+    let mut followed = 0;
+    let mut tried: Vec<(f64, usize)> = Vec::new();
+    let total = (STEPS + 1 + 2 * HALVINGS) as f64;
+    let mut look = |friction: f64, tried: &mut Vec<(f64, usize)>| {
+        let done = tried.len() as f64;
+        let part = exec.part([done / total, (done + 1.0) / total], "motions");
+        let enough = tried.iter().map(|(_, count)| count + CLEARLY).min().unwrap_or(usize::MAX);
+        let (count, motions) = beyond(problem, trials, settings, friction, enough, &part)?;
+        followed += motions;
+        tried.push((friction, count));
+        Ok::<_, Cancelled>(count >= enough)
+    };
+    for k in 0..=STEPS {
+        if look(coefficient(k * FINE), &mut tried)? {
+            break;
+        }
+    }
+    let last = tried.len() - 1;
+    let fewest = tried.iter().map(|(_, count)| *count).min().unwrap_or(0);
+    let is_best = |k: &usize| tried[*k].1 == fewest;
+    let ends = [(0..=last).find(is_best), (0..=last).rev().find(is_best)].map(Option::unwrap_or_default);
+    let broken = !(ends[0]..=ends[1]).all(|k| is_best(&k));
+    let open = ends[1] == last;
+    let mut interval = ends.map(|k| k * FINE);
+    for (k, worse) in [(0, interval[0].checked_sub(FINE)), (1, (!open).then_some(interval[1] + FINE))] {
+        let Some(mut worse) = worse else { continue };
+        for _ in 0..HALVINGS {
+            let middle = usize::midpoint(interval[k], worse);
+            look(coefficient(middle), &mut tried)?;
+            if tried.last().is_some_and(|(_, count)| *count <= fewest) {
+                interval[k] = middle;
+            } else {
+                worse = middle;
+            }
+        }
+    }
+    let fewest = tried.iter().map(|(_, count)| *count).min().unwrap_or(0);
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let interval = interval.map(coefficient);
+    Ok((FrictionFound { fewest, interval, open, broken, tried }, followed))
+}
+
+/// So many of the finest steps: by one division, so that 0.3 is the number nearest to it and is written so.
+fn coefficient(fine: usize) -> f64 {
+    MOST * fine as f64 / (STEPS * FINE) as f64
+}
+
+/// Trials that fare otherwise than was seen, and whose border is farther than the limit; when there are `enough` of them no more are counted.
+fn beyond(
+    problem: &Problem,
+    trials: &[(Tried, bool)],
+    settings: &Settings,
+    friction: f64,
+    enough: usize,
+    exec: &Exec,
+) -> Result<(usize, usize), Cancelled> {
+    /// Borders that are looked for at once, whatever the threads.
+    const AT_ONCE: usize = 8;
+    let motions = descent::Settings { friction, max_steps: CREEPS, ..descent::Settings::default() };
+    let search = Search::new(problem, &settings.accuracy, settings.limit);
+    let random = Stream::new(settings.seed).branch(6);
+    let judge = || Judge::new(problem, &motions);
+    let docks = for_each(trials.len(), exec, judge, |judge, k| judge.docks(&trials[k].0.error))?;
+    let mut followed = trials.len();
+    let otherwise: Vec<usize> = (0..trials.len()).filter(|k| docks[*k] != trials[*k].1).collect();
+    let mut count = 0;
+    for some in otherwise.chunks(AT_ONCE) {
+        if count >= enough {
+            break;
+        }
+        let found = for_each(some.len(), exec, judge, |judge, n| {
+            let k = some[n];
+            let error = &trials[k].0.error;
+            let before = judge.followed();
+            let near = search.nearest(judge, error, docks[k], None, random.branch(k as u64)).is_some();
+            (!near, judge.followed() - before)
+        })?;
+        count += found.iter().filter(|(beyond, _)| *beyond).count();
+        followed += found.iter().map(|(_, count)| count).sum::<usize>();
+    }
+    Ok((count, followed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_are_written_as_they_are_meant() {
+        let ladder: Vec<String> = (0..=STEPS).map(|k| coefficient(k * FINE).to_string()).collect();
+        assert_eq!([&ladder[3], &ladder[6], &ladder[7], &ladder[12]], ["0.15", "0.3", "0.35", "0.6"]);
+        assert!((0..=STEPS * FINE).all(|k| coefficient(k).to_string().len() <= "0.003125".len()));
+    }
+}
