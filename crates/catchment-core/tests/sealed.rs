@@ -202,3 +202,11 @@ fn no_message_of_the_library_names_an_option() {
         options("    \"use at most --resolution 3\"") && !options("a --b // \"--c\"") && !options("\"a--b\"")
     );
 }
+
+/// A module with files of its own is `name/mod.rs`: there is one style.
+#[test]
+fn no_file_stands_beside_a_folder_of_its_name() {
+    let all = [&LIBRARY[..], &["catchment-cli", "catchment-systems", "catchment-validation"]].concat();
+    let beside: Vec<PathBuf> = of(&all).into_iter().filter(|file| file.with_extension("").is_dir()).collect();
+    assert!(beside.is_empty(), "these become mod.rs of the folder beside them: {beside:?}");
+}

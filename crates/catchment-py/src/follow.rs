@@ -5,13 +5,12 @@ use crate::problem::Problem;
 use crate::refusal::Refusal;
 use crate::told::Told;
 use crate::work::{How, work};
-use catchment::acceptance::Reason;
 use catchment::method::Method;
 use catchment::method::descent::{self, Rows};
 use catchment::pose::PoseError;
 use catchment::poses::{check_rows, parse_pose};
-use catchment::report::schema::WarningReport;
-use catchment::report::{Endings, TraceReport, figure};
+use catchment::report::{TraceReport, figure};
+use catchment::run::EndContacts;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -46,7 +45,7 @@ impl Problem {
             let by = method(name, settings)?;
             let (_, ends) = self.inner.follow_by(&by, &[PoseError::from_array(pose)], exec)?;
             let end = ends.first().ok_or_else(|| Refusal::Compute("the pose has no end".to_owned()))?;
-            let touching = Endings::new(&self.inner, &by).contacts(end);
+            let touching = EndContacts::new(&self.inner, &by).of(end);
             let touching = touching.into_iter().map(|c| (c.fixed, c.moving, c.point_d)).collect();
             Ok((end.outcome.name(), end.error.to_array(), end.height, touching))
         })
@@ -89,11 +88,8 @@ impl Problem {
             let settings = descent::Settings::with_friction(friction)
                 .map_err(|error| Refusal::argument("friction", error))?;
             let error = PoseError::from_array(pose);
-            let path = descent::trace(problem.pair(), &error, &settings);
-            let doubts = problem.objections().iter().map(WarningReport::note).collect();
-            let end = path.waypoints.last().map(|waypoint| waypoint.error);
-            let reason = end.and_then(|end| Reason::of(problem, path.outcome, &end));
-            let report = TraceReport::new(problem.design(), &settings, error, &path, reason, doubts);
+            let (path, reason) = problem.trace(&error, &settings);
+            let report = TraceReport::new(problem, &settings, error, &path, reason);
             let picture = figure::trajectory(problem.design(), problem.connector(), &path);
             Told::new(report.to_json()?, report.table(), &report.records())?.with(picture)
         })

@@ -30,8 +30,6 @@ mod check;
 pub mod compare;
 mod comparison;
 mod convergence;
-mod doubting;
-mod ending;
 mod envelope;
 mod export;
 mod faces;
@@ -84,8 +82,6 @@ pub use comparison::{
     MethodResult,
 };
 pub use convergence::{ConvergenceBody, ConvergenceReport};
-pub use doubting::Doubts;
-pub use ending::{EndContact, Endings};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};

@@ -1,7 +1,5 @@
 //! What became of listed pose errors: the table as it came with what was found out, or JSON.
 
-use super::doubting::Doubts;
-use super::ending::{EndContact, Endings, words};
 use super::envelope::{Body, Envelope};
 use super::schema::WarningReport;
 use super::text::number as number_in_table;
@@ -12,7 +10,8 @@ use catchment_core::method::descent::End;
 use catchment_core::pose::PoseError;
 use catchment_core::poses::{OffsetsAt, PoseTable};
 use catchment_core::problem::Problem;
-use catchment_core::run::Followed;
+use catchment_core::run::{EndContact, EndContacts, Followed};
+use catchment_study::friction::MayStick;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -34,7 +33,7 @@ pub struct OutcomesReport<'a> {
     /// Why each did not dock, where that can be told; `None` where there is nothing to tell of this design.
     pub reasons: Option<Vec<Option<Reason>>>,
     /// Which of them could as well have stuck on their way, with friction.
-    doubts: Option<&'a Doubts<'a>>,
+    doubts: Option<&'a MayStick<'a>>,
     /// Doubts about the answer.
     pub warnings: Vec<WarningReport>,
     /// The numbers of the rows that were finished, where it was stopped before all of them were.
@@ -46,8 +45,8 @@ pub struct OutcomeRows<'a> {
     problem: &'a Problem,
     table: &'a PoseTable<'a>,
     rows: Box<dyn Iterator<Item = (usize, Vec<String>)> + Send + 'a>,
-    endings: Endings<'a>,
-    doubts: Option<&'a Doubts<'a>>,
+    endings: EndContacts<'a>,
+    doubts: Option<&'a MayStick<'a>>,
     /// The first row that has not come.
     next: usize,
     /// Decided, but some before them are not.
@@ -60,10 +59,10 @@ impl<'a> OutcomeRows<'a> {
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
         method: &Method,
-        doubts: Option<&'a Doubts<'a>>,
+        doubts: Option<&'a MayStick<'a>>,
     ) -> Self {
         let rows = Box::new(table.rows().enumerate());
-        let (endings, waiting) = (Endings::new(problem, method), BTreeMap::new());
+        let (endings, waiting) = (EndContacts::new(problem, method), BTreeMap::new());
         Self { problem, table, rows, endings, doubts, next: 0, waiting }
     }
 
@@ -115,7 +114,7 @@ impl<'a> OutcomeRows<'a> {
         row.push(end.outcome.name().to_owned());
         row.extend(self.table.in_units(&end.error).map(number_in_table));
         row.push(end.height.map_or_else(String::new, number_in_table));
-        row.push(words(&self.endings.contacts(end)));
+        row.push(words(&self.endings.of(end)));
         if let Some(doubts) = self.doubts {
             row.push(if doubts.may_stick(number) { "yes" } else { "no" }.to_owned());
         }
@@ -189,7 +188,7 @@ impl<'a> OutcomesReport<'a> {
         table: &'a PoseTable<'a>,
         method: &'a Method,
         followed: &'a Followed,
-        doubts: Option<&'a Doubts<'a>>,
+        doubts: Option<&'a MayStick<'a>>,
     ) -> Self {
         let Followed { acceptance, ends, finished } = followed;
         let objections = problem.objections();
@@ -283,11 +282,11 @@ impl<'a> OutcomesReport<'a> {
         let at = self.table.offsets_at();
         let measured = |error: &PoseError| at.measure(error, &self.design.alignment);
         let mut told = self.told().peekable();
-        let mut endings = Endings::new(self.problem, self.method);
+        let mut endings = EndContacts::new(self.problem, self.method);
         let poses = self.table.rows().zip(self.table.errors()).enumerate();
         let poses = poses.filter(|(number, _)| told.next_if_eq(number).is_some()).zip(self.ends);
         let poses = poses.enumerate().map(|(k, ((number, (row, error)), end))| {
-            let contacts = endings.contacts(end);
+            let contacts = endings.of(end);
             Row {
                 number: self.finished.map(|_| number),
                 error: measured(error),
@@ -338,4 +337,16 @@ impl<'a> OutcomesReport<'a> {
         }
         lines
     }
+}
+
+/// Contacts in words, each pair of features once: `corner of wall and flat on slope of 45°; …`, the moving half's feature first.
+fn words(contacts: &[EndContact]) -> String {
+    let mut all: Vec<String> = Vec::new();
+    for EndContact { fixed, moving, .. } in contacts {
+        let words = format!("{moving} on {fixed}");
+        if !all.contains(&words) {
+            all.push(words);
+        }
+    }
+    all.join("; ")
 }

@@ -5,7 +5,7 @@ use super::schema::WarningReport;
 use super::text::{decimals, fixed, line, number};
 use catchment_core::acceptance::{Outcome, Reason};
 use catchment_core::design::Design;
-use catchment_core::method::descent::{self, Settings, Touch, Trajectory, Waypoint};
+use catchment_core::method::descent::{Settings, Touch, Trajectory, Waypoint};
 #[cfg(feature = "drop")]
 use catchment_core::method::drop;
 use catchment_core::pose::{Dof, PoseError, face_from_cor};
@@ -89,29 +89,17 @@ impl WaypointReport {
 }
 
 impl TraceReport {
-    /// Follows a pose by descent: its way, and what is said of it.
-    pub fn follow(problem: &Problem, settings: &Settings, start: PoseError) -> (Trajectory, Self) {
-        let path = descent::trace(problem.pair(), &start, settings);
-        let doubts = problem.objections().iter().map(WarningReport::note).collect();
-        let end = path.waypoints.last().map(|waypoint| waypoint.error);
-        let reason = end.and_then(|end| Reason::of(problem, path.outcome, &end));
-        let report = Self::new(problem.design(), settings, start, &path, reason, doubts);
-        (path, report)
-    }
-
-    /// Of a path that descent with `settings` followed from `start`, with the reason why it did not dock, and the doubts about its
-    /// design.
+    /// Of a path that [`Problem::trace`] followed from `start` with `settings`, with the reason why it did not dock.
     pub fn new(
-        design: &Design,
+        problem: &Problem,
         settings: &Settings,
         start: PoseError,
         path: &Trajectory,
         reason: Option<Reason>,
-        warnings: Vec<WarningReport>,
     ) -> Self {
         let waypoints: Vec<WaypointReport> = path.waypoints.iter().map(WaypointReport::from).collect();
         let body = TraceBody {
-            design: design.clone(),
+            design: problem.design().clone(),
             method: "descent",
             settings: json!(settings),
             start,
@@ -120,6 +108,7 @@ impl TraceReport {
             end: waypoints.last().map(|w| w.error),
             waypoints,
         };
+        let warnings = problem.objections().iter().map(WarningReport::note).collect();
         Self::of(body, warnings, None)
     }
 
@@ -257,8 +246,11 @@ mod tests {
         let mut design = design([Dof::X, Dof::Pitch].into_iter().collect::<DofSet>());
         design.name = "a\u{1b}[2Jb".to_owned();
         let path = Trajectory { waypoints, outcome: Outcome::Aligned };
-        let doubts = vec![WarningReport::note("shallow")];
-        TraceReport::new(&design, &Settings::default(), PoseError::default(), &path, None, doubts)
+        let problem = Problem::of(design).unwrap();
+        let (start, settings) = (PoseError::default(), Settings::default());
+        let mut report = TraceReport::new(&problem, &settings, start, &path, None);
+        report.warnings.push(WarningReport::note("shallow"));
+        report
     }
 
     #[test]

@@ -99,7 +99,8 @@ pub extern "C" fn trace(x: f64, y: f64, roll: f64, pitch: f64, yaw: f64, frictio
             return Err("a pose error is no number".to_owned());
         }
         let settings = Settings::with_friction(friction).map_err(told)?;
-        TraceReport::follow(problem, &settings, start).1.to_json().map_err(told)
+        let (path, reason) = problem.trace(&start, &settings);
+        TraceReport::new(problem, &settings, start, &path, reason).to_json().map_err(told)
     };
     let said = traced();
     desk.answer(said)

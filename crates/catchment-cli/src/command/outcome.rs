@@ -14,7 +14,8 @@ use catchment::method::Method;
 use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
 use catchment::problem::Problem;
-use catchment::report::{Doubts, OutcomeRows, OutcomesReport};
+use catchment::report::{OutcomeRows, OutcomesReport};
+use catchment::study::friction::MayStick;
 use catchment::terminal::shown;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -88,7 +89,7 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     running
         .exec
         .ensure_fits("the answer for every pose", needed, |_| vec![Advice::FewerPoses, Advice::MoreMemory])?;
-    let doubts = Doubts::of(&problem, &method, table.errors());
+    let doubts = MayStick::of(&problem, &method, table.errors());
     let printed = Printed::new(&problem, &table, &method, doubts.as_ref());
     let streams = args.output.is_printed() && !args.json;
     let stop = running.exec.cancel_flag();
@@ -138,7 +139,7 @@ impl<'a> Printed<'a> {
         problem: &'a Problem,
         table: &'a PoseTable<'a>,
         method: &Method,
-        doubts: Option<&'a Doubts<'a>>,
+        doubts: Option<&'a MayStick<'a>>,
     ) -> Self {
         let rows = OutcomeRows::new(problem, table, method, doubts);
         Self(Mutex::new(Printing { rows, has_begun: false, failed: None }))

@@ -100,7 +100,8 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     let settings = Settings::with_friction(args.drop.friction())?;
     // Other settings are of drop tests.
     args.drop.of("descent")?;
-    let (path, report) = TraceReport::follow(&problem, &settings, error);
+    let (path, reason) = problem.trace(&error, &settings);
+    let report = TraceReport::new(&problem, &settings, error, &path, reason);
     let said: Vec<String> =
         report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
     match kind {

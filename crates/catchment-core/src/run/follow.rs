@@ -1,6 +1,6 @@
 //! Single poses, followed exactly: what becomes of one, of many, and along which way.
 
-use crate::acceptance::{Acceptance, Domain, Outcome, Warning};
+use crate::acceptance::{Acceptance, Domain, Outcome, Reason, Warning};
 use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, End, Follower, Trajectory};
 use crate::method::{DecideError, Finished, Method};
@@ -99,9 +99,12 @@ impl Problem {
         }
     }
 
-    /// The way of one pose, from first contact to where it rests.
-    pub fn trace(&self, pose: &PoseError) -> Trajectory {
-        descent::trace(self.pair(), pose, &descent::Settings::default())
+    /// The path of one pose from first contact to where it rests, and why it does not dock, where that can be determined.
+    pub fn trace(&self, start: &PoseError, settings: &descent::Settings) -> (Trajectory, Option<Reason>) {
+        let path = descent::trace(self.pair(), start, settings);
+        let end = path.waypoints.last().map(|waypoint| waypoint.error);
+        let reason = end.and_then(|end| Reason::of(self, path.outcome, &end));
+        (path, reason)
     }
 }
 

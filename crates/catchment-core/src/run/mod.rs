@@ -20,6 +20,7 @@
 //! [`Stop::Budget`]: crate::method::correction::Stop::Budget
 
 mod answer;
+mod end_contact;
 mod follow;
 pub mod jams;
 pub mod part;
@@ -33,6 +34,7 @@ pub mod window;
 pub use stages::correct;
 
 pub use answer::{Answer, Corrected};
+pub use end_contact::{EndContact, EndContacts};
 pub use follow::Followed;
 pub use part::{Part, PartAnswer, PartError};
 pub use plan::{Afterwards, Plan};

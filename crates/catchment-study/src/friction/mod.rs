@@ -19,8 +19,11 @@
 //!
 //! Not promised: that a pose which is lost at one friction is lost at all larger ones, nor that frictions between those of the ladder were looked at.
 
+mod may_stick;
 #[cfg(test)]
 mod tests;
+
+pub use may_stick::MayStick;
 
 use catchment_core::acceptance::{Domain, Outcome};
 use catchment_core::exec::{Cancelled, Exec};

@@ -380,5 +380,4 @@ fn connector(form: &mut Form<'_>, root: &Section<'_>, folder: &std::path::Path) 
 }
 
 #[cfg(test)]
-#[path = "file_tests.rs"]
 mod tests;

@@ -1,4 +1,4 @@
-//! Whether motions with friction came by places where Coulomb's law would let them stick as well.
+//! Whether motions with friction pass states in which Coulomb's law admits sticking as well.
 
 use catchment_core::method::descent::{self, Follower};
 use catchment_core::method::{Decide, Method};
@@ -6,17 +6,17 @@ use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
 use std::sync::OnceLock;
 
-/// Of listed poses that are followed with friction; each is followed once more when it is first asked about, by whoever asks.
+/// Of listed poses with friction: each is followed once more when its answer is first needed.
 #[derive(Debug)]
-pub struct Doubts<'a> {
+pub struct MayStick<'a> {
     problem: &'a Problem,
     poses: &'a [PoseError],
     settings: descent::Settings,
     known: Vec<OnceLock<bool>>,
 }
 
-impl<'a> Doubts<'a> {
-    /// Of poses that a method decides; `None` of methods that follow no exact motions, and where there is no friction.
+impl<'a> MayStick<'a> {
+    /// Of poses that a method decides; `None` of methods without exact motions, and without friction.
     pub fn of(problem: &'a Problem, method: &Method, poses: &'a [PoseError]) -> Option<Self> {
         let is_exact = method.name() == descent::Settings::default().info().name;
         let settings = is_exact.then(|| method.motions())?;
@@ -24,7 +24,7 @@ impl<'a> Doubts<'a> {
         (settings.friction > 0.0).then_some(Self { problem, poses, settings, known })
     }
 
-    /// Whether a pose of the list slips by a place where some force could hold it ([`Follower::follow_doubting`]).
+    /// Whether a pose of the list slips through a state in which some contact force could hold it ([`Follower::follow_doubting`]).
     pub fn may_stick(&self, number: usize) -> bool {
         let (Some(pose), Some(known)) = (self.poses.get(number), self.known.get(number)) else {
             return false;
@@ -53,9 +53,9 @@ mod tests {
             let method: Method = "descent".parse().unwrap();
             method.with(changes.as_object().unwrap()).unwrap()
         };
-        assert!(Doubts::of(&problem, &at(0.59), &poses).unwrap().may_stick(0));
-        assert!(!Doubts::of(&problem, &at(0.5), &poses).unwrap().may_stick(0));
-        assert!(Doubts::of(&problem, &at(0.0), &poses).is_none());
-        assert!(Doubts::of(&problem, &"drop".parse().unwrap(), &poses).is_none());
+        assert!(MayStick::of(&problem, &at(0.59), &poses).unwrap().may_stick(0));
+        assert!(!MayStick::of(&problem, &at(0.5), &poses).unwrap().may_stick(0));
+        assert!(MayStick::of(&problem, &at(0.0), &poses).is_none());
+        assert!(MayStick::of(&problem, &"drop".parse().unwrap(), &poses).is_none());
     }
 }

@@ -268,5 +268,4 @@ pub fn heading_sigma(modules: usize, sigma: f64) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "accumulation_tests.rs"]
 mod tests;

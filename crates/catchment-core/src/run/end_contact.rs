@@ -1,4 +1,4 @@
-//! The state that a motion ended in: the height of the COR, and the features in contact.
+//! Contacts in the last state of a motion.
 //!
 //! ```text
 //!        ▁▁▁▁▁
@@ -8,14 +8,14 @@
 //! ```
 //!
 //! Contacts are those of that state, undersides included, not those of first contact from above at the same error. Bodies of a rigid-body engine overlap where
-//! they press on each other ([`Follow::give`](catchment_core::method::Follow::give)): they are lifted apart by that overlap before contacts are listed.
+//! they press on each other ([`Follow::give`](crate::method::Follow::give)): they are lifted apart by that overlap before contacts are listed.
 
-use catchment_core::connector::Side;
-use catchment_core::contact::{Contact, Features, Meeting, Nearby};
-use catchment_core::method::Method;
-use catchment_core::method::descent::End;
-use catchment_core::pose::{CorPose, PoseError};
-use catchment_core::problem::Problem;
+use crate::connector::Side;
+use crate::contact::{Contact, Features, Meeting, Nearby};
+use crate::method::Method;
+use crate::method::descent::End;
+use crate::pose::{CorPose, PoseError};
+use crate::problem::Problem;
 use serde::Serialize;
 
 /// Gaps up to this touch, in D: what the end of any method leaves, far below what is made.
@@ -23,7 +23,7 @@ const TOUCHING: f64 = 1e-4;
 /// Contacts steeper than this (z of their normal) are walls: no lift takes an overlap with them away.
 const WALL: f64 = 0.05;
 
-/// What touches at the end of a motion: two features, and where.
+/// A contact at the end of a motion: two features, and where they touch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EndContact {
     /// The feature of the fixed half, in words.
@@ -35,7 +35,7 @@ pub struct EndContact {
 }
 
 /// Lists the contacts of one end after another; keeps its buffers.
-pub struct Endings<'a> {
+pub struct EndContacts<'a> {
     problem: &'a Problem,
     features: Features,
     nearby: Nearby<'a>,
@@ -46,18 +46,18 @@ pub struct Endings<'a> {
     met: Vec<(Contact, Meeting)>,
 }
 
-impl<'a> Endings<'a> {
+impl<'a> EndContacts<'a> {
     /// For the ends that a method finds for a problem.
     pub fn new(problem: &'a Problem, method: &Method) -> Self {
         let pair = problem.pair();
         let mut nearby = pair.about(TOUCHING);
         nearby.look_under();
-        let give = method.follows().map_or(0.0, catchment_core::method::Follow::give);
+        let give = method.follows().map_or(0.0, crate::method::Follow::give);
         Self { problem, features: Features::of(pair), nearby, give, last: None, met: Vec::new() }
     }
 
-    /// What touches in the last state of a motion, each pair of features once; nothing where it missed.
-    pub fn contacts(&mut self, end: &End) -> Vec<EndContact> {
+    /// The contacts in the last state of a motion, each pair of features once; none where it missed.
+    pub fn of(&mut self, end: &End) -> Vec<EndContact> {
         let Some(height) = end.height else { return Vec::new() };
         if let Some((error, z, told)) = &self.last
             && (*error, *z) == (end.error, height)
@@ -96,25 +96,13 @@ impl<'a> Endings<'a> {
     }
 }
 
-/// Contacts in words, the same pair said once: `corner of wall and flat on slope of 45°; …`, the moving half's feature first.
-pub(super) fn words(contacts: &[EndContact]) -> String {
-    let mut said: Vec<String> = Vec::new();
-    for EndContact { fixed, moving, .. } in contacts {
-        let words = format!("{moving} on {fixed}");
-        if !said.contains(&words) {
-            said.push(words);
-        }
-    }
-    said.join("; ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use catchment_core::acceptance::Outcome;
-    use catchment_core::design::SourceText;
-    use catchment_core::exec::Exec;
-    use catchment_core::problem::Draft;
+    use crate::acceptance::Outcome;
+    use crate::design::SourceText;
+    use crate::exec::Exec;
+    use crate::problem::Draft;
 
     /// A V-notch; beside it a slope of 26.6° that leads down under a roof, to a wall. The tip of 45° and width 0.4 starts at x = 0.35 just clear of the roof.
     fn beside_a_roof() -> Problem {
@@ -152,8 +140,9 @@ mod tests {
             assert_eq!(end.outcome, Outcome::Jammed);
             assert!((end.error.x - 0.7).abs() < exact, "{name}: {end:?}");
             assert!((end.height.unwrap() - 0.1).abs() < exact, "{name}: {end:?}");
-            let contacts = Endings::new(&problem, &method).contacts(&end);
-            let touching = words(&contacts);
+            let contacts = EndContacts::new(&problem, &method).of(&end);
+            let names = |contact: &EndContact| format!("{} {}", contact.moving, contact.fixed);
+            let touching = contacts.iter().map(names).collect::<Vec<_>>().join("; ");
             assert!(touching.contains("slope of 27°") && touching.contains("wall"), "{name}: {touching}");
             assert!(contacts.iter().all(|contact| contact.point_d[2] < 0.3), "{name}: {contacts:?}");
             let first = problem.pair().about(0.01).height(&end.error).unwrap();
