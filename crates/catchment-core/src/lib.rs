@@ -23,4 +23,5 @@ pub mod problem;
 pub mod run;
 pub mod suggest;
 pub mod terminal;
+pub mod tolerance;
 pub mod xml;

@@ -25,7 +25,7 @@ const ROOMS: [&str; 12] = [
 /// Crates that come after these rooms.
 const AFTER: [&str; 2] = ["study", "report"];
 /// What serves every room and knows none.
-const SERVANTS: [&str; 6] = ["pose", "exec", "budget", "suggest", "terminal", "advice"];
+const SERVANTS: [&str; 7] = ["pose", "exec", "budget", "suggest", "terminal", "tolerance", "advice"];
 
 /// A room that imports one it must not know.
 #[derive(Debug, PartialEq)]

@@ -7,12 +7,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms that must build where there is no system, such as a page in a browser.
-const CORE: [&str; 18] = [
+const CORE: [&str; 19] = [
     "pose",
     "exec",
     "budget",
     "suggest",
     "terminal",
+    "tolerance",
     "advice",
     "polytope",
     "design",

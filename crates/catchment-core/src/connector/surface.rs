@@ -4,6 +4,7 @@
 //! Only convex edges and the corners they meet at can touch another solid first, so the contact room looks at
 //! nothing else.
 
+use crate::tolerance;
 use glam::DVec3;
 
 /// A convex planar polygon of a closed surface.
@@ -72,7 +73,7 @@ pub enum SurfaceError {
 
 /// Sine of the dihedral angle below which two facets count as one plane: far above the rounding of a
 /// single-precision STL file (1e-7), far below any designed chamfer.
-const FLAT_SINE: f64 = 1e-6;
+const FLAT_SINE: f64 = tolerance::SINGLE;
 
 impl Surface {
     /// Builds a closed surface from convex planar polygons, counter-clockwise seen from outside.

@@ -4,11 +4,12 @@
 use super::Pair;
 use crate::connector::Surface;
 use crate::pose::CorPose;
+use crate::tolerance;
 use glam::{DVec2, DVec3};
 
 /// How far beyond the border of a facet or edge a contact still counts, relative to D: wide enough to close the cracks that
 /// rounding (1e-16) opens between neighbouring facets, far below any length that matters.
-pub(super) const SEAM: f64 = 1e-12;
+pub(super) const SEAM: f64 = tolerance::ROUNDING;
 
 /// z of the COR at first contact, in D; `None` where the halves pass each other by.
 pub fn height(pair: &Pair, pose: &CorPose) -> Option<f64> {

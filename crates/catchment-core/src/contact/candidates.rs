@@ -21,16 +21,15 @@ use super::Pair;
 use super::element::{Element, Features, Meeting};
 use super::plan::Plan;
 use super::shape::{INSIDE, Ridge, Shape};
+use crate::tolerance;
+use crate::tolerance::PARALLEL;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Sine of the angle by which a feature may fail to support a normal and still count, at least: rounding.
-pub(super) const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = tolerance::PARALLEL;
 /// The same for heights: above the angle by which facets that count as one plane may differ (1e-6), so that of two halves that lie flush some
 /// feature always counts. What counts too much is above the other half all the same, and no height rises by it.
 pub(crate) const FLUSH: f64 = 4e-6;
-
-/// Below this length of u × w edges count as parallel: they have no normal of their own, their ends speak for them.
-const PARALLEL: f64 = 1e-9;
 
 /// What passes.
 #[derive(Debug, Clone, Copy)]

@@ -10,11 +10,12 @@
 //! A solid has the same creases whatever it was written as, so symmetries are found on them and not on facets.
 
 use crate::connector::{Half, Surface};
+use crate::tolerance;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Sine of the angle below which two facets, or two stretches of a crease, go straight on: as for the edges of a [`Surface`].
-const FLAT_SINE: f64 = 1e-6;
+const FLAT_SINE: f64 = tolerance::SINGLE;
 
 /// A crease.
 #[derive(Debug, Clone)]

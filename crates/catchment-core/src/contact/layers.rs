@@ -11,9 +11,7 @@
 use super::Pair;
 use crate::design::Alignment;
 use crate::pose::{CorPose, PoseError};
-
-/// What is nearer than this, in D, touches: a half at rest shivers between its contacts by less.
-const TOUCHING: f64 = 1e-4;
+use crate::tolerance::TOUCHING;
 
 impl Pair {
     /// Whether something that touches at a pose error, with the moving half lowered onto the fixed one, touches what is not its

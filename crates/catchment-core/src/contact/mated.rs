@@ -20,12 +20,13 @@ use super::told::{Told, number};
 use crate::design::Alignment;
 use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
+use crate::tolerance;
 use glam::DVec2;
 use std::fmt;
 
 /// How far from touching the aligned halves may be, in D: above single precision and drawings rounded to
 /// four digits, below any play that matters.
-pub const CONTACT_TOLERANCE: f64 = 1e-4;
+pub const CONTACT_TOLERANCE: f64 = tolerance::TOUCHING;
 /// Length of a probe in the ρ-metric, in D: small beside any facet, so that only the facets that meet at the
 /// mated pose are seen.
 const PROBE: f64 = 1e-3;

@@ -16,10 +16,11 @@ use super::Lattice;
 use super::raster::fill_convex;
 use super::told::Told;
 use crate::connector::{Half, Side};
+use crate::tolerance;
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 /// A facet counts where its normal's z is beyond this.
-const LOOKS: f64 = 1e-6;
+const LOOKS: f64 = tolerance::SINGLE;
 /// Parts share enough where this share of the points of the smaller one lies over the other.
 const SHARED: f64 = 0.3;
 

@@ -11,15 +11,16 @@
 
 use super::Pair;
 use crate::pose::CorPose;
+use crate::tolerance;
 use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeSet;
 
 /// Halves that reach over the plane by no more than this lie beside each other, in D.
-const OVER: f64 = 1e-6;
+const OVER: f64 = tolerance::SINGLE;
 /// Facets steeper than this (z of their normal) are vertical.
-const VERTICAL: f64 = 1e-6;
+const VERTICAL: f64 = tolerance::SINGLE;
 /// Directions nearer than this are one.
-const ONE_WAY: f64 = 1e-6;
+const ONE_WAY: f64 = tolerance::SINGLE;
 
 /// How halves lie beside each other.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,11 +7,12 @@ use super::nearby::MET;
 use super::search::{Asked, Carried, Gaps, Lists, Number, Passing, Touching, Trees};
 use super::{Contact, Pair};
 use crate::pose::CorPose;
+use crate::tolerance;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Below this z-component a normal counts as horizontal: such a facet has no height of its own, its rim
 /// speaks for it. Slopes beyond 10⁹ cannot be told from a wall in double precision.
-pub(super) const VERTICAL: f64 = 1e-9;
+pub(super) const VERTICAL: f64 = tolerance::PARALLEL;
 
 /// A pair, a rotation, and what can touch there: a list of elements, or, without one, the trees of the pair.
 #[derive(Debug, Clone)]

@@ -15,6 +15,7 @@ use super::plan::{Plan, PlanTree};
 use super::shape::Shape;
 use crate::design::Alignment;
 use crate::pose::Dof;
+use crate::tolerance;
 use glam::DVec3;
 
 /// Walls have normals within this sine of the horizontal. A peg with 7° of draft (0.12) centres itself and does not need to
@@ -25,7 +26,7 @@ const FACING: f64 = -0.7;
 /// Wider gaps are no fit, in D: several steps of a motion go into them.
 const NEAR: f64 = 0.1;
 /// By this much mated walls may overlap, in D: drawings rounded to four digits.
-const SLIP: f64 = 1e-4;
+const SLIP: f64 = tolerance::TOUCHING;
 
 /// Whether walls of the two halves face each other closely when mated.
 pub(super) fn are_close(fixed: &[Shape], moving: &[Shape], alignment: &Alignment) -> bool {

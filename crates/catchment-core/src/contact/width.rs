@@ -14,10 +14,11 @@
 use crate::connector::Half;
 use crate::connector::mesh::PLAUSIBLE_WIDTH;
 use crate::design::WidthFrom;
+use crate::tolerance;
 use glam::{DVec2, DVec3};
 
 /// A facet looks up or down where its normal's z is beyond this: above what upright walls are rounded by.
-const LOOKS: f64 = 1e-6;
+const LOOKS: f64 = tolerance::SINGLE;
 /// How much wider than D a half may be as drawn: a little less than designs allow.
 pub const MOST_WIDE: f64 = 0.99 * *PLAUSIBLE_WIDTH.end();
 /// Flat on flat they share a plane: how far beyond it what touches is looked for, as a share of the halves' width.

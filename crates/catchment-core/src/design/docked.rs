@@ -41,3 +41,14 @@ impl Docked {
         self.limit(dof).unwrap_or(Self::MOST_PLAY[usize::from(dof.is_rotation())])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tolerance::TOUCHING;
+
+    #[test]
+    fn a_seat_is_far_deeper_than_the_ends_of_motions_are_exact() {
+        assert!(Docked::default().depth >= 10.0 * TOUCHING);
+    }
+}

@@ -167,6 +167,11 @@ pub trait Follow: Decide {
         Ok(found)
     }
 
+    /// Whether its motions are those of exact descent.
+    fn is_descent(&self) -> bool {
+        false
+    }
+
     /// How deep the halves overlap where they press on each other in the ends that it finds, in D: contacts of an engine are springs.
     fn give(&self) -> f64 {
         0.0

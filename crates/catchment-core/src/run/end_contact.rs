@@ -16,10 +16,9 @@ use crate::method::Method;
 use crate::method::descent::End;
 use crate::pose::{CorPose, PoseError};
 use crate::problem::Problem;
+use crate::tolerance::TOUCHING;
 use serde::Serialize;
 
-/// Gaps up to this touch, in D: what the end of any method leaves, far below what is made.
-const TOUCHING: f64 = 1e-4;
 /// Contacts steeper than this (z of their normal) are walls: no lift takes an overlap with them away.
 const WALL: f64 = 0.05;
 

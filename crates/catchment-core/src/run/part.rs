@@ -113,8 +113,8 @@ impl Run {
         let plan = self.divisible(problem)?;
         plan.ensure_fits(exec).map_err(RunError::from)?;
         let poses = part.range(plan.domain.len()).map(|k| plan.domain.pose(k)).collect();
-        let judge = stages::judge(&plan.method);
-        let decided = judge.as_follow().follow(problem, Domain::Poses(poses), exec);
+        let follower = stages::follower(&plan.method);
+        let decided = follower.as_follow().follow(problem, Domain::Poses(poses), exec);
         let (acceptance, _) = decided.map_err(RunError::from)?;
         Ok(PartAnswer {
             problem: problem.digest().to_owned(),

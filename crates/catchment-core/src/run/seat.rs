@@ -17,6 +17,7 @@ use crate::method::descent::{self, End, Follower};
 use crate::method::{Decide, motions_in};
 use crate::pose::{Dof, PoseError, rotation, rotation_angle};
 use crate::problem::{Problem, ProblemError};
+use crate::tolerance;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -66,7 +67,7 @@ const LONGEST: f64 = 12.0;
 /// Cells looked at for every accepted one that is wanted.
 const LOOKS: u64 = 50;
 /// Rests nearer than this are the mated pose, in D and radians: what the ends of motions leave.
-const NONE: f64 = 1e-4;
+const NONE: f64 = tolerance::TOUCHING;
 /// The poses have random numbers of their own.
 const BRANCH: u64 = 0x5ea7;
 

@@ -13,26 +13,26 @@ use crate::method::correction::{self, ByFraction, ByNeighbours, CorrectionError,
 use crate::method::{Decided, Doubts, Follow, Method, descent};
 use crate::problem::Problem;
 
-/// What follows random poses and doubtful cells exactly: the method itself where it decides each pose by itself (descents would know
+/// Follows sampled poses and ambiguous cells: the method itself where it decides each pose by itself (descents would know
 /// nothing of the friction of a drop test), else exact descent.
-pub(super) fn judge(method: &Method) -> Judge<'_> {
-    Judge { own: method.follows(), descent: method.motions() }
+pub(super) fn follower(method: &Method) -> ExactFollower<'_> {
+    ExactFollower { own: method.follows(), descent: method.motions() }
 }
 
 /// Either of the two.
-pub(super) struct Judge<'a> {
+pub(super) struct ExactFollower<'a> {
     own: Option<&'a dyn Follow>,
     descent: descent::Settings,
 }
 
-impl Judge<'_> {
+impl ExactFollower<'_> {
     pub(super) fn as_follow(&self) -> &dyn Follow {
         self.own.unwrap_or(&self.descent)
     }
 
-    /// Whether it follows exact motions, which a grid that rests on them, or was corrected by them, may ask for more.
+    /// Whether a grid that rests on its motions, or was corrected by them, may use exact descents for more.
     fn is_descent(&self) -> bool {
-        self.own.is_none_or(|own| own.info().name == "descent")
+        self.own.is_none_or(Follow::is_descent)
     }
 }
 
@@ -48,9 +48,9 @@ pub(super) fn upright(
     problem: &Problem,
     exec: &Exec,
 ) -> Result<Option<Upright>, RunError> {
-    let judge = judge(&plan.method);
-    let answers = judge.own.is_some() || matches!(plan.domain, Domain::Grid(_)) && plan.sample.is_some();
-    if !(matches!(run.over, Over::Grid(_)) && answers && judge.is_descent()) {
+    let follower = follower(&plan.method);
+    let answers = follower.own.is_some() || matches!(plan.domain, Domain::Grid(_)) && plan.sample.is_some();
+    if !(matches!(run.over, Over::Grid(_)) && answers && follower.is_descent()) {
         return Ok(None);
     }
     let Afterwards { steps, random } = plan.afterwards;
@@ -61,7 +61,7 @@ pub(super) fn upright(
 /// How the time after the decision is divided, about: up to which share the Sum, what depends on the step, limits, boxes and the seat reach.
 const SHARES: [f64; 5] = [0.15, 0.3, 0.5, 0.95, 1.0];
 
-/// Everything after the decision.
+/// Everything after the decision: each stage gets what the stages before it gave, and gives one value.
 pub(super) fn finish(
     run: &Run,
     plan: &Plan,
@@ -70,70 +70,32 @@ pub(super) fn finish(
     started: Stopwatch,
     exec: &Exec,
 ) -> Result<Answer, RunError> {
-    let Decided { mut acceptance, doubts, mut by_products, settings } = decided;
     let part = |from: f64, to: f64| exec.part([from, to], "Sum, limits, windows, seat");
     let [sum, step, limit, boxes, all] = SHARES;
-    let [of_sum, of_step, of_limits, of_boxes, of_seat] =
-        [part(0.0, sum), part(sum, step), part(step, limit), part(limit, boxes), part(boxes, all)];
-    let mut corrected = None;
-    if let Domain::Grid(grid) = &plan.domain {
-        if plan.heights && by_products.landscape.is_none() {
-            by_products.landscape = Some(Landscape::compute(problem.pair(), grid, exec)?);
-        }
-        if let Some(settings) = plan.sample.map(|settings| left(settings, started)) {
-            let doubts = doubts.as_deref();
-            corrected = Some(correct(&plan.method, problem, grid, &acceptance, doubts, &settings, &of_sum)?);
-        }
-        if let Some(doubts) = &doubts {
-            // Which cells are settled depends on the number of random poses, not on the time they took.
-            let most = corrected.as_ref().map_or(0, |corrected| corrected.found.descents);
-            settle(&plan.method, problem, grid, &**doubts, &mut acceptance, most, &of_sum)?;
-        }
+    let stages =
+        Stages { run, plan, problem, follower: follower(&plan.method), motions: plan.method.motions() };
+    let Decided { mut acceptance, doubts, mut by_products, settings } = decided;
+    let doubts = doubts.as_deref();
+    if let (true, Domain::Grid(grid), None) = (plan.heights, &plan.domain, &by_products.landscape) {
+        by_products.landscape = Some(Landscape::compute(problem.pair(), grid, exec)?);
     }
-    let judge = judge(&plan.method);
-    if judge.own.is_some() || corrected.is_some() || doubts.is_some() {
-        acceptance.warnings.extend(judge.as_follow().doubt(problem, run.seed, &of_step)?);
+    let corrected = stages.corrected(&mut acceptance, doubts, started, &part(0.0, sum))?;
+    if stages.follower.own.is_some() || corrected.is_some() || doubts.is_some() {
+        let found = stages.follower.as_follow().doubt(problem, run.seed, &part(sum, step))?;
+        acceptance.warnings.extend(found);
     }
-    let motions = plan.method.motions();
-    let window = if run.window {
-        Some(window::by(problem, &run.window_settings(), &motions, &of_boxes))
-    } else {
-        None
-    };
-    if let Some(Err(WindowError::Cancelled(error))) = window {
-        return Err(error.into());
-    }
-    let mut merits = Merits::of(&acceptance, problem.alignment(), exec)?;
-    if matches!(run.over, Over::Grid(_)) && (corrected.is_some() || judge.own.is_some()) {
-        let grid = &match &plan.domain {
-            Domain::Grid(grid) => grid.clone(),
-            // Its axes say no more than the error box.
-            Domain::Poses(_) => Grid::over(problem.alignment(), |_| 1),
-        };
-        // What follows random poses exactly can follow some along the axes, and about the largest cubes.
-        let Afterwards { steps, random } = plan.afterwards;
-        merits.tolerances = followed(grid, steps, |poses| {
-            let decided = judge.as_follow().follow(problem, Domain::Poses(poses), &of_limits);
-            Ok::<_, RunError>(decided?.0.outcomes)
-        })?;
-        if let Domain::Poses(_) = &plan.domain {
-            let small = small_part(&merits.tolerances, grid);
-            merits.warnings.extend(small);
-        }
-        if judge.is_descent() {
-            let centered = window.as_ref().and_then(|window| window.as_ref().ok()).map(window::Window::cube);
-            let drawn = corrected.as_ref().map_or(random, |corrected| corrected.found.descents);
-            let random = random.min(drawn);
-            let by = window::Effort { seed: run.seed, random, motions: &motions };
-            window::follow_cubes(&mut merits, centered, problem, grid, &by, &of_boxes)?;
-        }
-    }
-    let success = match &run.errors {
-        Some(distribution) => Some(success(&acceptance, distribution, exec)?),
-        None => None,
-    };
-    let jams = if run.jams { Some(jams::by(problem, &run.jams_settings(), &motions, exec)?) } else { None };
-    let seating = Seating::of(problem, &acceptance, &motions, run.seed, &of_seat)?;
+    let of_boxes = part(limit, boxes);
+    let window = stages.window(&of_boxes)?;
+    let merits = stages.merits(
+        &acceptance,
+        (corrected.as_ref(), window.as_ref()),
+        [&part(step, limit), &of_boxes],
+        exec,
+    )?;
+    let success = run.errors.as_ref().map(|errors| success(&acceptance, errors, exec)).transpose()?;
+    let jams =
+        run.jams.then(|| jams::by(problem, &run.jams_settings(), &stages.motions, exec)).transpose()?;
+    let seating = Seating::of(problem, &acceptance, &stages.motions, run.seed, &part(boxes, all))?;
     Ok(Answer {
         problem: problem.clone(),
         run: run.clone(),
@@ -150,6 +112,89 @@ pub(super) fn finish(
         seconds: started.seconds(),
         threads: exec.threads(),
     })
+}
+
+/// What every stage after the decision needs.
+struct Stages<'a> {
+    run: &'a Run,
+    plan: &'a Plan,
+    problem: &'a Problem,
+    follower: ExactFollower<'a>,
+    motions: descent::Settings,
+}
+
+/// The window of a run that computes one, or why there is none.
+type WindowOrNot = Result<window::Window, WindowError>;
+
+impl Stages<'_> {
+    /// The Sum of a grid, made unbiased by sampled poses, and the grid's ambiguous cells settled by them.
+    fn corrected(
+        &self,
+        acceptance: &mut Acceptance,
+        doubts: Option<&dyn Doubts>,
+        started: Stopwatch,
+        exec: &Exec,
+    ) -> Result<Option<Corrected>, RunError> {
+        let Self { plan, problem, .. } = self;
+        let Domain::Grid(grid) = &plan.domain else { return Ok(None) };
+        let sample = plan.sample.map(|settings| left(settings, started));
+        let correct = |settings| correct(&plan.method, problem, grid, acceptance, doubts, &settings, exec);
+        let corrected = sample.map(correct).transpose()?;
+        if let Some(doubts) = doubts {
+            // Which cells are settled depends on the number of random poses, not on the time they took.
+            let most = corrected.as_ref().map_or(0, |corrected| corrected.found.descents);
+            settle(&plan.method, problem, grid, doubts, acceptance, most, exec)?;
+        }
+        Ok(corrected)
+    }
+
+    /// The tolerance window, if the run computes one.
+    fn window(&self, exec: &Exec) -> Result<Option<WindowOrNot>, RunError> {
+        if !self.run.window {
+            return Ok(None);
+        }
+        match window::by(self.problem, &self.run.window_settings(), &self.motions, exec) {
+            Err(WindowError::Cancelled(error)) => Err(error.into()),
+            found => Ok(Some(found)),
+        }
+    }
+
+    /// The figures of merit: by exact motions along the axes and about the largest cubes, where the follower's motions are behind the answer.
+    fn merits(
+        &self,
+        acceptance: &Acceptance,
+        (corrected, window): (Option<&Corrected>, Option<&WindowOrNot>),
+        [of_limits, of_boxes]: [&Exec; 2],
+        exec: &Exec,
+    ) -> Result<Merits, RunError> {
+        let Self { run, plan, problem, follower, motions } = self;
+        let mut merits = Merits::of(acceptance, problem.alignment(), exec)?;
+        if !matches!(run.over, Over::Grid(_)) || corrected.is_none() && follower.own.is_none() {
+            return Ok(merits);
+        }
+        let grid = &match &plan.domain {
+            Domain::Grid(grid) => grid.clone(),
+            // Its axes say no more than the error box.
+            Domain::Poses(_) => Grid::over(problem.alignment(), |_| 1),
+        };
+        let Afterwards { steps, random } = plan.afterwards;
+        merits.tolerances = followed(grid, steps, |poses| {
+            let decided = follower.as_follow().follow(problem, Domain::Poses(poses), of_limits);
+            Ok::<_, RunError>(decided?.0.outcomes)
+        })?;
+        if let Domain::Poses(_) = &plan.domain {
+            let small = small_part(&merits.tolerances, grid);
+            merits.warnings.extend(small);
+        }
+        if follower.is_descent() {
+            let centered = window.and_then(|window| window.as_ref().ok()).map(window::Window::cube);
+            let drawn = corrected.map_or(random, |corrected| corrected.found.descents);
+            let random = random.min(drawn);
+            let by = window::Effort { seed: run.seed, random, motions };
+            window::follow_cubes(&mut merits, centered, problem, grid, &by, of_boxes)?;
+        }
+        Ok(merits)
+    }
 }
 
 /// Single-axis limits below this share of the error box leave few random poses that dock.
@@ -193,10 +238,10 @@ pub fn correct(
     settings: &correction::Settings,
     exec: &Exec,
 ) -> Result<Corrected, CorrectionError> {
-    let judge = judge(method);
-    let judge = judge.as_follow();
+    let follower = follower(method);
+    let follower = follower.as_follow();
     let follow = |poses: Vec<_>, exec: &Exec| {
-        let decided = judge.follow(problem, Domain::Poses(poses), exec);
+        let decided = follower.follow(problem, Domain::Poses(poses), exec);
         Ok(decided.map_err(CorrectionError::from)?.0.outcomes)
     };
     let shape = grid.shape();
@@ -207,7 +252,7 @@ pub fn correct(
         let by = ByNeighbours::new(&acceptance.outcomes, shape);
         correction::estimate(grid, &by, settings, exec, follow)
     }?;
-    Ok(Corrected { found, seed: settings.seed, method: judge.info().name, settings: judge.settings() })
+    Ok(Corrected { found, seed: settings.seed, method: follower.info().name, settings: follower.settings() })
 }
 
 /// Follows the ambiguous cells exactly if they are at most `most`, else warns.
@@ -226,9 +271,9 @@ fn settle(
         acceptance.warnings.push(Warning::Ambiguous { cells, of });
         return Ok(());
     }
-    let judge = judge(method);
+    let follower = follower(method);
     let outcomes = &mut acceptance.outcomes;
     correction::settle(grid, &listed, outcomes, exec, |poses, exec| {
-        Ok::<_, RunError>(judge.as_follow().follow(problem, Domain::Poses(poses), exec)?.0.outcomes)
+        Ok::<_, RunError>(follower.as_follow().follow(problem, Domain::Poses(poses), exec)?.0.outcomes)
     })
 }

@@ -38,6 +38,7 @@ use super::{Half, Surface};
 use crate::budget::{Budget, Limit, Overspent};
 use crate::design::{Repairs, Treatment};
 use crate::exec::{Bytes, Exec};
+use crate::tolerance;
 use glam::DVec3;
 use indexed::Indexed;
 use problem::Reported;
@@ -54,7 +55,7 @@ pub(super) const BODIES: Limit =
 const BYTES_PER_TRIANGLE: u64 = 900;
 /// Corners closer than this, relative to the largest coordinate, are one: ten times the rounding of single
 /// precision.
-pub const WELD: f64 = 1e-6;
+pub const WELD: f64 = tolerance::SINGLE;
 /// Widths of a half as drawn, in D, that can be meant: a pin in a plate is far narrower than the plate; an inch is 25 mm.
 pub(crate) const PLAUSIBLE_WIDTH: std::ops::RangeInclusive<f64> = 0.1..=16.0;
 

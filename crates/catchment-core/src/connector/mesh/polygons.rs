@@ -15,13 +15,14 @@
 
 use super::indexed::Indexed;
 use super::sides::{Side, Sides};
+use crate::tolerance;
 use glam::DVec3;
 use std::collections::HashSet;
 
 /// How far corners of a polygon of a mesh may lie from its plane, and from the line between their neighbours, in parts of the distance below
 /// which two points are one: the rounding of computed coordinates. Faces that single precision bends, however little, stay bent: where two of them lie
 /// flush, a common plane that is not quite theirs leads a half astray.
-pub(super) const FLAT: f64 = 1e-6;
+pub(super) const FLAT: f64 = tolerance::SINGLE;
 
 /// Corners of a polygon at most: whether a point is on it is asked of every side.
 const MOST_CORNERS: usize = 16;

@@ -6,11 +6,12 @@
 use super::{Lookup, Sets};
 use crate::connector::Half;
 use crate::contact::crease::{self, Crease};
+use crate::tolerance;
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
 /// Places nearer than this are one, in D.
-const GRAIN: f64 = 1e-6;
+const GRAIN: f64 = tolerance::SINGLE;
 /// Facets beyond which symmetries are not looked for: each takes a search of all of them.
 const MOST_FACETS: usize = 20_000;
 

@@ -16,6 +16,7 @@
 use super::element::Features as Elements;
 use super::{Contact, Meeting, Pair};
 use crate::connector::{Half, Side, Surface};
+use crate::tolerance;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -33,7 +34,7 @@ const IN_PLANE: f64 = 0.009;
 /// Inclinations that differ by less are one, radians: 2°.
 const EVEN: f64 = 0.035;
 /// Heights that differ by less are one, in D.
-const LEVEL: f64 = 1e-6;
+const LEVEL: f64 = tolerance::SINGLE;
 
 /// What a feature is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

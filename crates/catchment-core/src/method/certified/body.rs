@@ -10,6 +10,7 @@
 //! Lengths in D, in each half's own frame (the moving one's from the centre of rotation).
 
 use crate::connector::Half;
+use crate::tolerance;
 use glam::DVec3;
 use std::collections::BTreeSet;
 
@@ -201,4 +202,4 @@ fn ends_on(body: &Body, along: u32, other: &Body, across: u32) -> bool {
 }
 
 /// What counts as beside a facet, as a multiple of lengths.
-const SEAM: f64 = 1e-12;
+const SEAM: f64 = tolerance::ROUNDING;

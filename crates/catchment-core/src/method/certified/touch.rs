@@ -17,16 +17,16 @@ use super::body::{Facet, Meeting, Ridge};
 use super::interval::{Interval, Vector, cross, dot, perp, thin};
 use super::placed::{Bodies, Placed, PoseBox};
 use crate::pose::{Dof, ROTATIONS};
+use crate::tolerance;
+use crate::tolerance::PARALLEL;
 use glam::DVec3;
 
 /// Sine by which normals of facets, which are rounded, may fail to be supported.
-pub(super) const SLACK: f64 = 1e-9;
+pub(super) const SLACK: f64 = tolerance::PARALLEL;
 /// What counts as within a border in plan view, as a multiple of lengths.
-const SEAM: f64 = 1e-12;
+const SEAM: f64 = tolerance::ROUNDING;
 /// Below this part of its own length a normal's rise gives no mean value form.
 const STEEP: f64 = 1e-6;
-/// Sine below which ridges count as parallel in plan view, as [`crate::contact::brute`] has it.
-const PARALLEL: f64 = 1e-9;
 /// Slopes that differ by no more are known well enough.
 const PRECISE: f64 = 0.05;
 /// Normals of two facets with a smaller cosine have no mean direction to speak of.

@@ -26,6 +26,7 @@ use super::touch::Touch;
 use super::tree::{Cell, Label, Tree};
 use crate::contact::Nearby;
 use crate::pose::{Dof, ROTATIONS};
+use crate::tolerance::ROUNDING;
 
 /// Steps at most.
 const STEPS: usize = 600;
@@ -38,8 +39,6 @@ const LEAST_STEP: f64 = 1e-2;
 const GUESS: f64 = 0.25;
 /// Slopes above this call for other coordinates.
 const BENT: f64 = 0.6;
-/// What linear coordinates are rounded by.
-const ROUNDING: f64 = 1e-12;
 
 /// Linear coordinates about a pose: `c = rows·(q − origin)`, `q = origin + columns·c`.
 #[derive(Debug, Clone)]

@@ -98,6 +98,10 @@ impl Follow for Settings {
     fn doubt(&self, problem: &Problem, seed: u64, exec: &Exec) -> Result<Option<Warning>, DecideError> {
         Ok(step_dependence(problem.pair(), self, seed, exec)?)
     }
+
+    fn is_descent(&self) -> bool {
+        true
+    }
 }
 
 /// Random descents that make the Sum of a pair's grid known to a percent or so, in a second; of large halves fewer.

@@ -9,10 +9,11 @@ use super::{End, Follower, Pair, Settings};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting};
 use crate::pose::PoseError;
+use crate::tolerance;
 
 /// Gaps up to this touch at rest, in D: motions keep a hundredth of it clear of walls, and end before flush faces have closed to the last; no
 /// fit is as close.
-pub const TOUCHING: f64 = 1e-4;
+pub const TOUCHING: f64 = tolerance::TOUCHING;
 /// The same where a half was set down onto what carries it.
 const SET_DOWN: f64 = 1e-7;
 

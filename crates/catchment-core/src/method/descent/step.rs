@@ -8,6 +8,7 @@
 use super::motion::{Motion, State};
 use super::projection::{MAX_COORDINATES, Vector, dot};
 use crate::acceptance::Outcome;
+use crate::tolerance::ROUNDING;
 
 /// How a motion goes on.
 pub(super) enum Advance {
@@ -66,9 +67,6 @@ const LONG: f64 = 2.0;
 
 /// Steps of halves of many facets are halved down to this share of the longest one before what they run into is looked for: to look takes longer.
 const LOOKING_SHARE: f64 = 1.0 / 16.0;
-
-/// Rounding of a height, in D.
-const ROUNDING: f64 = 1e-12;
 
 impl Pace {
     /// For a first step of this length.

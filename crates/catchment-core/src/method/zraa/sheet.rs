@@ -9,10 +9,11 @@
 use crate::connector::{Half, Surface};
 use crate::contact::FLUSH;
 use crate::exec::{Cancelled, Exec};
+use crate::tolerance;
 use glam::{DVec2, DVec3};
 
 /// Below this z-component a normal is horizontal: the feature is a wall and has no height.
-const VERTICAL: f64 = 1e-9;
+const VERTICAL: f64 = tolerance::PARALLEL;
 /// Areas smaller than this, relative to lengths, are none: rounding only.
 const ROUNDING: f64 = 1e-9;
 

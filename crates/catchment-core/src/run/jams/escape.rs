@@ -17,6 +17,7 @@ use crate::contact::{FLUSH, Nearby, Pair};
 use crate::method::affordable;
 use crate::method::descent::{self, Follower};
 use crate::pose::{CorPose, PoseError, angle_between, step_length};
+use crate::tolerance;
 use glam::DVec2;
 
 /// How closely a way is looked at, in the metric of the motion, in D.
@@ -34,7 +35,7 @@ const LEAST_WAYS: f64 = 4.0;
 /// Rests farther apart than this are two, in the metric of the motion, in D: rests as near are gathered into one.
 const ELSEWHERE: f64 = 0.1;
 /// Motions keep so far from walls, in D, and heights beside a wall differ by that on its slope.
-const OPEN: f64 = 1e-4;
+const OPEN: f64 = tolerance::TOUCHING;
 /// What counts as lower, in D: above what motions leave.
 const LOWER: f64 = 1e-5;
 

@@ -10,13 +10,14 @@ use crate::exec::{Cancelled, Exec};
 use crate::method::descent::{self, Follower, Holding, Rest, Sticking, immobility};
 use crate::pose::{CorPose, PoseError, angle_between, face_from_cor, step_length};
 use crate::problem::Problem;
+use crate::tolerance;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Places of a contact nearer than this are one, in D.
-const SAME_PLACE: f64 = 1e-4;
+const SAME_PLACE: f64 = tolerance::TOUCHING;
 /// Descents between two reports of progress.
 const BETWEEN: usize = 64;
 /// How far off rests are pushed to see whether they come back, in the metric of the motion, in D.

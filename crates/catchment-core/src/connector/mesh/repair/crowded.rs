@@ -14,11 +14,12 @@
 use crate::connector::mesh::indexed::Indexed;
 use crate::connector::mesh::shells::Parts;
 use crate::connector::mesh::sides::{Side, Sides};
+use crate::tolerance;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// Angles closer than this, in radians, are in no order: the rounding of single precision over a sliver.
-const SAME: f64 = 1e-6;
+const SAME: f64 = tolerance::SINGLE;
 /// Most passes of cutting edges in the middle.
 const PASSES: usize = 16;
 

@@ -20,6 +20,7 @@ use super::survey::{Flows, Survey};
 use crate::contact::Nearby;
 use crate::design::Alignment;
 use crate::pose::Dof;
+use crate::tolerance::ROUNDING;
 pub(super) use faces::Face;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -39,9 +40,6 @@ pub(super) enum Label {
     /// None docks: each passes by or slides off, or comes to rest elsewhere on its way.
     Leaves,
 }
-
-/// By what borders of a grid's cells may be rounded.
-const ROUNDING: f64 = 1e-12;
 
 /// Numbers of a box per axis, lowest and beyond the highest.
 pub(super) type Span = [[u32; 2]; 5];

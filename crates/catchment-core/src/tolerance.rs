@@ -1,0 +1,42 @@
+//! The scales below which two lengths, or two directions, count as one.
+//!
+//! ```text
+//!    1e-16      1e-12          1e-9            1e-6             1e-4          2e-3             1
+//!  ────┼──────────┼──────────────┼───────────────┼────────────────┼─────────────┼──────────────┼──▶  D, or a sine
+//!   one sum   ROUNDING       PARALLEL          SINGLE         TOUCHING    `docked.depth`   the face
+//!             sums of        directions        numbers of     ends of     of a design
+//!             coordinates    without a normal  mesh files     motions     (default)
+//! ```
+//!
+//! Lengths are in D: a design is scaled to D = 1 before any of them applies, and coordinates stay within a thousand D, so that each scale is a thousand times
+//! the one below it, or nearly. Lengths of a part that has no D yet are relative to its largest coordinate. A room that needs another number states why
+//! beside it: a share of a step, a digit of a table, a search that ends.
+//!
+//! ρ, which converts radians to lengths, enters where a motion is measured ([`crate::pose`]); a turn by α moves a face by up to α D, so angles have the same
+//! numbers.
+
+/// Sums of a few thousand coordinates in double precision, in D: cracks between neighbouring facets are narrower, and nothing that matters is as small.
+pub const ROUNDING: f64 = 1e-12;
+
+/// Sine of the angle below which two directions are parallel, and of a slope beyond which a face is a wall: their cross product, or the height over it, has
+/// lost all but seven of its sixteen digits.
+pub const PARALLEL: f64 = 1e-9;
+
+/// Ten times the rounding of numbers in single precision (binary STL, 3MF), in D or as a sine: facets bent by less are one plane, corners as near are one.
+pub const SINGLE: f64 = 1e-6;
+
+/// Gap up to which features are in contact, in D: what the end of a motion leaves, and drawings rounded to four digits. No fit is as close.
+pub const TOUCHING: f64 = 1e-4;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_scale_is_far_above_the_one_below_it() {
+        let ladder = [f64::EPSILON, ROUNDING, PARALLEL, SINGLE, TOUCHING];
+        assert!(ladder.windows(2).all(|pair| pair[1] >= 10.0 * pair[0]), "{ladder:?}");
+        // Coordinates of a thousand D in single precision, relative to the largest of them.
+        assert!(SINGLE > 10.0 * f64::from(f32::EPSILON) / 2.0);
+    }
+}
