@@ -23,7 +23,7 @@
 use super::coulomb::is_still;
 use super::motion::{Motion, State};
 use super::projection::{MAX_COORDINATES, Vector, dot};
-use super::sticking::{DOWN, Sticking, Touching};
+use super::sticking::{Sticking, Touching};
 use super::{Pair, Settings};
 use crate::contact::{Contact, Meeting};
 use crate::pose::{CorPose, PoseError};
@@ -176,12 +176,13 @@ impl Holding {
 
     /// The preload, less what the gentle slope on which a motion ends does not hold of it; `None` if that is more.
     pub(super) fn preload(&mut self, friction: f64) -> Option<Vector> {
-        let left = self.touching.unheld(&DOWN, friction)?;
+        let push = self.touching.push;
+        let left = self.touching.unheld(&push, friction)?;
         if is_still(&left) {
-            return Some(DOWN);
+            return Some(push);
         }
         let size = dot(&left, &left).sqrt();
-        (size <= OWN).then(|| std::array::from_fn(|k| DOWN[k] - left[k]))
+        (size <= OWN).then(|| std::array::from_fn(|k| push[k] - left[k]))
     }
 
     /// Whether forces of the contacts hold a push.

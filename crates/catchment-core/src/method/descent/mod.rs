@@ -26,6 +26,7 @@ mod homing;
 mod immobility;
 mod motion;
 mod projection;
+mod push;
 mod rest;
 mod rows;
 mod sliding;

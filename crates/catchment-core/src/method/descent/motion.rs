@@ -4,6 +4,7 @@ use super::coulomb::Coulomb;
 use super::fall::{fall, home};
 use super::homing;
 use super::projection::{Projection, Vector};
+use super::push::Push;
 use super::rest::TOUCHING;
 use super::rows::{OVERLAP, Rows, horizon};
 use super::sliding::Sliding;
@@ -104,6 +105,8 @@ pub(super) struct Motion<'a> {
     pub(super) coulomb: Coulomb,
     /// Buffers of [`super::sliding`], for pairs with tight fits.
     pub(super) sliding: Sliding,
+    /// What drives it.
+    pub(super) push: Push,
     /// Largest distance of a moving corner from the COR.
     pub(super) radius: f64,
     /// All three rotations free: they live on SO(3), not in Euler angles.
@@ -128,6 +131,7 @@ impl<'a> Motion<'a> {
             projection: Projection::default(),
             coulomb: Coulomb::default(),
             sliding: Sliding::default(),
+            push: Push,
             radius,
             spherical: pair.alignment.free.rotations() == 3,
         }
@@ -150,7 +154,7 @@ impl<'a> Motion<'a> {
         let mut pace = Pace::new(self.settings.step);
         let Some(mut state) = self.touch_down(error) else { return End::missed(*error) };
         let mut travelled = 0.0;
-        let mut mark = (0, travelled, state.cor.z);
+        let mut mark = (0, travelled, self.push.energy(&state));
         // A half that is seated stays so; whether it is docked then is known before it has come to rest, unless some rests do not count.
         let (mut seated, mut asked, mut docked) = (false, false, false);
         let all_count =
@@ -161,7 +165,8 @@ impl<'a> Motion<'a> {
                 state = self.feel(&state);
             } else if self.pair.asks_trees() {
                 let far = self.pair.alignment.length(&self.error_of(&state));
-                if far <= near && state.cor.z - self.pair.mated_height() >= TAPER * far {
+                let climbed = self.push.energy(&state) - self.push.energy(&self.home());
+                if far <= near && climbed >= TAPER * far {
                     travelled += far;
                     state = self.home();
                 }
@@ -176,9 +181,10 @@ impl<'a> Motion<'a> {
             }
             // What is deep enough moves on in its own part of what is: once tells whether that is the seat. Where all motion near the
             // mated pose leads to it, coming near tells as much, and what slides off has not to ask.
-            let deep = !self.homing && state.cor.z <= self.seat.level();
+            let energy = self.push.energy(&state);
+            let deep = !self.homing && energy <= self.seat.level();
             // Below its floor it has left the seat again, and does not climb.
-            let above = state.cor.z >= self.seat.floor();
+            let above = energy >= self.seat.floor();
             seated = above && (seated || deep && !asked && self.is_seated(&state));
             asked |= deep;
             docked |= all_count
@@ -198,10 +204,10 @@ impl<'a> Motion<'a> {
                 return self.end(Outcome::Jammed, &state, [seated, docked]);
             }
             if travelled - mark.1 > self.settings.step || count - mark.0 > LEVEL_STEPS {
-                if mark.2 - state.cor.z < LEVEL * self.settings.step {
+                if mark.2 - energy < LEVEL * self.settings.step {
                     return self.end(Outcome::Jammed, &state, [seated, docked]);
                 }
-                mark = (count, travelled, state.cor.z);
+                mark = (count, travelled, energy);
             }
             let advance = if self.pair.is_tight() {
                 self.slide(&state, &mut pace)
@@ -252,7 +258,7 @@ impl<'a> Motion<'a> {
         let rests_well = |motion: &mut Self| {
             outcome == Outcome::Jammed
                 && (seated || motion.is_seated(last))
-                && motion.seat.allows(&error, last.cor.z)
+                && motion.seat.allows(&error, motion.push.energy(last))
         };
         // What runs off has left whatever it was in.
         let docked = docked && outcome != Outcome::Missed || rests_well(self);
@@ -266,10 +272,10 @@ impl<'a> Motion<'a> {
         End { outcome, error, height }
     }
 
-    /// Whether a displacement whose lateral part has this length falls too little to go on.
-    pub(super) fn is_too_gentle(&self, u: &Vector, length: f64) -> bool {
+    /// Whether a displacement from a state, whose lateral part has this length, lowers the energy too little to go on.
+    pub(super) fn is_too_gentle(&self, state: &State, u: &Vector, length: f64) -> bool {
         let least = self.settings.slope_threshold;
-        least > 0.0 && -u[2] <= least * length
+        least > 0.0 && self.push.work(state, u) <= least * length
     }
 
     pub(super) fn moved(&self, state: &State, u: &Vector) -> State {
@@ -320,9 +326,10 @@ impl<'a> Motion<'a> {
 
     /// Whether the half has come into the seat.
     fn is_seated(&mut self, state: &State) -> bool {
-        state.cor.z <= self.seat.level() && {
+        let energy = self.push.energy(state);
+        energy <= self.seat.level() && {
             let error = self.error_of(state);
-            self.seat.holds(&error, state.cor.z)
+            self.seat.holds(&error, energy)
         }
     }
 

@@ -4,7 +4,6 @@ use super::coulomb::Contacts;
 use super::holding::BORDER;
 use super::motion::{Motion, State, Until, Watch};
 use super::projection::{Vector, dot};
-use super::sticking::DOWN;
 use super::{End, Follower, Pair, Settings};
 use crate::acceptance::Outcome;
 use crate::contact::{Contact, Meeting};
@@ -111,8 +110,8 @@ impl Motion<'_> {
             return None;
         }
         let (mut state, mut moved, mut seam) = (*state, 0.0, TOUCHING);
-        let push: Vector = std::array::from_fn(|k| PUSH * DOWN[k]);
         for _ in 0..PASSES {
+            let push = self.push.at(&state).map(|part| PUSH * part);
             self.turn(&state.rotation, state.cor.truncate(), FARTHEST);
             self.nearby.contacts_within(state.cor, 2.0 * TOUCHING, seam, &mut self.contacts);
             // What overlaps beyond the border of its features does not.

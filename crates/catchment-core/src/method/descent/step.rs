@@ -6,7 +6,7 @@
 //! is halved, unless what contradicts it is one more contact.
 
 use super::motion::{Motion, State};
-use super::projection::{MAX_COORDINATES, Vector, dot};
+use super::projection::{Vector, dot};
 use crate::acceptance::Outcome;
 use crate::tolerance::ROUNDING;
 
@@ -79,20 +79,20 @@ impl Motion<'_> {
     /// One step from `state`, whose contacts have been gathered: halved until the height agrees with it.
     pub(super) fn advance(&mut self, state: &State, pace: &mut Pace) -> Advance {
         let longest = self.settings.step;
-        let (mut u, mut length) = self.displacement(pace);
+        let (mut u, mut length) = self.displacement(state, pace);
         let mut fresh = true;
         let mut cuts = 0;
         let mut bend = 0.0;
         loop {
             let rests = length <= REST * pace.step && pace.reach >= pace.most;
-            if rests && pace.step <= longest * RESTING_SHARE || self.is_too_gentle(&u, length) {
+            if rests && pace.step <= longest * RESTING_SHARE || self.is_too_gentle(state, &u, length) {
                 return Advance::Ended(Outcome::Jammed, *state);
             }
             let mut halve = rests;
             if fresh && !rests {
                 let before = u;
                 self.look_ahead(state, &u);
-                (u, length) = self.displacement(pace);
+                (u, length) = self.displacement(state, pace);
                 bend = deflection(&before, &u);
                 halve = pace.step > longest && bend > BENT;
                 if self.settings.friction > 0.0 && length <= REST * pace.step {
@@ -106,10 +106,10 @@ impl Motion<'_> {
             if !halve {
                 let next = self.moved(state, &u);
                 let allowed = self.settings.surprise * pace.step.min(longest);
-                if let Some(home) = self
-                    .home_of(&next)
-                    .filter(|home| (home.cor.z - next.cor.z).abs() <= allowed && home.cor.z <= state.cor.z)
-                {
+                if let Some(home) = self.home_of(&next).filter(|home| {
+                    let [home, next, here] = [home, &next, state].map(|at| self.push.energy(at));
+                    (home - next).abs() <= allowed && home <= here
+                }) {
                     self.turn(&home.rotation, home.cor.truncate(), pace.step);
                     return Advance::Moved(home, length);
                 }
@@ -123,8 +123,9 @@ impl Motion<'_> {
                 if below.is_none() && !blocked {
                     return Advance::Ended(Outcome::Missed, next);
                 }
-                let rise = z - next.cor.z;
-                let climbs = z > state.cor.z + ROUNDING;
+                let energy = self.push.energy(&landed);
+                let rise = energy - self.push.energy(&next);
+                let climbs = energy > self.push.energy(state) + ROUNDING;
                 let rises = rise > allowed || climbs;
                 halve = if blocked {
                     // A wall that no contact announced is one more contact, if it was not met before; or what carries the body there is.
@@ -135,7 +136,7 @@ impl Motion<'_> {
                     {
                         cuts += 1;
                         fresh = false;
-                        (u, length) = self.displacement(pace);
+                        (u, length) = self.displacement(state, pace);
                         continue;
                     }
                     if pace.step <= longest * SMALLEST_SHARE {
@@ -153,10 +154,13 @@ impl Motion<'_> {
                     if cuts < MAX_CUTS && self.cut(&landed, rise, &u) {
                         cuts += 1;
                         fresh = false;
-                        (u, length) = self.displacement(pace);
+                        (u, length) = self.displacement(state, pace);
                         continue;
                     }
-                    if climbs && pace.step <= longest * REST_SHARE && -u[2] <= GENTLE * length {
+                    if climbs
+                        && pace.step <= longest * REST_SHARE
+                        && self.push.work(state, &u) <= GENTLE * length
+                    {
                         // The bottom of a smooth hollow, within a step.
                         return Advance::Ended(Outcome::Jammed, *state);
                     }
@@ -174,7 +178,7 @@ impl Motion<'_> {
             pace.step = if rests { longest * RESTING_SHARE } else { 0.5 * pace.step };
             self.turn(&state.rotation, state.cor.truncate(), pace.step);
             self.gather(state, pace.step);
-            (u, length) = self.displacement(pace);
+            (u, length) = self.displacement(state, pace);
             fresh = true;
             cuts = 0;
         }
@@ -183,17 +187,17 @@ impl Motion<'_> {
     /// The displacement of one step and its length in the ρ-metric, at most `step`.
     ///
     /// The reach of the pace is adapted: raised on gentle slopes.
-    fn displacement(&mut self, pace: &mut Pace) -> (Vector, f64) {
+    fn displacement(&mut self, state: &State, pace: &mut Pace) -> (Vector, f64) {
         let Pace { step, reach, share, most } = pace;
         let step = *step;
         *most = self.most_reach();
         let rotation_length = self.pair.alignment.rotation_length;
+        let push = self.push.at(state);
         let Self { projection, coulomb, rows, settings, .. } = self;
         let contacts = rows.contacts(settings.friction);
         // A displacement, its length in the ρ-metric, and on level ground, the widest gap that it closes.
         let mut solve = |reach: f64| {
-            let mut push = [0.0; MAX_COORDINATES];
-            push[2] = -reach * step;
+            let push = push.map(|part| reach * step * part);
             let u = coulomb
                 .displacement(projection, &push, contacts, |k| rows.gaps[k], step * reach)
                 // Squeezed between two walls there is no clearance to regain.

@@ -57,13 +57,6 @@ const NEAR: f64 = 2e-3;
 /// So many times the friction at which it slips is hardly more: engines let a half go up to 1.05 times there (`docs/friction.md`).
 pub const HARDLY: f64 = 1.1;
 
-/// Where the force pushes.
-pub(super) const DOWN: Vector = {
-    let mut down = [0.0; MAX_COORDINATES];
-    down[2] = -1.0;
-    down
-};
-
 /// From which friction on a half that is lowered at a pose error sticks where it first touches; `None` where it touches nothing.
 pub fn sticking(pair: &Pair, error: &PoseError) -> Option<Sticking> {
     // Any friction: what slips is asked for.
@@ -87,6 +80,8 @@ const OUT: Vector = {
 pub(super) struct Touching {
     pub(super) rows: Vec<Vector>,
     pub(super) tangents: Vec<Tangents>,
+    /// The push there.
+    pub(super) push: Vector,
     coulomb: Coulomb,
     projection: Projection,
 }
@@ -113,6 +108,7 @@ impl Touching {
 
     fn see_those(&mut self, touches: impl Fn(&Contact) -> bool, motion: &Motion, state: &State) {
         let axes = motion.axes(state);
+        self.push = motion.push.at(state);
         self.rows.clear();
         self.tangents.clear();
         for (contact, _) in motion.contacts.iter().filter(|(contact, _)| touches(contact)) {
@@ -167,13 +163,14 @@ impl Touching {
         let contacts = Contacts { rows: &self.rows, tangents: &self.tangents, friction };
         self.coulomb.begin_at(from);
         let touching = |_| 0.0;
-        let u = self.coulomb.displacement(&mut self.projection, &DOWN, contacts, touching, 1.0);
+        let u = self.coulomb.displacement(&mut self.projection, &self.push, contacts, touching, 1.0);
         u.filter(|u| !is_still(u))
     }
 
     pub(super) fn thresholds(&mut self) -> Sticking {
         self.coulomb = Coulomb::patient();
-        let holds_from = self.holds_from(&DOWN, MOST, HOLDS_TO);
+        let push = self.push;
+        let holds_from = self.holds_from(&push, MOST, HOLDS_TO);
         let slips_until = holds_from.and_then(|holds| self.slips_until(holds));
         Sticking { holds_from, slips_until, wedges_from: self.wedges_from() }
     }
@@ -228,8 +225,9 @@ impl Watch for Doubting {
         self.may_stick |= self.here;
         self.touching.see_on_the_way(motion, state);
         if !self.may_stick {
+            let push = self.touching.push;
             self.here =
-                !self.touching.rows.is_empty() && self.touching.holds(&DOWN, motion.settings.friction);
+                !self.touching.rows.is_empty() && self.touching.holds(&push, motion.settings.friction);
         }
         None
     }
@@ -261,8 +259,9 @@ impl Watch for OnTheWay {
     fn see(&mut self, motion: &Motion, state: &State, _: f64) -> Option<Outcome> {
         self.least = self.least.min(self.here);
         self.touching.see_on_the_way(motion, state);
+        let push = self.touching.push;
         let holds = (!self.touching.rows.is_empty())
-            .then(|| self.touching.holds_from(&DOWN, self.least, WAY_HOLDS_TO));
+            .then(|| self.touching.holds_from(&push, self.least, WAY_HOLDS_TO));
         self.here = holds.flatten().unwrap_or(self.least);
         None
     }

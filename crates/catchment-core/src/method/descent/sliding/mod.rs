@@ -69,9 +69,6 @@ const CRAWL: f64 = 1e-5;
 /// After so many such steps in a row contacts alternate without an end: more than any two faces have corners.
 const MOST_CRAWLS: usize = 32;
 
-/// Where the force pushes.
-const DOWN: Vector = [0.0, 0.0, -1.0, 0.0, 0.0, 0.0];
-
 /// Buffers of a sliding motion.
 #[derive(Debug, Default)]
 pub(super) struct Sliding {
@@ -114,7 +111,8 @@ impl Motion<'_> {
             if self.contacts.is_empty() {
                 return self.drop_down(&state);
             }
-            let Some(start) = self.direction(&state).filter(|u| !self.is_too_gentle(u, lateral(u))) else {
+            let Some(start) = self.direction(&state).filter(|u| !self.is_too_gentle(&state, u, lateral(u)))
+            else {
                 return Advance::Ended(Outcome::Jammed, state);
             };
             let carrying = std::mem::take(&mut self.sliding.carrying);
@@ -193,7 +191,7 @@ impl Motion<'_> {
             return Advance::Moved(landed, 0.0);
         }
         // Rims have crossed on the way without a contact that says so.
-        match self.until_event(state, &DOWN, state.cor.z - z) {
+        match self.until_event(state, &self.push.at(state), state.cor.z - z) {
             Reached::At(next, _) => Advance::Moved(next, 0.0),
             Reached::Blocked(_) => Advance::Ended(Outcome::Undecided, *state),
         }
@@ -228,7 +226,7 @@ impl Motion<'_> {
         let touching = |_| 0.0;
         let u = self
             .coulomb
-            .displacement(&mut self.projection, &DOWN, contacts, touching, 1.0)
+            .displacement(&mut self.projection, &self.push.at(state), contacts, touching, 1.0)
             .unwrap_or_default();
         (self.sliding.rows, self.sliding.tangents) = (rows, tangents);
         self.sliding.carrying.clear();
