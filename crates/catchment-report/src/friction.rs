@@ -4,7 +4,7 @@ use super::envelope::{Body, Envelope};
 use super::jams::{FeatureReport, ShareReport, more_pairs};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
-use super::text::{grouped, line, number, row, wrapped};
+use super::text::{grouped, line, number, row, tenths, wrapped};
 use catchment_core::acceptance::{Outcome, Warning};
 use catchment_core::design::Design;
 use catchment_core::run::jams::Sticks;
@@ -208,11 +208,11 @@ impl FrictionReport {
         );
         for rung in &self.curve {
             let [lo, hi] = rung.aligned.ci95.map(|share| format!("{:.1}", 100.0 * share));
-            let docks = format!("{} ({lo} … {hi})", percent(rung.aligned.share));
+            let docks = format!("{} ({lo} … {hi})", tenths(rung.aligned.share));
             let against = if rung.friction == 0.0 {
                 String::new()
             } else {
-                let share = percent(rung.static_docks as f64 / self.motions.max(1) as f64);
+                let share = tenths(rung.static_docks as f64 / self.motions.max(1) as f64);
                 let RungReport { lost, gained, may_stick, hardly_held, static_wrong, .. } = rung;
                 format!("{lost:>6}{gained:>7}{may_stick:>11}{hardly_held:>8}{share:>8}{static_wrong:>6}")
             };
@@ -227,10 +227,7 @@ impl FrictionReport {
                 format!("{} are lost at some friction and dock again at a larger one", poses(self.come_back));
             wrapped(&mut text, "  note           ", &said);
         }
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 
@@ -274,7 +271,7 @@ impl FrictionReport {
             let [least, median] = [pair.critical_least, pair.critical_median].map(|mu| format!("{mu:.3}"));
             wrapped(
                 text,
-                &format!("  {:>8}   ", percent(pair.share)),
+                &format!("  {:>8}   ", tenths(pair.share)),
                 &format!("{}: from a friction of {least} on, half of them by {median}", pair.words()),
             );
         }
@@ -319,11 +316,6 @@ impl KeptReport {
 
 fn by_share<S: Serializer>(kept: &[KeptReport], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(kept.iter().map(|kept| (kept.name(), kept)))
-}
-
-/// A share of 1 with one decimal.
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
 }
 
 fn poses(count: usize) -> String {

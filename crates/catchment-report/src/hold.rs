@@ -245,10 +245,7 @@ impl HoldReport {
                 "0: sideways it slides as it stands, on level ground or until the play of its fit is used";
             wrapped(&mut text, "  ", said);
         }
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 

@@ -217,10 +217,7 @@ impl PlanReport {
         if self.trials.len() > SHOWN {
             line(&mut text, &format!("      …  {} more", grouped(self.trials.len() - SHOWN)));
         }
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 

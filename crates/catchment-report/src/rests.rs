@@ -5,7 +5,7 @@ use super::jams::shares;
 use super::resting::{Told, friction_line, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
-use super::text::{grouped, line, number, row, wrapped};
+use super::text::{grouped, line, number, row, tenths, tenths_between, wrapped};
 use super::{ContactReport, ExaminedReport, ExtentReport, ShareReport};
 use catchment_core::acceptance::{Outcome, Warning};
 use catchment_core::design::Design;
@@ -146,12 +146,9 @@ impl RestsReport {
             let share = ShareReport::of(poses, self.motions);
             text.push('\n');
             let more = grouped(self.rests.len() - SHOWN);
-            line(&mut text, &format!("  and {more} more, {} of the box together", percent(share.share)));
+            line(&mut text, &format!("  and {more} more, {} of the box together", tenths(share.share)));
         }
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 
@@ -231,12 +228,8 @@ impl RestsReport {
     }
 }
 
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
-
 fn with_interval(share: &ShareReport) -> String {
-    format!("{} ({} … {})", percent(share.share), percent(share.ci95[0]), percent(share.ci95[1]))
+    tenths_between(share.share, share.ci95)
 }
 
 /// Rests that are told.

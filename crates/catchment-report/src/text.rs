@@ -66,6 +66,16 @@ pub fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
+/// A share of 1 as `16.3 %`.
+pub fn tenths(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// The same with the interval of its estimate: `16.3 % (15.1 % … 17.6 %)`.
+pub fn tenths_between(share: f64, [low, high]: [f64; 2]) -> String {
+    format!("{} ({} … {})", tenths(share), tenths(low), tenths(high))
+}
+
 /// A number as a person writes it: up to four decimals, no trailing zeros.
 pub fn rounded(value: f64) -> String {
     let text = format!("{value:.4}");

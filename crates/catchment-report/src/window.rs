@@ -4,7 +4,7 @@ use super::envelope::{Body, Envelope};
 use super::resting::Told;
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
-use super::text::{grouped, line, number, row, wrapped};
+use super::text::{grouped, line, number, row};
 use super::trajectory::TouchReport;
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
@@ -242,10 +242,7 @@ impl WindowReport {
         } else {
             row(&mut text, "worst pose", "none was found: the window ends at the error box");
         }
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 

@@ -10,6 +10,7 @@ use catchment::design::{Quantity, Unit};
 use catchment::exec::Exec;
 use catchment::report::csv;
 use catchment::report::figure::ensure_fits;
+use catchment::report::schema::WarningReport;
 use catchment::terminal::shown;
 use catchment_systems::compose::read::{Read, ReadError, read};
 use catchment_systems::compose::{Frames, Settings, compose, figure, outline_records, outline_svg, report};
@@ -94,8 +95,7 @@ pub(crate) fn run(args: &ComposeArgs) -> Result<ExitStatus, Failure> {
         Some(kind) => args.file.draw(kind, &figure(&found)?)?,
         None => {}
     }
-    let notes: Vec<String> =
-        report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
+    let notes = report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>();
     tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
 }
 

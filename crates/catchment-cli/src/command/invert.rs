@@ -11,6 +11,7 @@ use crate::source::read_table;
 use catchment::design::{Design, Quantity};
 use catchment::problem::Problem;
 use catchment::report::figure::ensure_fits;
+use catchment::report::schema::WarningReport;
 use catchment::terminal::shown;
 use catchment_systems::invert::{
     Heights, Limits, MAX_PIECES, Settings, design_file, figure, heights_of, invert, list_of_angles, report,
@@ -112,8 +113,7 @@ pub(crate) fn run(args: &InvertArgs) -> Result<ExitStatus, Failure> {
         Some(kind) => args.file.draw(kind, &figure(design, &found)?)?,
         None => {}
     }
-    let notes: Vec<String> =
-        report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
+    let notes = report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>();
     tell(&if args.json { report.to_json()? } else { report.table() }, &notes)
 }
 

@@ -93,7 +93,6 @@ fn of_design(args: &LatchArgs, design: &Path) -> Result<ExitStatus, Failure> {
         written(folder);
     }
     to_stdout(&if args.json { report.to_json()? } else { report.table() })?;
-    let warning = |warning: &WarningReport| format!("warning: {}", warning.message);
-    to_stderr(&report.warnings.iter().map(warning).collect::<Vec<_>>());
+    to_stderr(&report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>());
     Ok(ExitStatus::Done)
 }

@@ -14,6 +14,7 @@ use catchment::method::Method;
 use catchment::method::descent::End;
 use catchment::poses::{OffsetsAt, PoseTable};
 use catchment::problem::Problem;
+use catchment::report::schema::WarningReport;
 use catchment::report::{OutcomeRows, OutcomesReport};
 use catchment::study::friction::MayStick;
 use catchment::terminal::shown;
@@ -111,14 +112,12 @@ pub(crate) fn run(args: &OutcomeArgs) -> Result<ExitStatus, Failure> {
     if report.partial().is_some() {
         let place = args.output.write_partial(&text)?;
         let beside = place.map(|path| format!("they are in {}", shown(&path)));
-        let said = report.warnings.iter().map(|warning| format!("warning: {}", warning.message));
-        let lines = said.chain(report.summary()).chain(beside);
+        let lines = report.warnings.iter().map(WarningReport::line).chain(report.summary()).chain(beside);
         to_stderr(&std::iter::once("interrupted".to_owned()).chain(lines).collect::<Vec<_>>());
         return Ok(signals::received().unwrap_or(ExitStatus::Failed));
     }
     args.output.write(&text)?;
-    let mut said: Vec<String> =
-        report.warnings.iter().map(|warning| format!("warning: {}", warning.message)).collect();
+    let mut said = report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>();
     said.extend(report.summary());
     to_stderr(&said);
     Ok(ExitStatus::Done)

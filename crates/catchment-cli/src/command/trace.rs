@@ -102,8 +102,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<ExitStatus, Failure> {
     args.drop.of("descent")?;
     let (path, reason) = problem.trace(&error, &settings);
     let report = TraceReport::new(&problem, &settings, error, &path, reason);
-    let said: Vec<String> =
-        report.warnings.iter().map(|doubt| format!("warning: {}", doubt.message)).collect();
+    let said = report.warnings.iter().map(WarningReport::line).collect::<Vec<_>>();
     match kind {
         Some("csv") => args.file.write(&csv(&report.records())?)?,
         Some("json") => args.file.write(report.to_json()?.as_bytes())?,

@@ -33,10 +33,7 @@ impl ChanceReport {
             text.push('\n');
             map_of(&mut text, map);
         }
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         if let Some(preset) = &self.preset {
             text.push('\n');
             line(&mut text, &format!("  {} leaves open", preset.name));

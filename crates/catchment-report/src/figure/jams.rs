@@ -6,7 +6,7 @@ use super::section::{Placement, View, describe};
 use super::solid::touching;
 use super::{FigureError, Picture};
 use crate::resting::{Told, words};
-use crate::text::grouped;
+use crate::text::{grouped, tenths};
 use crate::{ContactReport, JamReport, JamsFound, RestReport, RestsReport};
 use catchment_core::acceptance::Outcome;
 use catchment_core::connector::Connector;
@@ -52,7 +52,7 @@ pub fn jams(design: &Design, found: &JamsFound, connector: &Connector) -> Result
         .outcomes
         .iter()
         .filter(|(_, share)| share.count > 0)
-        .map(|(outcome, share)| format!("{} {}", outcome.name(), percent(share.share)))
+        .map(|(outcome, share)| format!("{} {}", outcome.name(), tenths(share.share)))
         .collect();
     let story = format!("where motions rest that do not dock: of the error box {}", all.join(", "));
     let panels: Vec<Panel<'_>> = found
@@ -81,8 +81,8 @@ fn jam_panel<'a>(design: &Design, found: &JamsFound, number: usize, jam: &'a Jam
     Panel {
         head: format!(
             "jam {number}:  {} of jams, {} of the box",
-            percent(jam.of_jams),
-            percent(jam.of_box.share)
+            tenths(jam.of_jams),
+            tenths(jam.of_box.share)
         ),
         contacts: &jam.contacts,
         placement: Placement { error: jam.pose, height: jam.height_d },
@@ -102,7 +102,7 @@ pub fn rests(report: &RestsReport, connector: &Connector) -> Result<Picture, Fig
         .outcomes
         .iter()
         .filter(|(outcome, share)| matches!(outcome, Outcome::Missed | Outcome::Undecided) && share.count > 0)
-        .map(|(outcome, share)| format!(", {} {}", outcome.name(), percent(share.share)))
+        .map(|(outcome, share)| format!(", {} {}", outcome.name(), tenths(share.share)))
         .collect();
     let story = format!(
         "where motions rest under a load along −z: {} random poses of the error box{}",
@@ -127,7 +127,7 @@ fn rest_panel<'a>(report: &RestsReport, number: usize, rest: &'a RestReport) -> 
         tail.push(report.out(rest));
     }
     Panel {
-        head: format!("rest {number}:  basin {} of the box{docked}", percent(rest.of_box.share)),
+        head: format!("rest {number}:  basin {} of the box{docked}", tenths(rest.of_box.share)),
         contacts: &rest.contacts,
         placement: Placement { error: rest.pose, height: rest.height_d },
         tail,
@@ -201,10 +201,6 @@ fn draw(
 fn patch(contact: &ContactReport, placed: (DMat3, DVec3)) -> Patch {
     let points = contact.points_d.iter().copied().map(DVec3::from_array).collect();
     Patch::new(points, DVec3::from_array(contact.normal), placed)
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
 }
 
 /// Words in lines no wider than this, in SVG units.

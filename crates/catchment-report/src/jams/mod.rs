@@ -13,7 +13,7 @@ use super::envelope::{Body, Envelope};
 use super::resting::{Told, friction_line, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
-use super::text::{grouped, line, number, row, wrapped};
+use super::text::{grouped, line, number, row, tenths, wrapped};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
 use catchment_core::method::descent::HARDLY;
@@ -80,13 +80,10 @@ impl JamsReport {
             text.push('\n');
             let more = self.jams.len() - SHOWN;
             let share = share_of(rest, self.motions);
-            line(&mut text, &format!("  and {} more, {} of the box together", grouped(more), percent(share)));
+            line(&mut text, &format!("  and {} more, {} of the box together", grouped(more), tenths(share)));
         }
         self.pair_lines(&mut text);
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 
@@ -107,14 +104,14 @@ impl JamsReport {
         let expected = jam
             .expected
             .as_ref()
-            .map_or_else(String::new, |share| format!(", {} of the errors expected", percent(share.share)));
+            .map_or_else(String::new, |share| format!(", {} of the errors expected", tenths(share.share)));
         let share = format!(
             "{} of the box ({} … {}), {} of jams, {} of failures{expected}{places}",
-            percent(jam.of_box.share),
-            percent(jam.of_box.ci95[0]),
-            percent(jam.of_box.ci95[1]),
-            percent(jam.of_jams),
-            percent(jam.of_failures)
+            tenths(jam.of_box.share),
+            tenths(jam.of_box.ci95[0]),
+            tenths(jam.of_box.ci95[1]),
+            tenths(jam.of_jams),
+            tenths(jam.of_failures)
         );
         wrapped(text, &format!("  {:<15}", format!("jam {number}")), &share);
         let told = self.told();
@@ -167,7 +164,7 @@ impl JamsReport {
         text.push('\n');
         line(text, &format!("  {:>8}{:>12}   what touches where it jams", "of jams", "of failures"));
         for pair in self.features.iter().take(SHOWN) {
-            let shares = format!("  {:>8}{:>12}   ", percent(pair.of_jams), percent(pair.of_failures));
+            let shares = format!("  {:>8}{:>12}   ", tenths(pair.of_jams), tenths(pair.of_failures));
             wrapped(
                 text,
                 &shares,
@@ -255,13 +252,8 @@ pub(super) fn more_pairs(count: usize) -> String {
     format!("  and {} {} more", grouped(count), if count == 1 { "pair" } else { "pairs" })
 }
 
-/// A share of 1 with one decimal.
-pub(super) fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
-
 fn with_interval(share: &ShareReport) -> String {
-    format!("{:>7}  ({} … {})", percent(share.share), percent(share.ci95[0]), percent(share.ci95[1]))
+    format!("{:>7}  ({} … {})", tenths(share.share), tenths(share.ci95[0]), tenths(share.ci95[1]))
 }
 
 /// Jams and pairs of features that are told.

@@ -400,6 +400,11 @@ impl WarningReport {
     pub fn note(text: &(impl ToString + ?Sized)) -> Self {
         Self::from(Warning::Note { text: text.to_string() })
     }
+
+    /// As it stands on stderr.
+    pub fn line(&self) -> String {
+        format!("warning: {}", self.message)
+    }
 }
 
 impl From<Onaa> for OnaaReport {

@@ -24,10 +24,7 @@ impl SuccessesReport {
             let said = format!("{}, {}", self.success.robot, chance(self.success.probability));
             row(&mut text, "most seldom", &said);
         }
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 

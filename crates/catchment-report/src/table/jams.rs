@@ -1,9 +1,8 @@
 //! Where motions rest that do not dock, in short: what the report of jams alone tells at length.
 
 use crate::JamsFound;
-use crate::jams::percent;
 use crate::resting::{Told, said, words};
-use crate::text::{grouped, row};
+use crate::text::{grouped, row, tenths};
 use catchment_core::design::Design;
 
 /// Jams that are told.
@@ -20,7 +19,7 @@ pub(super) fn lines(text: &mut String, found: &JamsFound, design: &Design) {
     let told = Told::of(design);
     for (k, jam) in found.jams.iter().take(SHOWN).enumerate() {
         let touching = words(&jam.contacts).join("; ");
-        let shares = [jam.of_box.share, jam.of_failures].map(percent);
+        let shares = [jam.of_box.share, jam.of_failures].map(tenths);
         let [of_box, of_failures] = shares;
         let place = told.place(&jam.pose);
         let what = format!("{of_box} of the box, {of_failures} of failures, at {place}: {touching}");
@@ -28,7 +27,7 @@ pub(super) fn lines(text: &mut String, found: &JamsFound, design: &Design) {
     }
     if count > SHOWN {
         let poses: usize = found.jams[SHOWN..].iter().map(|jam| jam.of_box.count).sum();
-        let share = percent(poses as f64 / found.motions as f64);
+        let share = tenths(poses as f64 / found.motions as f64);
         row(text, "", &format!("and {} more, {share} of the box together", grouped(count - SHOWN)));
     }
 }

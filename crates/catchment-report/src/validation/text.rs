@@ -85,10 +85,7 @@ impl ValidationReport {
         self.frictions(&mut text);
         self.lines(&mut text, &told);
         self.disagreements(&mut text, &told);
-        for warning in &self.warnings {
-            text.push('\n');
-            wrapped(&mut text, "warning: ", &warning.message);
-        }
+        self.append_warnings(&mut text);
         text
     }
 
