@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A compass search on the height of first contact h over the free errors that matter: of all combinations of signs the one that
-//! lets the half sink deepest is taken, and gone on with while it leads on; where none does the step is halved, from [`FIRST`] to [`LAST`]. It stays
-//! near: what sinks farther than [`FARTHEST`] runs off. Not promised: the end of a ravine between all of these directions;
+//! lets the half sink deepest is taken, and gone on with while it leads on; where none does the step is halved, from `FIRST` to `LAST`. It stays
+//! near: what sinks farther than `FARTHEST` runs off. Not promised: the end of a ravine between all of these directions;
 //! [`mated`](super::mated) asks afterwards, as it asks any pair.
 
 use super::Pair;
