@@ -12,6 +12,7 @@ pub mod budget;
 pub mod connector;
 pub mod contact;
 pub mod design;
+pub mod disjoint;
 pub mod exec;
 pub mod landscape;
 pub mod merit;

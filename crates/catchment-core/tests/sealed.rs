@@ -7,10 +7,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms that must build where there is no system, such as a page in a browser.
-const CORE: [&str; 19] = [
+const CORE: [&str; 20] = [
     "pose",
     "exec",
     "budget",
+    "disjoint",
     "suggest",
     "terminal",
     "tolerance",

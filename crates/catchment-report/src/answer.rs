@@ -1,4 +1,4 @@
-//! An answer, told: its report, whether it meets what was required, and its files.
+//! The report of an answer, and whether it meets the requirements of its run.
 
 use super::envelope::{Body, Envelope};
 use super::schema::{PartitionReport, SuccessReport, Timing, UprightReport, WarningReport, WatershedsReport};

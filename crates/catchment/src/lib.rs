@@ -97,7 +97,7 @@
 //! [`pose`] owns frames, signs, the order of angles and the metric; [`exec`] owns threads, the clock, cancelling, progress and the
 //! memory budget, none of which changes a bit of a result; [`budget`] limits what a reader may spend on one input; [`suggest`] knows what a
 //! misspelt word meant, [`advice`] what helps where something is refused, [`terminal`] what may be shown of foreign names, [`tolerance`] the scales
-//! below which two lengths count as one. [`polytope`] is the
+//! below which two lengths count as one, [`disjoint`] sets that are joined. [`polytope`] is the
 //! geometry of convex sets in up to six dimensions. [`prelude`] is one `use` for
 //! all that a program needs.
 //!
@@ -112,8 +112,8 @@
 pub mod prelude;
 
 pub use catchment_core::{
-    acceptance, advice, budget, connector, contact, design, exec, landscape, merit, method, polytope, pose,
-    poses, problem, run, suggest, terminal, tolerance, xml,
+    acceptance, advice, budget, connector, contact, design, disjoint, exec, landscape, merit, method,
+    polytope, pose, poses, problem, run, suggest, terminal, tolerance, xml,
 };
 pub use catchment_report as report;
 pub use catchment_study as study;

@@ -53,7 +53,6 @@ pub mod width;
 pub(crate) use candidates::FLUSH;
 pub use element::Meeting;
 pub use envelope::Envelope;
-pub(crate) use feature::Sets;
 pub use feature::{Feature, Features, Kind as FeatureKind, Lie};
 pub use mirror::Mirror;
 pub use nearby::Nearby;

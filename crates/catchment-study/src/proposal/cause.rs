@@ -15,6 +15,7 @@ use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
 use catchment_core::contact::told::{Told, number};
 use catchment_core::design::LengthUnit;
+use catchment_core::disjoint::DisjointSets;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -164,15 +165,6 @@ pub(super) fn of_files(
     inches(halves, settings, scale)
 }
 
-/// The corner that stands for a body.
-fn root(body: &mut [usize], mut k: usize) -> usize {
-    while body[k] != k {
-        body[k] = body[body[k]];
-        k = body[k];
-    }
-    k
-}
-
 /// Bodies whose boxes are compared in pairs, at most.
 const MOST_COMPARED: usize = 2000;
 
@@ -181,17 +173,15 @@ fn bodies(half: &Half) -> usize {
     let mut boxes: Vec<(DVec3, DVec3)> = Vec::new();
     for surface in &half.surfaces {
         // Corners that a facet joins are of one body.
-        let mut body: Vec<usize> = (0..surface.vertices.len()).collect();
+        let mut body = DisjointSets::new(surface.vertices.len());
         for facet in &surface.facets {
-            let first = root(&mut body, facet.corners[0] as usize);
             for corner in &facet.corners {
-                let other = root(&mut body, *corner as usize);
-                body[other] = first;
+                body.join(facet.corners[0], *corner);
             }
         }
-        let mut found: HashMap<usize, (DVec3, DVec3)> = HashMap::new();
-        for (k, p) in surface.vertices.iter().enumerate() {
-            let (low, high) = found.entry(root(&mut body, k)).or_insert((*p, *p));
+        let mut found: HashMap<u32, (DVec3, DVec3)> = HashMap::new();
+        for (k, p) in (0..).zip(&surface.vertices) {
+            let (low, high) = found.entry(body.find(k)).or_insert((*p, *p));
             (*low, *high) = (low.min(*p), high.max(*p));
         }
         boxes.extend(found.into_values());

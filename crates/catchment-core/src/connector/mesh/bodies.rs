@@ -9,6 +9,7 @@
 use super::indexed::weld;
 use super::{MeshProblem, Triangle, WELD, overspent};
 use crate::budget::Limit;
+use crate::disjoint::DisjointSets;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -49,29 +50,19 @@ fn size((low, high): Box) -> f64 {
     (high - low).element_product()
 }
 
-/// The corner that stands for a piece.
-fn root(piece: &mut [u32], mut k: u32) -> u32 {
-    while piece[k as usize] != k {
-        piece[k as usize] = piece[piece[k as usize] as usize];
-        k = piece[k as usize];
-    }
-    k
-}
-
 /// Triangles by the body that they bound.
 fn apart(triangles: Vec<Triangle>) -> Result<Vec<Vec<Triangle>>, Vec<MeshProblem>> {
     let (low, high) = around(&triangles);
     let (vertices, indexed) = weld(&triangles, WELD * low.abs().max(high.abs()).max_element());
-    let mut piece: Vec<u32> = (0..vertices.len() as u32).collect();
+    let mut piece = DisjointSets::new(vertices.len());
     for [a, b, c] in &indexed {
         for other in [b, c] {
-            let (one, other) = (root(&mut piece, *a), root(&mut piece, *other));
-            piece[one.max(other) as usize] = one.min(other);
+            piece.join(*a, *other);
         }
     }
     let mut pieces: BTreeMap<u32, Vec<Triangle>> = BTreeMap::new();
     for (triangle, [a, ..]) in triangles.into_iter().zip(&indexed) {
-        pieces.entry(root(&mut piece, *a)).or_default().push(triangle);
+        pieces.entry(piece.find(*a)).or_default().push(triangle);
     }
     PIECES.allows(pieces.len() as u64).map_err(|over| overspent("the file", over))?;
     let mut pieces: Vec<(Box, Vec<Triangle>)> = pieces.into_values().map(|one| (around(&one), one)).collect();

@@ -10,6 +10,7 @@
 use super::indexed::Indexed;
 use super::sides::Sides;
 use super::tree::{Bounds, around};
+use crate::disjoint::DisjointSets;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -29,7 +30,7 @@ pub(super) struct Shell {
 /// The shells of a mesh, in the order of their first triangles. Triangles are neighbours across edges that just two of them share.
 pub(super) fn of(mesh: &Indexed, sides: &Sides) -> Vec<Shell> {
     let count = mesh.triangles.len();
-    let mut parts = Parts::new(count);
+    let mut parts = DisjointSets::new(count);
     for sides in sides.edges() {
         if let [a, b] = sides {
             parts.join(a.triangle, b.triangle);
@@ -38,7 +39,7 @@ pub(super) fn of(mesh: &Indexed, sides: &Sides) -> Vec<Shell> {
     let mut number = vec![u32::MAX; count];
     let mut lists: Vec<Vec<u32>> = Vec::new();
     for k in 0..count as u32 {
-        let root = parts.root(k) as usize;
+        let root = parts.find(k) as usize;
         if number[root] == u32::MAX {
             number[root] = lists.len() as u32;
             lists.push(Vec::new());
@@ -101,30 +102,4 @@ fn volume(mesh: &Indexed, triangles: &[u32]) -> f64 {
             a.dot(b.cross(c)) / 6.0
         })
         .sum()
-}
-
-/// Disjoint sets of numbers.
-#[derive(Debug)]
-pub(super) struct Parts(Vec<u32>);
-
-impl Parts {
-    pub(super) fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    /// The number that stands for a set.
-    pub(super) fn root(&mut self, of: u32) -> u32 {
-        let mut k = of;
-        while self.0[k as usize] != k {
-            self.0[k as usize] = self.0[self.0[k as usize] as usize];
-            k = self.0[k as usize];
-        }
-        k
-    }
-
-    /// Makes two sets one, which the lower number stands for.
-    pub(super) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

@@ -3,9 +3,10 @@
 //! Looked for are turns by multiples of 30° and 45°, and the same with y reflected before. A half has one if every crease comes to lie on
 //! one of its creases, to [`GRAIN`], however its faces are divided into facets. Of halves of more than [`MOST_FACETS`] none is looked for but the identity.
 
-use super::{Lookup, Sets};
+use super::Lookup;
 use crate::connector::Half;
 use crate::contact::crease::{self, Crease};
+use crate::disjoint::DisjointSets;
 use crate::tolerance;
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
@@ -69,7 +70,7 @@ impl Creases {
 
 /// The class of every feature: the least number of those that lie where a symmetry brings it.
 pub(super) fn of(half: &Half, surfaces: &[Lookup], count: usize, turns: &Turns) -> Vec<u32> {
-    let mut sets = Sets::new(count);
+    let mut sets = DisjointSets::new(count);
     let faces: Vec<u32> = surfaces.iter().flat_map(|lookup| &lookup.faces).copied().collect();
     let edge = |crease: &Crease| {
         let [a, b] = crease.edge;

@@ -16,6 +16,7 @@
 use super::element::Features as Elements;
 use super::{Contact, Meeting, Pair};
 use crate::connector::{Half, Side, Surface};
+use crate::disjoint::DisjointSets;
 use crate::tolerance;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -270,7 +271,7 @@ impl Lookup {
                 sides.entry(((*a).min(b), (*a).max(b))).or_default().push(facet);
             }
         }
-        let mut sets = Sets::new(surface.facets.len());
+        let mut sets = DisjointSets::new(surface.facets.len());
         for facets in sides.values() {
             if let [f, g] = facets[..]
                 && normals[f as usize].dot(normals[g as usize]) >= BEND
@@ -299,7 +300,7 @@ impl Lookup {
         number: usize,
         facing: DVec3,
         top: f64,
-        sets: &mut Sets,
+        sets: &mut DisjointSets,
         features: &mut Vec<Feature>,
     ) {
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
@@ -330,7 +331,7 @@ impl Lookup {
             }
         }
         for (faces, edges) in between {
-            let mut sets = Sets::new(edges.len());
+            let mut sets = DisjointSets::new(edges.len());
             let mut met: BTreeMap<u32, u32> = BTreeMap::new();
             for (k, edge) in (0u32..).zip(&edges) {
                 for end in surface.edges[*edge].ends {
@@ -382,33 +383,6 @@ impl Lookup {
     fn lies_in(&self, v: u32, other: u32, normal: DVec3) -> bool {
         let along = (self.vertices[other as usize] - self.vertices[v as usize]).normalize_or_zero();
         along.dot(normal).abs() <= IN_PLANE
-    }
-}
-
-/// Sets that are joined: each has the least of its members as its name.
-#[derive(Debug, Clone)]
-pub(crate) struct Sets(Vec<u32>);
-
-impl Sets {
-    /// So many, each by itself.
-    pub(crate) fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    /// The name of the set of a member.
-    pub(crate) fn find(&mut self, member: u32) -> u32 {
-        let mut root = member;
-        while self.0[root as usize] != root {
-            self.0[root as usize] = self.0[self.0[root as usize] as usize];
-            root = self.0[root as usize];
-        }
-        root
-    }
-
-    /// Makes the sets of two members one.
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
     }
 }
 

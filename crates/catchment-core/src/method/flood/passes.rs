@@ -15,6 +15,7 @@
 
 use super::drain::Basins;
 use super::sweep::{Slabs, level_of, number_of};
+use crate::disjoint::DisjointSets;
 use crate::exec::{Cancelled, Exec};
 use rayon::prelude::*;
 
@@ -146,42 +147,6 @@ impl Found {
 /// equal in order without being the same: the order of thinning changes nothing.
 fn thin(passes: &mut Vec<Pass>, basins: usize) {
     passes.sort_unstable();
-    let mut sets = Sets::new(basins);
-    passes.retain(|pass| sets.unite(pass.a, pass.b).is_some());
-}
-
-/// Disjoint sets of basins (union-find with path halving; the smaller number leads unless the caller says otherwise).
-#[derive(Debug, Clone)]
-pub(super) struct Sets(Vec<u32>);
-
-impl Sets {
-    pub(super) fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    /// The leader of a basin's set.
-    pub(super) fn find(&mut self, mut basin: u32) -> u32 {
-        while self.0[basin as usize] != basin {
-            let above = self.0[self.0[basin as usize] as usize];
-            self.0[basin as usize] = above;
-            basin = above;
-        }
-        basin
-    }
-
-    /// Unites two sets; the leader that stays and the one that goes, or nothing if they are one already.
-    pub(super) fn unite(&mut self, a: u32, b: u32) -> Option<(u32, u32)> {
-        let (a, b) = (self.find(a), self.find(b));
-        if a == b {
-            return None;
-        }
-        let (stays, goes) = (a.min(b), a.max(b));
-        self.0[goes as usize] = stays;
-        Some((stays, goes))
-    }
-
-    /// Puts the set of `leader` under another leader.
-    pub(super) fn put_under(&mut self, leader: u32, other: u32) {
-        self.0[leader as usize] = other;
-    }
+    let mut sets = DisjointSets::new(basins);
+    passes.retain(|pass| sets.join(pass.a, pass.b).is_some());
 }

@@ -13,8 +13,9 @@
 //! smallest number counts.
 
 use super::drain::Basins;
-use super::passes::{Pass, Sets};
+use super::passes::Pass;
 use super::sweep::height;
+use crate::disjoint::DisjointSets;
 
 /// A minimum and the cells that drain to it, before any merging.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,7 +99,7 @@ impl MergeTree {
     }
 
     /// Unites the two sides of a link under the lower minimum; who stays and who goes.
-    fn join(&self, sets: &mut Sets, link: &Link) -> (u32, u32) {
+    fn join(&self, sets: &mut DisjointSets, link: &Link) -> (u32, u32) {
         let [a, b] = link.basins.map(|basin| sets.find(basin));
         let (stays, goes) = if is_elder(&self.minima, a, b) { (a, b) } else { (b, a) };
         sets.put_under(goes, stays);
@@ -171,8 +172,8 @@ fn is_elder(minima: &[Minimum], a: u32, b: u32) -> bool {
 }
 
 /// Sets in which the joined basins are one, under the lowest of them.
-fn joined_sets(minima: &[Minimum], joined: &[u32]) -> Sets {
-    let mut sets = Sets::new(minima.len());
+fn joined_sets(minima: &[Minimum], joined: &[u32]) -> DisjointSets {
+    let mut sets = DisjointSets::new(minima.len());
     let elder = |a: u32, b: u32| if is_elder(minima, b, a) { b } else { a };
     if let Some(lowest) = joined.iter().copied().reduce(elder) {
         for basin in joined {

@@ -7,7 +7,7 @@
 use super::firmness::{self, Firmness, Held};
 use super::images::Images;
 use super::rests::Rested;
-use crate::contact::Sets;
+use crate::disjoint::DisjointSets;
 use crate::exec::{Cancelled, Exec};
 use crate::pose::CorPose;
 use crate::problem::Problem;
@@ -72,7 +72,7 @@ pub(in crate::run) fn gather(
             Ok(level(problem, rests, others, seed).map_or(held, |(_, held)| held))
         })
         .collect::<Result<_, Cancelled>>()?;
-    let mut sets = Sets::new(groups.len());
+    let mut sets = DisjointSets::new(groups.len());
     for j in 0..groups.len() {
         for k in 0..j {
             let both_level = [j, k].iter().all(|g| held[*g].firmness == Firmness::Level);
@@ -111,7 +111,7 @@ fn near(rests: &[Rested], members: &[usize], images: &Images) -> Vec<Vec<usize>>
             None => places.push(vec![*member]),
         }
     }
-    let mut sets = Sets::new(places.len());
+    let mut sets = DisjointSets::new(places.len());
     for j in 0..places.len() {
         for k in 0..j {
             if within(pose(places[j][0]), pose(places[k][0]), NEAR) {
@@ -206,7 +206,7 @@ fn levels(rests: &[Rested], places: &[usize], images: &Images) -> usize {
         return 1;
     }
     let pose = |k: usize| &rests[places[k]].pose;
-    let mut sets = Sets::new(places.len());
+    let mut sets = DisjointSets::new(places.len());
     for j in 0..places.len() {
         for k in 0..j {
             // Between two that are as near as they can be there may be one that is near to both.

@@ -12,8 +12,8 @@
 //! moves. Not promised: edges around which U and D do not alternate stay, as where triangles lie on each other.
 
 use crate::connector::mesh::indexed::Indexed;
-use crate::connector::mesh::shells::Parts;
 use crate::connector::mesh::sides::{Side, Sides};
+use crate::disjoint::DisjointSets;
 use crate::tolerance;
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -31,7 +31,7 @@ pub(in crate::connector::mesh) fn part(mesh: &mut Indexed) -> usize {
         return 0;
     }
     let mut ends = vec![false; mesh.vertices.len()];
-    let mut fans = Parts::new(3 * mesh.triangles.len());
+    let mut fans = DisjointSets::new(3 * mesh.triangles.len());
     let mut parted = 0;
     for sides in sides.edges() {
         if sides.len() == 2 {
@@ -58,7 +58,7 @@ pub(in crate::connector::mesh) fn part(mesh: &mut Indexed) -> usize {
             if !ends.get(corner).copied().unwrap_or_default() {
                 continue;
             }
-            let fan = fans.root((3 * k + slot) as u32) as usize;
+            let fan = fans.find((3 * k + slot) as u32) as usize;
             if given[fan] == u32::MAX {
                 given[fan] = if owner[corner] == u32::MAX {
                     owner[corner] = fan as u32;
@@ -80,7 +80,7 @@ pub(in crate::connector::mesh) fn part(mesh: &mut Indexed) -> usize {
 }
 
 /// The triangles on either side of an edge are of one fan at both of its ends.
-fn join(fans: &mut Parts, mesh: &Indexed, a: Side, b: Side) {
+fn join(fans: &mut DisjointSets, mesh: &Indexed, a: Side, b: Side) {
     for end in a.edge {
         let slot = |side: Side| {
             let t = mesh.triangles[side.triangle as usize];

@@ -12,8 +12,8 @@
 //! Not promised: where three patches meet along a rim, as over a blind hole, any two of them bound a solid, and the mesh is refused.
 
 use crate::connector::mesh::indexed::Indexed;
-use crate::connector::mesh::shells::Parts;
 use crate::connector::mesh::sides::Sides;
+use crate::disjoint::DisjointSets;
 use std::collections::BTreeMap;
 
 /// Takes lids away; how many triangles they had.
@@ -21,7 +21,7 @@ pub(super) fn drop(mesh: &mut Indexed, sides: &Sides) -> usize {
     if sides.edges().all(|sides| sides.len() != 3) {
         return 0;
     }
-    let mut patches = Parts::new(mesh.triangles.len());
+    let mut patches = DisjointSets::new(mesh.triangles.len());
     for sides in sides.edges() {
         if let [a, b] = sides {
             patches.join(a.triangle, b.triangle);
@@ -30,7 +30,7 @@ pub(super) fn drop(mesh: &mut Indexed, sides: &Sides) -> usize {
     // Of each patch on a border the patch that it lies on; `None` where there is no such, or more than one.
     let mut bodies: BTreeMap<u32, Option<u32>> = BTreeMap::new();
     for sides in sides.edges().filter(|sides| sides.len() != 2) {
-        let around: Vec<u32> = sides.iter().map(|side| patches.root(side.triangle)).collect();
+        let around: Vec<u32> = sides.iter().map(|side| patches.find(side.triangle)).collect();
         for patch in &around {
             let others: Vec<u32> = around.iter().copied().filter(|other| other != patch).collect();
             let body = match others[..] {
@@ -44,7 +44,7 @@ pub(super) fn drop(mesh: &mut Indexed, sides: &Sides) -> usize {
         }
     }
     let stays: Vec<bool> = (0..mesh.triangles.len() as u32)
-        .map(|k| bodies.get(&patches.root(k)).copied().flatten().is_none())
+        .map(|k| bodies.get(&patches.find(k)).copied().flatten().is_none())
         .collect();
     mesh.retain(|k| stays[k])
 }

@@ -32,7 +32,6 @@ mod verify;
 use super::indexed::Indexed;
 use super::polygons;
 use super::repair::part_crowded;
-use super::shells::Parts;
 use super::{Place, Point, Start};
 use crate::connector::{Surface, SurfaceError};
 use crate::exec::{Cancelled, Exec};
@@ -120,7 +119,7 @@ fn attempt(surfaces: &[Surface], w: f64, exec: &Exec) -> Result<Vec<Surface>, Un
     let mut model = Model::of(surfaces, w);
     let left = overlay::left(&mut model, exec)?;
     let mut clusters = left.joined;
-    let roots: Vec<u32> = (0..surfaces.len() as u32).map(|solid| clusters.root(solid)).collect();
+    let roots: Vec<u32> = (0..surfaces.len() as u32).map(|solid| clusters.find(solid)).collect();
     let is_alone = |solid: u32| roots.iter().filter(|root| **root == roots[solid as usize]).count() == 1;
     let cluster = |solid: u32| (!is_alone(solid)).then(|| roots[solid as usize]);
     let stitched = stitch::stitched(&mut model, left.loops, cluster)?;

@@ -3,10 +3,11 @@
 //! Plane by plane, in the two coordinates that are not the largest of its normal, on a lattice of 2⁻⁵⁰ of the largest coordinate, so that a corner has the same two
 //! numbers wherever they are used. Areas that are narrower than w are the rounding of faces that abut: such a solid takes nothing away.
 
+use super::UnionProblem;
 use super::planes::Model;
 use super::section::Cutter;
-use super::{Parts, UnionProblem};
 use crate::connector::mesh::tree::overlap;
+use crate::disjoint::DisjointSets;
 use crate::exec::Exec;
 use glam::DVec3;
 use i_overlay::core::fill_rule::FillRule;
@@ -24,7 +25,7 @@ pub(super) struct Left {
     /// Of every facet its loops, interior on the left seen from outside; of those that lost nothing, its corners.
     pub(super) loops: Vec<Vec<Vec<u32>>>,
     /// Solids that share area or volume.
-    pub(super) joined: Parts,
+    pub(super) joined: DisjointSets,
 }
 
 /// Takes from every facet what others cover.
@@ -33,7 +34,7 @@ pub(super) fn left(model: &mut Model, exec: &Exec) -> Result<Left, UnionProblem>
         if facet.corners.is_empty() { Vec::new() } else { vec![facet.corners.clone()] }
     };
     let mut loops: Vec<Vec<Vec<u32>>> = model.facets.iter().map(whole).collect();
-    let mut joined = Parts::new(model.boxes.len());
+    let mut joined = DisjointSets::new(model.boxes.len());
     for plane in 0..model.planes.len() as u32 {
         exec.check()?;
         let mut sheet = Sheet::of(model, plane);
