@@ -155,7 +155,7 @@ fn no_message_shows_a_path_as_it_is() {
         ("catchment-report/src/compare.rs", 1),
         ("catchment-study/src/sweep/mod.rs", 1),
         ("catchment-cli/src/command/compare.rs", 1),
-        ("catchment-cli/src/command/export.rs", 1),
+        ("catchment-cli/src/command/export/mod.rs", 1),
     ];
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     for file in of(&[&LIBRARY[..], &["catchment-cli", "catchment-systems", "catchment-validation"]].concat())
