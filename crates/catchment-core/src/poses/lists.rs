@@ -55,8 +55,8 @@ pub fn parse_counts(text: &str, design: &Design) -> Result<[Option<usize>; 5], F
 ///
 /// # Examples
 /// ```
-/// # fn main() -> Result<(), catchment::design::Findings> {
-/// let angles = catchment::poses::parse_angles("0..45:2.25 deg")?;
+/// # fn main() -> Result<(), catchment_core::design::Findings> {
+/// let angles = catchment_core::poses::parse_angles("0..45:2.25 deg")?;
 /// assert_eq!((angles.len(), angles[20]), (21, 45f64.to_radians()));
 /// # Ok(())
 /// # }

@@ -36,12 +36,12 @@ pub(super) struct Trials<'a> {
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use catchment::design::read;
-/// use catchment::exec::Exec;
-/// use catchment::pose::PoseError;
-/// use catchment::poses::{Circumstance, Dynamics, Law};
-/// use catchment::problem::Problem;
-/// use catchment::study::chance::{self, Question, Settings};
+/// use catchment_core::design::read;
+/// use catchment_core::exec::Exec;
+/// use catchment_core::pose::PoseError;
+/// use catchment_core::poses::{Circumstance, Dynamics, Law};
+/// use catchment_core::problem::Problem;
+/// use catchment_study::chance::{self, Question, Settings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;

@@ -160,7 +160,7 @@ impl PoseChance {
 ///
 /// # Examples
 /// ```
-/// # use catchment::study::chance::majority_of_three;
+/// # use catchment_study::chance::majority_of_three;
 /// assert!((majority_of_three(0.0008) - 1.92e-6).abs() < 2e-9);
 /// ```
 pub fn majority_of_three(single: f64) -> f64 {

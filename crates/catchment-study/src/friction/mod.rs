@@ -159,10 +159,10 @@ struct Way {
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use catchment::design::read;
-/// use catchment::exec::Exec;
-/// use catchment::problem::Problem;
-/// use catchment::study::friction::{self, Settings};
+/// use catchment_core::design::read;
+/// use catchment_core::exec::Exec;
+/// use catchment_core::problem::Problem;
+/// use catchment_study::friction::{self, Settings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.1\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;

@@ -165,10 +165,10 @@ pub enum HoldError {
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use catchment::design::read;
-/// use catchment::exec::Exec;
-/// use catchment::problem::Problem;
-/// use catchment::study::hold::{self, Settings};
+/// use catchment_core::design::read;
+/// use catchment_core::exec::Exec;
+/// use catchment_core::problem::Problem;
+/// use catchment_study::hold::{self, Settings};
 ///
 /// // Flanks of slope 2 AR.
 /// let text = "[connector]\nfamily = \"v-face\"\naspect_ratio = 0.5\n[alignment]\nrotation_length = 1.0\n";

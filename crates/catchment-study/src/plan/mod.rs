@@ -212,11 +212,11 @@ const STAGE: &str = "motions";
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use catchment::design::read;
-/// use catchment::exec::Exec;
-/// use catchment::pose::PoseError;
-/// use catchment::problem::Problem;
-/// use catchment::study::plan::{self, Pattern, Settings};
+/// use catchment_core::design::read;
+/// use catchment_core::exec::Exec;
+/// use catchment_core::pose::PoseError;
+/// use catchment_core::problem::Problem;
+/// use catchment_study::plan::{self, Pattern, Settings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;

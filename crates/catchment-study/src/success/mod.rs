@@ -132,12 +132,12 @@ const PER_SAMPLE: usize = 2;
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use catchment::design::read;
-/// use catchment::exec::Exec;
-/// use catchment::pose::PoseError;
-/// use catchment::poses::{Robot, Spread};
-/// use catchment::problem::Problem;
-/// use catchment::study::success::{self, Settings};
+/// use catchment_core::design::read;
+/// use catchment_core::exec::Exec;
+/// use catchment_core::pose::PoseError;
+/// use catchment_core::poses::{Robot, Spread};
+/// use catchment_core::problem::Problem;
+/// use catchment_study::success::{self, Settings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nfree = [\"x\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;

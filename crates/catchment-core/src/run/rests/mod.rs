@@ -106,10 +106,10 @@ const THERE: f64 = 0.1;
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use catchment::design::read;
-/// use catchment::exec::Exec;
-/// use catchment::problem::Problem;
-/// use catchment::run::rests::{self, Settings};
+/// use catchment_core::design::read;
+/// use catchment_core::exec::Exec;
+/// use catchment_core::problem::Problem;
+/// use catchment_core::run::rests::{self, Settings};
 ///
 /// let text = "[connector]\nfamily = \"v-face\"\n[alignment]\nrotation_length = 1.0\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;

@@ -268,10 +268,10 @@ const OF_WINDOW: f64 = 0.4;
 /// # Examples
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use catchment::design::read;
-/// use catchment::exec::Exec;
-/// use catchment::problem::Problem;
-/// use catchment::run::window::{self, Settings};
+/// use catchment_core::design::read;
+/// use catchment_core::exec::Exec;
+/// use catchment_core::problem::Problem;
+/// use catchment_core::run::window::{self, Settings};
 ///
 /// let text = "[connector]\nfamily = \"pyramid\"\n[alignment]\nfree = [\"x\", \"y\"]\n";
 /// let problem = Problem::of(read(text, ".".as_ref())?.design)?;

@@ -3,9 +3,9 @@
 //! Public so that a picture of something else looks like those of this crate:
 //!
 //! ```
-//! use catchment::report::figure::Picture;
-//! use catchment::report::figure::draw::axis::{Frame, Scale};
-//! use catchment::report::figure::draw::svg::{Rect, Svg};
+//! use catchment_report::figure::Picture;
+//! use catchment_report::figure::draw::axis::{Frame, Scale};
+//! use catchment_report::figure::draw::svg::{Rect, Svg};
 //!
 //! let mut svg = Svg::new(300.0, 240.0);
 //! let rect = Rect { x: 60.0, y: 20.0, w: 220.0, h: 160.0 };
