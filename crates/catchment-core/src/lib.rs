@@ -4,7 +4,8 @@
 //! design ─▶ xml ─▶ poses ─▶ connector ─▶ contact ─▶ problem ─▶ landscape ─▶ acceptance ─▶ method ─▶ merit ─▶ run
 //! ```
 //!
-//! Lengths are in D, the connector's width; angles are in radians. Nothing here asks the system for anything, but through [`exec`].
+//! Lengths are in D, the connector's width; angles are in radians. What asks the system for time, threads, memory, files or
+//! a process is listed with its reason in `tests/sealed.rs`.
 
 pub mod acceptance;
 pub mod advice;

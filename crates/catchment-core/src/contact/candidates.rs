@@ -21,8 +21,7 @@ use super::Pair;
 use super::element::{Element, Features, Meeting};
 use super::plan::Plan;
 use super::shape::{INSIDE, Ridge, Shape};
-use crate::tolerance;
-use crate::tolerance::PARALLEL;
+use crate::tolerance::{self, PARALLEL};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Sine of the angle by which a feature may fail to support a normal and still count, at least: rounding.
@@ -340,6 +339,7 @@ impl EdgesAt<'_> {
         let sign = if up && !(down && lacks(-1.0) < lacks(1.0)) { 1.0 } else { -1.0 };
         let across = fixed.along.cross(self.w);
         let length = across.length();
+        // Parallel edges have no normal of their own: their ends stand for them.
         (length > PARALLEL && lacks(sign) <= slack * length).then(|| across / (sign * length))
     }
 }

@@ -14,9 +14,9 @@
 //! one mated pose to align with, and the design has to say what counts.
 
 use super::Pair;
+use super::display_unit::{DisplayUnit, number};
 use super::play::{Play, directions, play_on, unit};
 use super::side_by_side::{self, SideBySide};
-use super::told::{Told, number};
 use crate::design::Alignment;
 use crate::exec::Exec;
 use crate::pose::{Dof, DofSet, PoseError};
@@ -101,13 +101,13 @@ impl std::error::Error for MatedProblem {}
 
 impl fmt::Display for MatedProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.told(Told::IN_D))
+        f.write_str(&self.told(DisplayUnit::IN_D))
     }
 }
 
 impl MatedProblem {
     /// What is wrong, as a sentence.
-    pub fn told(&self, told: Told) -> String {
+    pub fn told(&self, told: DisplayUnit) -> String {
         match self {
             Self::Collision { overlap } => format!(
                 "in the aligned pose the halves overlap by {} along the approach: check face_height, mount, and that both halves are drawn \
@@ -168,7 +168,7 @@ impl MatedProblem {
     }
 
     /// What helps.
-    pub(crate) fn help(&self, told: Told) -> Option<String> {
+    pub(crate) fn help(&self, told: DisplayUnit) -> Option<String> {
         match self {
             Self::Free { dof, .. } => {
                 let name = dof.name();
@@ -231,7 +231,7 @@ pub(crate) struct About {
 
 impl Fall {
     /// What is wrong, as a sentence.
-    pub fn told(&self, told: Told) -> String {
+    pub fn told(&self, told: DisplayUnit) -> String {
         let let_go = match self.from {
             from if from == PoseError::default() => "a half let go without any error".to_owned(),
             from => format!("a half let go with an error of {}", told.error(&from)),
@@ -448,7 +448,7 @@ mod tests {
         };
         assert_eq!(across, DVec2::NEG_Y);
         assert!((apart - 0.4).abs() < 1e-15);
-        let help = found([0.0, 0.4])[0].help(Told::IN_D).unwrap();
+        let help = found([0.0, 0.4])[0].help(DisplayUnit::IN_D).unwrap();
         assert!(help.contains("by 0.4 D along +y"), "{help}");
         assert!(!found([-0.4, 0.0]).iter().any(|problem| matches!(problem, MatedProblem::SideBySide(_))));
         // A hundredth of a millimetre of 50 is an area.

@@ -20,6 +20,7 @@ pub mod brute;
 mod candidates;
 mod cone;
 mod crease;
+pub mod display_unit;
 mod element;
 mod envelope;
 pub mod face;
@@ -44,7 +45,6 @@ mod shape;
 mod side_by_side;
 #[cfg(test)]
 mod tests;
-pub mod told;
 mod tree;
 mod turned;
 mod walls;

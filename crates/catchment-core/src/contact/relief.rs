@@ -13,8 +13,8 @@
 //! [`in_the_way`] says where that is.
 
 use super::Lattice;
+use super::display_unit::DisplayUnit;
 use super::raster::fill_convex;
-use super::told::Told;
 use crate::connector::{Half, Side};
 use crate::tolerance;
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
@@ -199,7 +199,7 @@ pub fn in_the_way(top: &Relief, bottom: &Relief, moved: [i32; 2], cell: f64) -> 
 }
 
 /// The same in words, with both places as they are told.
-pub fn in_words(found: &InTheWay, at: &[String; 2], told: Told) -> String {
+pub fn in_words(found: &InTheWay, at: &[String; 2], told: DisplayUnit) -> String {
     let InTheWay { side, deeper, .. } = found;
     let (whose, [fixed, moving]) = (if *side == Side::Fixed { "fixed" } else { "moving" }, at);
     format!(

@@ -2,8 +2,8 @@
 
 use super::{Problem, ProblemError, measure, misfit, places};
 use crate::connector::Connector;
+use crate::contact::display_unit::DisplayUnit;
 use crate::contact::mated::{self, MatedProblem};
-use crate::contact::told::Told;
 use crate::contact::{Pair, face, settle};
 use crate::design::{
     Complaint, ConnectorSpec, Design, FilesInMemory, Finding, Findings, SourceText, Sources, Width, load,
@@ -192,7 +192,7 @@ impl Draft {
 
     /// What is wrong with the geometry, in its places.
     pub(super) fn unbuilt(self, problems: &[crate::connector::Problem]) -> Findings {
-        let list = places::of_geometry(problems, Told::of(&self.design))
+        let list = places::of_geometry(problems, DisplayUnit::of(&self.design))
             .into_iter()
             .map(|(place, message, help)| self.finding(&place, message, help))
             .collect();
@@ -230,7 +230,7 @@ impl Draft {
 
     /// Refused for its mated pose; what helps beside what the problems say themselves stands with the first.
     pub(super) fn unmated(self, problems: &[MatedProblem], mut advice: Option<String>) -> Findings {
-        let told = Told::of(&self.design);
+        let told = DisplayUnit::of(&self.design);
         let finding = |problem: &MatedProblem| {
             let help: Vec<String> = problem.help(told).into_iter().chain(advice.take()).collect();
             let help = (!help.is_empty()).then(|| help.join("; "));

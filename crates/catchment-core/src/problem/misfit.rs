@@ -12,9 +12,9 @@
 //! Not promised: that the place is the only one in the way, or that halves which fit mirrored were meant to.
 
 use crate::connector::{Connector, Half, Side};
+use crate::contact::display_unit::{DisplayUnit, number};
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem, sinking};
 use crate::contact::relief::{self, Relief};
-use crate::contact::told::{Told, number};
 use crate::contact::{Pair, face, settle};
 use crate::design::{ConnectorSpec, Design};
 use glam::{DMat3, DVec2, DVec3};
@@ -69,7 +69,7 @@ fn settles(pair: &Pair, design: &Design, problem: &MatedProblem) -> Option<Strin
     if own.settle || *off > NEAR {
         return None;
     }
-    let rest = Told::of(design).error(&settle::rest(pair)?);
+    let rest = DisplayUnit::of(design).error(&settle::rest(pair)?);
     Some(format!(
         "; released there they come to rest at {rest}: settle = true in [connector] takes that pose as mated"
     ))
@@ -89,7 +89,7 @@ fn narrow(connector: &Connector, design: &Design) -> Option<String> {
     // The relief of the moving half is of the half where its face centre is the origin.
     let at = [Side::Fixed, Side::Moving]
         .map(|side| place(design, connector.origin.drawn(side, found.at[side as usize])));
-    Some(relief::in_words(&found, &at, Told::of(design)))
+    Some(relief::in_words(&found, &at, DisplayUnit::of(design)))
 }
 
 /// Where the halves first touch without any error, and how far above where they are drawn.
@@ -104,7 +104,7 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
     let from_face = contact.point - DVec3::new(0.0, 0.0, height + pair.alignment.center_of_rotation);
     let [fixed, moving] = [(Side::Fixed, contact.point), (Side::Moving, from_face)]
         .map(|(side, point)| place(design, connector.origin.drawn(side, point)));
-    let told = Told::of(design);
+    let told = DisplayUnit::of(design);
     let off = above.map_or_else(String::new, |above| {
         let way = if above > 0.0 { "above" } else { "below" };
         format!(", {} {way} where they are drawn", told.length(above.abs()))
@@ -116,7 +116,7 @@ fn touching(connector: &Connector, pair: &Pair, design: &Design, above: Option<f
 
 /// How far each half reaches in plan view.
 fn beside(connector: &Connector, design: &Design) -> String {
-    let Told { scale, unit } = Told::of(design);
+    let DisplayUnit { scale, unit } = DisplayUnit::of(design);
     let reach = |half: &Half| {
         let (low, high) = half.bounds();
         let [a, b, c, d] = [low.x, high.x, low.y, high.y].map(|x| number(scale * x));
@@ -150,7 +150,7 @@ fn fits_mirrored(connector: &Connector, pair: &Pair, problem: &MatedProblem) -> 
 }
 
 fn place(design: &Design, point: DVec3) -> String {
-    let Told { scale, unit } = Told::of(design);
+    let DisplayUnit { scale, unit } = DisplayUnit::of(design);
     let [x, y, z] = (point * scale).to_array().map(number);
     format!("({x}, {y}, {z}) {unit}")
 }

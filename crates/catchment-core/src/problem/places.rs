@@ -1,8 +1,8 @@
 //! Which key of a design file a complaint of a later room is about.
 
 use crate::connector::{MeshProblem, PartError, Problem, Side};
+use crate::contact::display_unit::{DisplayUnit, number};
 use crate::contact::mated::MatedProblem;
-use crate::contact::told::{Told, number};
 use crate::design::{Complaint, Finding, Findings, keys};
 use std::mem::discriminant;
 
@@ -31,7 +31,7 @@ pub(super) const fn of_mated(problem: &MatedProblem) -> &'static str {
 }
 
 /// Key, message and advice of geometric problems; those that say the same of one mesh are one, with the others as advice.
-pub(super) fn of_geometry(problems: &[Problem], told: Told) -> Vec<(String, String, Option<String>)> {
+pub(super) fn of_geometry(problems: &[Problem], told: DisplayUnit) -> Vec<(String, String, Option<String>)> {
     problems
         .chunk_by(same_kind)
         .map(|kind| (key_of(&kind[0]), message(&kind[0], told), likewise(&kind[1..])))
@@ -39,7 +39,7 @@ pub(super) fn of_geometry(problems: &[Problem], told: Told) -> Vec<(String, Stri
 }
 
 /// A problem as a sentence: a size that makes no sense in the unit of the design as well.
-fn message(problem: &Problem, told: Told) -> String {
+fn message(problem: &Problem, told: DisplayUnit) -> String {
     let text = problem.to_string();
     let (Problem::Mesh { error, .. }
     | Problem::Part { error: PartError::Mesh { error, .. }, .. }
@@ -48,7 +48,7 @@ fn message(problem: &Problem, told: Told) -> String {
         return text;
     };
     match error {
-        MeshProblem::Unit { width } if told != Told::IN_D => {
+        MeshProblem::Unit { width } if told != DisplayUnit::IN_D => {
             let size = format!(
                 "the half is {} wide, {} D; a connector's half is about 1 D: check the mesh's unit and the design's width",
                 told.length(*width),
@@ -63,7 +63,7 @@ fn message(problem: &Problem, told: Told) -> String {
 /// Geometric problems of halves that no file describes.
 pub fn findings(problems: &[Problem]) -> Findings {
     let finding = |(_, message, help)| Finding::new(message, help);
-    let list = of_geometry(problems, Told::IN_D).into_iter().map(finding).collect();
+    let list = of_geometry(problems, DisplayUnit::IN_D).into_iter().map(finding).collect();
     Findings { source: None, list, omitted: 0 }
 }
 

@@ -8,8 +8,8 @@
 //! Not promised: the poses are drawn evenly from the accepted set, not from the errors that a robot makes. Lengths in D, angles in radians.
 
 use crate::acceptance::{Acceptance, Domain, Outcome, Stream, Warning};
+use crate::contact::display_unit::DisplayUnit;
 use crate::contact::mated::{CONTACT_TOLERANCE, MatedProblem};
-use crate::contact::told::Told;
 use crate::contact::{Pair, Play, Seat, play};
 use crate::design::{ConnectorSpec, Findings};
 use crate::exec::{Cancelled, Exec};
@@ -120,7 +120,7 @@ impl Seating {
         let docked = &problem.alignment().docked;
         let far =
             self.residual.iter().filter(|residual| residual.most > 1.01 * docked.most_play(residual.axis));
-        let told = Told::of(problem.design());
+        let told = DisplayUnit::of(problem.design());
         let far = far.map(|residual| Warning::Note {
             text: format!(
                 "docked halves rest up to {} off in {}: say in [docked] how much of that counts",
@@ -231,7 +231,7 @@ impl Problem {
 
     /// A doubt as a sentence; where the mated pose does not hold, with the distance to where the half comes to rest and the remedy.
     fn sentence(&self, doubt: &MatedProblem) -> String {
-        let told = Told::of(self.design());
+        let told = DisplayUnit::of(self.design());
         let said = doubt.told(told);
         if !is_unstable(doubt) {
             return said;
@@ -268,7 +268,7 @@ impl Problem {
     /// That halves which are a little off come to rest below the seat, if they do.
     fn fallen(&self) -> Option<String> {
         let fall = descent::fall(self.pair())?;
-        let told = Told::of(self.design());
+        let told = DisplayUnit::of(self.design());
         Some(format!(
             "{}: draw the halves so that they are mated where they rest, or lock the degree of freedom in which they tip",
             fall.told(told)

@@ -2,7 +2,7 @@
 
 use super::judge::{Judged, Seat};
 use super::way::Lie;
-use catchment_core::contact::told::{Told, number};
+use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::design::LengthUnit;
 use catchment_core::pose::PoseError;
 use std::fmt;
@@ -81,7 +81,7 @@ pub fn shown_length(value: f64, unit: LengthUnit) -> String {
 }
 
 /// A candidate as a person sees it: lengths times `unit` are in the unit of the design.
-pub(super) fn candidate(judged: &Judged, unit: f64, told: Told) -> Candidate {
+pub(super) fn candidate(judged: &Judged, unit: f64, told: DisplayUnit) -> Candidate {
     let Judged { lie, width, climb, shared, seat, offset, sunk, class, .. } = judged;
     Candidate {
         lie: *lie,

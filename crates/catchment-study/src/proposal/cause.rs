@@ -13,7 +13,7 @@ use super::sink::{self, Drawn, Grain, Triangles, together};
 use super::{PartFile, Settings, Way};
 use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
-use catchment_core::contact::told::{Told, number};
+use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::design::LengthUnit;
 use catchment_core::disjoint::DisjointSets;
 use glam::DVec3;
@@ -59,7 +59,7 @@ pub(super) fn of(
     parts: [&Triangles; 2],
     looks: &[(Way, Drawn)],
     grain: Grain,
-    told: Told,
+    told: DisplayUnit,
 ) -> (String, Option<Advice>) {
     let text = words(parts, looks, grain, told);
     let stops = |drawn: &Drawn| matches!(drawn, Drawn::Flat { .. } | Drawn::Passes);
@@ -70,7 +70,7 @@ pub(super) fn of(
 }
 
 /// The cause in words.
-fn words(parts: [&Triangles; 2], looks: &[(Way, Drawn)], grain: Grain, told: Told) -> String {
+fn words(parts: [&Triangles; 2], looks: &[(Way, Drawn)], grain: Grain, told: DisplayUnit) -> String {
     if let Some((way, _)) = looks.iter().find(|(_, drawn)| matches!(drawn, Drawn::Holds(_))) {
         return format!("as drawn, approach {way}: a lattice sees a seat that exact contact does not hold");
     }

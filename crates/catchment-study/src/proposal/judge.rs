@@ -12,9 +12,9 @@
 use super::sink::Sunk;
 use super::way::Lie;
 use catchment_core::connector::{Connector, Half};
+use catchment_core::contact::display_unit::DisplayUnit;
 use catchment_core::contact::mated::{MatedProblem, problems_on, round_half};
 use catchment_core::contact::relief::{broadest, plan_box};
-use catchment_core::contact::told::Told;
 use catchment_core::contact::{Pair, face, play, play_on, settle, width};
 use catchment_core::design::{Alignment, Drawn, HalfSpec, OwnSpec};
 use catchment_core::exec::Exec;
@@ -150,9 +150,9 @@ impl Judged {
     }
 
     /// Asks what it holds, which takes the longest.
-    pub(super) fn ask(&mut self, free: Option<DofSet>, told: Told, exec: &Exec) {
+    pub(super) fn ask(&mut self, free: Option<DofSet>, told: DisplayUnit, exec: &Exec) {
         if self.seat.is_none() {
-            let told = Told { scale: told.scale * self.width, ..told };
+            let told = DisplayUnit { scale: told.scale * self.width, ..told };
             self.seat = Some(seat(&self.connector, free, told, exec));
         }
     }
@@ -166,7 +166,7 @@ pub(super) fn judge(
     offset: DVec2,
     others: &[DVec2],
     sunk: Option<&Sunk>,
-    told: Told,
+    told: DisplayUnit,
 ) -> Result<Judged, Refusal> {
     const APART: &str = "they pass each other by";
     let turns = lie.turns();
@@ -328,7 +328,12 @@ fn symmetry(pair: &Pair) -> u32 {
 }
 
 /// What the seat holds, of what may be free.
-fn seat(connector: &Connector, wanted: Option<DofSet>, told: Told, exec: &Exec) -> Result<Seat, String> {
+fn seat(
+    connector: &Connector,
+    wanted: Option<DofSet>,
+    told: DisplayUnit,
+    exec: &Exec,
+) -> Result<Seat, String> {
     // What does not hold may hold where it cannot tip, or where it only shifts.
     let level = DofSet::EMPTY.with(Dof::X).with(Dof::Y);
     let sets = wanted.map_or_else(|| vec![DofSet::ALL, level.with(Dof::Yaw), level], |set| vec![set]);
@@ -343,7 +348,13 @@ fn seat(connector: &Connector, wanted: Option<DofSet>, told: Told, exec: &Exec) 
 }
 
 /// The same, starting from one set; `exactly` that one, but for a yaw that does not matter.
-fn held(connector: &Connector, free: DofSet, exactly: bool, told: Told, exec: &Exec) -> Result<Seat, String> {
+fn held(
+    connector: &Connector,
+    free: DofSet,
+    exactly: bool,
+    told: DisplayUnit,
+    exec: &Exec,
+) -> Result<Seat, String> {
     let mut alignment = Alignment::new(free, Mount::X);
     let pair = Pair::new(connector, &alignment);
     if round_half(&pair).is_some() {

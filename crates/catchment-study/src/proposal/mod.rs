@@ -39,8 +39,8 @@ use assembled::{docked, let_down};
 use candidate::{candidate, shown_unit};
 use catchment_core::advice::Advice;
 use catchment_core::connector::Half;
+use catchment_core::contact::display_unit::DisplayUnit;
 use catchment_core::contact::relief;
-use catchment_core::contact::told::Told;
 use catchment_core::design::LengthUnit;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::pose::DofSet;
@@ -180,11 +180,11 @@ struct Parts<'a> {
     grain: sink::Grain,
     settings: &'a Settings,
     /// How lengths are told.
-    told: Told,
+    told: DisplayUnit,
 }
 
 impl<'a> Parts<'a> {
-    fn new(halves: [&'a Half; 2], grain: sink::Grain, settings: &'a Settings, told: Told) -> Self {
+    fn new(halves: [&'a Half; 2], grain: sink::Grain, settings: &'a Settings, told: DisplayUnit) -> Self {
         let triangles = halves.map(sink::triangles);
         let diagonals = triangles.each_ref().map(sink::diagonals);
         Self { halves, triangles, diagonals, grain, settings, told }
@@ -232,7 +232,8 @@ pub fn propose(
     let unit = halves.each_ref().map(Half::middle_extent).into_iter().fold(f64::INFINITY, f64::min);
     let [fixed, moving] = halves.map(|half| half.scaled(1.0 / unit));
     let shown = shown_unit(design_unit(settings));
-    let told = Told { scale: unit * design_unit(settings).metres() / shown.metres(), unit: shown.symbol() };
+    let told =
+        DisplayUnit { scale: unit * design_unit(settings).metres() / shown.metres(), unit: shown.symbol() };
     let millimetre = 1e-3 / (unit * design_unit(settings).metres());
     let both = Parts::new([&fixed, &moving], sink::Grain::new(millimetre), settings, told);
     let pinned = settings.facing.iter().any(Option::is_some);
@@ -378,7 +379,7 @@ fn sunk(both: &Parts<'_>, exec: &Exec) -> Result<Vec<Result<Judged, Refusal>>, C
 fn facing(
     pair: [&Half; 2],
     settings: &Settings,
-    told: Told,
+    told: DisplayUnit,
     exec: &Exec,
 ) -> Result<Vec<Result<Judged, Refusal>>, Cancelled> {
     let facing = settings.facing.map(ways);
@@ -394,7 +395,12 @@ fn is_seat(judged: &Judged) -> bool {
 }
 
 /// The best first, and what the best and those nearly as good hold.
-fn rank(judged: &mut Vec<Judged>, free: Option<DofSet>, told: Told, exec: &Exec) -> Result<(), Cancelled> {
+fn rank(
+    judged: &mut Vec<Judged>,
+    free: Option<DofSet>,
+    told: DisplayUnit,
+    exec: &Exec,
+) -> Result<(), Cancelled> {
     let sort = |judged: &mut Vec<Judged>| judged.sort_by(|a, b| b.score().total_cmp(&a.score()));
     sort(judged);
     // Places that came to the same seat.

@@ -9,8 +9,8 @@
 
 use super::{Parts, Settings, is_seat, rank, search, sunk, ways};
 use catchment_core::connector::Half;
+use catchment_core::contact::display_unit::{DisplayUnit, number};
 use catchment_core::contact::relief;
-use catchment_core::contact::told::{Told, number};
 use catchment_core::exec::{Cancelled, Exec};
 use glam::DVec3;
 
@@ -47,7 +47,7 @@ pub(super) fn mirrored(both: &Parts<'_>, exec: &Exec) -> Result<Option<(f64, Str
 fn obstacle(
     pair: [&Half; 2],
     settings: &Settings,
-    told: Told,
+    told: DisplayUnit,
     exec: &Exec,
 ) -> Result<Option<String>, Cancelled> {
     let facing = settings.facing.map(ways);

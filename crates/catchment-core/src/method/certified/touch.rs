@@ -17,8 +17,7 @@ use super::body::{Facet, Meeting, Ridge};
 use super::interval::{Interval, Vector, cross, dot, perp, thin};
 use super::placed::{Bodies, Placed, PoseBox};
 use crate::pose::{Dof, ROTATIONS};
-use crate::tolerance;
-use crate::tolerance::PARALLEL;
+use crate::tolerance::{self, PARALLEL};
 use glam::DVec3;
 
 /// Sine by which normals of facets, which are rounded, may fail to be supported.
@@ -187,6 +186,7 @@ impl<'a> Touching<'a> {
         let w = self.over.turn(w);
         let turn = perp([Interval::thin(u.x), Interval::thin(u.y)], [w[0], w[1]]);
         let lengths = u.truncate().length() * its_length(&w);
+        // Parallel in plan view, as `contact::brute` has it.
         if turn.lo.abs().max(turn.up.abs()) <= PARALLEL * lengths {
             return None; // in plan view parallel all over the box: their ends speak for them
         }

@@ -1,4 +1,4 @@
-//! What lengths and errors are told in: the design's own unit and degrees.
+//! Lengths and pose errors in the design's own unit and degrees.
 //!
 //! ```text
 //!   0.2 D, 0.1 rad   ──▶   "10 mm", "5.73 deg"     where the design has a unit and D is 50 mm; "0.2 D" where it has none
@@ -7,21 +7,21 @@
 use crate::design::Design;
 use crate::pose::{Dof, PoseError};
 
-/// Digits of lengths that are told: a thousandth of their first.
+/// Digits of lengths that are shown: a thousandth of their first.
 const GRAIN: f64 = 1e-3;
-/// Errors below these are not told: what two decimals of a degree do not show, and a millionth of D.
+/// Errors below these are not shown: what two decimals of a degree do not show, and a millionth of D.
 const NONE: [f64; 2] = [1e-6, 0.005 / 180.0 * std::f64::consts::PI];
 
 /// How much of a unit D is, and the unit's name.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Told {
+pub struct DisplayUnit {
     /// D in the unit.
     pub scale: f64,
     /// Its symbol.
     pub unit: &'static str,
 }
 
-impl Told {
+impl DisplayUnit {
     /// Where nobody says a unit.
     pub(crate) const IN_D: Self = Self { scale: 1.0, unit: "D" };
 
@@ -72,11 +72,11 @@ mod tests {
 
     #[test]
     fn lengths_are_told_in_the_unit_and_angles_in_degrees() {
-        let told = Told { scale: 50.0, unit: "mm" };
+        let told = DisplayUnit { scale: 50.0, unit: "mm" };
         let error = PoseError { x: 0.2, roll: 1e-9, pitch: -1.0, ..PoseError::default() };
         assert_eq!(told.error(&error), "x 10 mm, pitch -57.30 deg");
         assert_eq!(told.error(&PoseError::default()), "no error");
-        assert_eq!(Told::IN_D.length(-0.012_345_6), "-0.01235 D");
+        assert_eq!(DisplayUnit::IN_D.length(-0.012_345_6), "-0.01235 D");
         assert_eq!([number(-0.0), number(1234.56), number(2.5e-4)], ["0", "1235", "0.00025"]);
     }
 }
