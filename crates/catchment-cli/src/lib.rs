@@ -15,6 +15,7 @@ mod exit;
 mod failure;
 mod method_args;
 mod output;
+mod result_args;
 mod setting;
 mod signals;
 mod source;

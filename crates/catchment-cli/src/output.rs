@@ -3,11 +3,12 @@
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
 use catchment::exec::Exec;
+use catchment::report::document::Style;
 use catchment::report::figure::Picture;
 use catchment::report::write::{self, WriteError};
 use catchment::terminal::{escaped, shown};
 use clap::{ArgGroup, Args};
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -225,6 +226,17 @@ pub(crate) fn what_was_written() -> String {
     } else {
         escaped(&format!("complete before that: {}", written.join(", ")))
     }
+}
+
+/// How text is laid out on stdout: as wide as the terminal, or as `COLUMNS` says, else in 80 columns; coloured on a terminal unless `NO_COLOR` is set.
+pub(crate) fn style() -> Style {
+    let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let is_terminal = io::stdout().is_terminal();
+    let width =
+        || terminal_size::terminal_size().filter(|_| is_terminal).map(|(width, _)| usize::from(width.0));
+    let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let default = Style::default();
+    Style { columns: said.or_else(width).unwrap_or(default.columns), colour: is_terminal && !is_plain }
 }
 
 /// Prints data. A reader that went away (`| head`) ends the command quietly.

@@ -14,6 +14,7 @@ pub mod connector;
 pub mod contact;
 pub mod design;
 pub mod disjoint;
+pub mod document;
 pub mod exec;
 pub mod landscape;
 pub mod merit;

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms in the order in which data walks through them.
-const ROOMS: [&str; 12] = [
+const ROOMS: [&str; 13] = [
     "polytope",
     "design",
     "xml",
@@ -20,6 +20,7 @@ const ROOMS: [&str; 12] = [
     "acceptance",
     "method",
     "merit",
+    "document",
     "run",
 ];
 /// Crates that come after these rooms.

@@ -17,6 +17,7 @@ pub type CheckReport = Envelope<CheckBody>;
 
 /// What a check has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CheckBody {
     /// The file.
     pub file: String,
@@ -40,6 +41,7 @@ pub struct CheckBody {
 
 /// Where what the answers are about is in the coordinates of the files.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrawingReport {
     /// In those of the fixed half.
     pub fixed: DrawnReport,
@@ -55,6 +57,7 @@ pub struct DrawingReport {
 /// Places in the coordinates in which a half is drawn: those of its mesh file; of parts, the unit of the design; of
 /// pieces and of triangles in memory, D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrawnReport {
     /// The face centre.
     pub face_center: [f64; 3],
@@ -93,6 +96,7 @@ impl DrawingReport {
 
 /// Something wrong with a design file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProblemReport {
     /// What is wrong.
     pub message: String,
@@ -104,6 +108,7 @@ pub struct ProblemReport {
 
 /// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Place {
     /// Its line, from 1.
     pub line: usize,

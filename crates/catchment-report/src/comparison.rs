@@ -23,6 +23,7 @@ fn columns<T: Display>(width: usize, values: impl Iterator<Item = T>) -> String 
 
 /// One of the two.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Compared {
     /// Where it comes from: the path that was given.
     pub source: String,
@@ -35,6 +36,7 @@ pub type ComparisonReport = Envelope<ComparisonBody>;
 
 /// What a comparison has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComparisonBody {
     /// The first.
     pub first: Compared,
@@ -150,6 +152,7 @@ impl ComparisonReport {
 
 /// One method of many.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Decided {
     /// Its name.
     pub method: &'static str,
@@ -161,6 +164,7 @@ pub struct Decided {
 
 /// What one method found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MethodResult {
     /// The measure of the accepted cells.
     pub sum_grid: f64,
@@ -189,6 +193,7 @@ impl MethodResult {
 
 /// How two methods agree.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Agreement {
     /// Share of the cells that both accept or both reject.
     pub agreement: f64,
@@ -207,6 +212,7 @@ pub type AgreementReport = Envelope<AgreementBody>;
 
 /// Every method of a design on one grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AgreementBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,

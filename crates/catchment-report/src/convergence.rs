@@ -13,6 +13,7 @@ pub type ConvergenceReport = Envelope<ConvergenceBody>;
 
 /// What refinement has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ConvergenceBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,

@@ -108,20 +108,39 @@ impl<T> DerefMut for Envelope<T> {
     }
 }
 
+/// The form of a report in JSON.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+struct Written<'a, T> {
+    /// Version of the layout.
+    schema: u32,
+    /// Version of the program that wrote it.
+    catchment: &'a Version,
+    /// Which report this is.
+    kind: &'static str,
+    #[serde(flatten)]
+    body: &'a T,
+    /// Warnings about the numbers: a code and a sentence each.
+    warnings: &'a [WarningReport],
+    /// Wall-clock time and threads; null where nothing is computed for long. Never compared.
+    timing: &'a Option<Timing>,
+}
+
 impl<T: Body + Serialize> Serialize for Envelope<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Written<'a, T> {
-            schema: u32,
-            catchment: &'a Version,
-            kind: &'static str,
-            #[serde(flatten)]
-            body: &'a T,
-            warnings: &'a [WarningReport],
-            timing: &'a Option<Timing>,
-        }
         let Self { catchment, body, warnings, timing } = self;
         Written { schema: SCHEMA, catchment, kind: T::KIND, body, warnings, timing }.serialize(serializer)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl<T: Body + schemars::JsonSchema + 'static> schemars::JsonSchema for Envelope<T> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        T::KIND.into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Written::<'static, T>::json_schema(generator)
     }
 }
 

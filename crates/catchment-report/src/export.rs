@@ -12,6 +12,7 @@ pub type ExportReport = Envelope<ExportBody>;
 
 /// What was exported.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExportBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,

@@ -11,6 +11,7 @@ pub type FacesReport = Envelope<FacesBody>;
 
 /// Designs side by side.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FacesBody {
     /// What each corrects along x, in the order given.
     pub faces: Vec<ZraaBody>,

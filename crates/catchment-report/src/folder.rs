@@ -139,7 +139,10 @@ impl StudyFolder<'_> {
         more: impl FnOnce(&Path) -> Result<(), SaveError>,
     ) -> Result<String, SaveError> {
         let drawn = if files.is_empty() { String::new() } else { format!(", {} as PNG and SVG", self.name) };
-        files.push((format!("{}.csv", self.name), super::text::csv(records)?));
+        let has_table = !records.is_empty();
+        if has_table {
+            files.push((format!("{}.csv", self.name), super::text::csv(records)?));
+        }
         write::folder(self.path, self.name, exec, |folder| -> Result<(), SaveError> {
             write_all(folder, &files, exec)?;
             more(folder)?;
@@ -147,7 +150,8 @@ impl StudyFolder<'_> {
             Ok(exec.check()?)
         })?;
         let (place, name) = (shown(self.path), self.name);
-        Ok(format!("wrote {place}: {REPORT}, {name}.csv{drawn}"))
+        let table = if has_table { format!(", {name}.csv") } else { String::new() };
+        Ok(format!("wrote {place}: {REPORT}{table}{drawn}"))
     }
 }
 

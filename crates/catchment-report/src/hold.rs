@@ -15,6 +15,7 @@ pub type HoldReport = Envelope<HoldBody>;
 
 /// What a half withstands: forces as shares of the preload, torques of the preload times D.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HoldBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -45,6 +46,7 @@ pub struct HoldBody {
 
 /// A point in which halves touch, in the world frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PointReport {
     /// Where, in D.
     pub point_d: [f64; 3],
@@ -54,6 +56,7 @@ pub struct PointReport {
 
 /// How much of a load is withstood.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WithstoodReport {
     /// Where the half can move that way alone, and up; null: any.
     pub guided: Option<f64>,
@@ -63,6 +66,7 @@ pub struct WithstoodReport {
 
 /// A force sideways.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SidewaysReport {
     /// From x towards y, in radians.
     pub direction_rad: f64,
@@ -74,6 +78,7 @@ pub struct SidewaysReport {
 
 /// A torque.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TorqueReport {
     /// The error whose axis it turns about.
     pub axis: Dof,
@@ -87,6 +92,7 @@ pub struct TorqueReport {
 
 /// The weakest directions; null where any force is withstood.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WeakestReport {
     /// Without friction, guided.
     pub smooth_guided: Option<SidewaysReport>,

@@ -14,6 +14,7 @@ pub type LeverReport = Envelope<LeverBody>;
 
 /// A first contact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeverBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -33,6 +34,7 @@ pub struct LeverBody {
 
 /// A contact of a corner with an edge. Places are x and z in the world frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeverFound {
     /// Whose corner it is.
     pub corner_of: Body,

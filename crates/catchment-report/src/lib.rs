@@ -30,16 +30,18 @@ mod check;
 pub mod compare;
 mod comparison;
 mod convergence;
+pub mod document;
 mod envelope;
 mod export;
 mod faces;
 #[cfg(feature = "figure")]
 pub mod figure;
 pub mod folder;
-mod friction;
 pub mod gltf;
 mod hold;
+mod html;
 mod jams;
+pub mod json_schema;
 mod lever;
 mod outcomes;
 #[cfg(feature = "page")]
@@ -69,6 +71,8 @@ pub mod write;
 pub mod zarr;
 mod zraa;
 
+use catchment_study::friction::Friction;
+
 pub use answer::{UnanswerableError, check_requirements};
 pub use cells::cells;
 #[cfg(feature = "drop")]
@@ -82,16 +86,16 @@ pub use comparison::{
     MethodResult,
 };
 pub use convergence::{ConvergenceBody, ConvergenceReport};
+pub use document::{OfDesign, ReportOf};
 pub use envelope::{Body, Envelope, OLDEST, SCHEMA};
 pub use export::{ExportBody, ExportReport};
 pub use faces::{FacesBody, FacesError, FacesReport};
-pub use friction::{FrictionBody, FrictionReport, KeptReport, RungReport, StickingReport, SticksReport};
 pub use hold::{
     HoldBody, HoldReport, PointReport, SidewaysReport, TorqueReport, WeakestReport, WithstoodReport,
 };
 pub use jams::{
-    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsBody, JamsFound, JamsReport,
-    PairReport, ShareReport, WayOutReport,
+    ContactReport, ExaminedReport, ExtentReport, JamReport, JamsBody, JamsFound, JamsReport, PairReport,
+    WayOutReport,
 };
 pub use lever::{LeverBody, LeverFound, LeverReport};
 pub use outcomes::{OutcomeRows, OutcomesReport};
@@ -125,3 +129,6 @@ pub use window::{
     WorstReport,
 };
 pub use zraa::{CatchReport, NilssonReport, ZraaBody, ZraaFound, ZraaReport};
+
+/// The effect of friction, with its head.
+pub type FrictionReport = ReportOf<Friction>;

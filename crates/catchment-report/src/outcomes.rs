@@ -138,17 +138,23 @@ fn record(cells: &[String]) -> Result<String, csv::Error> {
 
 /// The answer for programs; lengths in D, angles in radians.
 #[derive(Serialize)]
-struct Answer<'a> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct Answer<'a> {
+    /// The design, resolved: lengths in D, angles in radians.
     design: &'a Design,
+    /// Name of the method that decided.
     method: &'static str,
     /// Where the offsets of errors are measured, if not at the face centre.
     #[serde(skip_serializing_if = "Option::is_none")]
     offsets_at: Option<OffsetsAt>,
+    /// The method's settings, as they were used.
     settings: &'a serde_json::Value,
+    /// How many poses met each outcome.
     counts: BTreeMap<&'static str, usize>,
     /// How many poses were not finished, where it was stopped before all of them were.
     #[serde(skip_serializing_if = "Option::is_none")]
     missing: Option<usize>,
+    /// Every pose in the order of the table: its error, outcome, where it ends, how high, what touches there.
     poses: Vec<Row>,
 }
 
@@ -158,6 +164,7 @@ impl Body for Answer<'_> {
 
 /// One pose.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Row {
     /// Its number in the table, from 0, where others are missing.
     #[serde(skip_serializing_if = "Option::is_none")]

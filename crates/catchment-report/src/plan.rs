@@ -17,6 +17,7 @@ pub type PlanReport = Envelope<PlanBody>;
 
 /// What a plan has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlanBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -36,6 +37,7 @@ pub struct PlanBody {
 
 /// How many of what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlanCounts {
     /// Trials.
     pub trials: usize,
@@ -59,6 +61,7 @@ pub struct PlanCounts {
 
 /// A pose, in D and radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlanPointReport {
     /// The pose error.
     pub error: PoseError,
@@ -78,6 +81,7 @@ pub struct PlanPointReport {
 
 /// A trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlannedReport {
     /// From 1, in the order in which they are made.
     pub trial: usize,

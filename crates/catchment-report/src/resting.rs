@@ -1,15 +1,16 @@
 //! Poses and sizes of errors in words, and what is told of a place of rest, of jams and of all others: where it is, how it is held, what touches.
 
 use super::text::{significant, wrapped};
-use super::{ContactReport, ExaminedReport, ExtentReport, FeatureReport};
+use super::{ContactReport, ExaminedReport, ExtentReport};
 use catchment_core::design::Design;
 use catchment_core::method::descent::{Immobility, Order, Sticking};
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::run::jams::Firmness;
+use catchment_core::run::jams::{Firmness, NamedFeature};
 use serde::{Deserialize, Serialize};
 
 /// By which order a rest is held (Rimon and Burdick).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HeldReport {
     /// `first`, `second`, `neutral` or `unstable`.
     pub order: Order,
@@ -53,6 +54,7 @@ impl HeldReport {
 
 /// From which friction on a rest may stick, by Coulomb's law ([`catchment_core::method::descent::sticking()`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThresholdsReport {
     /// From this friction on forces exist that hold it, 0 where contacts alone do; null: at none.
     pub holds_from: Option<f64>,
@@ -260,7 +262,7 @@ impl<'a> Told<'a> {
         format!("{} {}", super::text::significant(value * self.scale()), self.unit())
     }
 
-    fn drawn(self, feature: &FeatureReport) -> String {
+    fn drawn(self, feature: &NamedFeature) -> String {
         let part = feature.part.map_or_else(String::new, |part| format!(" on part {part}"));
         format!("{}{part}", self.point(feature.drawn_d))
     }

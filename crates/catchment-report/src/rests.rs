@@ -6,9 +6,10 @@ use super::resting::{Told, friction_line, said};
 use super::schema::{Timing, WarningReport};
 use super::table::heading;
 use super::text::{grouped, line, number, row, tenths, tenths_between, wrapped};
-use super::{ContactReport, ExaminedReport, ExtentReport, ShareReport};
+use super::{ContactReport, ExaminedReport, ExtentReport};
 use catchment_core::acceptance::{Outcome, Warning};
 use catchment_core::design::Design;
+use catchment_core::document::Share;
 use catchment_core::pose::PoseError;
 use catchment_core::run::rests::{Place, Rests, Settings};
 use serde::Serialize;
@@ -19,6 +20,7 @@ pub type RestsReport = Envelope<RestsBody>;
 
 /// Where halves come to rest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RestsBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -27,16 +29,17 @@ pub struct RestsBody {
     /// Random poses of the error box that were followed.
     pub motions: usize,
     /// What became of them, by the names of outcomes.
-    pub outcomes: BTreeMap<Outcome, ShareReport>,
+    pub outcomes: BTreeMap<Outcome, Share>,
     /// The rests, the one with most of the poses first.
     pub rests: Vec<RestReport>,
 }
 
 /// A place of rest, or places alike.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RestReport {
     /// How many poses of the error box end here: its basin.
-    pub of_box: ShareReport,
+    pub of_box: Share,
     /// How many of them count as docked.
     pub docked: usize,
     /// The pose error of the rest in its middle.
@@ -76,7 +79,7 @@ impl RestReport {
         });
         let way = found.examined.and_then(|examined| examined.way_out);
         Self {
-            of_box: ShareReport::of(found.count, motions),
+            of_box: Share::of(found.count, motions),
             docked: place.docked,
             pose: found.pose,
             extent: extent.collect(),
@@ -143,7 +146,7 @@ impl RestsReport {
         }
         if self.rests.len() > SHOWN {
             let poses: usize = self.rests[SHOWN..].iter().map(|rest| rest.of_box.count).sum();
-            let share = ShareReport::of(poses, self.motions);
+            let share = Share::of(poses, self.motions);
             text.push('\n');
             let more = grouped(self.rests.len() - SHOWN);
             line(&mut text, &format!("  and {more} more, {} of the box together", tenths(share.share)));
@@ -228,7 +231,7 @@ impl RestsReport {
     }
 }
 
-fn with_interval(share: &ShareReport) -> String {
+fn with_interval(share: &Share) -> String {
     tenths_between(share.share, share.ci95)
 }
 

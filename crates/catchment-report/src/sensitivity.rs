@@ -13,6 +13,7 @@ pub type SensitivityReport = Envelope<SensitivityBody>;
 
 /// What a sensitivity has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SensitivityBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,

@@ -15,10 +15,12 @@ pub type SlicesReport = Envelope<SlicesBody>;
 
 /// What slices have to say; fields as in [`Report`](super::Report).
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SlicesBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
     /// What else changes the answer.
+    #[cfg_attr(feature = "schema", schemars(with = "serde_json::Value"))]
     pub settings: Settings,
     /// One per pair of errors.
     pub slices: Vec<SliceReport>,
@@ -32,6 +34,7 @@ impl Body for SlicesBody {
 
 /// One slice.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SliceReport {
     /// The two errors that vary.
     pub axes: Vec<Axis>,

@@ -14,6 +14,7 @@ pub type SweepReport = Envelope<SweepBody>;
 
 /// What a sweep has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SweepBody {
     /// The design as its file has it, resolved: lengths in D, angles in radians.
     pub design: Design,

@@ -24,6 +24,7 @@ pub type TraceReport = Envelope<TraceBody>;
 
 /// A path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TraceBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -45,6 +46,7 @@ pub struct TraceBody {
 
 /// One moment of a motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WaypointReport {
     /// Path length since the first of them, in the ρ-metric, in D.
     pub travelled_d: f64,
@@ -60,6 +62,7 @@ pub struct WaypointReport {
 
 /// A point where the halves touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TouchReport {
     /// Where, in the world frame, in D.
     pub point_d: [f64; 3],

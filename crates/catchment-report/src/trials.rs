@@ -14,6 +14,7 @@ pub type TrialsReport = Envelope<TrialsBody>;
 
 /// Trials beside the exact region.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TrialsBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -35,6 +36,7 @@ pub struct TrialsBody {
 
 /// A trial.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TrialReport {
     /// Offset in x, D.
     pub x: f64,

@@ -12,6 +12,7 @@ const MOST: usize = 64;
 
 /// A version: no other text can be one, so that a report from elsewhere brings none.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Version(String);
 
 /// A text that is no version.

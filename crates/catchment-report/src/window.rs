@@ -21,6 +21,7 @@ pub type WindowReport = Envelope<WindowBody>;
 
 /// What a window has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -33,6 +34,7 @@ pub struct WindowBody {
 
 /// A window beside other things: its half-widths by name, and what was found of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowSection {
     /// ± so much of every free error, by its name, in D and radians.
     #[serde(flatten)]
@@ -44,11 +46,13 @@ pub struct WindowSection {
 
 /// ± so much of every free error, in D and radians.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]
 pub struct HalfWidths(pub BTreeMap<Dof, f64>);
 
 /// What was found of a window.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowFound {
     /// How it was asked for.
     pub settings: Settings,
@@ -68,6 +72,7 @@ pub struct WindowFound {
 
 /// One error, in D or radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SideReport {
     /// Which.
     pub axis: Dof,
@@ -87,6 +92,7 @@ pub struct SideReport {
 
 /// A pose that does not dock.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WorstReport {
     /// The pose error.
     pub error: PoseError,
@@ -100,6 +106,7 @@ pub struct WorstReport {
 
 /// None of so many random poses failed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CertificateReport {
     /// How many.
     pub motions: usize,

@@ -12,6 +12,7 @@ pub type ZraaReport = Envelope<ZraaBody>;
 
 /// The zero-rotation area of acceptance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ZraaBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -23,6 +24,7 @@ pub struct ZraaBody {
 /// Offsets that are accepted, in D. Bounds of a circle are those of the round design that a polygon stands for, null
 /// where nothing is round.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum ZraaFound {
     /// One free translation.
@@ -63,6 +65,7 @@ pub enum ZraaFound {
 
 /// What one profile corrects to both sides, beside what any of its kind can.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NilssonReport {
     /// Whether both halves are alike.
     pub ungendered: bool,
@@ -80,6 +83,7 @@ pub struct NilssonReport {
 
 /// The moving half's minimum slides home until it stands over the fixed half's maximum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CatchReport {
     /// The offset where it does.
     pub offset_d: f64,

@@ -21,6 +21,7 @@ use serde::Serialize;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// Largest change that counts as stable: a share of the Sum, and a share of the error box's edge for ONAA.
     pub tolerance: f64,
@@ -57,6 +58,7 @@ impl Default for Settings {
 
 /// How one method fared.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sequence {
     /// Which.
     pub method: &'static str,
@@ -70,6 +72,7 @@ pub struct Sequence {
 
 /// An unbiased Sum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CorrectedSum {
     /// The estimate, Dᵃ·radᵇ.
     pub sum: f64,
@@ -81,6 +84,7 @@ pub struct CorrectedSum {
 
 /// Why a sequence ended.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum StopReason {
     /// Two refinements in a row changed little enough.
@@ -108,6 +112,7 @@ pub enum StopReason {
 
 /// What refinement showed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Convergence {
     /// What else changes the answer.
     pub settings: Settings,

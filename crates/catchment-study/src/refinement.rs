@@ -17,6 +17,7 @@ use serde::Serialize;
 
 /// What one method says at one resolution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Refinement {
     /// Cells per axis.
     pub resolution: usize,

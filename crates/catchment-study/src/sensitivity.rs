@@ -31,6 +31,7 @@ use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct Settings {
     /// Random poses; where nothing is said, three times as many as a run by descent draws: slopes need more of them.
@@ -74,6 +75,7 @@ impl Default for Settings {
 
 /// What is changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
     /// ρ, in D.
@@ -86,6 +88,7 @@ pub enum Parameter {
 
 /// How the Sum moves with one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Slope {
     /// Which.
     pub parameter: Parameter,
@@ -107,6 +110,7 @@ pub struct Slope {
 
 /// The Sum at one ρ.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AtRho {
     /// ρ, in D.
     pub rotation_length: f64,
@@ -118,6 +122,7 @@ pub struct AtRho {
 
 /// What moves the Sum of a design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sensitivity {
     /// What else changes the answer.
     pub settings: Settings,

@@ -30,6 +30,7 @@ use serde_json::{Map, Value, json};
 
 /// What changes the answer.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// What decides single poses.
     pub method: Method,
@@ -43,6 +44,7 @@ pub struct Settings {
 
 /// Trials at one resolution and time step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Round {
     /// Trials along every free translation.
     pub resolution: usize,

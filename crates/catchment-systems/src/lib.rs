@@ -19,3 +19,19 @@ pub mod compose;
 pub mod form;
 pub mod invert;
 pub mod latch;
+
+/// Adds the JSON schemas of all reports of systems to a generator.
+#[cfg(feature = "schema")]
+pub fn add_json_schemas(generator: &mut schemars::SchemaGenerator) {
+    catchment::report::json_schema::add!(
+        generator,
+        catalog::report::CatalogReport,
+        catalog::report::SystemReport,
+        catalog::report::ClassifyReport,
+        chain::report::ChainReport,
+        compose::ComposeReport,
+        invert::InvertReport,
+        latch::LatchReport,
+        latch::TableReport,
+    );
+}

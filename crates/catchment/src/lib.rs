@@ -112,8 +112,8 @@
 pub mod prelude;
 
 pub use catchment_core::{
-    acceptance, advice, budget, connector, contact, design, disjoint, exec, landscape, merit, method,
-    polytope, pose, poses, problem, run, suggest, terminal, tolerance, xml,
+    acceptance, advice, budget, connector, contact, design, disjoint, document, exec, landscape, merit,
+    method, polytope, pose, poses, problem, run, suggest, terminal, tolerance, xml,
 };
 pub use catchment_report as report;
 pub use catchment_study as study;

@@ -1,17 +1,14 @@
 //! `catchment friction`: what friction takes.
 
 use crate::args::DesignArgs;
-use crate::asked::AskedArgs;
 use crate::exec_args::ExecArgs;
 use crate::exit::ExitStatus;
 use crate::failure::Failure;
-use crate::output::FileArgs;
+use crate::result_args::{ResultArgs, study};
 use crate::setting::number;
-use catchment::report::schema::{Timing, WarningReport};
-use catchment::report::{FrictionReport, csv, figure};
-use catchment::study::friction::{Friction, FrictionError, Settings, run as follow};
+use catchment::report::figure;
+use catchment::study::friction::{FrictionError, Settings, run as follow};
 use clap::Args;
-use std::time::Instant;
 
 /// What friction takes: what docks at each, from which on poses no longer do, and what sticks first
 ///
@@ -24,8 +21,7 @@ use std::time::Instant;
     catchment friction design.toml --frictions 0.15,0.3 --motions 5000\n  \
     catchment friction design.toml -o friction.png\n  \
     catchment friction design.toml --require 'kept.p95.friction>=0.2'\n  \
-    catchment friction design.toml --json | jq '.curve[] | {friction, lost}'\n\n\
-    -o writes .png and .svg (pictures), .csv (a line per friction) and .json.")]
+    catchment friction design.toml --json | jq '.curve[] | {friction, lost}'")]
 pub(crate) struct FrictionArgs {
     #[command(flatten)]
     pub(super) design: DesignArgs,
@@ -39,33 +35,19 @@ pub(crate) struct FrictionArgs {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    asked: AskedArgs,
-    #[command(flatten)]
-    file: FileArgs,
+    result: ResultArgs,
     #[command(flatten)]
     exec: ExecArgs,
 }
 
 pub(crate) fn run(args: &FrictionArgs) -> Result<ExitStatus, Failure> {
-    let started = Instant::now();
-    let kind = args.file.kind(&["png", "svg", "csv", "json"])?;
-    let problem = args.design.problem()?;
-    let settings = args.settings();
-    args.asked.check(&FrictionReport::new(problem.design(), &Friction::form(&settings), Vec::new(), None))?;
-    let running = args.exec.start()?;
-    running.may_be_left();
-    let found = follow(&problem, &settings, &running.exec).map_err(refused)?;
-    let timing = Timing { total_s: started.elapsed().as_secs_f64(), threads: running.exec.threads() };
-    drop(running);
-    let doubts = problem.objections().iter().map(WarningReport::note).collect();
-    let report = FrictionReport::new(problem.design(), &found, doubts, Some(timing));
-    match kind {
-        Some(kind @ ("png" | "svg")) => args.file.draw(kind, &figure::friction(&report))?,
-        Some("csv") => args.file.write(&csv(&report.records())?)?,
-        Some(_) => args.file.write(report.to_json()?.as_bytes())?,
-        None => {}
-    }
-    args.asked.tell(&report, FrictionReport::table)
+    study(
+        &args.design,
+        &args.result,
+        &args.exec,
+        Some(|report, _| Ok(figure::friction(report))),
+        |problem, exec| follow(problem, &args.settings(), exec).map_err(refused),
+    )
 }
 
 impl FrictionArgs {

@@ -1,27 +1,8 @@
-//! The fields of every JSON that is printed: programs rely on them.
+//! The JSON that is printed, and its schema: programs rely on them.
 
 use super::{home, json};
+use catchment::report::json_schema;
 use serde_json::Value;
-use std::fmt::Write;
-
-/// The paths of all fields, in their order, those of a list once; `settings` are the methods' own.
-fn fields(value: &Value, path: &str, found: &mut Vec<String>) {
-    match value {
-        Value::Object(fields_here) => {
-            for (name, inner) in fields_here {
-                let path = format!("{path}.{name}");
-                if !found.contains(&path) {
-                    found.push(path.clone());
-                }
-                if name != "settings" {
-                    fields(inner, &path, found);
-                }
-            }
-        }
-        Value::Array(list) => list.iter().for_each(|inner| fields(inner, &format!("{path}[]"), found)),
-        _ => {}
-    }
-}
 
 #[test]
 fn every_json_has_one_head_and_its_fields() {
@@ -69,18 +50,68 @@ fn every_json_has_one_head_and_its_fields() {
         ("solids", &["solids", "v.toml", "--json"]),
         ("trials", &["zraa", "v.toml", "--beside", "descent", "--resolution", "4", "--json"]),
     ];
-    let mut told = String::new();
     for (kind, args) in calls {
         let report = json(home.path(), args);
         assert_eq!((&report["schema"], &report["kind"]), (&3.into(), &kind.into()));
         let names: Vec<&str> = report.as_object().unwrap().keys().map(String::as_str).collect();
         assert_eq!(names[..3], ["schema", "catchment", "kind"]);
         assert_eq!(names[names.len() - 2..], ["warnings", "timing"]);
-        let mut found = Vec::new();
-        fields(&report, "", &mut found);
-        writeln!(told, "{kind}\n  {}", found.join("\n  ")).unwrap();
+        let schema = json_schema::of_kind(kind).unwrap_or_else(|| panic!("no schema of {kind}"));
+        matches(&schema, &schema.of_kind(), &report, kind);
     }
-    insta::assert_snapshot!("fields", told);
+}
+
+/// Every field has a place in the schema, and a value of one of the types that stand there.
+fn matches(
+    schema: &catchment::run::ReportSchema<'static>,
+    here: &[&'static Value],
+    value: &Value,
+    path: &str,
+) {
+    let of = match value {
+        Value::Null => "null",
+        Value::Bool(_) => "boolean",
+        Value::Number(_) => "number",
+        Value::String(_) => "string",
+        Value::Array(_) => "array",
+        Value::Object(_) => "object",
+    };
+    let types = schema.types(here);
+    assert!(types.is_empty() || types.contains(&of), "{path} is {value}, the schema has {types:?}");
+    let below: Vec<(String, &Value)> = match value {
+        Value::Object(fields) => fields.iter().map(|(name, inner)| (name.clone(), inner)).collect(),
+        Value::Array(items) => items.iter().enumerate().map(|(k, inner)| (k.to_string(), inner)).collect(),
+        _ => Vec::new(),
+    };
+    for (name, inner) in below {
+        let path = format!("{path}.{name}");
+        let next = schema.step(here, &name);
+        assert!(!next.is_empty(), "the schema has no {path}");
+        matches(schema, &next, inner, &path);
+    }
+}
+
+/// What is derived from the types is what the repository holds.
+#[cfg(feature = "schema")]
+#[test]
+fn the_schema_is_up_to_date() {
+    let settings = schemars::generate::SchemaSettings::draft2020_12().for_serialize();
+    let mut generator = settings.into_generator();
+    json_schema::add_all(&mut generator);
+    catchment_systems::add_json_schemas(&mut generator);
+    let definitions = generator.take_definitions(true);
+    let schema = serde_json::json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Reports of catchment: a report of kind `window` matches #/$defs/window",
+        "$defs": definitions,
+    });
+    let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../catchment-report/reports.schema.json");
+    if std::env::var_os("UPDATE_SCHEMA").is_some() {
+        std::fs::write(path, &text).unwrap();
+    }
+    let is_same = std::fs::read_to_string(path).unwrap() == text;
+    assert!(is_same, "stale: UPDATE_SCHEMA=1 cargo test -p catchment-cli --all-features --test cli schema");
 }
 
 #[test]

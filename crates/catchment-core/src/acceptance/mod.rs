@@ -22,6 +22,7 @@ use std::fmt;
 
 /// What becomes of one pose error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[repr(u8)]
 pub enum Outcome {
@@ -52,6 +53,7 @@ impl Outcome {
 
 /// Why a pose did not dock, where that can be told from where it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Reason {
     /// Jammed: a layer rests on, or stands against, a layer of the other half that is not its partner.
@@ -75,6 +77,7 @@ impl Reason {
 
 /// Which pose errors were tried.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Domain {
     /// The centre of every cell of a grid.
@@ -134,6 +137,7 @@ impl Domain {
 
 /// A doubt about a result, carried inside the report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Warning {
     /// The accepted set reaches the border of the error box: part of it may lie outside.

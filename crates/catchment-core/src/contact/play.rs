@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// How far one error may be off at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Play {
     /// Which error.
     pub axis: Dof,

@@ -11,6 +11,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// The alignment problem of a pair of halves. Stored with every result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Alignment {
     /// Errors that occur, and that contact may correct. The others are locked: rotations at 0, translations
     /// at the COR.

@@ -7,6 +7,7 @@ use std::fmt::Write;
 
 /// What a mesh file, or a mesh given in memory, held.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MeshContent {
     /// SHA-256 of its bytes, 64 hexadecimal digits. Of triangles in memory: of their corners in order, as
     /// little-endian doubles, in D.
@@ -31,6 +32,7 @@ pub struct MeshContent {
 
 /// How curved faces became triangles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Meshed {
     /// How far the facets may be off, in D.
     pub deflection: f64,

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// What counts as docked. What it means for a pair of halves is [`crate::contact::Seat`]'s.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Docked {
     /// How far above the mated height a half may lie and be seated, in D.

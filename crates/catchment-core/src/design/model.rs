@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A checked design: lengths in D, angles in radians.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Design {
     /// What the person called it.
     pub name: String,
@@ -30,6 +31,7 @@ impl Design {
 
 /// A unit of length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum LengthUnit {
     /// Micrometre.
@@ -73,6 +75,7 @@ impl LengthUnit {
 
 /// Where the geometry comes from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[expect(clippy::large_enum_variant, reason = "a design has one")]
 pub enum ConnectorSpec {
@@ -84,6 +87,7 @@ pub enum ConnectorSpec {
 
 /// The person's own halves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OwnSpec {
     /// z of the face centre in the frame of each half that faces +z, in D; `None`: found from where they first touch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -111,6 +115,7 @@ pub struct OwnSpec {
 
 /// Where D comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum WidthFrom {
     /// The design says it, or is dimensionless.
@@ -157,6 +162,7 @@ impl OwnSpec {
 
 /// One half of the person's own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum HalfSpec {
     /// Convex pieces, each a list of vertices, in D.

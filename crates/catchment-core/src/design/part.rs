@@ -18,6 +18,7 @@ use std::path::PathBuf;
 
 /// A file of geometry, and what leads from its coordinates to D.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FileSpec {
     /// The file, absolute or relative to the working directory.
     pub path: PathBuf,
@@ -69,6 +70,7 @@ impl FileSpec {
 
 /// Who says in which unit the coordinates of a file are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FileUnit {
     /// The scale alone: the file cannot say it, or the design is dimensionless.
@@ -89,6 +91,7 @@ impl FileUnit {
 
 /// A part of a half.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PartSpec {
     /// What it is.
     pub shape: ShapeSpec,
@@ -112,6 +115,7 @@ impl PartSpec {
 
 /// What a part is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum ShapeSpec {
     /// A closed triangle mesh.
@@ -154,6 +158,7 @@ pub enum ShapeSpec {
 
 /// Outlines of a profile, in the x-y plane.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum OutlineSpec {
     /// The corners of one polygon, in order.

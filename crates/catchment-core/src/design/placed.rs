@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 /// In which frames the two parts are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Drawn {
     /// Each in its own, facing +z once it is placed; a half turn brings the moving half face to face with the fixed one.
@@ -39,6 +40,7 @@ impl Drawn {
 
 /// How a part is turned and moved from its file; in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Placement {
     /// Unit vector in which the part faces in its file: turned to +z by the shortest turn, about x where it faces −z.
     pub facing: [f64; 3],

@@ -9,6 +9,7 @@ use std::fmt;
 
 /// What may be done to a mesh before it is used.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Treatment {
     /// Whether it may be repaired where it bounds a solid beyond doubt. Nothing is done to a mesh that needs nothing.
     #[serde(default = "yes")]
@@ -48,6 +49,7 @@ impl Default for Treatment {
 
 /// What was done to a mesh before it was used.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Repairs {
     /// Triangles without area that were taken away; where such a one lay along an edge, the edge was divided for its neighbour.
     #[serde(default, skip_serializing_if = "is_zero")]

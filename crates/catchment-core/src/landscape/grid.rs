@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// One sampled axis of the error grid: `cells` equal cells over [lo, hi], sampled at their centres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GridAxis {
     /// Which error.
     pub dof: Dof,
@@ -40,6 +41,7 @@ impl GridAxis {
 /// A regular grid. Axes are in the order of [`Dof::ALL`]; the *first* axis runs fastest in memory:
 /// `index = k₀ + n₀·(k₁ + n₁·(k₂ + …))`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Grid {
     /// The sampled axes; errors without an axis are 0.
     pub axes: Vec<GridAxis>,

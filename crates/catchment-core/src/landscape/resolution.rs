@@ -12,6 +12,7 @@ use std::str::FromStr;
 /// Written as comma-separated parts: a bare number for every axis that is not named, `axis=number` for one axis.
 /// Axes without a number get the default of the method for the number of axes sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(try_from = "String", into = "String")]
 pub struct Resolution {
     every: Option<usize>,

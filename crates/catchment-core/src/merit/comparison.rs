@@ -40,6 +40,7 @@ pub struct Paired<'a> {
 
 /// How two acceptances compare.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// Poses compared.
     pub poses: usize,
@@ -70,6 +71,7 @@ pub struct Comparison {
 
 /// Distances of the cells that differ from the border of the first set.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Distances {
     /// In cells.
     pub cells: Quantiles,
@@ -79,6 +81,7 @@ pub struct Distances {
 
 /// What a list of distances is like.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Quantiles {
     /// Half of them are at most this.
     pub median: f64,

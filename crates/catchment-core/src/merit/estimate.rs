@@ -18,6 +18,7 @@
 
 /// Estimates of the edge of the largest axis-oriented cube in all free errors, in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Estimate {
     /// The smallest edge among the slices: a cube of the whole that shows in them is no larger.
     pub optimistic: f64,

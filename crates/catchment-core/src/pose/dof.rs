@@ -9,6 +9,7 @@ use std::str::FromStr;
 ///
 /// Written and read ([`FromStr`]) by its lower-case name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Dof {
     /// Lateral offset along x, in D.
@@ -145,6 +146,21 @@ impl DofSet {
 impl FromIterator<Dof> for DofSet {
     fn from_iter<I: IntoIterator<Item = Dof>>(iter: I) -> Self {
         iter.into_iter().fold(Self::EMPTY, Self::with)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for DofSet {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "DofSet".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Vec::<Dof>::json_schema(generator)
     }
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A pose error: lateral offset of the moving *face centre* (D) and the Euler angles (radians).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PoseError {
     /// Offset of the face centre along x, in D.
     pub x: f64,
@@ -61,6 +62,7 @@ pub fn rotation_angle(rotation: &DMat3) -> f64 {
 
 /// The half turn that brings a half, drawn facing +z, face to face with the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Mount {
     /// About x: `(x, y, z) → (x, −y, −z)`. The default of spatial connectors.

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 /// How pose errors are distributed. Five numbers are in the order of [`Dof::ALL`], in D and radians; 0 for errors that do
 /// not occur.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Distribution {
     /// Independent normal errors.

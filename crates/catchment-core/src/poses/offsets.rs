@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 /// The point of the moving half at which the offsets x and y are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum OffsetsAt {
     /// The face centre: what a [`PoseError`] says.

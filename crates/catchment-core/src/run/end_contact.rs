@@ -24,6 +24,7 @@ const WALL: f64 = 0.05;
 
 /// A contact at the end of a motion: two features, and where they touch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EndContact {
     /// The feature of the fixed half, in words.
     pub fixed: String,

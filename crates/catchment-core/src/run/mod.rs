@@ -25,6 +25,7 @@ mod follow;
 pub mod jams;
 pub mod part;
 mod plan;
+mod report_schema;
 mod requirement;
 pub mod rests;
 mod seat;
@@ -38,6 +39,7 @@ pub use end_contact::{EndContact, EndContacts};
 pub use follow::Followed;
 pub use part::{Part, PartAnswer, PartError};
 pub use plan::{Afterwards, Plan};
+pub use report_schema::ReportSchema;
 pub use requirement::{Requirement, RequirementError, Verdict};
 pub use seat::{Deeper, Residual, Seating};
 pub use upright::Upright;
@@ -55,6 +57,7 @@ use serde::{Deserialize, Serialize};
 
 /// Everything that changes an answer, beside the problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Run {
     /// Decides the cells.
@@ -79,6 +82,7 @@ pub struct Run {
 
 /// Which poses are decided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Over {
     /// The centres of the cells of a grid over the error box.
@@ -95,6 +99,7 @@ impl Default for Over {
 
 /// How many random poses correct the Sum of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Sample {
     /// What the method does when nothing is said.

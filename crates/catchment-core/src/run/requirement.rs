@@ -8,6 +8,7 @@
 //!                      NUMBER  in D and radians as the report has it; at an error also with a unit: window.yaw >= 5 deg
 //! ```
 
+use super::report_schema::ReportSchema;
 use crate::design::{LengthUnit, Quantity, Scale, Unit, nearest};
 use crate::pose::Dof;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -115,6 +116,21 @@ impl fmt::Display for Requirement {
     }
 }
 
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Requirement {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Requirement".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        String::json_schema(generator)
+    }
+}
+
 impl Serialize for Requirement {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
@@ -216,23 +232,56 @@ impl Requirement {
 
     fn place<'a>(&self, report: &'a Value) -> Result<&'a Value, RequirementError> {
         let mut here = report;
-        let mut walked = String::new();
-        for step in self.path.split('.') {
-            let before = if walked.is_empty() { String::new() } else { format!("{walked}.") };
-            walked = format!("{before}{step}");
+        for (before, step) in self.steps() {
             let steps = steps(here);
             let Some((_, next)) = steps.iter().find(|(names, _)| names.iter().any(|name| name == step))
             else {
-                let mut known: Vec<String> = steps.into_iter().filter_map(|(mut n, _)| n.pop()).collect();
-                known.sort();
-                let meant = nearest(step, known.iter().map(String::as_str));
-                let meant = meant.map(|word| format!("{before}{word}"));
-                return Err(RequirementError::NoSuchPath { path: walked, known, meant });
+                let known = steps.into_iter().filter_map(|(mut n, _)| n.pop()).collect();
+                return Err(no_such_path(before, step, known));
             };
             here = next;
         }
         Ok(here)
     }
+
+    /// Refuses a requirement on a place that no report of a JSON schema has, or where it has no number. `absent` are places that are null in the report
+    /// at hand.
+    ///
+    /// # Errors
+    /// If there is no such place, no number there, or a unit that has no meaning there.
+    pub fn check(&self, schema: &ReportSchema<'_>, absent: &[&str]) -> Result<(), RequirementError> {
+        let mut here = schema.of_kind();
+        for (before, step) in self.steps() {
+            let next = schema.step(&here, step);
+            if next.is_empty() {
+                return Err(no_such_path(before, step, schema.known(&here)));
+            }
+            here = next;
+        }
+        let within = |place: &&&str| {
+            self.path.strip_prefix(**place).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        if let Some(place) = absent.iter().find(within) {
+            return Err(RequirementError::NotANumber { path: (*place).to_owned(), what: "null" });
+        }
+        if let Some(what) = schema.other_than_a_number(&here) {
+            return Err(RequirementError::NotANumber { path: self.path.clone(), what });
+        }
+        // Units of lengths depend on the design, which any will do for.
+        self.bound(&Value::Null).map(|_| ())
+    }
+
+    /// Every step of the path, with the path before it: empty, or ending with a dot.
+    fn steps(&self) -> impl Iterator<Item = (&str, &str)> {
+        let start = |step: &str| step.as_ptr() as usize - self.path.as_ptr() as usize;
+        self.path.split('.').map(move |step| (&self.path[..start(step)], step))
+    }
+}
+
+fn no_such_path(before: &str, step: &str, mut known: Vec<String>) -> RequirementError {
+    known.sort();
+    let meant = nearest(step, known.iter().map(String::as_str)).map(|word| format!("{before}{word}"));
+    RequirementError::NoSuchPath { path: format!("{before}{step}"), known, meant }
 }
 
 /// What can be stepped into, under each of its names, the one for messages last.

@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 
 /// The seat, and what comes to rest in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Seating {
     /// How far above its mated height a half may lie and be seated, in D.
     pub depth: f64,
@@ -39,6 +40,7 @@ pub struct Seating {
 
 /// A place of rest below the mated pose, in the same seat.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Deeper {
     /// How much deeper, in D.
     pub sinks: f64,
@@ -48,6 +50,7 @@ pub struct Deeper {
 
 /// How far off docked poses rest along one error, whichever way. D or radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Residual {
     /// Which error.
     pub axis: Dof,

@@ -19,6 +19,7 @@ pub type ChanceReport = Envelope<ChanceBody>;
 
 /// How likely drop tests dock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ChanceBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -44,6 +45,7 @@ pub struct ChanceBody {
 
 /// A circumstance and its law.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CircumstanceReport {
     /// Which.
     pub circumstance: Circumstance,
@@ -57,6 +59,7 @@ pub struct CircumstanceReport {
 
 /// Settings under a name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PresetReport {
     /// The name.
     pub name: &'static str,
@@ -66,6 +69,7 @@ pub struct PresetReport {
 
 /// The probability under errors that are expected.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverallReport {
     /// `normal`, `uniform` or `measured`.
     pub errors: &'static str,
@@ -94,6 +98,7 @@ pub struct OverallReport {
 
 /// The probability at a speed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AtSpeedReport {
     /// By what every velocity is multiplied.
     pub factor: f64,
@@ -109,6 +114,7 @@ pub struct AtSpeedReport {
 
 /// How likely one pose docks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PoseChanceReport {
     /// The pose error.
     pub error: PoseError,
@@ -131,6 +137,7 @@ pub struct PoseChanceReport {
 
 /// The cells of a map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MapReport {
     /// The axes; the first runs fastest.
     pub axes: Vec<GridAxis>,

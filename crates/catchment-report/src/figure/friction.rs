@@ -12,7 +12,9 @@ use super::draw::axis::short;
 use super::draw::chart::{Chart, Line, Mark, Point, Spacing, legend};
 use super::draw::colour::{CURVES, Rgb, hex};
 use super::draw::svg::{Anchor, INK, LABEL, Rect, SOFT, Svg, TICK, TITLE, width_of};
-use crate::{FrictionReport, ShareReport, StickingReport};
+use crate::FrictionReport;
+use catchment_core::document::Share;
+use catchment_study::friction::StickingPair;
 
 /// Colour of the static test.
 const STATIC: Rgb = [0x5f, 0x6b, 0x7a];
@@ -68,7 +70,7 @@ fn lines(report: &FrictionReport) -> Vec<Line> {
     let base = report.curve.first().map_or(0, |rung| rung.aligned.count);
     let rungs = || report.curve.iter().filter(|_| base > 0);
     let still = rungs().map(|rung| {
-        let kept = ShareReport::of(base - rung.lost, base);
+        let kept = Share::of(base - rung.lost, base);
         Point { x: rung.friction, y: percent(kept.share), interval: Some(kept.ci95.map(percent)) }
     });
     let by_statics = rungs().map(|rung| Point {
@@ -110,7 +112,7 @@ fn sticking(svg: &mut Svg, report: &FrictionReport, rect: Rect) {
     }
 }
 
-fn words(pair: &StickingReport) -> [String; 2] {
+fn words(pair: &StickingPair) -> [String; 2] {
     [format!("moving half: {}", pair.moving.name), format!("on the fixed half's {}", pair.fixed.name)]
 }
 
@@ -168,7 +170,7 @@ mod tests {
         let problem = Problem::of(design([Dof::X, Dof::Pitch].into_iter().collect())).unwrap();
         let settings = Settings { motions: Some(200), ..Settings::default() };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
-        let mut report = FrictionReport::new(problem.design(), &found, Vec::new(), None);
+        let mut report = FrictionReport::new(problem.design(), found, Vec::new(), None);
         let picture = friction(&report);
         look("friction", &picture);
         assert!(picture.svg().contains("what sticks first") && picture.svg().contains("static test"));

@@ -2,25 +2,27 @@
 
 use crate::resting::{HeldReport, ThresholdsReport};
 use catchment_core::acceptance::Outcome;
-use catchment_core::contact::FeatureKind;
 use catchment_core::design::Design;
-use catchment_core::merit::sum::wilson95;
+use catchment_core::document::Share;
 use catchment_core::pose::{Dof, PoseError};
-use catchment_core::run::jams::{Examined, Firmness, Jam, Jams, Named, PUSH, Settings, Touched, Touching};
+use catchment_core::run::jams::{
+    Examined, Firmness, Jam, Jams, NamedFeature, PUSH, Settings, Touched, Touching,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Where motions rest that do not dock.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JamsFound {
     /// How it was asked for.
     pub settings: Settings,
     /// Random poses of the error box that were followed.
     pub motions: usize,
     /// What became of them, by the names of outcomes.
-    pub outcomes: BTreeMap<Outcome, ShareReport>,
+    pub outcomes: BTreeMap<Outcome, Share>,
     /// The same of poses drawn from the errors that a robot makes; null where none were given.
-    pub expected: Option<BTreeMap<Outcome, ShareReport>>,
+    pub expected: Option<BTreeMap<Outcome, Share>>,
     /// The table that those poses come from; null where they were not measured.
     #[serde(default)]
     pub measured: Option<String>,
@@ -30,28 +32,18 @@ pub struct JamsFound {
     pub features: Vec<PairReport>,
 }
 
-/// How many of all poses that were followed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ShareReport {
-    /// How many.
-    pub count: usize,
-    /// Their share, in [0, 1].
-    pub share: f64,
-    /// Wilson's 95 % interval of it.
-    pub ci95: [f64; 2],
-}
-
 /// A place of rest, or places alike.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JamReport {
     /// How many poses of the error box end here, and which share that is.
-    pub of_box: ShareReport,
+    pub of_box: Share,
     /// Their share of the poses that jam.
     pub of_jams: f64,
     /// Their share of the poses that do not dock.
     pub of_failures: f64,
     /// The same of the errors that a robot makes; null where none were given.
-    pub expected: Option<ShareReport>,
+    pub expected: Option<Share>,
     /// The pose error of the rest in its middle.
     pub pose: PoseError,
     /// From where to where its rests lie, per free error; images by symmetry laid upon each other.
@@ -77,6 +69,7 @@ pub struct JamReport {
 
 /// From where to where rests lie along an error, in D or radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExtentReport {
     /// Which error.
     pub axis: Dof,
@@ -88,32 +81,21 @@ pub struct ExtentReport {
 
 /// Two features that touch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ContactReport {
     /// Where, in the world frame, in D.
     pub points_d: Vec<[f64; 3]>,
     /// Unit normal, from the fixed half to the moving one.
     pub normal: [f64; 3],
     /// The feature of the fixed half.
-    pub fixed: FeatureReport,
+    pub fixed: NamedFeature,
     /// The feature of the moving half.
-    pub moving: FeatureReport,
-}
-
-/// A feature of a half.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FeatureReport {
-    /// `face`, `edge` or `corner`.
-    pub kind: FeatureKind,
-    /// In words.
-    pub name: String,
-    /// The number of its part in the design file, from 0; null where halves are not made up of parts of one surface each.
-    pub part: Option<usize>,
-    /// Where it touches, in the coordinates in which its half was drawn, in D.
-    pub drawn_d: [f64; 3],
+    pub moving: NamedFeature,
 }
 
 /// A pair of features, and how often it touches where halves jam.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PairReport {
     /// Poses of the error box that jam on it.
     pub count: usize,
@@ -122,13 +104,14 @@ pub struct PairReport {
     /// Their share of the poses that do not dock.
     pub of_failures: f64,
     /// The feature of the fixed half.
-    pub fixed: FeatureReport,
+    pub fixed: NamedFeature,
     /// The feature of the moving half.
-    pub moving: FeatureReport,
+    pub moving: NamedFeature,
 }
 
 /// What was found out about a jam.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExaminedReport {
     /// `sharp`, `rounded`, `level` or `ridge`.
     pub firmness: Firmness,
@@ -153,6 +136,7 @@ pub struct ExaminedReport {
 
 /// A way out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WayOutReport {
     /// How far the half must be lifted to get out, at most, in D.
     pub climb_at_most_d: f64,
@@ -169,8 +153,8 @@ impl JamsFound {
             count: pair.count,
             of_jams: share_of(pair.count, found.jammed()),
             of_failures: share_of(pair.count, found.failed()),
-            fixed: (&pair.fixed).into(),
-            moving: (&pair.moving).into(),
+            fixed: pair.fixed.clone(),
+            moving: pair.moving.clone(),
         };
         Self {
             settings: found.settings.clone(),
@@ -185,33 +169,20 @@ impl JamsFound {
 }
 
 /// Shares by outcome.
-pub(crate) fn shares(counts: [usize; 4]) -> BTreeMap<Outcome, ShareReport> {
+pub(crate) fn shares(counts: [usize; 4]) -> BTreeMap<Outcome, Share> {
     let all = counts.iter().sum();
-    Outcome::ALL.into_iter().zip(counts.map(|count| ShareReport::of(count, all))).collect()
+    Outcome::ALL.into_iter().zip(counts.map(|count| Share::of(count, all))).collect()
 }
 
 pub(super) fn share_of(count: usize, all: usize) -> f64 {
     if all == 0 { 0.0 } else { count as f64 / all as f64 }
 }
 
-impl ShareReport {
-    pub(crate) fn of(count: usize, all: usize) -> Self {
-        Self { count, share: share_of(count, all), ci95: wilson95(count, all) }
-    }
-}
-
-impl From<&Named> for FeatureReport {
-    fn from(named: &Named) -> Self {
-        let Named { kind, name, part, drawn } = named;
-        Self { kind: *kind, name: name.clone(), part: *part, drawn_d: drawn.to_array() }
-    }
-}
-
 impl From<&Touched> for ContactReport {
     fn from(touched: &Touched) -> Self {
         let points = touched.points.iter().map(glam::DVec3::to_array).collect();
         let Touched { normal, fixed, moving, .. } = touched;
-        Self { points_d: points, normal: normal.to_array(), fixed: fixed.into(), moving: moving.into() }
+        Self { points_d: points, normal: normal.to_array(), fixed: fixed.clone(), moving: moving.clone() }
     }
 }
 
@@ -242,10 +213,10 @@ impl JamReport {
         });
         let drawn = found.expected.map_or(0, |counts| counts.iter().sum());
         Self {
-            of_box: ShareReport::of(jam.count, found.motions()),
+            of_box: Share::of(jam.count, found.motions()),
             of_jams: share_of(jam.count, found.jammed()),
             of_failures: share_of(jam.count, found.failed()),
-            expected: jam.expected.map(|count| ShareReport::of(count, drawn)),
+            expected: jam.expected.map(|count| Share::of(count, drawn)),
             pose: jam.pose,
             extent: extent.collect(),
             places: jam.places,

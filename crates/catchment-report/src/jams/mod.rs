@@ -5,8 +5,7 @@ mod found;
 use found::share_of;
 pub(super) use found::shares;
 pub use found::{
-    ContactReport, ExaminedReport, ExtentReport, FeatureReport, JamReport, JamsFound, PairReport,
-    ShareReport, WayOutReport,
+    ContactReport, ExaminedReport, ExtentReport, JamReport, JamsFound, PairReport, WayOutReport,
 };
 
 use super::envelope::{Body, Envelope};
@@ -16,8 +15,9 @@ use super::table::heading;
 use super::text::{grouped, line, number, row, tenths, wrapped};
 use catchment_core::acceptance::Outcome;
 use catchment_core::design::Design;
+use catchment_core::document::Share;
 use catchment_core::method::descent::HARDLY;
-use catchment_core::run::jams::Jams;
+use catchment_core::run::jams::{Jams, NamedFeature};
 use serde::Serialize;
 use std::ops::Deref;
 
@@ -26,6 +26,7 @@ pub type JamsReport = Envelope<JamsBody>;
 
 /// Where motions rest that do not dock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JamsBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -207,7 +208,7 @@ impl JamsReport {
             record.extend([jam.depth_at_least_d, jam.depth_on_grid_d].map(or_nothing));
             record.push(way.map_or("", |way| way.to.name()).to_owned());
             for contact in &jam.contacts {
-                let feature = |feature: &FeatureReport| {
+                let feature = |feature: &NamedFeature| {
                     let part = feature.part.map_or_else(String::new, |part| part.to_string());
                     let named = [feature.kind.name().to_owned(), feature.name.clone(), part];
                     named.into_iter().chain(feature.drawn_d.map(number)).collect::<Vec<_>>()
@@ -252,7 +253,7 @@ pub(super) fn more_pairs(count: usize) -> String {
     format!("  and {} {} more", grouped(count), if count == 1 { "pair" } else { "pairs" })
 }
 
-fn with_interval(share: &ShareReport) -> String {
+fn with_interval(share: &Share) -> String {
     format!("{:>7}  ({} … {})", tenths(share.share), tenths(share.ci95[0]), tenths(share.ci95[1]))
 }
 

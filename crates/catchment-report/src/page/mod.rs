@@ -17,20 +17,20 @@
 //! design's own unit and degrees.
 
 mod grid;
-mod html;
+
 mod parts;
 
-pub use html::policy;
+pub use crate::html::policy;
 pub use parts::{Parts, Studies};
 
 use super::{JamsReport, Report, WindowReport};
+use crate::html::Html;
 use catchment_core::acceptance::Acceptance;
 use catchment_core::connector::Connector;
 use catchment_core::exec::{Cancelled, Exec, OutOfBudget};
 use catchment_core::merit::MeritError;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use html::Html;
 use serde_json::{Value, json};
 use std::io::Write as _;
 

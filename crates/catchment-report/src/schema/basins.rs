@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Basins of a flooded landscape. Depths and heights in D.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BasinsReport {
     /// Basins shallower than `tolerance.depth` were merged, and why at that depth.
     pub tolerance: Choice,
@@ -29,6 +30,7 @@ pub const SMALLEST_STEP: f64 = 1e-3;
 
 /// A basin after merging.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BasinReport {
     /// What becomes of its poses.
     pub outcome: Outcome,
@@ -49,6 +51,7 @@ pub struct BasinReport {
 
 /// A step of the accepted share over the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StepReport {
     /// It holds for tolerances above this.
     pub above: f64,

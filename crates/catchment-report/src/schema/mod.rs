@@ -23,6 +23,7 @@ pub type Report = Envelope<RunBody>;
 
 /// What one run has to say.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -78,6 +79,7 @@ impl Body for RunBody {
 
 /// One axis of the error grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Axis {
     /// Which error.
     pub axis: Dof,
@@ -93,6 +95,7 @@ pub struct Axis {
 
 /// Unit of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Unit {
     /// Widths of the connector.
     D,
@@ -110,6 +113,7 @@ impl Unit {
 
 /// The accepted set in numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AcceptanceReport {
     /// The measure of the accepted set, in `unit`: the unbiased estimate where there is a `sample`, what certainly docks where there is a `certificate`, else
     /// `sum_grid`.
@@ -137,6 +141,7 @@ pub struct AcceptanceReport {
 
 /// Poses per outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outcomes {
     /// Contact brings the halves to the mated pose.
     pub aligned: usize,
@@ -150,6 +155,7 @@ pub struct Outcomes {
 
 /// An interval along an axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Interval {
     /// Which error.
     pub axis: Dof,
@@ -161,6 +167,7 @@ pub struct Interval {
 
 /// The largest axis-oriented n-cube in the accepted set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OnaaReport {
     /// Its edge after each axis is divided by its range: in [0, 1].
     pub edge: f64,
@@ -173,6 +180,7 @@ pub struct OnaaReport {
 
 /// The largest n-cube around zero in the accepted set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CenteredReport {
     /// Its edge after each axis is divided by its range: in [0, 1].
     pub edge: f64,
@@ -190,6 +198,7 @@ pub struct CenteredReport {
 
 /// What a connector tolerates whose roll and pitch are locked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct UprightReport {
     /// The largest box around zero all of which docks, in the proportions of the tolerances; its edge is a multiple of these.
     pub window: CenteredReport,
@@ -199,6 +208,7 @@ pub struct UprightReport {
 
 /// How far one error may go alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ToleranceReport {
     /// Which error.
     pub axis: Dof,
@@ -221,6 +231,7 @@ pub struct ToleranceReport {
 
 /// Success probability for a distribution of errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuccessReport {
     /// How the errors are distributed.
     pub distribution: Distribution,
@@ -237,6 +248,7 @@ pub struct SuccessReport {
 /// A doubt, for programs and for people. A kind of doubt that this version does not know is read as a
 /// [`Warning::Note`] of its sentence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(from = "StoredWarning")]
 pub struct WarningReport {
     /// The doubt itself, with its `kind`.
@@ -246,6 +258,7 @@ pub struct WarningReport {
 }
 
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct StoredWarning {
     warning: serde_json::Value,
     message: String,
@@ -260,6 +273,7 @@ impl From<StoredWarning> for WarningReport {
 
 /// How long it took. The only part of a report that differs between equal runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Timing {
     /// Wall-clock time of the computation, in seconds.
     pub total_s: f64,

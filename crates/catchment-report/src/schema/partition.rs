@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A partition of the contact space.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PartitionReport {
     /// Polytopes of the Minkowski sum, cells of the contact space, parts of cells, and places of rest.
     pub counts: Counts,

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// Random poses, followed exactly, that the Sum and its interval come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SampleReport {
     /// Name of the method that followed them.
     pub method: String,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Watersheds of a flooded grid; that of the cells without contact is none of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WatershedsReport {
     /// First labels, merged ones, and cells of either fate.
     #[serde(flatten)]

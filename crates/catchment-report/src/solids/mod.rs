@@ -27,6 +27,7 @@ pub type SolidsReport = Envelope<SolidsBody>;
 
 /// What a shape is made of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SolidsBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,

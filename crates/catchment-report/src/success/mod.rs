@@ -23,6 +23,7 @@ pub type SuccessesReport = Envelope<SuccessesBody>;
 
 /// Whether robots dock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SuccessesBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -38,6 +39,7 @@ pub struct SuccessesBody {
 
 /// The robot that docks most seldom.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Headline {
     /// What it is called.
     pub robot: String,
@@ -51,6 +53,7 @@ pub struct Headline {
 
 /// Whether a robot docks. Lengths in D, angles in radians.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DockingReport {
     /// What it is called.
     pub robot: String,
@@ -86,6 +89,7 @@ pub struct DockingReport {
 
 /// Which errors are expected.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ErrorsReport {
     /// `normal`, `uniform` or `measured`.
     pub kind: &'static str,
@@ -101,6 +105,7 @@ pub struct ErrorsReport {
 
 /// What the grid took.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GridCost {
     /// Cells that were decided; 0 where there was no grid.
     pub cells: usize,
@@ -110,6 +115,7 @@ pub struct GridCost {
 
 /// What fails.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FailuresReport {
     /// Share of all errors, in [0, 1].
     pub share: f64,
@@ -129,6 +135,7 @@ pub struct FailuresReport {
 
 /// The failing error that is nearest to the mean.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FirstReport {
     /// The pose error.
     pub error: PoseError,
@@ -146,6 +153,7 @@ pub struct FirstReport {
 
 /// What it helps to improve an error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ImprovementReport {
     /// Which.
     pub axis: Dof,
@@ -167,6 +175,7 @@ pub struct ImprovementReport {
 
 /// How much larger σ may be.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TolerableReport {
     /// The success that is required.
     pub required: f64,
@@ -179,6 +188,7 @@ pub struct TolerableReport {
 
 /// How much larger one σ may be.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AloneReport {
     /// Which.
     pub axis: Dof,
@@ -191,6 +201,7 @@ pub struct AloneReport {
 
 /// A normal fit to measured errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FitReport {
     /// Whether it is rejected at 5 %.
     pub rejected: bool,

@@ -17,6 +17,7 @@ pub type ValidationReport = Envelope<ValidationBody>;
 
 /// What a verdict has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ValidationBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,
@@ -54,6 +55,7 @@ pub struct ValidationBody {
 
 /// What a verdict rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EvidenceReport {
     /// Trials beyond the limit, predicted to dock.
     pub inside: usize,
@@ -67,6 +69,7 @@ pub struct EvidenceReport {
 
 /// So many trials were predicted and seen like that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CountReport {
     /// What was predicted; null where that was undecided.
     pub predicted: Option<Observed>,
@@ -80,6 +83,7 @@ pub struct CountReport {
 
 /// How often trials fared as predicted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AgreedReport {
     /// Trials at least one accuracy from the border.
     pub trials: usize,
@@ -93,6 +97,7 @@ pub struct AgreedReport {
 
 /// Disagreements on one side of the border.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OneSidedReport {
     /// How many.
     pub disagreeing: usize,
@@ -106,6 +111,7 @@ pub struct OneSidedReport {
 
 /// A trial, in D and radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TriedReport {
     /// Its number.
     pub trial: u64,
@@ -120,6 +126,7 @@ pub struct TriedReport {
 
 /// A line, in D and radians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LineReport {
     /// Its number.
     pub line: u64,
@@ -139,6 +146,7 @@ pub struct LineReport {
 
 /// Which friction explains the trials.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExplainingReport {
     /// Whether some coefficient leaves no disagreement beyond the limit.
     pub explains: bool,
@@ -158,6 +166,7 @@ pub struct ExplainingReport {
 
 /// What a coefficient leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FrictionTried {
     /// The coefficient.
     pub friction: f64,

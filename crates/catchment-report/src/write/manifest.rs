@@ -24,6 +24,7 @@ const LARGEST: u64 = 32 << 20;
 
 /// What a folder holds.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Manifest {
     /// Version of the program that wrote it.
     catchment: String,

@@ -47,6 +47,7 @@ use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// What is not declared; its trials, seed and, with held speed, its push do not count.

@@ -20,25 +20,29 @@
 //! Not promised: that a pose which is lost at one friction is lost at all larger ones, nor that frictions between those of the ladder were looked at.
 
 mod may_stick;
+mod report;
 #[cfg(test)]
 mod tests;
 
 pub use may_stick::MayStick;
+use report::by_share;
 
 use catchment_core::acceptance::{Domain, Outcome};
+use catchment_core::document::Share;
 use catchment_core::exec::{Cancelled, Exec};
 use catchment_core::method::Decide;
 use catchment_core::method::correction::Z95;
 use catchment_core::method::descent::{self, Doubt, Follower, FrictionOutOfRange, HARDLY};
 use catchment_core::pose::PoseError;
 use catchment_core::problem::Problem;
-use catchment_core::run::jams::{Sticks, what_sticks};
+use catchment_core::run::jams::{NamedFeature, Sticks, what_sticks};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// The ladder: coefficients of friction at which poses are followed, beside none.
@@ -66,52 +70,58 @@ const FIRST: usize = 10;
 const AT_LEAST: usize = 20;
 
 /// What friction does to a design.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Friction {
-    /// How it was asked for, everything filled in.
+    /// The settings, everything filled in.
     pub settings: Settings,
-    /// What becomes of the poses at every friction, none first.
-    pub rungs: Vec<Rung>,
-    /// Up to which friction most of what docks without it docks still.
+    /// Random poses of the error box, the same at every friction.
+    pub motions: usize,
+    /// The outcomes of the poses at every friction, none first.
+    pub curve: Vec<Rung>,
+    /// Up to which friction what docks without it docks still, by the share of it: `p95` is 95 %.
+    #[serde(serialize_with = "by_share")]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, Kept>"))]
     pub kept: Vec<Kept>,
-    /// Poses that are lost first and stick somewhere, and the features that touch there, those that do so most often first.
-    pub first: (usize, Vec<Sticks>),
-    /// Poses that dock without friction, not at some friction of the ladder, and again at a larger one.
+    /// What sticks where the first poses are lost.
+    pub sticks_first: SticksFirst,
+    /// Poses that are lost at some friction and dock again at a larger one.
     pub come_back: usize,
 }
 
-/// What becomes of the poses at one friction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Tally {
-    /// Poses by their outcomes, in the order of [`Outcome::ALL`].
-    pub counts: [usize; 4],
+/// The outcomes of the poses at one friction of the ladder.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Rung {
+    /// The coefficient of friction.
+    pub friction: f64,
+    /// Poses that dock.
+    pub aligned: Share,
+    /// Poses that jam.
+    pub jammed: Share,
+    /// Poses that miss.
+    pub missed: Share,
+    /// Poses of which it is not known.
+    pub undecided: Share,
     /// Poses that dock without friction and not at this.
     pub lost: usize,
     /// Poses that dock at this friction and not without.
     pub gained: usize,
-    /// Poses that dock, and on the way came by a place where Coulomb's law would let them stick as well.
+    /// Poses that dock, and by Coulomb's law might have stuck on the way.
     pub may_stick: usize,
     /// Of the lost those that dock with a tenth less friction: halves that give a little may dock as well.
     pub hardly_held: usize,
-    /// Poses that jam, and wedge there: some force would hold them against a pull straight out as well.
+    /// Poses that jam and wedge there: some force would hold them against a pull straight out as well.
     pub wedged: usize,
-    /// Poses that the static test says dock: without friction they do, and nowhere on that way some force would hold them.
+    /// Poses that dock by the static test along the frictionless way.
     pub static_docks: usize,
-    /// Poses of which the static test says the wrong thing.
+    /// Poses of which that test says the wrong thing.
     pub static_wrong: usize,
 }
 
-/// One friction of the ladder.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rung {
-    /// The coefficient of friction.
-    pub friction: f64,
-    /// What becomes of the poses.
-    pub tally: Tally,
-}
-
 /// Up to which friction a share of what docks without it docks still.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Kept {
     /// The share, in (0, 1).
     pub share: f64,
@@ -119,8 +129,36 @@ pub struct Kept {
     pub friction: f64,
     /// Its 95 % interval, by order statistics; an end at the top of the ladder may lie anywhere beyond it.
     pub ci95: [f64; 2],
-    /// It is the top of the ladder, and perhaps more.
+    /// It is the largest friction that was tried, and perhaps more.
     pub is_top: bool,
+}
+
+/// What sticks where the first poses are lost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SticksFirst {
+    /// How many poses were looked at: those that are lost first and stick.
+    pub poses: usize,
+    /// The pairs of features that touch there, the one that does so most often first.
+    pub features: Vec<StickingPair>,
+}
+
+/// Two features that touch where poses stick.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StickingPair {
+    /// In how many of the poses.
+    pub count: usize,
+    /// Their share.
+    pub share: f64,
+    /// The least of the frictions at which these poses are lost.
+    pub critical_least: f64,
+    /// The median of them.
+    pub critical_median: f64,
+    /// The feature of the fixed half.
+    pub fixed: NamedFeature,
+    /// The feature of the moving half.
+    pub moving: NamedFeature,
 }
 
 /// Why there is no answer.
@@ -169,9 +207,9 @@ struct Way {
 /// let settings = Settings { frictions: vec![0.1, 0.3], motions: Some(100), seed: 1 };
 /// let found = friction::run(&problem, &settings, &Exec::new())?;
 /// // The facets of this V-Face have a slope of 0.2: half of the box docks below it, and nothing above
-/// assert_eq!(found.rungs[1].tally.lost, 0);
+/// assert_eq!(found.curve[1].lost, 0);
 /// // but what starts within the depth of the seat.
-/// assert!(found.rungs[2].tally.counts[0] < 10);
+/// assert!(found.curve[2].aligned.count < 10);
 /// # Ok(())
 /// # }
 /// ```
@@ -209,10 +247,13 @@ pub fn run(problem: &Problem, settings: &Settings, exec: &Exec) -> Result<Fricti
             .collect::<Result<_, Cancelled>>()
     })?;
     let first = first_lost(&poses, &ways);
+    let (poses, sticks) = what_sticks(problem, &first, exec)?;
+    let features = sticks.into_iter().map(|pair| StickingPair::of(pair, poses)).collect();
     Ok(Friction {
-        rungs: rungs(&settings.frictions, &ways),
+        motions: ways.len(),
+        curve: rungs(&settings.frictions, &ways),
         kept: kept(&ways, top),
-        first: what_sticks(problem, &first, exec)?,
+        sticks_first: SticksFirst { poses, features },
         come_back: ways.iter().filter(|way| way.comes_back()).count(),
         settings,
     })
@@ -242,37 +283,23 @@ impl Settings {
 }
 
 impl Friction {
-    /// With every place that an answer has, and numbers that mean nothing: what requirements are tried on.
-    pub fn form(settings: &Settings) -> Self {
-        let none = Tally {
-            counts: [0; 4],
-            lost: 0,
-            gained: 0,
-            may_stick: 0,
-            hardly_held: 0,
-            wedged: 0,
-            static_docks: 0,
-            static_wrong: 0,
-        };
-        let frictions = std::iter::once(0.0).chain(settings.frictions.iter().copied());
-        Self {
-            rungs: frictions.map(|friction| Rung { friction, tally: none }).collect(),
-            kept: SHARES.map(|share| Kept { share, friction: 0.0, ci95: [0.0; 2], is_top: false }).to_vec(),
-            first: (0, Vec::new()),
-            come_back: 0,
-            settings: settings.clone(),
-        }
-    }
-
     /// The least friction of the ladder at which poses wedge: from there on rigid halves under Coulomb's law and halves that give a little, as real ones
     /// do, part.
     pub fn wedges_from(&self) -> Option<f64> {
-        self.rungs.iter().find(|rung| rung.tally.wedged > 0).map(|rung| rung.friction)
+        self.curve.iter().find(|rung| rung.wedged > 0).map(|rung| rung.friction)
     }
+}
 
-    /// How many random poses were followed.
-    pub fn motions(&self) -> usize {
-        self.rungs.first().map_or(0, |rung| rung.tally.counts.iter().sum())
+impl StickingPair {
+    fn of(Sticks { touching, critical }: Sticks, poses: usize) -> Self {
+        Self {
+            count: touching.count,
+            share: touching.count as f64 / poses.max(1) as f64,
+            critical_least: critical.first().copied().unwrap_or_default(),
+            critical_median: critical.get(critical.len() / 2).copied().unwrap_or_default(),
+            fixed: touching.fixed,
+            moving: touching.moving,
+        }
     }
 }
 
@@ -330,8 +357,13 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
         let docks = |way: &Way| at(way).0 == Outcome::Aligned;
         let docked = |way: &Way| way.without == Outcome::Aligned;
         let by_statics = |way: &Way| docked(way) && way.holds > friction;
-        let tally = Tally {
-            counts: Outcome::ALL.map(|outcome| count(&|way| at(way).0 == outcome)),
+        let ended = |outcome: Outcome| Share::of(count(&|way| at(way).0 == outcome), ways.len());
+        Rung {
+            friction,
+            aligned: ended(Outcome::Aligned),
+            jammed: ended(Outcome::Jammed),
+            missed: ended(Outcome::Missed),
+            undecided: ended(Outcome::Undecided),
             lost: count(&|way| docked(way) && !docks(way)),
             gained: count(&|way| !docked(way) && docks(way)),
             may_stick: count(&|way| docks(way) && at(way).1.may_stick),
@@ -339,8 +371,7 @@ fn rungs(frictions: &[f64], ways: &[Way]) -> Vec<Rung> {
             wedged: count(&|way| at(way).1.wedges),
             static_docks: count(&|way| by_statics(way)),
             static_wrong: count(&|way| by_statics(way) != docks(way)),
-        };
-        Rung { friction, tally }
+        }
     };
     let ladder = frictions.iter().enumerate().map(|(k, friction)| (Some(k), *friction));
     std::iter::once((None, 0.0)).chain(ladder).map(rung).collect()

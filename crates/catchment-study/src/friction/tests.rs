@@ -15,7 +15,7 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
         let settings =
             Settings { frictions: vec![0.1, 0.15, 1.05 * slope, 0.4], motions: Some(200), seed: 2 };
         let found = run(&problem, &settings, &Exec::new()).unwrap();
-        let docked = found.rungs[0].tally.counts[0];
+        let docked = found.curve[0].aligned.count;
         assert!(docked > 50);
         for kept in &found.kept {
             assert!((kept.friction - slope).abs() <= EXACT, "{family:?} {kept:?}");
@@ -23,22 +23,25 @@ fn on_facets_every_pose_is_lost_at_their_slope() {
             assert!(!kept.is_top);
         }
         // Nothing bends the way, so that more friction never helps.
-        assert!(found.rungs.windows(2).all(|two| two[1].tally.counts[0] <= two[0].tally.counts[0]));
+        assert!(found.curve.windows(2).all(|two| two[1].aligned.count <= two[0].aligned.count));
         // All of them at their slope: within a tenth of what is asked, or not.
-        for Rung { friction, tally } in &found.rungs {
+        for tally in &found.curve {
+            let friction = &tally.friction;
             let is_near = *friction > slope && *friction < HARDLY * slope;
             assert_eq!(tally.hardly_held, if is_near { tally.lost } else { 0 }, "{family:?} {friction}");
         }
-        let last = found.rungs[4].tally;
+        let last = found.curve[4];
         // What starts within the depth of the seat is docked as it is.
-        assert_eq!((last.lost + last.counts[0], last.gained, found.come_back), (docked, 0, 0));
-        assert!(last.counts[0] < docked / 10, "{last:?}");
+        assert_eq!((last.lost + last.aligned.count, last.gained, found.come_back), (docked, 0, 0));
+        assert!(last.aligned.count < docked / 10, "{last:?}");
         // Nothing bends the way here: the static test is right, but where it begins within a step of the seat.
-        assert!(found.rungs.iter().all(|rung| rung.tally.static_wrong <= 2), "{:?}", found.rungs);
-        assert_eq!(found.first.0, AT_LEAST);
-        let Sticks { touching, critical } = &found.first.1[0];
-        assert_eq!((touching.count, critical.len()), (AT_LEAST, AT_LEAST));
-        assert!(critical.iter().all(|friction| (friction - slope).abs() <= EXACT), "{family:?} {critical:?}");
+        assert!(found.curve.iter().all(|rung| rung.static_wrong <= 2), "{:?}", found.curve);
+        assert_eq!(found.sticks_first.poses, AT_LEAST);
+        let pair = &found.sticks_first.features[0];
+        assert_eq!(pair.count, AT_LEAST);
+        for friction in [pair.critical_least, pair.critical_median] {
+            assert!((friction - slope).abs() <= EXACT, "{family:?} {pair:?}");
+        }
     }
 }
 
@@ -50,12 +53,19 @@ fn tallies_add_up_and_threads_change_nothing() {
     let found = with(1);
     assert_eq!(found, with(2));
     assert_eq!(found.settings.frictions, [0.1, 0.3]);
-    let docked = found.rungs[0].tally.counts[0];
-    for Rung { friction, tally } in &found.rungs {
-        assert_eq!(tally.counts.iter().sum::<usize>(), 120);
-        assert_eq!(tally.counts[0] + tally.lost, docked + tally.gained, "{friction}");
-        assert!(tally.may_stick <= tally.counts[0] && tally.static_docks <= docked);
-        assert!(tally.wedged <= tally.counts[1] && tally.hardly_held <= tally.lost);
+    let docked = found.curve[0].aligned.count;
+    for tally in &found.curve {
+        let friction = tally.friction;
+        assert_eq!(
+            [tally.aligned, tally.jammed, tally.missed, tally.undecided]
+                .map(|of| of.count)
+                .iter()
+                .sum::<usize>(),
+            120
+        );
+        assert_eq!(tally.aligned.count + tally.lost, docked + tally.gained, "{friction}");
+        assert!(tally.may_stick <= tally.aligned.count && tally.static_docks <= docked);
+        assert!(tally.wedged <= tally.jammed.count && tally.hardly_held <= tally.lost);
     }
     // Up to less friction more of them dock still.
     assert!(
@@ -70,7 +80,7 @@ fn tallies_add_up_and_threads_change_nothing() {
             .count()
     };
     assert_eq!(
-        found.rungs.iter().map(|rung| rung.tally.counts[0]).collect::<Vec<_>>(),
+        found.curve.iter().map(|rung| rung.aligned.count).collect::<Vec<_>>(),
         [0.0, 0.1, 0.3].map(direct)
     );
 }

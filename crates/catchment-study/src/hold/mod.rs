@@ -36,6 +36,7 @@ use std::f64::consts::{PI, TAU};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Coefficient of friction between the halves; 0 for none.

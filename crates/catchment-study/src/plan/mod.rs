@@ -35,6 +35,7 @@ pub use slices::{CELLS, Panel, panels};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Where trials are made.

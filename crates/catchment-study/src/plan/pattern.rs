@@ -24,6 +24,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A pattern of poses. Lengths in D, angles in radians, lists in the order of [`Dof::ALL`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Pattern {
     /// So many points along each error, evenly up to the largest.

@@ -61,6 +61,7 @@ pub struct Docking {
 
 /// What was seen of a stratum of errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Stratum {
     /// What it holds.
     pub name: String,
@@ -95,6 +96,7 @@ pub struct Failures {
 
 /// How large an error is where docking fails, and where it does not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AlongAxis {
     /// Which error.
     pub axis: Dof,
@@ -153,6 +155,7 @@ pub struct Improvement {
 
 /// By how much σ may be multiplied for the success that is required.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Factor {
     /// The factor: 0 if none suffices, the largest one tried if all do.
     pub factor: f64,
@@ -166,6 +169,7 @@ pub struct Factor {
 
 /// The probability with σ multiplied by a factor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AtFactor {
     /// The factor.
     pub factor: f64,
@@ -198,6 +202,7 @@ pub struct Fit {
 
 /// One error of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AxisFit {
     /// Which.
     pub axis: Dof,

@@ -51,6 +51,7 @@ use tolerable::Curve;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Exact motions of the probability of each robot; gains take half as many each, factors a quarter. Where nothing is said 8000 of simple

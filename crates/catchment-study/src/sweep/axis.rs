@@ -8,6 +8,7 @@ use std::str::FromStr;
 /// A key and its values: `aspect_ratio=0.25,0.5,1`, `cor=-1..1/5` (five from −1 to 1), `errors.yaw=10 deg,20 deg`,
 /// `family=v-face,x-face`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Axis {
     /// Path of the key, such as `connector.aspect_ratio`.
     pub key: String,

@@ -39,6 +39,7 @@ const FIGURES_BYTES: u64 = 2048;
 
 /// What a sweep does: which keys take which values, and what is computed of every design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// The keys and their values; the last one changes fastest.
     pub axes: Vec<Axis>,
@@ -56,6 +57,7 @@ pub struct Plan {
 
 /// How far one error may go alone, in D or rad.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Along {
     /// Which error.
     pub axis: Dof,
@@ -67,6 +69,7 @@ pub struct Along {
 
 /// A slice of the outcomes through zero: over the first two free errors, all others at zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outline {
     /// Its two errors.
     pub axes: [Dof; 2],
@@ -84,6 +87,7 @@ pub struct Outline {
 
 /// What one design is worth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Figures {
     /// The measure of the accepted set, in `unit`: unbiased where random poses were drawn.
     pub sum: f64,
@@ -109,6 +113,7 @@ pub struct Figures {
 
 /// What became of one design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Found {
     /// It was computed.
@@ -129,6 +134,7 @@ impl Found {
 
 /// One design of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Trial {
     /// The values of the axes, as written.
     pub values: Vec<String>,
@@ -139,6 +145,7 @@ pub struct Trial {
 
 /// Everything that a sweep found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sweep {
     /// What was asked for.
     pub settings: Settings,

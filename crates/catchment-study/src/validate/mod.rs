@@ -42,6 +42,7 @@ use statistics::{chance, tail};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Standard deviation of each error of the robot, in D and radians; 0 for those that are exact.
@@ -72,6 +73,7 @@ pub const LEVEL: f64 = 0.05;
 
 /// What becomes of a prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The trials say nothing against it.

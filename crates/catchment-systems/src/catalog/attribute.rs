@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// A column of table 1.1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Attribute {
     /// Month of its publication.
@@ -97,6 +98,7 @@ impl Attribute {
 
 /// A printed value that the text does not define or that is spelt in two ways, and how we read it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Oddity {
     /// Where it stands.
     pub attribute: Attribute,

@@ -31,6 +31,7 @@ pub struct Classified {
 
 /// A design beside a published system.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Ratio {
     /// The system.
     pub system: String,

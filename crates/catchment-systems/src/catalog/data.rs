@@ -58,6 +58,7 @@ impl Table {
 
 /// Where a row comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case", tag = "kind", content = "name")]
 pub enum Source {
     /// Table 1.1, and table 2.1 under the given name where there is one.
@@ -72,6 +73,7 @@ pub enum Source {
 
 /// A zero-rotation area of acceptance as the dissertation states it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PublishedZraa {
     /// Its area, in D².
     pub area_d2: f64,

@@ -27,6 +27,7 @@ const SEAM: f64 = 1e-9;
 
 /// What contact alone corrects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Degree {
     /// More than a fifth of the face.
     High,
@@ -60,6 +61,7 @@ impl Degree {
 
 /// How far a region reaches through zero, in D: lower and upper end. `None` along an axis that is locked.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Extents {
     /// Along x.
     pub x: Option<[f64; 2]>,

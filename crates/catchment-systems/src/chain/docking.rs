@@ -64,6 +64,7 @@ pub fn docks(
 
 /// A probability that was sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Probability {
     /// Share of the chains.
     pub probability: f64,

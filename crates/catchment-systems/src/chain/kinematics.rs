@@ -13,6 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The dimensions of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Body {
     /// From a rotor to the next, in mm.
     pub pitch: f64,
@@ -40,6 +41,7 @@ impl Body {
 
 /// A place in the plane with a heading.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Frame {
     /// Across the plane, in mm.
     pub x: f64,

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 /// What a choice of corners does at the closing link.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Corners {
     /// Joints that turn.
     pub corners: Vec<usize>,

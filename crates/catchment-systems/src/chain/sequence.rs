@@ -23,6 +23,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// What a joint is told.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Command {
     /// Go to this angle and hold it, in radians.
@@ -43,6 +44,7 @@ impl Command {
 
 /// One moment at which joints are told something.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Step {
     /// When, in seconds.
     pub time_s: f64,

@@ -23,6 +23,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A face of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
     /// Ahead, behind the joint.
@@ -67,6 +68,7 @@ impl Side {
 
 /// Two faces that latch; modules are numbered from 1, and `from` is the nearer to the base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Latch {
     /// Module nearer to the base.
     pub from: usize,
@@ -100,6 +102,7 @@ impl Latch {
 
 /// Which cluster the Block is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Reading {
     /// Reading A: folded in the middle, joints 3 and 4.
@@ -110,6 +113,7 @@ pub enum Reading {
 
 /// A shape by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name")]
 pub enum Shape {
     /// Six modules, one lattice step.

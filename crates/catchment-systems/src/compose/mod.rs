@@ -73,6 +73,7 @@ use sweep::Bracket;
 
 /// In which frames the two regions are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Frames {
     /// Each in the frame of its own robot, facing +y; the second is mounted by a half turn.
@@ -84,6 +85,7 @@ pub enum Frames {
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// In which frames the regions are drawn.
     pub frames: Frames,

@@ -14,6 +14,7 @@ pub type ComposeReport = Envelope<ComposeBody>;
 
 /// Where two halves meet. Lengths in `unit`, angles in radians; areas as [inner, outer], between which the true one lies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComposeBody {
     /// mm or D.
     pub unit: &'static str,
@@ -45,6 +46,7 @@ pub struct ComposeBody {
 
 /// A region that went in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HalfReport {
     /// What it is called.
     pub name: String,
@@ -57,6 +59,7 @@ pub struct HalfReport {
 
 /// What a region measures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RegionReport {
     /// Area, within and around.
     pub area: [f64; 2],
@@ -72,6 +75,7 @@ pub struct RegionReport {
 
 /// A square.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SquareReport {
     /// Its centre.
     pub center: [f64; 2],
@@ -83,6 +87,7 @@ pub struct SquareReport {
 
 /// One heading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SliceReport {
     /// Heading.
     pub heading_rad: f64,
@@ -92,6 +97,7 @@ pub struct SliceReport {
 
 /// The overlap: its largest value, and a grid of it. Bodies that are kept apart take nothing from it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverlapReport {
     /// Largest value that was found, of the inner regions.
     pub largest: f64,

@@ -82,6 +82,7 @@ const ROUNDED: f64 = 1e-10;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// Rolls at which the heights are wanted beside 0, in radians. Rotations are all combinations with the pitches and yaws.
     pub roll: Vec<f64>,

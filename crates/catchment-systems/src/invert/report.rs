@@ -18,6 +18,7 @@ pub type InvertReport = Envelope<InvertBody>;
 
 /// What a part must have to be made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Limits {
     /// Least width of a facet, in D.
     pub feature_d: f64,
@@ -27,6 +28,7 @@ pub struct Limits {
 
 /// The half that wanted heights ask for. Lengths in D.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InvertBody {
     /// Whose fixed half it is for.
     pub design: Design,
@@ -62,6 +64,7 @@ pub struct InvertBody {
 
 /// One polygon of offsets at which the wanted height is not reached, in D.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ShortfallReport {
     /// Corners of the offsets.
     pub polygon: Vec<[f64; 2]>,

@@ -17,6 +17,7 @@ use serde::Serialize;
 
 /// The shape of a law of o and t.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
     /// F₀ + c·o·t³.
@@ -79,6 +80,7 @@ pub struct Point {
 
 /// A law with its parameters, and how far it is off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Fit {
     /// Which one.
     pub law: Law,

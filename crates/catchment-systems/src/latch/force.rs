@@ -39,6 +39,7 @@ pub struct Forces {
 
 /// A force with where it comes from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Latching {
     /// What the fit says, in N, for a pair of both layers.
     pub force_n: f64,
@@ -56,6 +57,7 @@ pub struct Latching {
 
 /// A force to break with its mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Failure {
     /// In N; an upper bound where the tip may come first.
     pub force_n: f64,

@@ -16,6 +16,7 @@ pub const REJECTED_OVERHANG: f64 = 1.27;
 
 /// How a prototype broke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
     /// The compliance neck tore.
@@ -39,6 +40,7 @@ impl Mode {
 
 /// A row of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Measured {
     /// Overhang o, in mm.
     pub overhang_mm: f64,

@@ -55,6 +55,7 @@ use serde::{Deserialize, Serialize};
 
 /// Where a statement comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
     /// The dissertation says so.

@@ -13,6 +13,7 @@ const BASE_ONE_SIDED: f64 = 60.0;
 
 /// A latching X-Face: lengths in mm, angles in rad, the modulus in `MPa`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Latch {
     /// What the design is called.
     pub name: String,
@@ -70,6 +71,7 @@ pub struct Latch {
 
 /// How two halves are pressed together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Press {
     /// Coulomb's coefficient of friction.
     pub friction: f64,

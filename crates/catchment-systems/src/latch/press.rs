@@ -37,6 +37,7 @@ const SETTLED: f64 = 1e-13;
 
 /// How a layer touches its partner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Contact {
     /// Not yet.
@@ -51,6 +52,7 @@ pub enum Contact {
 
 /// One layer at one position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hold {
     /// How it touches.
     pub contact: Contact,
@@ -62,6 +64,7 @@ pub struct Hold {
 
 /// Both layers at one position.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Position {
     /// How far one half is above its seat, in mm; negative beyond it.
     pub above: f64,
@@ -73,6 +76,7 @@ pub struct Position {
 
 /// A hook that passes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Dip {
     /// The layer, from 1.
     pub layer: usize,
@@ -86,6 +90,7 @@ pub struct Dip {
 
 /// The way of a pair from approach to seat.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Record {
     /// Position by position, the last is the deepest.
     pub positions: Vec<Position>,

@@ -18,6 +18,7 @@ const MILLI: f64 = 1e-3;
 
 /// A latch and what is found of it; mm, rad, N, `MPa` where no unit is named.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LatchBody {
     /// What the file says, with defaults.
     pub design: Latch,
@@ -52,6 +53,7 @@ pub struct LatchBody {
 
 /// The outline in numbers; mm and degrees.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OutlineReport {
     /// f(0), and the depth of the lowest point.
     pub height_mm: f64,
@@ -71,6 +73,7 @@ pub struct OutlineReport {
 
 /// A press in numbers: springs and friction alone, which give less than measurements do.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PressReport {
     /// Largest force, in N.
     pub peak_n: f64,

@@ -12,6 +12,7 @@ pub type TableReport = Envelope<TableBody>;
 
 /// Table 6.1 beside the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TableBody {
     /// The nine designs.
     pub rows: Vec<TableRow>,
@@ -31,6 +32,7 @@ pub struct TableBody {
 
 /// A design, measured and computed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TableRow {
     /// As printed.
     #[serde(flatten)]

@@ -50,7 +50,7 @@ fn a_ball_lies_on_a_block() {
     assert!(contact.fixed.part.is_some_and(|part| (1..=3).contains(&part)), "{contact:?}");
     assert!(contact.moving.part.is_some_and(|part| (1..=3).contains(&part)), "{contact:?}");
     // The block's top is at z = 0 in the drawing, 1 mm the smallest length that it has.
-    assert!(contact.fixed.drawn.z.abs() < 1e-6, "{contact:?}");
+    assert!(contact.fixed.drawn_d[2].abs() < 1e-6, "{contact:?}");
 }
 
 /// The plate of a tool changer with two pointed pins: their tips stand on the other plate.

@@ -102,6 +102,7 @@ macro_rules! parameters {
     }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         pub struct $name {
             $($(#[$field_doc])* pub $field: $type,)*
         }
@@ -130,6 +131,7 @@ macro_rules! families {
     ($($name:ident: $text:literal, $summary:literal, $freedom:expr;)*) => {
         /// The built-in families.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         pub enum Family {
             $(#[doc = $summary] #[serde(rename = $text)] $name,)*
         }
@@ -159,6 +161,7 @@ macro_rules! families {
         /// As JSON one object: the family's name under `family`, then its parameters. Other keys are ignored, so that
         /// objects with the parameters of all families still read.
         #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[serde(tag = "family")]
         pub enum FamilySpec {
             $(#[doc = $summary] #[serde(rename = $text)] $name($name),)*

@@ -58,6 +58,7 @@ use tube::Tube;
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Undecided share of the error box at which it is enough, in [0, 1].
@@ -116,6 +117,7 @@ pub const MOST_MEETINGS: usize = 200_000;
 
 /// What is certain of an error box.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Certificate {
     /// Share of the error box whose every pose docks.
     pub yes: f64,

@@ -48,6 +48,7 @@ use serde::{Deserialize, Serialize};
 
 /// What may change the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Share of the centres around a pose that must be known, all of them alike, above ½ and at most 1. Of the eight and fewer that
@@ -105,6 +106,7 @@ pub enum ConfluenceError {
 
 /// How many cells were decided by others, and how often that was wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Joined {
     /// Cells in contact; mirror images count once.
     pub cells: usize,

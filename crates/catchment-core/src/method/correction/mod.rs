@@ -45,6 +45,7 @@ use strata::Strata;
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// Seed of the random poses.
     pub seed: u64,
@@ -87,6 +88,7 @@ impl From<DecideError> for CorrectionError {
 
 /// What was seen in one stratum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Stratum {
     /// What it holds.
     pub name: String,

@@ -52,6 +52,7 @@ const HALVINGS: usize = 40;
 
 /// By which order a rest is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Order {
     /// It rises in proportion to every push.

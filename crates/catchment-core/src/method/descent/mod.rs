@@ -65,6 +65,7 @@ use sticking::{Doubting, OnTheWay};
 
 /// What may change the answer of [`run`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Longest step in the ρ-metric, in D; twice as long where motion is straight. Halving it must not change outcomes; it is
@@ -139,6 +140,7 @@ impl Settings {
 
 /// Where a pose ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct End {
     /// How it ended.
     pub outcome: Outcome,

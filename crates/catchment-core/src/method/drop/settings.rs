@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// What may change the answer of [`run`](super::run).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// What drives the moving half along the approach.
@@ -50,6 +51,7 @@ pub struct Settings {
 
 /// What drives the moving half against the fixed one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Push {
     /// A constant force along the approach through the COR, in kg·D/s².
@@ -60,6 +62,7 @@ pub enum Push {
 
 /// How the moving half moves when it is let go. What is said of errors that the design locks does not count.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Launch {
     /// Speed of the COR along the approach, towards the fixed half, in D/s.
@@ -72,6 +75,7 @@ pub struct Launch {
 
 /// Mass and inertia of the moving half.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum Body {
     /// Given.

@@ -72,6 +72,7 @@ pub use watersheds::{Counts, DAM, Watersheds};
 
 /// Where a cell drains to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Rule {
     /// To the lowest of its 3ⁿ − 1 neighbours, the first in memory among equals. No distance enters.
@@ -94,6 +95,7 @@ impl Rule {
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Basins shallower than this are merged, in D; 0 keeps every minimum. Without one it is chosen from the depths.
@@ -147,6 +149,7 @@ pub enum FloodError {
 
 /// A basin after merging.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Basin {
     /// The lowest cell.
     pub minimum: usize,

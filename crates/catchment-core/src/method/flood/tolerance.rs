@@ -25,6 +25,7 @@ use serde::{Deserialize, Serialize};
 
 /// The tolerance that was used, and why.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Choice {
     /// Basins shallower than this were merged, in D.
     pub depth: f64,
@@ -34,6 +35,7 @@ pub struct Choice {
 
 /// Why a tolerance was used.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
     /// It was given.

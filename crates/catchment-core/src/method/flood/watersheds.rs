@@ -27,6 +27,7 @@ pub struct Watersheds {
 
 /// How many watersheds there are. That of the cells without contact is none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Counts {
     /// Before merging.
     pub first: usize,

@@ -24,6 +24,7 @@ pub(in crate::method) const ENTRY: Entry = Entry::of::<Kinematic>(&INFO);
 
 /// The bounds and the stepping of planar faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(in crate::method) struct Kinematic {}
 

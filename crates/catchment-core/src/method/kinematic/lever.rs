@@ -42,6 +42,7 @@ const SAME: f64 = 1e-9;
 
 /// One of the two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Body {
     /// The fixed half.

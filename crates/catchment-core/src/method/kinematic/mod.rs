@@ -49,6 +49,7 @@ use stepping::{Faces, Halt};
 
 /// A planar face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Face {
     /// V notch and tip.
@@ -61,6 +62,7 @@ pub enum Face {
 
 /// What the answer depends on; lengths in D.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// Which face.
     pub face: Face,

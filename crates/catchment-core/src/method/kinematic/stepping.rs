@@ -52,6 +52,7 @@ pub const MOST_STEPS: usize = 100_000;
 
 /// How the stepping of a start halts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Halt {
     /// The halves are parallel on a ramp: they slide home.

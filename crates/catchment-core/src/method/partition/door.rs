@@ -24,6 +24,7 @@ pub(in crate::method) const ENTRY: Entry = Entry::of::<Partitioned>(&INFO);
 
 /// The partition; what is not said follows from the number of free rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub(in crate::method) struct Partitioned {
     /// Rotation slices across the error box of every free rotation.

@@ -50,6 +50,7 @@ use watershed::{Parts, Watersheds};
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Rotation slices across the error box of every free rotation.
@@ -141,6 +142,7 @@ pub enum PartitionError {
 
 /// How much there was of everything.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Counts {
     /// Polytopes of the Minkowski sum.
     pub polytopes: usize,

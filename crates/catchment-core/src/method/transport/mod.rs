@@ -47,6 +47,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What may change the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Motion that leaves the error box is followed exactly when the grid has at most this many cells at its surface.

@@ -55,6 +55,7 @@ const SEAMS: [f64; 5] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5];
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// Positions closer than this, in D, are one; more are, where motions over both translations disagree.
     pub seam: f64,

@@ -5,6 +5,7 @@ use std::f64::consts::{SQRT_2, TAU};
 
 /// How a number is distributed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub enum Law {
     /// Always the same.

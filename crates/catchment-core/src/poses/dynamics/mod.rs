@@ -28,6 +28,7 @@ use serde::{Deserialize, Serialize};
 
 /// A circumstance of a docking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Circumstance {
     /// Speed along the approach when it is let go, in D/s.
@@ -123,6 +124,7 @@ impl Circumstance {
 
 /// The laws of all circumstances that are declared.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]
 pub struct Dynamics {
     declared: std::collections::BTreeMap<Circumstance, Law>,

@@ -82,6 +82,7 @@ pub enum Spread {
 
 /// Mean, standard deviations and correlations of a spread.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Moments {
     /// Mean of each error.
     pub mean: PoseError,

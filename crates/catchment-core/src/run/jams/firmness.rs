@@ -31,6 +31,7 @@ const MOVES: u64 = 64;
 
 /// How a half rests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Firmness {
     /// It rises in proportion to the push, whichever way.

@@ -53,6 +53,7 @@ use std::collections::BTreeMap;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.
@@ -142,22 +143,23 @@ pub struct Touched {
     /// Unit normal at the first of them, from the fixed half to the moving one.
     pub normal: DVec3,
     /// The feature of the fixed half.
-    pub fixed: Named,
+    pub fixed: NamedFeature,
     /// The feature of the moving half.
-    pub moving: Named,
+    pub moving: NamedFeature,
 }
 
-/// A feature of a half, named.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Named {
-    /// What it is.
+/// A feature of a half that touches.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct NamedFeature {
+    /// `face`, `edge` or `corner`.
     pub kind: FeatureKind,
     /// In words: `edge between top and wall`.
     pub name: String,
-    /// The number of its part in the design file, from 0, where the half is described by parts of one surface each.
+    /// The number of its part in the design file, from 0; null where halves are not made up of parts of one surface each.
     pub part: Option<usize>,
-    /// The first of the places in the coordinates in which its half was drawn, in D.
-    pub drawn: DVec3,
+    /// Where it touches, in the coordinates in which its half was drawn, in D.
+    pub drawn_d: [f64; 3],
 }
 
 /// A pair of features, and in how many jams it touches.
@@ -166,9 +168,9 @@ pub struct Touching {
     /// Random poses of the error box that end in a jam in which it touches.
     pub count: usize,
     /// The feature of the fixed half, where it was met first; all of its name count as one.
-    pub fixed: Named,
+    pub fixed: NamedFeature,
     /// The same of the moving half.
-    pub moving: Named,
+    pub moving: NamedFeature,
 }
 
 /// What is known of a jam beyond its rests.

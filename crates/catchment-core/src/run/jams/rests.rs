@@ -2,7 +2,7 @@
 
 use super::escape::Leaving;
 use super::firmness::{Firmness, Space};
-use super::{Cluster, Examined, Named, Touched, escape, firmness, part_of};
+use super::{Cluster, Examined, NamedFeature, Touched, escape, firmness, part_of};
 use crate::acceptance::{Outcome, Stream};
 use crate::connector::Side;
 use crate::contact::{Contact, Features};
@@ -195,7 +195,12 @@ impl Rested {
         let named = |side, number: u32, in_frame: DVec3| {
             let feature = features.get(side, number);
             let part = part_of(problem, side, in_frame);
-            Named { kind: feature.kind, name: feature.name(), part, drawn: problem.drawn(side, in_frame) }
+            NamedFeature {
+                kind: feature.kind,
+                name: feature.name(),
+                part,
+                drawn_d: problem.drawn(side, in_frame).to_array(),
+            }
         };
         let [fixed, moving] = met.features;
         Touched {

@@ -39,6 +39,7 @@ use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Random poses of the error box; 4000 of simple halves where nothing is said, fewer of halves with many facets.

@@ -41,6 +41,7 @@ use space::Space;
 
 /// What changes the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// Half-widths that are given, in the order of [`Dof::ALL`], in D and radians: these errors occur so far, and the others are asked about.

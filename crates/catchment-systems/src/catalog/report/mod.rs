@@ -24,6 +24,7 @@ const NOTHING: &str = "–";
 
 /// Rows of the catalogue.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CatalogBody {
     /// The rows.
     pub systems: Vec<SystemBody>,
@@ -31,6 +32,7 @@ pub struct CatalogBody {
 
 /// A row of the catalogue.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SystemBody {
     /// Its name.
     pub system: String,
@@ -50,6 +52,7 @@ pub struct SystemBody {
 
 /// A value as printed, and in the terms that the text defines.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ValueReport {
     /// As printed.
     pub printed: String,
@@ -61,6 +64,7 @@ pub struct ValueReport {
 
 /// A design among the published systems.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ClassifyBody {
     /// The design, resolved: lengths in D, angles in radians.
     pub design: Design,

@@ -29,6 +29,7 @@ use std::f64::consts::PI;
 
 /// How large the errors of a chain are; the joint's own first, all others optional.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Errors {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma: f64,
@@ -62,6 +63,7 @@ pub struct Closing {
 
 /// Mean and covariance of (lateral mm, normal mm, angle rad).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Covariance {
     /// Mean error.
     pub mean: [f64; 3],

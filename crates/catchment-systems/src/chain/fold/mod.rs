@@ -40,6 +40,7 @@ use solve::Chain;
 
 /// What a servo can do.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Servo {
     /// Stall torque, in N·m.
     pub torque: f64,
@@ -56,6 +57,7 @@ impl Default for Servo {
 
 /// What a pair of latching faces does.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hooks {
     /// Pressing force that latches a layer, in N.
     pub force: f64,
@@ -76,6 +78,7 @@ impl Default for Hooks {
 
 /// What changes how a chain folds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Settings {
     /// The servos.
     pub servo: Servo,
@@ -94,6 +97,7 @@ impl Default for Settings {
 
 /// What a joint is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum State {
     /// Near its command.
@@ -106,6 +110,7 @@ pub enum State {
 
 /// A layer, or both, has latched.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Event {
     /// When: commands ramp within a second.
     pub time_s: f64,

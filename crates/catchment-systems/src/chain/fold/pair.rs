@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 
 /// What holds a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Layers {
     /// Nothing.
     None,

@@ -23,6 +23,7 @@ pub type ChainReport = Envelope<ChainBody>;
 
 /// What was found about a chain. Millimetres, radians, newtons, seconds; `_d` is in D, the width of a face.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ChainBody {
     /// What the person called it.
     pub name: String,
@@ -60,6 +61,7 @@ pub struct ChainBody {
 
 /// The connector as the chain uses it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ConnectorReport {
     /// Its name.
     pub name: String,
@@ -75,6 +77,7 @@ pub struct ConnectorReport {
 
 /// Errors of a face where it arrives.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ArrivalReport {
     /// The latch; null for the last face of a straight chain.
     pub latch: Option<Latch>,
@@ -104,6 +107,7 @@ pub struct ArrivalReport {
 
 /// A sequence and what became of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FoldingReport {
     /// The shape, where one is named.
     pub shape: Option<Shape>,
@@ -133,6 +137,7 @@ pub struct FoldingReport {
 
 /// The chain at the end of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StepReport {
     /// Time of the step, in seconds.
     pub time_s: f64,
@@ -144,6 +149,7 @@ pub struct StepReport {
 
 /// A module at the end of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ModuleReport {
     /// Its number.
     pub module: usize,
@@ -165,6 +171,7 @@ pub struct ModuleReport {
 
 /// A row of the table over numbers of modules.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LengthReport {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma_rad: f64,
@@ -182,6 +189,7 @@ pub struct LengthReport {
 
 /// How many modules still meet a requirement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Reach {
     /// Standard deviation of a joint's angle, in radians.
     pub joint_sigma_rad: f64,

@@ -29,6 +29,7 @@ use serde::Serialize;
 
 /// What lengths are measured in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Measure {
     /// Millimetres.
     #[serde(rename = "mm")]

@@ -56,6 +56,7 @@ const BELOW: f64 = 1.0;
 
 /// How much higher the new half stops between the rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Between {
     /// Largest angle of a rotation within the range to the nearest asked for, in radians.
     pub turn_rad: f64,

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 
 /// What changes the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Basins shallower than this are merged, in D; 0 keeps every minimum. Without one it lies in the widest gap between the

@@ -26,6 +26,7 @@ pub(super) const fn is_basin(label: u32) -> bool {
 
 /// Where flooding may be read in two ways. The default is the one of Meyer's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Rules {
     /// Every cell without a lower neighbour is a minimum, even on a plateau that drains elsewhere.

@@ -34,6 +34,7 @@ use serde::{Deserialize, Serialize};
 
 /// Which shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Subject {
     /// Both halves, docked.

@@ -17,17 +17,17 @@ use sha2::{Digest, Sha256};
 
 /// A page, or the beginning of one.
 #[derive(Debug, Default)]
-pub(super) struct Html(String);
+pub(crate) struct Html(String);
 
 impl Html {
     /// A fragment that stands in the source of the program.
-    pub(super) fn fixed(mut self, fragment: &'static str) -> Self {
+    pub(crate) fn fixed(mut self, fragment: &'static str) -> Self {
         self.0.push_str(fragment);
         self
     }
 
     /// Text between tags or inside of a quoted attribute. Characters that steer a reader's eye become question marks.
-    pub(super) fn text(mut self, text: &str) -> Self {
+    pub(crate) fn text(mut self, text: &str) -> Self {
         for c in catchment_core::terminal::printable(text).chars() {
             match c {
                 '&' => self.0.push_str("&amp;"),
@@ -45,25 +45,25 @@ impl Html {
     ///
     /// # Errors
     /// The value has no JSON form.
-    pub(super) fn json(mut self, value: &impl serde::Serialize) -> Result<Self, serde_json::Error> {
+    pub(crate) fn json(mut self, value: &impl serde::Serialize) -> Result<Self, serde_json::Error> {
         self.0.push_str(&serde_json::to_string(value)?.replace('<', "\\u003c"));
         Ok(self)
     }
 
     /// Bytes as base64.
-    pub(super) fn bytes(mut self, bytes: &[u8]) -> Self {
+    pub(crate) fn bytes(mut self, bytes: &[u8]) -> Self {
         STANDARD.encode_string(bytes, &mut self.0);
         self
     }
 
     /// A whole number.
-    pub(super) fn number(mut self, number: usize) -> Self {
+    pub(crate) fn number(mut self, number: usize) -> Self {
         self.0.push_str(&number.to_string());
         self
     }
 
     /// The HTML, UTF-8.
-    pub(super) fn into_string(self) -> String {
+    pub(crate) fn into_string(self) -> String {
         self.0
     }
 }

@@ -1,0 +1,176 @@
+//! The description of a result for people, from which text, CSV, Markdown and HTML are rendered.
+//!
+//! ```text
+//!   study ──▶ result ──┬─▶ serde, schemars       the JSON and its schema
+//!                      └─▶ Document              sections of rows, tables and paragraphs
+//!                             ├─▶ text           for a terminal of any width
+//!                             ├─▶ Markdown, HTML
+//!                             └─▶ CSV            the first table with keys, every digit
+//! ```
+//!
+//! A result implements [`Subject`] once, beside its type; the renderers are in `catchment-report`. A [`Table`] holds values, not text: its columns say
+//! how people read them ([`Format`]) and under which keys programs do. Lengths are in D and angles in radians wherever a program reads them.
+
+mod number;
+mod table;
+mod units;
+
+pub use number::{
+    decimals, fixed, grouped, length, number, percent, rounded, rounded_down, significant, tenths,
+    tenths_between, with_error,
+};
+pub use table::{Cell, Column, Format, Table};
+pub use units::Units;
+
+use crate::acceptance::Warning;
+use crate::design::Design;
+use crate::merit::sum::wilson95;
+use serde::{Deserialize, Serialize};
+
+/// A result that is printed and stored: it serialises itself, and describes itself to people.
+pub trait Subject: Serialize {
+    /// The `kind` of its JSON, which is also the name of its schema.
+    const KIND: &'static str;
+
+    /// Warnings that its own numbers give rise to.
+    fn warnings(&self) -> Vec<Warning> {
+        Vec::new()
+    }
+
+    /// Its description, without the heading of the design and without warnings.
+    fn document(&self, design: &Design) -> Document;
+}
+
+/// Sections from top to bottom; an empty line stands between two of them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Document {
+    /// The sections.
+    pub sections: Vec<Section>,
+}
+
+/// Parts that belong together.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// Its heading, where it has one.
+    pub title: Option<String>,
+    /// Its parts, from top to bottom.
+    pub parts: Vec<Part>,
+}
+
+/// A part of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// A name and its value; an empty name continues the row above.
+    Row {
+        /// The name.
+        name: String,
+        /// The value.
+        value: String,
+    },
+    /// A table.
+    Table(Table),
+    /// A sentence or several.
+    Paragraph(String),
+}
+
+impl Document {
+    /// Starts a section.
+    pub fn section(&mut self, title: impl Into<Option<&'static str>>) -> &mut Self {
+        self.titled(title.into().map(str::to_owned))
+    }
+
+    /// Starts a section under a heading that is computed.
+    pub fn titled(&mut self, title: Option<String>) -> &mut Self {
+        self.sections.push(Section { title, parts: Vec::new() });
+        self
+    }
+
+    /// Adds a row: a name and its value.
+    pub fn row(&mut self, name: impl Into<String>, value: impl Into<String>) -> &mut Self {
+        self.part(Part::Row { name: name.into(), value: value.into() })
+    }
+
+    /// Continues the last row on a line of its own.
+    pub fn more(&mut self, value: impl Into<String>) -> &mut Self {
+        self.row("", value)
+    }
+
+    /// Adds a table.
+    pub fn table(&mut self, table: Table) -> &mut Self {
+        self.part(Part::Table(table))
+    }
+
+    /// Adds a paragraph.
+    pub fn paragraph(&mut self, text: impl Into<String>) -> &mut Self {
+        self.part(Part::Paragraph(text.into()))
+    }
+
+    /// Appends the sections of another document.
+    pub fn append(&mut self, other: Self) -> &mut Self {
+        self.sections.extend(other.sections);
+        self
+    }
+
+    fn part(&mut self, part: Part) -> &mut Self {
+        if self.sections.is_empty() {
+            self.sections.push(Section::default());
+        }
+        if let Some(section) = self.sections.last_mut() {
+            section.parts.push(part);
+        }
+        self
+    }
+
+    /// The table that programs read as CSV: the first one whose columns have keys.
+    pub fn records(&self) -> Option<&Table> {
+        let parts = self.sections.iter().flat_map(|section| &section.parts);
+        parts
+            .filter_map(|part| match part {
+                Part::Table(table) => Some(table),
+                _ => None,
+            })
+            .find(|table| table.has_keys())
+    }
+}
+
+/// A count as a share of all, with the uncertainty of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Share {
+    /// How many.
+    pub count: usize,
+    /// Their share of all, in [0, 1].
+    pub share: f64,
+    /// Its 95 % interval (Wilson).
+    pub ci95: [f64; 2],
+}
+
+impl Share {
+    /// So many of all.
+    pub fn of(count: usize, all: usize) -> Self {
+        let share = if all == 0 { 0.0 } else { count as f64 / all as f64 };
+        Self { count, share, ci95: wilson95(count, all) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_for_programs_is_the_first_with_keys() {
+        let mut document = Document::default();
+        document.row("method", "descent").section("limits");
+        document.table(Table::new([Column::new("error")]));
+        assert_eq!(document.records(), None);
+        document.table(Table::new([Column::new("error").key("axis")]));
+        assert_eq!(document.sections.len(), 2);
+        assert_eq!(document.records().map(Table::keys), Some(vec!["axis".to_owned()]));
+    }
+
+    #[test]
+    fn a_share_of_nothing_is_unknown() {
+        assert_eq!(Share::of(0, 0), Share { count: 0, share: 0.0, ci95: [0.0, 1.0] });
+        assert_eq!(Share::of(1, 2).share, 0.5);
+    }
+}

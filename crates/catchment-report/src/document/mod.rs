@@ -1,0 +1,237 @@
+//! Renderers of a [`Document`]: one description of a result, read in a terminal, a page, a text file or a spreadsheet.
+//!
+//! ```text
+//!   Document ──┬─▶ text      names in a column, tables aligned, wrapped to the width of the terminal
+//!              ├─▶ markdown  a table per group of rows, tables as tables
+//!              ├─▶ html      the same as elements; one page that needs no other file
+//!              └─▶ csv       the first table with keys, every digit
+//! ```
+//!
+//! Names of designs and files are foreign text: what could steer a terminal is replaced, what means something in Markdown or HTML is escaped.
+
+mod html;
+mod markdown;
+mod text;
+
+pub use html::html;
+pub use markdown::markdown;
+pub use text::{Style, text};
+
+use crate::envelope::{Body, Envelope};
+use crate::schema::{Timing, WarningReport};
+use catchment_core::design::{ConnectorSpec, Design};
+use catchment_core::document::{Document, Subject, rounded};
+use serde::Serialize;
+use std::ops::{Deref, DerefMut};
+
+/// A result beside the design that it is about. Its fields stand beside `design` in JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct OfDesign<T> {
+    /// The design, resolved: lengths in D, angles in radians.
+    pub design: Design,
+    /// The result.
+    #[serde(flatten)]
+    pub result: T,
+}
+
+/// The report of a result of a design.
+pub type ReportOf<T> = Envelope<OfDesign<T>>;
+
+impl<T: Subject> Body for OfDesign<T> {
+    const KIND: &'static str = T::KIND;
+}
+
+impl<T> Deref for OfDesign<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.result
+    }
+}
+
+impl<T> DerefMut for OfDesign<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.result
+    }
+}
+
+impl<T: Subject> ReportOf<T> {
+    /// The report of a result. Warnings of its own numbers follow `warnings`, which are those of the problem.
+    pub fn new(design: &Design, result: T, mut warnings: Vec<WarningReport>, timing: Option<Timing>) -> Self {
+        warnings.extend(result.warnings().into_iter().map(WarningReport::from));
+        Self::of(OfDesign { design: design.clone(), result }, warnings, timing)
+    }
+}
+
+/// A report that people read.
+pub trait Printed: Body {
+    /// What it is about: the name of the design, as a rule.
+    fn title(&self) -> &str;
+
+    /// Its description, without warnings.
+    fn document(&self) -> Document;
+}
+
+impl<T: Subject> Printed for OfDesign<T> {
+    fn title(&self) -> &str {
+        &self.design.name
+    }
+
+    /// The heading of its design, which what the result says first continues.
+    fn document(&self) -> Document {
+        let mut document = heading(&self.design);
+        let mut rest = self.result.document(&self.design);
+        let first = rest.sections.first_mut().filter(|section| section.title.is_none());
+        if let (Some(section), Some(heading)) = (first, document.sections.last_mut()) {
+            heading.parts.append(&mut section.parts);
+            rest.sections.remove(0);
+        }
+        document.append(rest);
+        document
+    }
+}
+
+impl<B: Printed> Envelope<B> {
+    /// The whole description, with title and warnings.
+    pub fn described(&self) -> Described<'_> {
+        Described {
+            title: self.body.title(),
+            document: self.body.document(),
+            warnings: self.warnings.iter().map(|warning| warning.message.as_str()).collect(),
+        }
+    }
+
+    /// The report as text of 80 columns; ends with a line break.
+    pub fn table(&self) -> String {
+        text(&self.described(), Style::default())
+    }
+
+    /// Its table for programs, the names of the columns first; empty where it has none.
+    pub fn records(&self) -> Vec<Vec<String>> {
+        self.body.document().records().map(|table| table.records()).unwrap_or_default()
+    }
+}
+
+/// A document with the title and the warnings of its report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Described<'a> {
+    /// The name of the design.
+    pub title: &'a str,
+    /// The document.
+    pub document: Document,
+    /// Warnings, a sentence or several each.
+    pub warnings: Vec<&'a str>,
+}
+
+/// The rows about a design that stand above every result.
+pub fn heading(design: &Design) -> Document {
+    let kind = match &design.connector {
+        ConnectorSpec::Family(f) => {
+            format!("{}, aspect ratio {}", f.family().name(), rounded(f.aspect_ratio()))
+        }
+        ConnectorSpec::Own(_) => "own halves".to_owned(),
+    };
+    let width =
+        design.unit.map_or_else(|| "D = 1".to_owned(), |u| format!("D = {} {}", design.width, u.symbol()));
+    let alignment = &design.alignment;
+    let free: Vec<&str> = alignment.free.iter().map(catchment_core::pose::Dof::name).collect();
+    let mut document = Document::default();
+    document.row("connector", format!("{kind}, {width}")).row("free errors", free.join(", ")).row(
+        "motion",
+        format!(
+            "COR {} D before the face, rotation length {} D",
+            rounded(alignment.center_of_rotation),
+            rounded(alignment.rotation_length)
+        ),
+    );
+    document
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use catchment_core::document::{Cell, Column, Format, Table};
+
+    /// A document with every kind of part.
+    pub(crate) fn sample() -> Described<'static> {
+        let mut document = Document::default();
+        document.row("method", "descent, 200 motions").row("window", "x ±1.2 mm, yaw ±5.5°");
+        document.more("limited by yaw");
+        document.section("limits");
+        let mut table = Table::new([
+            Column::new("error").key("axis").left(),
+            Column::new("limit").key("limit").format(Format::Fixed(2)),
+            Column::new("docks").interval("aligned").format(Format::Tenths),
+            Column::data("seed"),
+        ]);
+        table.push(["x".into(), 1.234.into(), Cell::Interval(0.991, [0.98, 0.996]), 1usize.into()]);
+        table.push(["yaw".into(), 12.0.into(), Cell::Empty, 2usize.into()]);
+        document.table(table);
+        document.section(None).paragraph("Every sampled pose of the window docks: 0 failures in 300 000 samples <95 % confidence> and so on to the end of a long line.");
+        Described { title: "peg | <socket>\u{1b}[2J", document, warnings: vec!["2 poses are undecided"] }
+    }
+
+    #[test]
+    fn text_is_aligned_and_wrapped() {
+        let expected = "\
+peg | <socket>?[2J
+────────────────────────
+  method         descent, 200 motions
+  window         x ±1.2 mm, yaw ±5.5°
+                 limited by yaw
+
+  limits
+  error  limit                     docks
+  x       1.23  99.1 % (98.0 % … 99.6 %)
+  yaw    12.00
+
+  Every sampled pose of the window docks: 0 failures in 300 000 samples <95 %
+  confidence> and so on to the end of a long line.
+
+warning: 2 poses are undecided
+";
+        assert_eq!(text(&sample(), Style::default()), expected);
+        let narrow = text(&sample(), Style { columns: 40, ..Style::default() });
+        assert!(narrow.lines().all(|line| line.chars().count() <= 40), "{narrow}");
+        let colourful = text(&sample(), Style { colour: true, ..Style::default() });
+        assert_eq!(anstyle_free(&colourful), expected);
+        assert!(colourful.contains("\u{1b}[1mpeg") && colourful.contains("\u{1b}[33mwarning:"));
+    }
+
+    fn anstyle_free(text: &str) -> String {
+        ["\u{1b}[1m", "\u{1b}[33m", "\u{1b}[0m"]
+            .iter()
+            .fold(text.to_owned(), |text, code| text.replace(code, ""))
+    }
+
+    #[test]
+    fn markdown_has_tables() {
+        let told = markdown(&sample());
+        assert!(
+            told.starts_with(
+                "# peg \\| \\<socket\\>?[2J\n\n| | |\n|---|---|\n| method | descent, 200 motions |\n"
+            ),
+            "{told}"
+        );
+        assert!(told.contains("| window | x ±1.2 mm, yaw ±5.5° |\n| | limited by yaw |\n"), "{told}");
+        assert!(
+            told.contains("\n## limits\n\n| error | limit | docks |\n|:--|--:|--:|\n| x | 1.23 |"),
+            "{told}"
+        );
+        assert!(told.ends_with("\n> **Warning:** 2 poses are undecided\n"), "{told}");
+    }
+
+    #[test]
+    fn html_is_well_formed() {
+        let told = html(&sample());
+        let page = roxmltree::Document::parse_with_options(
+            &told,
+            roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() },
+        )
+        .unwrap();
+        let count = |name| page.descendants().filter(|node| node.has_tag_name(name)).count();
+        assert_eq!((count("h1"), count("h2"), count("table"), count("th")), (1, 1, 2, 6));
+        assert!(told.contains("<h1>peg | &lt;socket&gt;?[2J</h1>"), "{told}");
+    }
+}

@@ -1,0 +1,184 @@
+//! A document as text, for terminals.
+
+use super::Described;
+use catchment_core::document::{Cell, Column, Part, Table};
+use catchment_core::terminal::printable;
+
+/// Columns before the value of a row: the indent, and the names.
+const NAMES: usize = 17;
+/// The indent of everything below the title.
+const INDENT: &str = "  ";
+/// Between two columns of a table.
+const GAP: usize = 2;
+/// No terminal is narrower than this.
+const NARROWEST: usize = 40;
+/// The shortest line under a title.
+const RULE: usize = 24;
+/// The fewest columns in which a text at the end of a row is wrapped.
+const LEAST_TEXT: usize = 16;
+
+const BOLD: &str = "\u{1b}[1m";
+const YELLOW: &str = "\u{1b}[33m";
+const RESET: &str = "\u{1b}[0m";
+
+/// How text is laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Style {
+    /// Columns of the terminal.
+    pub columns: usize,
+    /// Whether titles are bold and warnings yellow.
+    pub colour: bool,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self { columns: 80, colour: false }
+    }
+}
+
+impl Style {
+    fn painted(self, code: &str, text: &str) -> String {
+        if self.colour { format!("{code}{text}{RESET}") } else { text.to_owned() }
+    }
+}
+
+/// A document as text; ends with a line break.
+pub fn text(described: &Described<'_>, style: Style) -> String {
+    let style = Style { columns: style.columns.max(NARROWEST), ..style };
+    let mut page = Page { text: String::new(), style };
+    let title = printable(described.title);
+    let rule = "─".repeat(title.chars().count().clamp(RULE, style.columns));
+    page.text.push_str(&style.painted(BOLD, &title));
+    page.text.push('\n');
+    page.line(&rule);
+    for (k, section) in described.document.sections.iter().enumerate() {
+        if k > 0 {
+            page.text.push('\n');
+        }
+        if let Some(title) = &section.title {
+            let title = style.painted(BOLD, &printable(title));
+            page.text.push_str(&format!("{INDENT}{title}\n"));
+        }
+        for part in &section.parts {
+            match part {
+                Part::Row { name, value } => page.row(name, value),
+                Part::Table(table) => page.table(table),
+                Part::Paragraph(text) => page.wrapped(INDENT, text),
+            }
+        }
+    }
+    for warning in &described.warnings {
+        page.text.push('\n');
+        let start = page.text.len();
+        page.wrapped("warning: ", warning);
+        let painted = style.painted(YELLOW, "warning:");
+        page.text.replace_range(start..start + "warning:".len(), &painted);
+    }
+    page.text
+}
+
+struct Page {
+    text: String,
+    style: Style,
+}
+
+impl Page {
+    /// A line with what may be printed of `content`.
+    fn line(&mut self, content: &str) {
+        self.text.push_str(printable(content).trim_end());
+        self.text.push('\n');
+    }
+
+    /// A name and its value; a space stands between the two, however long the name is.
+    fn row(&mut self, name: &str, value: &str) {
+        self.wrapped(&format!("{INDENT}{name:<width$} ", width = NAMES - INDENT.len() - 1), value);
+    }
+
+    /// A text after `first`; broken between words where it is too long, later lines indented by the width of `first`.
+    fn wrapped(&mut self, first: &str, content: &str) {
+        let indent = first.chars().count();
+        if indent + content.chars().count() <= self.style.columns {
+            return self.line(&format!("{first}{content}"));
+        }
+        let indent = indent.min(self.style.columns.saturating_sub(LEAST_TEXT));
+        for (k, words) in broken(content, self.style.columns - indent).into_iter().enumerate() {
+            let start = if k == 0 { first.to_owned() } else { " ".repeat(indent) };
+            self.line(&format!("{start}{words}"));
+        }
+    }
+
+    /// The columns that people see, numbers aligned to the right.
+    fn table(&mut self, table: &Table) {
+        let columns: Vec<(usize, &Column, &str)> = table
+            .columns
+            .iter()
+            .enumerate()
+            .filter_map(|(k, column)| column.title.as_deref().map(|title| (k, column, title)))
+            .collect();
+        if columns.is_empty() {
+            return;
+        }
+        let head: Vec<String> = columns.iter().map(|(_, _, title)| (*title).to_owned()).collect();
+        let shown = |row: &Vec<Cell>| -> Vec<String> {
+            columns.iter().map(|(k, column, _)| printable(&column.shown(&row[*k]))).collect()
+        };
+        let rows: Vec<Vec<String>> = table.rows.iter().map(shown).collect();
+        let mut widths: Vec<usize> = (0..columns.len())
+            .map(|k| rows.iter().chain([&head]).map(|row| row[k].chars().count()).max().unwrap_or(0))
+            .collect();
+        let last = widths.len() - 1;
+        let before: usize = INDENT.len() + widths[..last].iter().map(|width| width + GAP).sum::<usize>();
+        if before + widths[last] > self.style.columns {
+            let room = self.style.columns.saturating_sub(before);
+            if !columns[last].1.left || room < LEAST_TEXT {
+                return self.cards(&head, &rows);
+            }
+            widths[last] = room;
+        }
+        for row in std::iter::once(&head).chain(&rows) {
+            let mut line = INDENT.to_owned();
+            for (k, (cell, width)) in row[..last].iter().zip(&widths).enumerate() {
+                let (left, gap) = (columns[k].1.left, " ".repeat(GAP));
+                line += &if left { format!("{cell:<width$}{gap}") } else { format!("{cell:>width$}{gap}") };
+            }
+            let indent = line.chars().count();
+            for (k, words) in broken(&row[last], widths[last]).into_iter().enumerate() {
+                let start = if k == 0 { line.clone() } else { " ".repeat(indent) };
+                let width = widths[last];
+                let end = if columns[last].1.left { words } else { format!("{words:>width$}") };
+                self.line(&format!("{start}{end}"));
+            }
+        }
+    }
+
+    /// A table that is wider than the terminal: every row as lines of heading and value.
+    fn cards(&mut self, head: &[String], rows: &[Vec<String>]) {
+        for row in rows {
+            for (k, (title, cell)) in
+                head.iter().zip(row).enumerate().filter(|(_, (_, cell))| !cell.is_empty())
+            {
+                let indent = if k == 0 { "" } else { INDENT };
+                self.wrapped(&format!("{INDENT}{indent}{title}: "), cell);
+            }
+        }
+    }
+}
+
+/// A text in lines of at most so many characters, broken between words; words that are longer stand alone.
+fn broken(text: &str, width: usize) -> Vec<String> {
+    if text.chars().count() <= width {
+        return vec![text.to_owned()];
+    }
+    let (mut lines, mut line) = (Vec::new(), String::new());
+    for word in text.split_whitespace() {
+        let used = line.chars().count();
+        if used > 0 && used + 1 + word.chars().count() > width {
+            lines.push(std::mem::take(&mut line));
+        } else if used > 0 {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    lines.push(line);
+    lines
+}

@@ -1,0 +1,163 @@
+//! What people read of the effect of friction.
+
+use super::{Friction, Kept, Rung, StickingPair, SticksFirst};
+use catchment_core::acceptance::Warning;
+use catchment_core::design::Design;
+use catchment_core::document::{Cell, Column, Document, Format, Subject, Table, grouped, tenths};
+use serde::Serializer;
+
+/// Pairs of features that are shown.
+const SHOWN: usize = 6;
+
+impl Subject for Friction {
+    const KIND: &'static str = "friction";
+
+    fn warnings(&self) -> Vec<Warning> {
+        let note = |text: String| Warning::Note { text };
+        let undecided: usize = self.curve.iter().map(|rung| rung.undecided.count).sum();
+        let mut warnings = Vec::new();
+        if undecided > 0 {
+            warnings.push(Warning::Undecided { cells: undecided });
+        }
+        // Right beside the border any friction matters: what counts is what is more than chance among the poses.
+        let hardly = self.curve.iter().filter(|rung| {
+            let [lo, hi] = rung.aligned.ci95;
+            rung.hardly_held as f64 > 0.5 * (hi - lo) * self.motions as f64
+        });
+        if let Some(Rung { friction, hardly_held, .. }) = hardly.max_by_key(|rung| rung.hardly_held) {
+            warnings.push(note(format!(
+                "{} poses are lost at a friction of {friction} and dock with a tenth less of it: rigid halves stick there, and halves that give, as real ones \
+                 and those of engines do, may let go",
+                grouped(*hardly_held),
+            )));
+        }
+        if let Some(friction) = self.wedges_from() {
+            warnings.push(note(format!(
+                "from a friction of {friction} on some poses wedge: the halves press against each other, and rigid ones may stay even against a pull straight \
+                 out; halves that give a little, as real ones and those of engines do, may come loose there"
+            )));
+        }
+        warnings
+    }
+
+    fn document(&self, _: &Design) -> Document {
+        let mut document = Document::default();
+        document.row("method", format!("descent, {} random poses at every friction", grouped(self.motions)));
+        document.section(None).table(self.table());
+        self.describe_kept(&mut document);
+        self.describe_sticking(&mut document);
+        if self.come_back > 0 {
+            let poses = poses(self.come_back);
+            document
+                .section(None)
+                .row("note", format!("{poses} are lost at some friction and dock again at a larger one"));
+        }
+        document
+    }
+}
+
+impl Friction {
+    fn table(&self) -> Table {
+        let mut table = Table::new([
+            Column::new("friction").key("friction"),
+            Column::data("motions"),
+            Column::new("docks (95 % CI)").interval("aligned").format(Format::Tenths),
+            Column::data("jammed"),
+            Column::data("missed"),
+            Column::data("undecided"),
+            Column::new("lost").key("lost"),
+            Column::new("gained").key("gained"),
+            Column::new("may stick").key("may_stick"),
+            Column::new("hardly held").key("hardly_held"),
+            Column::data("wedged"),
+            Column::new("static").key("static_docks"),
+            Column::new("wrong").key("static_wrong"),
+        ]);
+        for rung in &self.curve {
+            // Without friction there is nothing to compare with.
+            let against =
+                |count: usize| if rung.friction > 0.0 { count.into() } else { Cell::shown("", count) };
+            let by_statics = tenths(rung.static_docks as f64 / self.motions.max(1) as f64);
+            table.push([
+                rung.friction.into(),
+                self.motions.into(),
+                rung.aligned.into(),
+                rung.jammed.share.into(),
+                rung.missed.share.into(),
+                rung.undecided.share.into(),
+                against(rung.lost),
+                against(rung.gained),
+                against(rung.may_stick),
+                against(rung.hardly_held),
+                rung.wedged.into(),
+                Cell::shown(if rung.friction > 0.0 { by_statics } else { String::new() }, rung.static_docks),
+                against(rung.static_wrong),
+            ]);
+        }
+        table
+    }
+
+    fn describe_kept(&self, document: &mut Document) {
+        if self.curve.first().is_none_or(|rung| rung.aligned.count == 0) {
+            document
+                .section(None)
+                .paragraph("Nothing docks without friction: there is nothing that friction could take.");
+            return;
+        }
+        document.section("of the poses that dock without friction");
+        for kept in &self.kept {
+            let friction = if kept.is_top {
+                format!("beyond {}, the largest that was tried", self.top())
+            } else {
+                let [lo, hi] = kept.ci95.map(|friction| self.up_to(friction));
+                format!("up to a friction of {:.3}  (95 % CI {lo} … {hi})", kept.friction)
+            };
+            document.row(format!("{:.0} % dock", 100.0 * kept.share), friction);
+        }
+    }
+
+    fn describe_sticking(&self, document: &mut Document) {
+        let SticksFirst { poses: count, features } = &self.sticks_first;
+        if features.is_empty() {
+            return;
+        }
+        document.titled(Some(format!("what sticks where the first are lost ({})", poses(*count))));
+        for pair in features.iter().take(SHOWN) {
+            let [least, median] = [pair.critical_least, pair.critical_median].map(|mu| format!("{mu:.3}"));
+            document.row(
+                tenths(pair.share),
+                format!("{}: from a friction of {least} on, half of them by {median}", pair.words()),
+            );
+        }
+        if features.len() > SHOWN {
+            document.more(format!("and {} more pairs of features", features.len() - SHOWN));
+        }
+    }
+
+    /// The largest friction that was tried.
+    fn top(&self) -> f64 {
+        self.curve.last().map_or(0.0, |rung| rung.friction)
+    }
+
+    /// A friction up to which something docks, in words: `beyond 0.5` where that is all of them.
+    pub fn up_to(&self, friction: f64) -> String {
+        let top = self.top();
+        if friction >= top { format!("beyond {top}") } else { format!("{friction:.3}") }
+    }
+}
+
+impl StickingPair {
+    /// The contact in words.
+    pub fn words(&self) -> String {
+        format!("{} of the moving half on {} of the fixed one", self.moving.name, self.fixed.name)
+    }
+}
+
+/// The shares as the fields of an object: `p95`.
+pub(super) fn by_share<S: Serializer>(kept: &[Kept], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(kept.iter().map(|kept| (format!("p{:.0}", 100.0 * kept.share), kept)))
+}
+
+fn poses(count: usize) -> String {
+    if count == 1 { "1 pose".to_owned() } else { format!("{} poses", grouped(count)) }
+}
